@@ -1,0 +1,79 @@
+//! The main job: from a problem to moments, sensitivities, contributions and warnings.
+
+mod characteristic;
+mod warnings;
+
+pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
+
+use std::time::Duration;
+
+use crate::assembly::Run;
+use crate::method::{Method, MethodError, Options};
+use crate::problem::Problem;
+use crate::warning::Warning;
+
+/// What an analysis found out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Analysis {
+    /// The method that was asked for.
+    pub method: Method,
+    /// Dimensions that vary and on which some characteristic can depend, N.
+    pub varying: usize,
+    /// Points sent to the model.
+    pub evaluations: usize,
+    /// Points that lost at least one characteristic.
+    pub failed: usize,
+    /// Batches in which they were sent.
+    pub stages: usize,
+    /// Whether it was stopped before everything planned was evaluated.
+    pub stopped: bool,
+    /// Time within the model.
+    pub in_model: Duration,
+    /// What is known of every characteristic, in the problem's order.
+    pub characteristics: Vec<CharacteristicAnalysis>,
+    /// Where an assumption fails.
+    pub warnings: Vec<Warning>,
+}
+
+/// Analyses a problem.
+///
+/// Evaluations: as the method says ([`Procedure::count`](crate::method::Procedure::count)), one more when some mean is not
+/// the nominal, and more only where the model fails.
+///
+/// # Errors
+/// When the options do not fit the problem; nothing is evaluated then. A model that fails is no error: what it costs is
+/// missing from the result and named in the warnings.
+///
+/// ```
+/// use sensitol::{Closure, Dimension, Method, Problem, analyze};
+/// let dimensions = [Dimension::normal("width", 20.0, 0.3)?, Dimension::normal("height", 10.0, 0.3)?];
+/// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
+/// let analysis = analyze(&area, &Method::Full.into())?;
+/// assert_eq!(analysis.evaluations, 7); // N^2 + N + 1
+/// let moments = analysis.characteristics[0].moments.unwrap();
+/// let exact = (2.0f64.powi(2) + 1.0 + 0.01f64.powi(2)).sqrt(); // (20 x 0.1)^2 + (10 x 0.1)^2 + (0.1 x 0.1)^2
+/// assert!((moments.sigma() - exact).abs() < 1e-12);
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodError> {
+    analyze_within(problem, options, &Run::to_the_end())
+}
+
+/// [`analyze`], telling of finished points and stopping when told to.
+pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
+    let outcome = options.method.procedure().run(problem, options, run)?;
+    let characteristics: Vec<CharacteristicAnalysis> =
+        (0..problem.characteristics().len()).map(|c| CharacteristicAnalysis::of(problem, &outcome, c)).collect();
+    let warnings = warnings::of(problem, &outcome, &characteristics);
+    Ok(Analysis {
+        method: outcome.method,
+        varying: outcome.plan.varying().len(),
+        evaluations: outcome.evaluated.evaluations,
+        failed: outcome.evaluated.known.failed_points(),
+        stages: outcome.evaluated.stages,
+        stopped: outcome.evaluated.stopped,
+        in_model: outcome.evaluated.in_model,
+        characteristics,
+        warnings,
+    })
+}

@@ -1,0 +1,151 @@
+//! Where the results of an analysis rest on something that does not hold.
+
+use super::CharacteristicAnalysis;
+use crate::method::{Method, Order, Outcome};
+use crate::plan::Point;
+use crate::problem::Problem;
+use crate::surrogate::Surrogate;
+use crate::warning::{Loss, Warning};
+
+/// A rounding error of one value above this part of sigma is worth a warning.
+const NOISE: f64 = 1e-4;
+/// Curvature that moves the mean by more sigmas than this spoils RSS,
+const SHIFT: f64 = 0.1;
+/// and so does curvature that adds more than this part of the linear variance.
+const CURVED: f64 = 0.05;
+
+pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[CharacteristicAnalysis]) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    if outcome.method == Method::Auto {
+        warnings.push(Warning::AutoIsSecondOrder);
+    }
+    warnings.extend(unused(problem));
+    for &d in outcome.plan.varying() {
+        let moved = |moved: &crate::plan::Moved| Warning::SupportEdge {
+            dimension: problem.dimensions()[d].name().to_owned(),
+            from: moved.from,
+            to: moved.to,
+        };
+        warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
+    }
+    for (c, analysis) in characteristics.iter().enumerate() {
+        warnings.extend(failed_points(problem, outcome, c));
+        warnings.extend(lost(problem, outcome, c));
+        warnings.extend(doubtful(outcome, c, analysis));
+    }
+    let possible = outcome.plan.possible_pairs();
+    if outcome.order == Order::Second && outcome.pairs.len() < possible {
+        warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
+    }
+    warnings
+}
+
+/// Dimensions that vary and on which no characteristic can depend.
+fn unused(problem: &Problem) -> Vec<Warning> {
+    let dependence = problem.dependence();
+    let idle = |&d: &usize| !dependence.iter().any(|row| row[d]);
+    (0..problem.dimensions().len())
+        .filter(idle)
+        .map(|d| Warning::UnusedDimension { dimension: problem.dimensions()[d].name().to_owned() })
+        .collect()
+}
+
+fn failed_points(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
+    let known = &outcome.evaluated.known;
+    let mut errors = known.errors().filter(|&(_, of, _)| of == c);
+    let (point, _, error) = errors.next()?;
+    Some(Warning::FailedPoints {
+        characteristic: name(problem, c),
+        failed: 1 + errors.count(),
+        points: outcome.evaluated.evaluations,
+        point: described(problem, outcome, point),
+        error: error.to_string(),
+    })
+}
+
+/// A point in words: what is not at its mean.
+fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
+    if point == outcome.plan.nominal() {
+        return "the nominal dimensions".to_owned();
+    }
+    if *point == Point::Centre {
+        return "the means".to_owned();
+    }
+    let at = point.at().iter().map(|at| {
+        let dimension = at.dimension as usize;
+        let node = outcome.plan.axis(dimension).nodes[at.node as usize];
+        format!("{} = {} (mean {:+.3} sigma)", problem.dimensions()[dimension].name(), node.x, node.u)
+    });
+    at.collect::<Vec<_>>().join(", ")
+}
+
+/// Derivatives that could not be had, or only over a shorter step.
+fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
+    let (plan, fitted, known) = (&outcome.plan, &outcome.fitted[c], &outcome.evaluated.known);
+    let mut warnings = Vec::new();
+    let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
+    let lost = |dimensions: Vec<String>, loss| Warning::LostDerivative { characteristic: name(problem, c), dimensions, loss };
+    for &d in plan.varying().iter().filter(|&&d| plan.depends(c, d)) {
+        let axis = plan.axis(d);
+        let value = |node: u32| {
+            known.value(&Point::of(&[crate::plan::At { dimension: d as u32, node }]), c).map(|_| axis.nodes[node as usize].u)
+        };
+        for slot in &axis.slots {
+            if let (None, Some(used)) = (value(slot[0]), slot[1..].iter().find_map(|&node| value(node))) {
+                warnings.push(Warning::DomainEdge {
+                    characteristic: name(problem, c),
+                    dimension: dimension(d),
+                    failed: axis.nodes[slot[0] as usize].u,
+                    used,
+                });
+            }
+        }
+        match fitted.parts[d] {
+            None => warnings.push(lost(vec![dimension(d)], Loss::Slope)),
+            Some(part) if part.degree() < 2 => warnings.push(lost(vec![dimension(d)], Loss::Curvature)),
+            Some(_) => {}
+        }
+    }
+    for (&(j, k), mixed) in outcome.pairs.iter().zip(&fitted.mixed) {
+        let pair = || [j, k].map(|position| dimension(plan.varying()[position])).to_vec();
+        match mixed {
+            None => warnings.push(lost(pair(), Loss::Mixed)),
+            Some(mixed) if !mixed.complete => warnings.push(lost(pair(), Loss::OneSidedMixed)),
+            Some(_) => {}
+        }
+    }
+    warnings
+}
+
+/// Results that exist but should not be taken at face value.
+fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let (Some(moments), Some(surrogate)) = (analysis.moments, &outcome.fitted[c].surrogate) else { return warnings };
+    let characteristic = analysis.characteristic.name().to_owned();
+    let sigma = moments.sigma();
+    if sigma == 0.0 {
+        warnings.push(Warning::NoReaction { characteristic });
+        return warnings;
+    }
+    let rounding = f64::EPSILON * surrogate.centre.abs() / sigma;
+    if rounding > NOISE {
+        warnings.push(Warning::Noise { characteristic: characteristic.clone(), rounding });
+    }
+    if outcome.order == Order::First {
+        let plan = &outcome.plan;
+        let parts = plan.varying().iter().map(|&d| outcome.fitted[c].parts[d]).collect();
+        let curved = Surrogate { parts, ..surrogate.clone() }.contributions(plan.shapes());
+        if let Some(curved) = curved.map(|contributions| contributions.moments) {
+            let mean_shift = (curved.mean() - moments.mean()) / sigma;
+            let variance = curved.variance() / moments.variance() - 1.0;
+            if mean_shift.abs() > SHIFT || variance.abs() > CURVED {
+                warnings.push(Warning::RssInvalid { characteristic, mean_shift, variance });
+            }
+        }
+    }
+    warnings
+}
+
+fn name(problem: &Problem, c: usize) -> String {
+    problem.characteristics()[c].name().to_owned()
+}

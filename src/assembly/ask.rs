@@ -1,0 +1,94 @@
+//! What is asked of an assembly function: points, and which outputs.
+
+/// `R` points in `N` dimensions, stored a column per dimension.
+///
+/// ```
+/// use sensitol::assembly::Points;
+/// let mut points = Points::repeated(&[10.0, 30.0], 3);
+/// points.set(1, 0, 10.5);
+/// assert_eq!(points.column(0), [10.0, 10.5, 10.0]);
+/// assert_eq!(points.row(1), [10.5, 30.0]);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Points {
+    rows: usize,
+    dimensions: usize,
+    values: Vec<f64>,
+}
+
+impl Points {
+    /// `rows` copies of one point.
+    pub fn repeated(point: &[f64], rows: usize) -> Self {
+        let mut values = Vec::with_capacity(point.len() * rows);
+        for &value in point {
+            values.extend(std::iter::repeat_n(value, rows));
+        }
+        Self { rows, dimensions: point.len(), values }
+    }
+
+    /// A point per row; every row must have the same length.
+    pub fn from_rows<R: AsRef<[f64]>>(rows: &[R]) -> Self {
+        let dimensions = rows.first().map_or(0, |row| row.as_ref().len());
+        let mut points = Self { rows: rows.len(), dimensions, values: vec![0.0; rows.len() * dimensions] };
+        for (r, row) in rows.iter().enumerate() {
+            assert_eq!(row.as_ref().len(), dimensions, "points of different dimension");
+            for (d, &value) in row.as_ref().iter().enumerate() {
+                points.set(r, d, value);
+            }
+        }
+        points
+    }
+
+    /// A column per dimension; every column must have `rows` values.
+    pub fn from_columns<C: AsRef<[f64]>>(rows: usize, columns: &[C]) -> Self {
+        let mut values = Vec::with_capacity(rows * columns.len());
+        for column in columns {
+            assert_eq!(column.as_ref().len(), rows, "columns of different length");
+            values.extend_from_slice(column.as_ref());
+        }
+        Self { rows, dimensions: columns.len(), values }
+    }
+
+    /// Number of points.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of dimensions, `N`.
+    pub fn dimensions(&self) -> usize {
+        self.dimensions
+    }
+
+    /// All values of one dimension.
+    pub fn column(&self, dimension: usize) -> &[f64] {
+        &self.values[dimension * self.rows..(dimension + 1) * self.rows]
+    }
+
+    /// One point.
+    pub fn row(&self, row: usize) -> Vec<f64> {
+        (0..self.dimensions).map(|dimension| self.column(dimension)[row]).collect()
+    }
+
+    /// Changes one coordinate of one point.
+    pub fn set(&mut self, row: usize, dimension: usize, value: f64) {
+        self.values[dimension * self.rows + row] = value;
+    }
+}
+
+/// A batch of points and the outputs wanted there.
+#[derive(Debug, Clone, Copy)]
+pub struct Ask<'a> {
+    /// The points, a column per input of the [`Signature`](super::Signature).
+    pub points: &'a Points,
+    /// Indices of the outputs wanted; nothing else need be computed.
+    pub outputs: &'a [usize],
+    /// Whether derivatives with respect to every input are wanted too, of a function that has them.
+    pub gradients: bool,
+}
+
+impl<'a> Ask<'a> {
+    /// Values only.
+    pub fn values(points: &'a Points, outputs: &'a [usize]) -> Self {
+        Self { points, outputs, gradients: false }
+    }
+}

@@ -1,0 +1,41 @@
+//! Cheap models on all cores: a batch cut into blocks of rows.
+
+use rayon::prelude::*;
+
+use super::{Ask, Points, Responses, Run};
+
+/// Rows that one task evaluates: enough to hide the cost of starting it, few enough to stay in the cache.
+pub(crate) const BLOCK: usize = 1024;
+
+/// Evaluates `block` on blocks of about a thousand rows, side by side on rayon's current pool.
+///
+/// `block` is given a range of rows of `points` and fills a response of its own, so the answers do not depend on the
+/// number of threads. For functions that are cheap and need no state; a process pool brings its own threads.
+pub fn in_blocks(
+    ask: &Ask<'_>,
+    run: &Run<'_>,
+    out: &mut Responses,
+    block: impl Fn(&Points, std::ops::Range<usize>, &mut Responses) + Sync,
+) {
+    let rows = ask.points.rows();
+    let evaluate = |first: usize| {
+        let range = first..(first + BLOCK).min(rows);
+        let mut answers = Responses::open(range.len(), ask.outputs.len());
+        if !run.stopped() {
+            block(ask.points, range, &mut answers);
+        }
+        (first, answers)
+    };
+    if rows <= BLOCK {
+        *out = evaluate(0).1;
+    } else {
+        let starts: Vec<usize> = (0..rows).step_by(BLOCK).collect();
+        let answered: Vec<_> = starts.into_par_iter().map(evaluate).collect();
+        for (first, answers) in answered {
+            out.adopt(first, answers);
+        }
+    }
+    let finished: Vec<usize> =
+        (0..rows).filter(|&row| (0..ask.outputs.len()).all(|output| !out.is_open(row, output))).collect();
+    run.finished(&finished, out);
+}

@@ -1,0 +1,81 @@
+//! A Rust closure as assembly function.
+
+use super::{Ask, AssemblyFunction, EvaluationError, Responses, Run, Signature, in_blocks};
+
+type Answer = dyn Fn(&[f64], &mut [f64]) -> Result<(), EvaluationError> + Send + Sync;
+
+/// An assembly function made of a closure, which gets one point and answers with one value per output.
+///
+/// Its inputs have no names of their own: they are the problem's dimensions in order. It runs on several points at
+/// once.
+///
+/// ```
+/// use sensitol::{Closure, Dimension, Method, Problem, analyze};
+/// let dimensions = [Dimension::normal("bore", 25.02, 0.01)?, Dimension::normal("pin", 25.0, 0.01)?];
+/// let problem = Problem::new(dimensions, Closure::scalar("clearance", |x| x[0] - x[1]))?;
+/// let clearance = &analyze(&problem, &Method::SecondOrder.into())?.characteristics[0];
+/// assert!((clearance.moments.unwrap().sigma() - 0.01 * 2f64.sqrt() / 3.0).abs() < 1e-12);
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+pub struct Closure {
+    signature: Signature,
+    answer: Box<Answer>,
+}
+
+impl Closure {
+    /// With one output.
+    pub fn scalar(output: &str, function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Self {
+        Self::new([output], move |x| [function(x)])
+    }
+
+    /// With `K` outputs.
+    pub fn new<const K: usize>(
+        outputs: [&str; K],
+        function: impl Fn(&[f64]) -> [f64; K] + Send + Sync + 'static,
+    ) -> Self {
+        Self::fallible(outputs, move |x| Ok(function(x)))
+    }
+
+    /// With `K` outputs and points that it refuses.
+    ///
+    /// ```
+    /// use sensitol::assembly::{Closure, EvaluationError};
+    /// let chain = Closure::fallible(["sum", "ratio"], |x| {
+    ///     if x[1] == 0.0 {
+    ///         return Err(EvaluationError::Refused { message: "b is 0".into() });
+    ///     }
+    ///     Ok([x[0] + x[1], x[0] / x[1]])
+    /// });
+    /// ```
+    pub fn fallible<const K: usize>(
+        outputs: [&str; K],
+        function: impl Fn(&[f64]) -> Result<[f64; K], EvaluationError> + Send + Sync + 'static,
+    ) -> Self {
+        let answer = move |x: &[f64], y: &mut [f64]| {
+            y.copy_from_slice(&function(x)?);
+            Ok(())
+        };
+        Self { signature: Signature::of_names(Vec::<String>::new(), outputs), answer: Box::new(answer) }
+    }
+}
+
+impl AssemblyFunction for Closure {
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
+        in_blocks(ask, run, out, |points, rows, out| {
+            let mut y = vec![0.0; self.signature.outputs.len()];
+            for (row, r) in rows.enumerate() {
+                let answered = (self.answer)(&points.row(r), &mut y);
+                for (column, &output) in ask.outputs.iter().enumerate() {
+                    match &answered {
+                        Ok(()) => out.set(row, column, y[output]),
+                        Err(error) => out.fail(row, column, error.clone()),
+                    }
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,24 @@
+//! Why one output has no value at one point.
+
+use super::formula::FormulaFailure;
+
+/// Why an assembly function gave no value for one output at one point.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvaluationError {
+    /// The function answered with NaN or an infinity.
+    #[error("the model returned {value}")]
+    NotFinite {
+        /// What it returned.
+        value: f64,
+    },
+    /// A formula has no value there.
+    #[error(transparent)]
+    Formula(#[from] Box<FormulaFailure>),
+    /// The model said why itself.
+    #[error("{message}")]
+    Refused {
+        /// The model's own words.
+        message: String,
+    },
+}

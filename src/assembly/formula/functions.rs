@@ -1,0 +1,213 @@
+//! The functions and operators that formulas know, on numbers.
+
+/// A function or operator of one argument.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Unary {
+    /// `-x`
+    Negate,
+    /// `abs(x)`
+    Abs,
+    /// `sqrt(x)`
+    Sqrt,
+    /// `exp(x)`
+    Exp,
+    /// `ln(x)`
+    Ln,
+    /// `log10(x)`
+    Log10,
+    /// `sin(x)`, x in radians
+    Sin,
+    /// `cos(x)`, x in radians
+    Cos,
+    /// `tan(x)`, x in radians
+    Tan,
+    /// `asin(x)`, in radians
+    Asin,
+    /// `acos(x)`, in radians
+    Acos,
+    /// `atan(x)`, in radians
+    Atan,
+    /// `sinh(x)`
+    Sinh,
+    /// `cosh(x)`
+    Cosh,
+    /// `tanh(x)`
+    Tanh,
+    /// `floor(x)`
+    Floor,
+    /// `ceil(x)`
+    Ceil,
+    /// `sign(x)`: -1, 0 or 1
+    Sign,
+}
+
+/// A function or operator of two arguments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Binary {
+    /// `x + y`
+    Add,
+    /// `x - y`
+    Subtract,
+    /// `x * y`
+    Multiply,
+    /// `x / y`
+    Divide,
+    /// `x ^ y`
+    Power,
+    /// `x < y`: 1 or 0
+    Less,
+    /// `x <= y`: 1 or 0
+    LessEqual,
+    /// `x > y`: 1 or 0
+    Greater,
+    /// `x >= y`: 1 or 0
+    GreaterEqual,
+    /// `x == y`: 1 or 0
+    Equal,
+    /// `x != y`: 1 or 0
+    NotEqual,
+    /// `min(x, y, ...)`
+    Min,
+    /// `max(x, y, ...)`
+    Max,
+    /// `atan2(y, x)`, in radians
+    Atan2,
+    /// `hypot(x, y)`
+    Hypot,
+}
+
+/// What a name in front of a parenthesis stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Callable {
+    Unary(Unary),
+    Binary(Binary),
+    /// Any number of arguments from two on, taken two by two.
+    Fold(Binary),
+    If,
+}
+
+impl Callable {
+    const ALL: [(&'static str, Callable); 22] = [
+        ("abs", Callable::Unary(Unary::Abs)),
+        ("sqrt", Callable::Unary(Unary::Sqrt)),
+        ("exp", Callable::Unary(Unary::Exp)),
+        ("ln", Callable::Unary(Unary::Ln)),
+        ("log10", Callable::Unary(Unary::Log10)),
+        ("sin", Callable::Unary(Unary::Sin)),
+        ("cos", Callable::Unary(Unary::Cos)),
+        ("tan", Callable::Unary(Unary::Tan)),
+        ("asin", Callable::Unary(Unary::Asin)),
+        ("acos", Callable::Unary(Unary::Acos)),
+        ("atan", Callable::Unary(Unary::Atan)),
+        ("sinh", Callable::Unary(Unary::Sinh)),
+        ("cosh", Callable::Unary(Unary::Cosh)),
+        ("tanh", Callable::Unary(Unary::Tanh)),
+        ("floor", Callable::Unary(Unary::Floor)),
+        ("ceil", Callable::Unary(Unary::Ceil)),
+        ("sign", Callable::Unary(Unary::Sign)),
+        ("atan2", Callable::Binary(Binary::Atan2)),
+        ("hypot", Callable::Binary(Binary::Hypot)),
+        ("min", Callable::Fold(Binary::Min)),
+        ("max", Callable::Fold(Binary::Max)),
+        ("if", Callable::If),
+    ];
+
+    pub(super) fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|&(_, callable)| callable)
+    }
+
+    pub(super) fn names() -> impl Iterator<Item = &'static str> {
+        Self::ALL.iter().map(|&(name, _)| name)
+    }
+
+    /// Fewest and, unless there is no such number, most arguments.
+    pub(super) fn arity(self) -> (usize, Option<usize>) {
+        match self {
+            Self::Unary(_) => (1, Some(1)),
+            Self::Binary(_) => (2, Some(2)),
+            Self::Fold(_) => (2, None),
+            Self::If => (3, Some(3)),
+        }
+    }
+}
+
+/// The constants of formulas.
+pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("deg", std::f64::consts::PI / 180.0)];
+
+impl Unary {
+    /// The function on one number.
+    #[inline]
+    pub(super) fn apply(self, x: f64) -> f64 {
+        match self {
+            Self::Negate => -x,
+            Self::Abs => x.abs(),
+            Self::Sqrt => x.sqrt(),
+            Self::Exp => x.exp(),
+            Self::Ln => x.ln(),
+            Self::Log10 => x.log10(),
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Tan => x.tan(),
+            Self::Asin => x.asin(),
+            Self::Acos => x.acos(),
+            Self::Atan => x.atan(),
+            Self::Sinh => x.sinh(),
+            Self::Cosh => x.cosh(),
+            Self::Tanh => x.tanh(),
+            Self::Floor => x.floor(),
+            Self::Ceil => x.ceil(),
+            Self::Sign if x == 0.0 => 0.0,
+            Self::Sign => x.signum(),
+        }
+    }
+
+    /// What its argument must fulfil for it to have a value; None for a function that has one everywhere or fails by
+    /// being too large only.
+    pub(super) fn domain(self) -> Option<&'static str> {
+        match self {
+            Self::Asin | Self::Acos => Some("the argument must lie in -1 .. 1"),
+            Self::Sqrt => Some("the argument must not be negative"),
+            Self::Ln | Self::Log10 => Some("the argument must be above 0"),
+            _ => None,
+        }
+    }
+}
+
+impl Binary {
+    /// The function on two numbers. NaN in is always NaN out: where IEEE 754 lets it vanish (`NaN ^ 0`, a comparison,
+    /// `min`), a domain error would pass for a result.
+    #[inline]
+    pub(super) fn apply(self, x: f64, y: f64) -> f64 {
+        let truth = |is: bool| if x.is_nan() || y.is_nan() { f64::NAN } else { f64::from(u8::from(is)) };
+        let guarded = |value: f64| if x.is_nan() || y.is_nan() { f64::NAN } else { value };
+        match self {
+            Self::Add => x + y,
+            Self::Subtract => x - y,
+            Self::Multiply => x * y,
+            Self::Divide => x / y,
+            Self::Power => guarded(x.powf(y)),
+            Self::Less => truth(x < y),
+            Self::LessEqual => truth(x <= y),
+            Self::Greater => truth(x > y),
+            Self::GreaterEqual => truth(x >= y),
+            Self::Equal => truth(x == y),
+            Self::NotEqual => truth(x != y),
+            Self::Min => guarded(x.min(y)),
+            Self::Max => guarded(x.max(y)),
+            Self::Atan2 => x.atan2(y),
+            Self::Hypot => guarded(x.hypot(y)),
+        }
+    }
+}
+
+/// `if(condition, x, y)` on numbers.
+#[inline]
+pub(super) fn select(condition: f64, x: f64, y: f64) -> f64 {
+    if condition.is_nan() {
+        f64::NAN
+    } else if condition != 0.0 {
+        x
+    } else {
+        y
+    }
+}

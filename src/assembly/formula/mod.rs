@@ -1,0 +1,25 @@
+//! Formulas: text to a batch evaluator over columns, with the place of every error.
+//!
+//! A [`Formula`] is parsed alone; a [`FormulaSet`] resolves several against each other and against variables and
+//! constants, and evaluates them.
+//!
+//! Written `+ - * / ^`, `< <= > >= == !=`, `if(condition, x, y)`, `min max` of several, `abs sqrt exp ln log10 sin cos
+//! tan asin acos atan atan2 sinh cosh tanh hypot floor ceil sign`, `pi` and `deg` (= pi/180). `^` binds to the right
+//! and tighter than a sign: `-x^2` is `-(x^2)`. A condition is true when it is not 0. Names with other characters than
+//! letters, digits and `_` stand in backquotes.
+//!
+//! An infinity may occur on the way (`1/(1/a + 1/b)` at `a = 0` is 0), NaN never vanishes, and a result that is not
+//! finite is an error of that point.
+
+mod batch;
+mod error;
+mod functions;
+mod graph;
+mod lexer;
+mod parser;
+mod program;
+mod set;
+
+pub use error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
+pub use parser::{Formula, is_reserved};
+pub use set::{FormulaSet, Meaning};

@@ -1,0 +1,42 @@
+//! The black box: the assembly function, and how it is asked.
+//!
+//! With `N` inputs and `K` outputs, an assembly function maps points `x` in `R^N` to `y` in `R^K`. It is asked for a
+//! whole batch of points at once and told which outputs are wanted; it answers with numbers or, per point and output,
+//! with an error. Nothing else is known of it, so a formula, a closed-form model and a CAD system in another process
+//! look the same from here.
+//!
+//! # A new kind of assembly function
+//! One new file with a type that implements [`AssemblyFunction`].
+
+mod ask;
+mod blocks;
+mod closure;
+mod composite;
+mod error;
+pub mod formula;
+mod responses;
+mod run;
+mod signature;
+
+pub use ask::{Ask, Points};
+pub use blocks::in_blocks;
+pub use closure::Closure;
+pub use composite::{Composite, CompositeError, Parts, Source};
+pub use error::EvaluationError;
+pub use responses::Responses;
+pub use run::Run;
+pub use signature::{Input, Output, Signature};
+
+/// The black box: object-safe, batch first, told what is asked, with an error per point and output.
+pub trait AssemblyFunction: Send + Sync {
+    /// Names and units of inputs and outputs, and what is known of the function beforehand.
+    fn signature(&self) -> &Signature;
+
+    /// Answers `ask.points` for `ask.outputs` into `out`, whose rows are the points and whose columns are the asked
+    /// outputs in the order asked.
+    ///
+    /// A point that cannot be answered is an error in `out`, not a panic. As rows become final they are told to
+    /// [`Run::finished`]; between rows [`Run::stopped`] says when to return with the rest unanswered, which is no
+    /// error.
+    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses);
+}

@@ -1,0 +1,95 @@
+//! What an assembly function answered.
+
+use std::collections::BTreeMap;
+
+use super::EvaluationError;
+
+/// Answers of a batch: a column per asked output, and an error wherever there is no value.
+///
+/// An entry starts open. It is then either a finite value or an error; one that is still open at the end belongs to a
+/// point that was not finished.
+///
+/// ```
+/// use sensitol::assembly::{EvaluationError, Responses};
+/// let mut out = Responses::open(3, 1);
+/// out.set(0, 0, 5.997);
+/// out.set(1, 0, f64::NAN); // what is not finite never leaves as a number
+/// assert_eq!(out.value(0, 0), Some(5.997));
+/// assert!(matches!(out.error(1, 0), Some(EvaluationError::NotFinite { .. })));
+/// assert!(out.is_open(2, 0));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Responses {
+    rows: usize,
+    outputs: usize,
+    /// NaN where there is no value.
+    values: Vec<f64>,
+    errors: BTreeMap<(usize, usize), EvaluationError>,
+}
+
+impl Responses {
+    /// For `rows` points and `outputs` asked outputs, all of them open.
+    pub fn open(rows: usize, outputs: usize) -> Self {
+        Self { rows, outputs, values: vec![f64::NAN; rows * outputs], errors: BTreeMap::new() }
+    }
+
+    /// Number of points.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of asked outputs.
+    pub fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// Answers one entry; a value that is not finite becomes an error.
+    pub fn set(&mut self, row: usize, output: usize, value: f64) {
+        if value.is_finite() {
+            self.values[output * self.rows + row] = value;
+        } else {
+            self.fail(row, output, EvaluationError::NotFinite { value });
+        }
+    }
+
+    /// Answers one entry with an error.
+    pub fn fail(&mut self, row: usize, output: usize, error: EvaluationError) {
+        self.values[output * self.rows + row] = f64::NAN;
+        self.errors.insert((row, output), error);
+    }
+
+    /// The value, where there is one.
+    pub fn value(&self, row: usize, output: usize) -> Option<f64> {
+        let value = self.values[output * self.rows + row];
+        (!value.is_nan()).then_some(value)
+    }
+
+    /// The error, where there is one.
+    pub fn error(&self, row: usize, output: usize) -> Option<&EvaluationError> {
+        self.errors.get(&(row, output))
+    }
+
+    /// Whether an entry has neither value nor error.
+    pub fn is_open(&self, row: usize, output: usize) -> bool {
+        self.value(row, output).is_none() && self.error(row, output).is_none()
+    }
+
+    /// All values of one output, NaN where there is none.
+    pub fn column(&self, output: usize) -> &[f64] {
+        &self.values[output * self.rows..(output + 1) * self.rows]
+    }
+
+    /// Every error with its row and output, in order.
+    pub fn errors(&self) -> impl Iterator<Item = (usize, usize, &EvaluationError)> {
+        self.errors.iter().map(|(&(row, output), error)| (row, output, error))
+    }
+
+    /// Takes over the answers of the rows from `first` on.
+    pub fn adopt(&mut self, first: usize, block: Responses) {
+        for output in 0..self.outputs {
+            let start = output * self.rows + first;
+            self.values[start..start + block.rows].copy_from_slice(block.column(output));
+        }
+        self.errors.extend(block.errors.into_iter().map(|((row, output), error)| ((first + row, output), error)));
+    }
+}

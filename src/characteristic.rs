@@ -1,0 +1,126 @@
+//! A key characteristic (KC): one output of the assembly function that somebody asked for.
+
+/// A key characteristic: its name, its unit, and the limits it should keep.
+///
+/// ```
+/// use sensitol::{Characteristic, SpecLimits};
+/// let gap = Characteristic::new("gap").with_unit("mm").with_limits(SpecLimits::new(Some(5.0), Some(7.0))?);
+/// assert!(gap.limits().contains(6.0) && !gap.limits().contains(7.1));
+/// # Ok::<(), sensitol::LimitsError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Characteristic {
+    name: String,
+    unit: Option<String>,
+    limits: SpecLimits,
+    target_yield: Option<f64>,
+}
+
+impl Characteristic {
+    /// Without unit, limits or target.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: None, limits: SpecLimits::default(), target_yield: None }
+    }
+
+    /// With a unit, which is shown and never converted.
+    pub fn with_unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = Some(unit.into());
+        self
+    }
+
+    /// With specification limits.
+    pub fn with_limits(mut self, limits: SpecLimits) -> Self {
+        self.limits = limits;
+        self
+    }
+
+    /// With the share of assemblies that must lie within the limits, above 0 and below 1.
+    pub fn with_target_yield(mut self, target: f64) -> Result<Self, LimitsError> {
+        if !(target > 0.0 && target < 1.0) {
+            return Err(LimitsError::ImpossibleYield { value: target });
+        }
+        self.target_yield = Some(target);
+        Ok(self)
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its unit, where one was given.
+    pub fn unit(&self) -> Option<&str> {
+        self.unit.as_deref()
+    }
+
+    /// Its specification limits.
+    pub fn limits(&self) -> SpecLimits {
+        self.limits
+    }
+
+    /// The share of assemblies that must lie within the limits, where one was given.
+    pub fn target_yield(&self) -> Option<f64> {
+        self.target_yield
+    }
+}
+
+/// Specification limits of a characteristic: two, one or none.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SpecLimits {
+    lower: Option<f64>,
+    upper: Option<f64>,
+}
+
+/// Why limits or a target are impossible.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LimitsError {
+    /// A limit is NaN or infinite.
+    #[error("a limit must be a finite number, not {value}; leave out a limit that does not exist")]
+    NotFinite {
+        /// The limit given.
+        value: f64,
+    },
+    /// The limits are the wrong way round, or the same.
+    #[error("the lower limit {lower} must be below the upper limit {upper}")]
+    Swapped {
+        /// The lower limit given.
+        lower: f64,
+        /// The upper limit given.
+        upper: f64,
+    },
+    /// A target yield that is no share.
+    #[error("a target yield must lie between 0 and 1, both excluded, not {value}")]
+    ImpossibleYield {
+        /// The target given.
+        value: f64,
+    },
+}
+
+impl SpecLimits {
+    /// Both finite where given, and `lower` below `upper`.
+    pub fn new(lower: Option<f64>, upper: Option<f64>) -> Result<Self, LimitsError> {
+        if let Some(value) = [lower, upper].into_iter().flatten().find(|limit| !limit.is_finite()) {
+            return Err(LimitsError::NotFinite { value });
+        }
+        match (lower, upper) {
+            (Some(lower), Some(upper)) if lower >= upper => Err(LimitsError::Swapped { lower, upper }),
+            _ => Ok(Self { lower, upper }),
+        }
+    }
+
+    /// The lower limit, where there is one.
+    pub fn lower(&self) -> Option<f64> {
+        self.lower
+    }
+
+    /// The upper limit, where there is one.
+    pub fn upper(&self) -> Option<f64> {
+        self.upper
+    }
+
+    /// Whether a value keeps the limits; a limit itself is kept.
+    pub fn contains(&self, value: f64) -> bool {
+        self.lower.is_none_or(|lower| lower <= value) && self.upper.is_none_or(|upper| value <= upper)
+    }
+}

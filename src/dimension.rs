@@ -1,0 +1,225 @@
+//! A dimension: one input of the assembly function, with its tolerance and its distribution.
+
+use std::sync::Arc;
+
+use crate::distribution::{Distribution, DistributionError, Normal, Uniform, finite};
+
+/// Without a tolerance band, three sigma on either side take its place in RSS and worst case.
+const SIGMAS_OF_AN_UNBOUNDED_DIMENSION: f64 = 3.0;
+
+/// One input: a name, a nominal value, and how it varies.
+///
+/// ```
+/// use sensitol::Dimension;
+/// let a = Dimension::normal("a", 10.0, 0.3)?.with_unit("mm");
+/// assert_eq!((a.mean(), a.sigma(), a.half_band()), (10.0, 0.3 / 3.0, 0.3));
+/// let b = Dimension::normal_between("b", 30.0, [-0.1, 0.3])?; // the band's middle is the mean
+/// assert!((b.mean() - 30.1).abs() < 1e-12 && (b.half_band() - 0.2).abs() < 1e-15);
+/// # Ok::<(), sensitol::DimensionError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Dimension {
+    name: String,
+    unit: Option<String>,
+    nominal: f64,
+    /// Deviations from the nominal, not limits: at 1e10 ± 1 the difference of two limits has lost six digits.
+    tolerance: Option<[f64; 2]>,
+    distribution: Option<Arc<dyn Distribution>>,
+    step: Option<f64>,
+}
+
+/// Why a dimension cannot be.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("dimension `{name}`: {fault}")]
+pub struct DimensionError {
+    /// The dimension's name.
+    pub name: String,
+    /// What is wrong with it.
+    pub fault: DimensionFault,
+}
+
+/// What is wrong with a dimension.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DimensionFault {
+    /// The distribution's parameters are impossible.
+    #[error(transparent)]
+    Distribution(#[from] DistributionError),
+    /// A tolerance is below 0.
+    #[error("the tolerance must not be negative, but is {value}")]
+    NegativeTolerance {
+        /// The tolerance given.
+        value: f64,
+    },
+    /// The variation vanishes beside the value when both are doubles.
+    #[error("sigma {sigma:e} is too small beside the mean {mean:e} to be told from 0 in double precision")]
+    Unresolvable {
+        /// The mean.
+        mean: f64,
+        /// The sigma.
+        sigma: f64,
+    },
+    /// An evaluation step that is no positive number.
+    #[error("the step must be a number of sigmas above 0, but is {value}")]
+    BadStep {
+        /// The step given.
+        value: f64,
+    },
+}
+
+impl Dimension {
+    /// A value that does not vary: it takes part in no statistics and costs no evaluation.
+    pub fn fixed(name: impl Into<String>, nominal: f64) -> Result<Self, DimensionError> {
+        Self::build(name.into(), nominal, None, Ok(None))
+    }
+
+    /// Normal, nominal ± `tolerance`, three sigma within the band; a tolerance of 0 makes it fixed.
+    pub fn normal(name: impl Into<String>, nominal: f64, tolerance: f64) -> Result<Self, DimensionError> {
+        if tolerance == 0.0 {
+            return Self::fixed(name, nominal);
+        }
+        let distribution = checked(tolerance).and_then(|half| shared(Normal::new(nominal, half / 3.0)));
+        Self::build(name.into(), nominal, Some([-tolerance, tolerance]), distribution)
+    }
+
+    /// Uniform over nominal ± `tolerance`; a tolerance of 0 makes it fixed.
+    pub fn uniform(name: impl Into<String>, nominal: f64, tolerance: f64) -> Result<Self, DimensionError> {
+        if tolerance == 0.0 {
+            return Self::fixed(name, nominal);
+        }
+        let distribution = checked(tolerance).and_then(|half| shared(Uniform::about(nominal, half)));
+        Self::build(name.into(), nominal, Some([-tolerance, tolerance]), distribution)
+    }
+
+    /// Normal with its mean in the middle of the band from `nominal + tolerance[0]` to `nominal + tolerance[1]`,
+    /// three sigma within it.
+    pub fn normal_between(name: impl Into<String>, nominal: f64, tolerance: [f64; 2]) -> Result<Self, DimensionError> {
+        let [lower, upper] = tolerance;
+        let distribution = shared(Normal::new(nominal + 0.5 * (lower + upper), (upper - lower) / 6.0));
+        Self::build(name.into(), nominal, Some(tolerance), distribution)
+    }
+
+    /// Any distribution, with the tolerance band's deviations from the nominal where there is one.
+    pub fn distributed(
+        name: impl Into<String>,
+        nominal: f64,
+        tolerance: Option<[f64; 2]>,
+        distribution: Arc<dyn Distribution>,
+    ) -> Result<Self, DimensionError> {
+        Self::build(name.into(), nominal, tolerance, Ok(Some(distribution)))
+    }
+
+    fn build(
+        name: String,
+        nominal: f64,
+        tolerance: Option<[f64; 2]>,
+        distribution: Result<Option<Arc<dyn Distribution>>, DimensionFault>,
+    ) -> Result<Self, DimensionError> {
+        match check(nominal, tolerance, distribution) {
+            Ok(distribution) => Ok(Self { name, unit: None, nominal, tolerance, distribution, step: None }),
+            Err(fault) => Err(DimensionError { name, fault }),
+        }
+    }
+
+    /// With a unit, which is shown and never converted.
+    pub fn with_unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = Some(unit.into());
+        self
+    }
+
+    /// Evaluated at `step` sigma on either side of the mean instead of at the nodes that suit its distribution.
+    pub fn with_step(mut self, step: f64) -> Result<Self, DimensionError> {
+        if !(step.is_finite() && step > 0.0) {
+            return Err(DimensionError { name: self.name, fault: DimensionFault::BadStep { value: step } });
+        }
+        self.step = Some(step);
+        Ok(self)
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its unit, where one was given.
+    pub fn unit(&self) -> Option<&str> {
+        self.unit.as_deref()
+    }
+
+    /// The value on the drawing.
+    pub fn nominal(&self) -> f64 {
+        self.nominal
+    }
+
+    /// Lower and upper deviation from the nominal, where there is a tolerance band.
+    pub fn tolerance(&self) -> Option<[f64; 2]> {
+        self.tolerance
+    }
+
+    /// How it varies; None when it is fixed.
+    pub fn distribution(&self) -> Option<&dyn Distribution> {
+        self.distribution.as_deref()
+    }
+
+    /// Its step in sigmas, where one was given.
+    pub fn step(&self) -> Option<f64> {
+        self.step
+    }
+
+    /// Mean of its distribution: the nominal when it is fixed, the band's middle for an asymmetric tolerance.
+    pub fn mean(&self) -> f64 {
+        self.distribution().map_or(self.nominal, Distribution::mean)
+    }
+
+    /// Standard deviation: 0 when it is fixed.
+    pub fn sigma(&self) -> f64 {
+        self.distribution().map_or(0.0, Distribution::sigma)
+    }
+
+    /// Half the tolerance band, three sigma where there is no band, 0 when it is fixed.
+    pub fn half_band(&self) -> f64 {
+        let [lower, upper] = self.reach();
+        0.5 * (upper - lower)
+    }
+
+    /// The least and greatest deviation from the nominal in a worst case: the tolerance band, or three sigma about
+    /// the mean where there is none.
+    pub fn reach(&self) -> [f64; 2] {
+        let (shift, reach) = (self.mean() - self.nominal, SIGMAS_OF_AN_UNBOUNDED_DIMENSION * self.sigma());
+        self.tolerance.unwrap_or([shift - reach, shift + reach])
+    }
+}
+
+fn checked(tolerance: f64) -> Result<f64, DimensionFault> {
+    finite("tolerance", tolerance)?;
+    if tolerance < 0.0 { Err(DimensionFault::NegativeTolerance { value: tolerance }) } else { Ok(tolerance) }
+}
+
+fn shared<D: Distribution + 'static>(
+    distribution: Result<D, DistributionError>,
+) -> Result<Option<Arc<dyn Distribution>>, DimensionFault> {
+    Ok(Some(Arc::new(distribution?)))
+}
+
+fn check(
+    nominal: f64,
+    tolerance: Option<[f64; 2]>,
+    distribution: Result<Option<Arc<dyn Distribution>>, DimensionFault>,
+) -> Result<Option<Arc<dyn Distribution>>, DimensionFault> {
+    finite("nominal", nominal)?;
+    let distribution = distribution?;
+    if let Some([lower, upper]) = tolerance {
+        finite("the lower deviation", lower)?;
+        finite("the upper deviation", upper)?;
+        if lower >= upper {
+            return Err(DistributionError::EmptyInterval { lower, upper }.into());
+        }
+    }
+    if let Some(distribution) = &distribution {
+        let (mean, sigma) = (distribution.mean(), distribution.sigma());
+        if mean + 0.25 * sigma == mean || mean - 0.25 * sigma == mean {
+            return Err(DimensionFault::Unresolvable { mean, sigma });
+        }
+    }
+    Ok(distribution)
+}

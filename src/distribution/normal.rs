@@ -1,0 +1,51 @@
+//! The normal distribution.
+
+use super::{Distribution, DistributionError, Jacobi, StandardMoments, finite, positive};
+
+/// Normal distribution of given mean and sigma.
+///
+/// ```
+/// use sensitol::distribution::{Distribution, Normal};
+/// let bore = Normal::new(25.0, 0.01)?;
+/// assert_eq!(bore.standard_moments().m6, 15.0);
+/// # Ok::<(), sensitol::distribution::DistributionError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Normal {
+    mean: f64,
+    sigma: f64,
+}
+
+impl Normal {
+    /// `sigma` must be above 0.
+    pub fn new(mean: f64, sigma: f64) -> Result<Self, DistributionError> {
+        Ok(Self { mean: finite("mean", mean)?, sigma: positive("sigma", sigma)? })
+    }
+}
+
+impl Distribution for Normal {
+    fn name(&self) -> &'static str {
+        "normal"
+    }
+
+    fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    fn sigma(&self) -> f64 {
+        self.sigma
+    }
+
+    fn standard_moments(&self) -> StandardMoments {
+        StandardMoments::NORMAL
+    }
+
+    fn support(&self) -> [f64; 2] {
+        [f64::NEG_INFINITY, f64::INFINITY]
+    }
+
+    /// Hermite polynomials: `He[n+1] = u He[n] - n He[n-1]`.
+    fn jacobi(&self, order: usize) -> Jacobi {
+        Jacobi::new(vec![0.0; order], (1..=order).map(|n| n as f64).collect())
+    }
+}

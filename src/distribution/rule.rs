@@ -1,0 +1,148 @@
+//! Gauss rules of a distribution, from the recurrence of its orthogonal polynomials (Golub and Welsch 1969).
+
+use faer::{Mat, Side};
+
+use super::{DistributionError, StandardMoments};
+
+/// The recurrence of the monic orthogonal polynomials of a standardised variable:
+/// `p[n+1] = (u - alpha[n]) p[n] - beta[n] p[n-1]`, with `alpha[0..n]` and `beta[1..=n]`.
+///
+/// A last beta of 0 says that the distribution consists of just that many atoms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Jacobi {
+    alpha: Vec<f64>,
+    beta: Vec<f64>,
+}
+
+/// A leading moment matrix whose last pivot, relative to its last diagonal element, is below this is taken for
+/// singular: the moments of a distribution with few atoms are only as exact as they were typed.
+const SINGULAR: f64 = 1e-12;
+/// Below minus this, relative again, the moments are impossible.
+const IMPOSSIBLE: f64 = 1e-9;
+
+impl Jacobi {
+    /// `alpha[0 ..= n-1]` and `beta[1 ..= n]`: as many of one as of the other.
+    pub fn new(alpha: Vec<f64>, beta: Vec<f64>) -> Self {
+        assert_eq!(alpha.len(), beta.len(), "a Jacobi matrix needs as many alphas as betas");
+        Self { alpha, beta }
+    }
+
+    /// Of order 4, or of as many atoms as there are, from moments 3 to 8 by the Chebyshev algorithm (Gautschi 1982).
+    ///
+    /// # Errors
+    /// [`DistributionError::ImpossibleMoments`] when a leading moment matrix has a negative determinant.
+    pub fn from_moments(moments: &StandardMoments) -> Result<Self, DistributionError> {
+        let raw = moments.raw();
+        let (mut alpha, mut beta) = (vec![0.0], Vec::new());
+        // Row n holds E[p_n u^l]; its diagonal element is E[p_n^2], the pivot of the moment matrix of order 2n.
+        let (mut previous, mut current) = ([0.0; 9], raw);
+        for n in 1..=4 {
+            let mut next = [0.0; 9];
+            let before = beta.last().copied().unwrap_or(0.0);
+            for l in n..=8 - n {
+                next[l] = current[l + 1] - alpha[n - 1] * current[l] - before * previous[l];
+            }
+            let (pivot, scale) = (next[n], raw[2 * n]);
+            if pivot < -IMPOSSIBLE * scale {
+                return Err(DistributionError::ImpossibleMoments { moment: 2 * n, pivot });
+            }
+            if pivot <= SINGULAR * scale {
+                beta.push(0.0);
+                break;
+            }
+            beta.push(pivot / current[n - 1]);
+            if n < 4 {
+                alpha.push(next[n + 1] / next[n] - current[n] / current[n - 1]);
+            }
+            (previous, current) = (current, next);
+        }
+        Ok(Self { alpha, beta })
+    }
+
+    /// How many coefficients of each kind there are.
+    pub fn order(&self) -> usize {
+        self.alpha.len()
+    }
+
+    /// The first `order` coefficients, or all where there are fewer.
+    pub fn truncated(&self, order: usize) -> Self {
+        let order = order.min(self.order());
+        Self { alpha: self.alpha[..order].to_vec(), beta: self.beta[..order].to_vec() }
+    }
+
+    /// The Gauss rule with as many nodes as the order: exact for polynomials up to degree `2 order - 1`.
+    pub fn gauss(&self) -> Rule {
+        Rule::of_matrix(&self.alpha, &self.beta[..self.order() - 1])
+    }
+
+    /// The rule with one node more than the order, one of them at the mean: exact up to degree `2 order`.
+    ///
+    /// None when no such rule exists: the Gauss rule already has a node there (as one with an odd number of atoms
+    /// about its mean), or has it so nearly that the extra node would lie far out.
+    pub fn gauss_with_mean(&self) -> Option<Rule> {
+        let (mut before, mut at_mean) = (0.0, 1.0);
+        for n in 0..self.order() {
+            let beta = if n == 0 { 0.0 } else { self.beta[n - 1] };
+            (before, at_mean) = (at_mean, -self.alpha[n] * at_mean - beta * before);
+        }
+        let last = self.beta[self.order() - 1];
+        let corner = -last * before / at_mean;
+        let mut alpha = self.alpha.clone();
+        alpha.push(corner);
+        if last == 0.0 || !corner.is_finite() {
+            return None;
+        }
+        let mut rule = Rule::of_matrix(&alpha, &self.beta);
+        let centre = (0..rule.nodes.len()).min_by(|&i, &j| rule.nodes[i].abs().total_cmp(&rule.nodes[j].abs()))?;
+        rule.nodes[centre] = 0.0;
+        Some(rule)
+    }
+}
+
+/// Nodes and weights of a quadrature over a standardised variable; the weights sum to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// Where, in units of sigma about the mean, ascending.
+    pub nodes: Vec<f64>,
+    /// With which probability.
+    pub weights: Vec<f64>,
+}
+
+impl Rule {
+    /// `E[f(u)]` by this rule.
+    ///
+    /// ```
+    /// use sensitol::distribution::{Distribution, Normal};
+    /// let rule = Normal::new(0.0, 1.0)?.jacobi(5).gauss();
+    /// assert!((rule.mean(|u| u.powi(8)) - 105.0).abs() < 1e-11);
+    /// # Ok::<(), sensitol::distribution::DistributionError>(())
+    /// ```
+    pub fn mean(&self, f: impl Fn(f64) -> f64) -> f64 {
+        self.nodes.iter().zip(&self.weights).map(|(&u, &weight)| weight * f(u)).sum()
+    }
+
+    fn of_matrix(diagonal: &[f64], squared_off_diagonal: &[f64]) -> Self {
+        let n = diagonal.len();
+        let matrix = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
+            0 => diagonal[i],
+            1 => squared_off_diagonal[i.min(j)].sqrt(),
+            _ => 0.0,
+        });
+        let eigen = matrix
+            .self_adjoint_eigen(Side::Lower)
+            .expect("the eigenvalues of a small symmetric matrix of finite numbers");
+        let mut nodes: Vec<f64> = (0..n).map(|i| eigen.S()[i]).collect();
+        let mut weights: Vec<f64> = (0..n).map(|i| eigen.U()[(0, i)].powi(2)).collect();
+        if diagonal.iter().all(|&alpha| alpha == 0.0) {
+            // A symmetric distribution has a symmetric rule, to the last bit: odd moments of it then are exactly 0.
+            for i in 0..n.div_ceil(2) {
+                let (node, weight) = (0.5 * (nodes[n - 1 - i] - nodes[i]), 0.5 * (weights[i] + weights[n - 1 - i]));
+                (nodes[i], nodes[n - 1 - i]) = (-node, node);
+                (weights[i], weights[n - 1 - i]) = (weight, weight);
+            }
+        }
+        let total: f64 = weights.iter().sum();
+        weights.iter_mut().for_each(|weight| *weight /= total);
+        Self { nodes, weights }
+    }
+}

@@ -1,0 +1,75 @@
+//! The uniform distribution.
+
+use super::{Distribution, DistributionError, Jacobi, StandardMoments, finite, positive};
+
+/// Uniform distribution between two limits.
+///
+/// ```
+/// use sensitol::distribution::{Distribution, Uniform};
+/// let angle = Uniform::new(16.0, 18.0)?;
+/// assert_eq!(angle.mean(), 17.0);
+/// assert!((angle.sigma() - 1.0 / 3f64.sqrt()).abs() < 1e-15);
+/// # Ok::<(), sensitol::distribution::DistributionError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Uniform {
+    mean: f64,
+    half: f64,
+}
+
+impl Uniform {
+    /// `lower` must be below `upper`.
+    pub fn new(lower: f64, upper: f64) -> Result<Self, DistributionError> {
+        finite("the lower limit", lower)?;
+        finite("the upper limit", upper)?;
+        if lower >= upper {
+            return Err(DistributionError::EmptyInterval { lower, upper });
+        }
+        let half = 0.5 * upper - 0.5 * lower;
+        Self::about(lower + half, half)
+    }
+
+    /// From `mean - half` to `mean + half`; `half` must be above 0.
+    pub fn about(mean: f64, half: f64) -> Result<Self, DistributionError> {
+        Ok(Self { mean: finite("the middle", mean)?, half: positive("the half width", half)? })
+    }
+}
+
+impl Distribution for Uniform {
+    fn name(&self) -> &'static str {
+        "uniform"
+    }
+
+    fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    fn sigma(&self) -> f64 {
+        self.half / 3f64.sqrt()
+    }
+
+    /// Even moments are `3^(r/2)/(r+1)`: 9/5, 27/7 and 9; the rest are the fractions that follow from them.
+    fn standard_moments(&self) -> StandardMoments {
+        StandardMoments {
+            skewness: 0.0,
+            excess: -6.0 / 5.0,
+            m5: 0.0,
+            m6: 27.0 / 7.0,
+            m7: 0.0,
+            m8: 9.0,
+            h6: 16.0 / 35.0,
+            h7: 0.0,
+            h8: -96.0 / 175.0,
+        }
+    }
+
+    fn support(&self) -> [f64; 2] {
+        [self.mean - self.half, self.mean + self.half]
+    }
+
+    /// Legendre polynomials on `-sqrt 3 ..= sqrt 3`: coefficients `3 n^2/(4 n^2 - 1)`.
+    fn jacobi(&self, order: usize) -> Jacobi {
+        let beta = (1..=order).map(|n| (n * n) as f64 * 3.0 / (4 * n * n - 1) as f64).collect();
+        Jacobi::new(vec![0.0; order], beta)
+    }
+}

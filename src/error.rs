@@ -1,0 +1,36 @@
+//! Every error of the library in one type, for who passes them on.
+
+use crate::assembly::formula::FormulaError;
+use crate::assembly::CompositeError;
+use crate::characteristic::LimitsError;
+use crate::dimension::DimensionError;
+use crate::distribution::DistributionError;
+use crate::method::MethodError;
+use crate::problem::ProblemError;
+
+/// Any error of the library.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A distribution's parameters are impossible.
+    #[error(transparent)]
+    Distribution(#[from] DistributionError),
+    /// A dimension is impossible.
+    #[error(transparent)]
+    Dimension(#[from] DimensionError),
+    /// Limits or a target are impossible.
+    #[error(transparent)]
+    Limits(#[from] LimitsError),
+    /// A formula cannot be read.
+    #[error(transparent)]
+    Formula(#[from] FormulaError),
+    /// Formulas do not fit together.
+    #[error(transparent)]
+    Composite(#[from] CompositeError),
+    /// Dimensions, function and characteristics do not fit together.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// A method does not fit the problem.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+}

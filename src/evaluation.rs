@@ -1,0 +1,90 @@
+//! Evaluates what a plan asks for, and keeps count.
+
+use std::time::{Duration, Instant};
+
+use crate::assembly::{Ask, Points, Responses, Run};
+use crate::plan::{DifferencePlan, Known, Stage};
+use crate::problem::Problem;
+
+/// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
+const BATCH: usize = 1 << 23;
+
+/// What evaluating a plan came to.
+#[derive(Debug, Clone)]
+pub struct Evaluated {
+    /// Every answer.
+    pub known: Known,
+    /// Points sent to the model.
+    pub evaluations: usize,
+    /// In how many stages.
+    pub stages: usize,
+    /// Whether it was stopped before the plan was done.
+    pub stopped: bool,
+    /// Time within the model.
+    pub in_model: Duration,
+}
+
+/// Evaluates stage after stage until the plan lacks nothing, or the run is stopped.
+///
+/// Evaluations: as [`DifferencePlan::cost`] says, and more only where the model fails.
+pub fn evaluate(problem: &Problem, plan: &DifferencePlan, run: &Run<'_>) -> Evaluated {
+    let mut evaluated = Evaluated {
+        known: Known::nothing(problem.characteristics().len()),
+        evaluations: 0,
+        stages: 0,
+        stopped: false,
+        in_model: Duration::ZERO,
+    };
+    while let Some(stage) = plan.next(&evaluated.known) {
+        evaluated.stages += 1;
+        evaluated.add(problem, plan, &stage, run);
+        if evaluated.stopped {
+            break;
+        }
+    }
+    evaluated
+}
+
+impl Evaluated {
+    fn add(&mut self, problem: &Problem, plan: &DifferencePlan, stage: &Stage, run: &Run<'_>) {
+        let centre = plan.centre();
+        let rows = (BATCH / centre.len()).max(1);
+        for batch in stage.points.chunks(rows) {
+            let mut points = Points::repeated(&centre, batch.len());
+            for (row, (point, _)) in batch.iter().enumerate() {
+                for at in point.at() {
+                    let dimension = at.dimension as usize;
+                    points.set(row, dimension, plan.axis(dimension).nodes[at.node as usize].x);
+                }
+            }
+            let mut out = Responses::open(batch.len(), problem.outputs().len());
+            let begun = Instant::now();
+            problem.function().evaluate(&Ask::values(&points, problem.outputs()), run, &mut out);
+            self.in_model += begun.elapsed();
+            for (row, (point, _)) in batch.iter().enumerate() {
+                self.learn(point, row, &out);
+            }
+            if self.stopped {
+                return;
+            }
+        }
+    }
+
+    /// A row that is still open was not finished: it was sent only if some of it was answered.
+    fn learn(&mut self, point: &crate::plan::Point, row: usize, out: &Responses) {
+        let mut answered = false;
+        for characteristic in 0..out.outputs() {
+            let answer = match (out.value(row, characteristic), out.error(row, characteristic)) {
+                (Some(value), _) => Ok(value),
+                (None, Some(error)) => Err(error.clone()),
+                (None, None) => {
+                    self.stopped = true;
+                    continue;
+                }
+            };
+            answered = true;
+            self.known.learn(point, characteristic, answer);
+        }
+        self.evaluations += usize::from(answered);
+    }
+}

@@ -1,0 +1,27 @@
+#![doc = include_str!("../README.md")]
+
+pub mod analysis;
+pub mod assembly;
+pub mod characteristic;
+pub mod dimension;
+pub mod distribution;
+pub mod error;
+pub mod evaluation;
+pub mod method;
+pub mod models;
+pub mod moments;
+pub mod names;
+pub mod plan;
+pub mod problem;
+pub mod surrogate;
+pub mod warning;
+
+pub use analysis::{Analysis, CharacteristicAnalysis, analyze, analyze_within};
+pub use assembly::{AssemblyFunction, Closure};
+pub use characteristic::{Characteristic, LimitsError, SpecLimits};
+pub use dimension::{Dimension, DimensionError};
+pub use error::Error;
+pub use method::{Method, MethodError, Options};
+pub use moments::Moments;
+pub use problem::{Problem, ProblemError};
+pub use warning::Warning;

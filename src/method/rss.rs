@@ -1,0 +1,19 @@
+//! `rss`: root of the sum of squares, first order.
+//!
+//! Slopes by central differences over the moment-optimal pair of nodes. The reported RSS is
+//! `sqrt(sum of (slope x half band)^2)`; the moments are those of the straight-line model, exact for any inputs. The
+//! curvatures come with the same evaluations, are not used, and give a warning where they should have been.
+
+use super::Method;
+use super::ladder::{Examined, Ladder, Order};
+use crate::plan::Spread;
+
+pub(super) const RSS: Ladder = Ladder {
+    method: Method::Rss,
+    name: "rss",
+    about: "root of the sum of squares: first order",
+    count: "2N+1",
+    spread: Spread::Pair,
+    interactions: Examined::None,
+    order: Order::First,
+};

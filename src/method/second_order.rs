@@ -1,0 +1,18 @@
+//! `second-order`: slopes and curvatures, no interactions.
+//!
+//! A parabola per dimension through the centre and its moment-optimal pair of nodes, which together integrate up to
+//! the fourth degree (fifth for symmetric inputs). What interactions add to sigma stays unknown.
+
+use super::Method;
+use super::ladder::{Examined, Ladder, Order};
+use crate::plan::Spread;
+
+pub(super) const SECOND_ORDER: Ladder = Ladder {
+    method: Method::SecondOrder,
+    name: "second-order",
+    about: "slopes and curvatures, no interactions",
+    count: "2N+1",
+    spread: Spread::Pair,
+    interactions: Examined::None,
+    order: Order::Second,
+};

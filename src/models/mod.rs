@@ -1,0 +1,132 @@
+//! Built-in closed-form models, a file each, and their registry.
+//!
+//! # A new model
+//! One new file with a `pub static` [`Model`], one line in [`ALL`], one row in `tests/models.rs` with a reference value
+//! from an independent source, and a study in `examples/`.
+
+mod engine_balance;
+
+use std::ops::Range;
+
+use crate::assembly::{Ask, AssemblyFunction, Input, Output, Points, Responses, Run, Signature, in_blocks};
+
+/// Every built-in model, in the order in which they are listed.
+pub static ALL: &[&Model] = &[&engine_balance::ENGINE_BALANCE];
+
+/// A closed-form model: named inputs with documented nominal values, named outputs.
+#[derive(Debug)]
+pub struct Model {
+    /// What study files call it.
+    pub name: &'static str,
+    /// One line.
+    pub title: &'static str,
+    /// Author, year, equations, and departures from them.
+    pub source: &'static str,
+    /// Its inputs, in the order in which `evaluate` gets them.
+    pub inputs: &'static [ModelInput],
+    /// Its outputs, in the order in which `evaluate` is asked for them.
+    pub outputs: &'static [ModelOutput],
+    /// Evaluates a block of rows.
+    pub evaluate: fn(&Block<'_>, &mut Responses),
+}
+
+/// An input of a built-in model.
+#[derive(Debug)]
+pub struct ModelInput {
+    /// Its symbol.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The value it has where a study does not say.
+    pub nominal: f64,
+    /// What it is.
+    pub about: &'static str,
+}
+
+/// An output of a built-in model.
+#[derive(Debug)]
+pub struct ModelOutput {
+    /// Its symbol.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    /// Indices of the inputs that it depends on, ascending.
+    pub depends_on: &'static [usize],
+}
+
+/// What a model is asked: some rows of points, and some of its outputs.
+#[derive(Debug)]
+pub struct Block<'a> {
+    points: &'a Points,
+    rows: Range<usize>,
+    outputs: &'a [usize],
+}
+
+impl Block<'_> {
+    /// The values of one input.
+    pub fn input(&self, index: usize) -> &[f64] {
+        &self.points.column(index)[self.rows.clone()]
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The column of the responses that this output belongs in; None when it is not asked for.
+    pub fn column(&self, output: usize) -> Option<usize> {
+        self.outputs.iter().position(|&asked| asked == output)
+    }
+}
+
+impl Model {
+    /// The model as assembly function, with all its inputs as dimensions.
+    ///
+    /// ```
+    /// use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run};
+    /// let engine = sensitol::models::by_name("engine-balance").unwrap();
+    /// let nominal: Vec<f64> = engine.inputs.iter().map(|input| input.nominal).collect();
+    /// let (points, mut force) = (Points::repeated(&nominal, 1), Responses::open(1, 1));
+    /// engine.function().evaluate(&Ask::values(&points, &[0]), &Run::to_the_end(), &mut force);
+    /// assert!((force.value(0, 0).unwrap() - 12556.9361).abs() < 1e-4);
+    /// ```
+    pub fn function(&'static self) -> BuiltIn {
+        let input = |input: &ModelInput| Input { name: input.name.to_owned(), unit: Some(input.unit.to_owned()) };
+        let output = |output: &ModelOutput| Output {
+            name: output.name.to_owned(),
+            unit: Some(output.unit.to_owned()),
+            depends_on: Some(output.depends_on.to_vec()),
+        };
+        let signature = Signature {
+            inputs: self.inputs.iter().map(input).collect(),
+            outputs: self.outputs.iter().map(output).collect(),
+            ..Signature::default()
+        };
+        BuiltIn { model: self, signature }
+    }
+}
+
+/// A built-in model as assembly function.
+pub struct BuiltIn {
+    model: &'static Model,
+    signature: Signature,
+}
+
+impl AssemblyFunction for BuiltIn {
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
+        in_blocks(ask, run, out, |points, rows, out| {
+            (self.model.evaluate)(&Block { points, rows, outputs: ask.outputs }, out);
+        });
+    }
+}
+
+/// The model of this name.
+pub fn by_name(name: &str) -> Option<&'static Model> {
+    ALL.iter().copied().find(|model| model.name == name)
+}

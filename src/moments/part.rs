@@ -1,0 +1,177 @@
+//! One input's own part of the characteristic, and its joint cumulants with the input.
+
+use crate::distribution::{Rule, StandardMoments};
+
+/// The univariate part `g(u)` of one input, any constant included or not: only its variation counts, and its mean.
+#[derive(Debug, Clone)]
+pub enum Term<'a> {
+    /// `g = linear u + curvature u^2`, exact for any input by its moments 3 to 8.
+    Quadratic {
+        /// Coefficient of `u`.
+        linear: f64,
+        /// Coefficient of `u^2`.
+        curvature: f64,
+        /// Moments of the input.
+        moments: &'a StandardMoments,
+    },
+    /// Any `g`, given at the nodes of a quadrature rule of the input.
+    Tabulated {
+        /// `g` at the rule's nodes.
+        values: Vec<f64>,
+        /// The rule, in standardised units.
+        rule: &'a Rule,
+        /// Moments of the input.
+        moments: &'a StandardMoments,
+    },
+}
+
+/// Joint cumulants of one part `g` with its input `u`, all that the moments of the whole need of it.
+///
+/// `g = p u + h` with `E[u h] = 0`. Every cumulant is computed from `p` and `h`, so that a small curvature beside a large
+/// slope keeps its digits.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Part {
+    /// `E[g u]`: the slope of the best straight line.
+    pub p: f64,
+    /// `E[h^2]`: the variance that no straight line explains.
+    pub curved: f64,
+    /// `cum(g, u, u)`
+    pub q: f64,
+    /// `cum(g, g, u)`
+    pub w: f64,
+    /// `cum(g, g, g)`
+    pub k3: f64,
+    /// `cum(g, u, u, u)`
+    pub c13: f64,
+    /// `cum(g, g, u, u)`
+    pub c22: f64,
+    /// `cum(g, g, g, g)`
+    pub k4: f64,
+    /// Skewness of the input.
+    pub s: f64,
+    /// Excess kurtosis of the input.
+    pub k: f64,
+}
+
+impl Term<'_> {
+    /// `E[g]`, for a quadratic the curvature.
+    pub fn mean(&self) -> f64 {
+        match self {
+            Self::Quadratic { curvature, .. } => *curvature,
+            Self::Tabulated { values, rule, .. } => expectation(rule, |i| values[i]),
+        }
+    }
+
+    /// The largest coefficient or deviation, to scale by; 0 only where `g` is constant.
+    pub(super) fn largest(&self) -> f64 {
+        match self {
+            Self::Quadratic { linear, curvature, .. } => linear.abs().max(curvature.abs()),
+            Self::Tabulated { values, .. } => {
+                let mean = self.mean();
+                values.iter().map(|value| (value - mean).abs()).fold(0.0, f64::max)
+            }
+        }
+    }
+
+    /// Variance of `factor g`.
+    pub fn variance(&self, factor: f64) -> f64 {
+        let (p, h) = self.split(factor);
+        p * p + h.hh
+    }
+
+    /// The joint cumulants of `factor g`.
+    pub fn part(&self, factor: f64) -> Part {
+        let (p, h) = self.split(factor);
+        let moments = self.moments();
+        let (s, k) = (moments.skewness, moments.excess);
+        // With E h = E[u h] = 0 these are cumulants of u and h alone; the names give the powers.
+        let Rest { uuh, uhh, hhh, uuuh, uuhh, uhhh, hhhh, hh } = h;
+        Part {
+            p,
+            curved: hh,
+            q: p * s + uuh,
+            w: p * p * s + 2.0 * p * uuh + uhh,
+            k3: p * p * p * s + 3.0 * p * p * uuh + 3.0 * p * uhh + hhh,
+            c13: p * k + uuuh,
+            c22: p * p * k + 2.0 * p * uuuh + uuhh,
+            k4: p.powi(4) * k + 4.0 * p.powi(3) * uuuh + 6.0 * p * p * uuhh + 4.0 * p * uhhh + hhhh,
+            s,
+            k,
+        }
+    }
+
+    fn moments(&self) -> &StandardMoments {
+        match self {
+            Self::Quadratic { moments, .. } | Self::Tabulated { moments, .. } => moments,
+        }
+    }
+
+    /// `factor g - E = p u + h`: the slope, and the cumulants of the rest.
+    fn split(&self, factor: f64) -> (f64, Rest) {
+        match self {
+            Self::Quadratic { linear, curvature, moments } => {
+                let (b, a) = (factor * linear, factor * curvature);
+                (b + a * moments.skewness, Rest::of_curvature(a, moments))
+            }
+            Self::Tabulated { values, rule, .. } => {
+                let mean = self.mean();
+                let centred: Vec<f64> = values.iter().map(|value| factor * (value - mean)).collect();
+                let p = expectation(rule, |i| centred[i] * rule.nodes[i]);
+                let rest: Vec<f64> = centred.iter().zip(&rule.nodes).map(|(g, u)| g - p * u).collect();
+                (p, Rest::of_table(&rest, rule))
+            }
+        }
+    }
+}
+
+/// Cumulants of `u` and `h`, where `E h = E[u h] = 0`.
+struct Rest {
+    hh: f64,
+    uuh: f64,
+    uhh: f64,
+    hhh: f64,
+    uuuh: f64,
+    uuhh: f64,
+    uhhh: f64,
+    hhhh: f64,
+}
+
+impl Rest {
+    /// `h = a (u^2 - 1 - s u)`. With `v = u^2 - 1`, every cumulant expands into those of `v` and `u`, which are the
+    /// combinations that `StandardMoments` holds.
+    fn of_curvature(a: f64, m: &StandardMoments) -> Self {
+        let (s, k) = (m.skewness, m.excess);
+        let (vv, uuv, uvv, vvv) = (k + 2.0, k + 2.0, m.m5 - 2.0 * s, m.m6 - 3.0 * m.kurtosis() + 2.0);
+        let (uuuv, uuvv, uvvv, vvvv) = (m.m5 - 4.0 * s, m.h6, m.h7, m.h8);
+        let s2 = s * s;
+        Self {
+            hh: a * a * (vv - s2),
+            uuh: a * (uuv - s2),
+            uhh: a * a * (uvv - 2.0 * s * uuv + s2 * s),
+            hhh: a.powi(3) * (vvv - 3.0 * s * uvv + 3.0 * s2 * uuv - s2 * s2),
+            uuuh: a * (uuuv - s * k),
+            uuhh: a * a * (uuvv - 2.0 * s * uuuv + s2 * k),
+            uhhh: a.powi(3) * (uvvv - 3.0 * s * uuvv + 3.0 * s2 * uuuv - s2 * s * k),
+            hhhh: a.powi(4) * (vvvv - 4.0 * s * uvvv + 6.0 * s2 * uuvv - 4.0 * s2 * s * uuuv + s2 * s2 * k),
+        }
+    }
+
+    fn of_table(h: &[f64], rule: &Rule) -> Self {
+        let mean = |f: &dyn Fn(f64, f64) -> f64| expectation(rule, |i| f(rule.nodes[i], h[i]));
+        let hh = mean(&|_, h| h * h);
+        Self {
+            hh,
+            uuh: mean(&|u, h| u * u * h),
+            uhh: mean(&|u, h| u * h * h),
+            hhh: mean(&|_, h| h * h * h),
+            uuuh: mean(&|u, h| u * u * u * h),
+            uuhh: mean(&|u, h| (u * u - 1.0) * h * h),
+            uhhh: mean(&|u, h| u * h * h * h),
+            hhhh: mean(&|_, h| h.powi(4)) - 3.0 * hh * hh,
+        }
+    }
+}
+
+fn expectation(rule: &Rule, value: impl Fn(usize) -> f64) -> f64 {
+    rule.weights.iter().enumerate().map(|(i, weight)| weight * value(i)).sum()
+}

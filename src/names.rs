@@ -1,0 +1,29 @@
+//! Names that people type: which known one did they mean?
+
+/// The known name most similar to `typed`, if any is similar enough to be meant.
+///
+/// Differences in case, and between `-` and `_`, count little.
+///
+/// ```
+/// use sensitol::names::nearest;
+/// assert_eq!(nearest("tolerence", ["nominal", "tolerance", "unit"]), Some("tolerance"));
+/// assert_eq!(nearest("zebra", ["nominal", "tolerance", "unit"]), None);
+/// ```
+pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let folded = |name: &str| name.to_lowercase().replace('_', "-");
+    let typed = folded(typed);
+    let likeness = |name: &str| {
+        let name = folded(name);
+        let edit = strsim::normalized_damerau_levenshtein(&typed, &name);
+        // A beginning, such as `dist` for `distribution`, is meant even where much is missing.
+        if typed.len() >= 3 && name.starts_with(&typed) { edit.max(0.75) } else { edit }
+    };
+    let mut best = None;
+    for name in known {
+        let score = likeness(name);
+        if score >= 0.6 && best.is_none_or(|(highest, _)| score > highest) {
+            best = Some((score, name));
+        }
+    }
+    best.map(|(_, name)| name)
+}

@@ -1,0 +1,363 @@
+//! The central-difference plan: the centre, nodes on the axes, and corners for mixed derivatives.
+
+use std::collections::HashSet;
+
+use super::axis::Axis;
+use super::known::Known;
+use super::nodes::Spread;
+use super::pairs::{PairChoice, Side, Stencil, strongest};
+use super::point::{At, Point};
+use super::stage::{Purpose, Stage};
+use crate::dimension::Dimension;
+use crate::surrogate::{InputShape, Univariate, shapes};
+
+/// What a difference plan evaluates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// How many nodes an axis has.
+    pub spread: Spread,
+    /// Which mixed derivatives are evaluated.
+    pub pairs: PairChoice,
+    /// And how.
+    pub stencil: Stencil,
+    /// A step in sigmas that replaces the matched nodes, unless a dimension has its own.
+    pub step: Option<f64>,
+    /// Whether dimensions without tolerance are moved too, to know their sensitivity.
+    pub fixed_too: bool,
+}
+
+/// A difference plan of one problem. Positions count the dimensions that vary and matter.
+#[derive(Debug, Clone)]
+pub struct DifferencePlan {
+    layout: Layout,
+    axes: Vec<Axis>,
+    nominal: Point,
+    varying: Vec<usize>,
+    fixed: Vec<usize>,
+    shapes: Vec<InputShape>,
+    /// For every characteristic, whether it can depend on each dimension.
+    depends: Vec<Vec<bool>>,
+}
+
+/// The nodes of one dimension at which its pairs stand.
+#[derive(Debug, Clone, Copy)]
+struct PairNodes {
+    left: Option<u32>,
+    right: Option<u32>,
+}
+
+impl DifferencePlan {
+    /// For these dimensions, of which every characteristic can depend on those flagged in its row of `depends`.
+    pub fn new(dimensions: &[Dimension], depends: Vec<Vec<bool>>, layout: Layout) -> Self {
+        let matters = |d: usize| depends.iter().any(|row| row[d]);
+        let of_sigma = |varies: bool| {
+            (0..dimensions.len()).filter(move |&d| matters(d) && (dimensions[d].sigma() > 0.0) == varies)
+        };
+        let varying: Vec<usize> = of_sigma(true).collect();
+        let fixed: Vec<usize> = if layout.fixed_too { of_sigma(false).collect() } else { Vec::new() };
+        let mut axes: Vec<Axis> = dimensions.iter().map(Axis::still).collect();
+        varying.iter().for_each(|&d| axes[d] = Axis::varying(&dimensions[d], layout.spread, layout.step));
+        fixed.iter().for_each(|&d| axes[d] = Axis::fixed(&dimensions[d]));
+        let mut nominal = Vec::new();
+        for (d, dimension) in dimensions.iter().enumerate() {
+            if let Some(node) = axes[d].at_value(dimension.nominal()) {
+                nominal.push(At { dimension: d as u32, node });
+            }
+        }
+        let distributions = varying.iter().filter_map(|&d| dimensions[d].distribution());
+        let shapes = shapes(distributions);
+        Self { nominal: Point::of(&nominal), layout, axes, varying, fixed, shapes, depends }
+    }
+
+    /// What it evaluates.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The dimensions that vary and on which some characteristic can depend: N of them.
+    pub fn varying(&self) -> &[usize] {
+        &self.varying
+    }
+
+    /// The shapes of their distributions.
+    pub fn shapes(&self) -> &[InputShape] {
+        &self.shapes
+    }
+
+    /// One dimension's nodes.
+    pub fn axis(&self, dimension: usize) -> &Axis {
+        &self.axes[dimension]
+    }
+
+    /// The point at which every dimension has its nominal value.
+    pub fn nominal(&self) -> &Point {
+        &self.nominal
+    }
+
+    /// The coordinates of the means.
+    pub fn centre(&self) -> Vec<f64> {
+        self.axes.iter().map(|axis| axis.mean).collect()
+    }
+
+    /// Whether a characteristic can depend on a dimension.
+    pub fn depends(&self, characteristic: usize, dimension: usize) -> bool {
+        self.depends[characteristic][dimension]
+    }
+
+    /// Whether a characteristic can depend on the pair of dimensions at these positions.
+    pub fn joint(&self, characteristic: usize, j: usize, k: usize) -> bool {
+        let row = &self.depends[characteristic];
+        row[self.varying[j]] && row[self.varying[k]]
+    }
+
+    /// How many points there are in all, and in how many stages, if none fails.
+    pub fn cost(&self) -> (usize, usize) {
+        let nodes: usize = self.varying.iter().chain(&self.fixed).map(|&d| self.axes[d].slots.len()).sum();
+        let on_an_axis = |point: &Point| match point.at() {
+            [] => true,
+            [at] => self.axes[at.dimension as usize].slots.iter().any(|slot| slot[0] == at.node),
+            _ => false,
+        };
+        let pairs = self.possible_pairs().min(match &self.layout.pairs {
+            PairChoice::None => 0,
+            PairChoice::All => usize::MAX,
+            PairChoice::Strongest => self.varying.len(),
+            PairChoice::Adjacent | PairChoice::Listed(_) => self.pairs(None).len(),
+        });
+        let stages = if self.layout.pairs == PairChoice::Strongest && pairs > 0 { 2 } else { 1 };
+        let extra = usize::from(!on_an_axis(&self.nominal));
+        (1 + extra + nodes + pairs.saturating_mul(self.layout.stencil.evaluations()), stages)
+    }
+
+    /// How many pairs matter to some characteristic.
+    pub fn possible_pairs(&self) -> usize {
+        let n = self.varying.len();
+        if self.depends.iter().any(|row| self.varying.iter().all(|&d| row[d])) {
+            return n * n.saturating_sub(1) / 2;
+        }
+        (0..n).map(|j| (j + 1..n).filter(|&k| self.matters(j, k)).count()).sum()
+    }
+
+    fn matters(&self, j: usize, k: usize) -> bool {
+        (0..self.depends.len()).any(|c| self.joint(c, j, k))
+    }
+
+    /// The next points, or None when nothing is left that could help.
+    pub fn next(&self, known: &Known) -> Option<Stage> {
+        let mut stage = Builder { known, seen: HashSet::new(), stage: Stage::default() };
+        stage.add(Point::Centre, Purpose::Centre);
+        stage.add(self.nominal.clone(), Purpose::Nominal);
+        self.add_axes(&mut stage, &self.varying, Purpose::Axis);
+        let axes_known = stage.stage.points.is_empty();
+        if axes_known || self.layout.pairs != PairChoice::Strongest {
+            self.add_pairs(&mut stage);
+        }
+        self.add_axes(&mut stage, &self.fixed, Purpose::Sensitivity);
+        (!stage.stage.points.is_empty()).then_some(stage.stage)
+    }
+
+    /// Every node, and for one at which some characteristic failed the next of its replacements.
+    fn add_axes(&self, stage: &mut Builder<'_>, dimensions: &[usize], purpose: Purpose) {
+        for &d in dimensions {
+            for slot in &self.axes[d].slots {
+                for (rank, &node) in slot.iter().enumerate() {
+                    let purpose = if rank == 0 { purpose } else { Purpose::Repair };
+                    stage.add(self.on_axis(d, node), purpose);
+                    let lacking = |c: usize| {
+                        self.depends[c][d]
+                            && stage.known.value(&Point::Centre, c).is_some()
+                            && slot[..=rank].iter().all(|&node| stage.known.value(&self.on_axis(d, node), c).is_none())
+                    };
+                    let tried = stage.known.tried(&self.on_axis(d, node));
+                    if !tried || !(0..self.depends.len()).any(lacking) {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    fn add_pairs(&self, stage: &mut Builder<'_>) {
+        let nodes = self.pair_nodes(stage.known);
+        for (j, k) in self.pairs(Some(stage.known)) {
+            for &corner in self.layout.stencil.corners() {
+                if let Some(point) = self.corner(&nodes, j, k, corner) {
+                    stage.add(point, Purpose::Pair);
+                }
+            }
+        }
+    }
+
+    fn on_axis(&self, dimension: usize, node: u32) -> Point {
+        Point::One([At { dimension: dimension as u32, node }])
+    }
+
+    fn corner(&self, nodes: &[PairNodes], j: usize, k: usize, (of_j, of_k): (Side, Side)) -> Option<Point> {
+        let at = |position: usize, side: Side| {
+            Some(At { dimension: self.varying[position] as u32, node: nodes[position].on(side)? })
+        };
+        Some(Point::of(&[at(j, of_j)?, at(k, of_k)?]))
+    }
+
+    /// The pairs examined, as positions `j < k`. The strongest can be told only from what is known of the axes.
+    pub fn pairs(&self, known: Option<&Known>) -> Vec<(usize, usize)> {
+        let n = self.varying.len();
+        let all = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k)));
+        let mut pairs: Vec<(usize, usize)> = match &self.layout.pairs {
+            PairChoice::None => return Vec::new(),
+            PairChoice::All => all.filter(|&(j, k)| self.matters(j, k)).collect(),
+            PairChoice::Strongest => {
+                let Some(known) = known else { return Vec::new() };
+                let shares: Vec<Vec<f64>> = (0..self.depends.len()).map(|c| self.shares(known, c)).collect();
+                return strongest(n, &shares, |c, j, k| self.joint(c, j, k));
+            }
+            PairChoice::Adjacent => (0..n).map(|j| (j, (j + 1) % n)).map(|(j, k)| (j.min(k), j.max(k))).collect(),
+            PairChoice::Listed(pairs) => {
+                let position = |d: usize| self.varying.iter().position(|&varying| varying == d);
+                let place = |&(a, b): &(usize, usize)| {
+                    let (j, k) = (position(a)?, position(b)?);
+                    Some((j.min(k), j.max(k)))
+                };
+                pairs.iter().filter_map(place).collect()
+            }
+        };
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs.retain(|&(j, k)| j != k && self.matters(j, k));
+        pairs
+    }
+
+    /// Univariate variance of every position, as a share of their sum.
+    fn shares(&self, known: &Known, characteristic: usize) -> Vec<f64> {
+        let scale = |part: Univariate| part.largest();
+        let parts: Vec<Option<Univariate>> =
+            (0..self.varying.len()).map(|j| self.part(known, characteristic, self.varying[j])).collect();
+        let largest = parts.iter().flatten().copied().map(scale).fold(0.0, f64::max);
+        if largest == 0.0 {
+            return vec![0.0; parts.len()];
+        }
+        let variance = |(part, shape): (&Option<Univariate>, &InputShape)| {
+            part.map_or(0.0, |part| part.term(shape).variance(1.0 / largest))
+        };
+        let variances: Vec<f64> = parts.iter().zip(&self.shapes).map(variance).collect();
+        let total: f64 = variances.iter().sum();
+        variances.into_iter().map(|variance| variance / total).collect()
+    }
+
+    /// One dimension's own part of a characteristic, through all its nodes that have a value; None when none has.
+    pub fn part(&self, known: &Known, characteristic: usize, dimension: usize) -> Option<Univariate> {
+        if !self.depends[characteristic][dimension] {
+            return Some(Univariate::of_coefficients(&[0.0, 0.0]));
+        }
+        let centre = known.value(&Point::Centre, characteristic)?;
+        let axis = &self.axes[dimension];
+        let value = |node: u32| known.value(&self.on_axis(dimension, node), characteristic);
+        let mut used = HashSet::new();
+        let mut samples = Vec::new();
+        for slot in &axis.slots {
+            let answered = slot.iter().find_map(|&node| Some((node, value(node)?)));
+            if let Some((node, value)) = answered.filter(|&(node, _)| used.insert(node)) {
+                samples.push((axis.nodes[node as usize].u, value - centre));
+            }
+        }
+        Univariate::through(&samples)
+    }
+
+    /// Where pairs stand: the nodes next to the mean, or the replacement at which most characteristics have a value.
+    fn pair_nodes(&self, known: &Known) -> Vec<PairNodes> {
+        let of_slot = |d: usize, slot: &[u32]| {
+            let answered = |node: u32| {
+                let answered = |&c: &usize| known.value(&self.on_axis(d, node), c).is_some();
+                (0..self.depends.len()).filter(answered).count()
+            };
+            if !known.has_failures() {
+                return slot[0];
+            }
+            let best = slot.iter().map(|&node| answered(node)).max().unwrap_or(0);
+            slot.iter().copied().find(|&node| answered(node) == best).expect("a slot is never empty")
+        };
+        let nodes = |&d: &usize| {
+            let axis = &self.axes[d];
+            let side = |slot: &&Vec<u32>, right: bool| (axis.nodes[slot[0] as usize].u > 0.0) == right;
+            PairNodes {
+                left: axis.slots.iter().rfind(|slot| side(slot, false)).map(|slot| of_slot(d, slot)),
+                right: axis.slots.iter().find(|slot| side(slot, true)).map(|slot| of_slot(d, slot)),
+            }
+        };
+        self.varying.iter().map(nodes).collect()
+    }
+
+    /// Mixed derivatives of a characteristic in sigma units, for these pairs; None where no corner has a value, and a
+    /// flag where some corner has none.
+    ///
+    /// With `d = f(j, k) - f(j) - f(k) + f(centre)` at each corner,
+    /// `A_jk = sum of sign(u_j u_k) d / sum of |u_j u_k|` over the corners that have a value: for all of them this is the
+    /// usual formula with unequal steps, for fewer a one-sided one.
+    pub fn mixed(&self, known: &Known, characteristic: usize, pairs: &[(usize, usize)]) -> Vec<Option<Mixed>> {
+        let nodes = self.pair_nodes(known);
+        let Some(centre) = known.value(&Point::Centre, characteristic) else { return vec![None; pairs.len()] };
+        // Each axis value is needed by N - 1 pairs: looked up once.
+        let on_axis: Vec<[Option<(f64, f64)>; 2]> = (0..self.varying.len())
+            .map(|j| [Side::Left, Side::Right].map(|side| self.axis_value(known, characteristic, j, nodes[j].on(side)?)))
+            .collect();
+        let corners = self.layout.stencil.corners();
+        let mixed = |&(j, k): &(usize, usize)| {
+            if !self.joint(characteristic, j, k) {
+                return Some(Mixed { value: 0.0, complete: true });
+            }
+            let (mut sum, mut weight, mut found) = (0.0, 0.0, 0);
+            for &(of_j, of_k) in corners {
+                let corner = self.corner(&nodes, j, k, (of_j, of_k)).and_then(|point| known.value(&point, characteristic));
+                if let (Some(corner), Some((u, at_j)), Some((v, at_k))) =
+                    (corner, on_axis[j][of_j as usize], on_axis[k][of_k as usize])
+                {
+                    sum += (u * v).signum() * (corner - at_j - at_k + centre);
+                    weight += (u * v).abs();
+                    found += 1;
+                }
+            }
+            (found > 0).then(|| Mixed { value: sum / weight, complete: found == corners.len() })
+        };
+        pairs.iter().map(mixed).collect()
+    }
+
+    /// The node in sigmas and the value there.
+    fn axis_value(&self, known: &Known, characteristic: usize, position: usize, node: u32) -> Option<(f64, f64)> {
+        let d = self.varying[position];
+        let value = known.value(&self.on_axis(d, node), characteristic)?;
+        Some((self.axes[d].nodes[node as usize].u, value))
+    }
+}
+
+/// A mixed derivative in sigma units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mixed {
+    /// `A_jk = sd_j sd_k d2F/dx_j dx_k`.
+    pub value: f64,
+    /// Whether every corner had a part in it.
+    pub complete: bool,
+}
+
+impl PairNodes {
+    fn on(self, side: Side) -> Option<u32> {
+        match side {
+            Side::Left => self.left,
+            Side::Right => self.right,
+        }
+    }
+}
+
+/// Collects points that are neither known nor collected yet.
+struct Builder<'k> {
+    known: &'k Known,
+    seen: HashSet<Point>,
+    stage: Stage,
+}
+
+impl Builder<'_> {
+    fn add(&mut self, point: Point, purpose: Purpose) {
+        if !self.known.tried(&point) && self.seen.insert(point.clone()) {
+            self.stage.points.push((point, purpose));
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What is known: the answers so far, per point and characteristic.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::Point;
+use crate::assembly::EvaluationError;
+
+/// Answers by point. An entry is a value, an error, or open.
+#[derive(Debug, Clone, Default)]
+pub struct Known {
+    characteristics: usize,
+    row: HashMap<Point, u32>,
+    points: Vec<Point>,
+    /// A column per characteristic, NaN where there is no value.
+    values: Vec<Vec<f64>>,
+    errors: BTreeMap<(u32, u32), EvaluationError>,
+}
+
+impl Known {
+    /// Nothing yet of `characteristics` characteristics.
+    pub fn nothing(characteristics: usize) -> Self {
+        Self { characteristics, values: vec![Vec::new(); characteristics], ..Self::default() }
+    }
+
+    /// How many characteristics every point has.
+    pub fn characteristics(&self) -> usize {
+        self.characteristics
+    }
+
+    /// Keeps one characteristic's answer at a point.
+    pub fn learn(&mut self, point: &Point, characteristic: usize, answer: Result<f64, EvaluationError>) {
+        let row = match self.row.get(point) {
+            Some(&row) => row,
+            None => {
+                let row = u32::try_from(self.points.len()).expect("fewer than four billion points");
+                self.row.insert(point.clone(), row);
+                self.points.push(point.clone());
+                self.values.iter_mut().for_each(|column| column.push(f64::NAN));
+                row
+            }
+        };
+        match answer {
+            Ok(value) => self.values[characteristic][row as usize] = value,
+            Err(error) => {
+                self.errors.insert((row, characteristic as u32), error);
+            }
+        }
+    }
+
+    /// Whether the point was evaluated, with whatever success.
+    pub fn tried(&self, point: &Point) -> bool {
+        self.row.contains_key(point)
+    }
+
+    /// The value of a characteristic at a point, where it is known.
+    pub fn value(&self, point: &Point, characteristic: usize) -> Option<f64> {
+        let value = self.values[characteristic][*self.row.get(point)? as usize];
+        (!value.is_nan()).then_some(value)
+    }
+
+    /// Why a characteristic has no value at a point.
+    pub fn error(&self, point: &Point, characteristic: usize) -> Option<&EvaluationError> {
+        self.errors.get(&(*self.row.get(point)?, characteristic as u32))
+    }
+
+    /// Whether any point failed for any characteristic.
+    pub fn has_failures(&self) -> bool {
+        !self.errors.is_empty()
+    }
+
+    /// How many points lost at least one characteristic.
+    pub fn failed_points(&self) -> usize {
+        let mut rows: Vec<u32> = self.errors.keys().map(|&(row, _)| row).collect();
+        rows.dedup();
+        rows.len()
+    }
+
+    /// Every error with its point and characteristic, in the order of evaluation.
+    pub fn errors(&self) -> impl Iterator<Item = (&Point, usize, &EvaluationError)> {
+        self.errors.iter().map(|(&(row, characteristic), error)| {
+            (&self.points[row as usize], characteristic as usize, error)
+        })
+    }
+}

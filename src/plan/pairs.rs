@@ -1,0 +1,78 @@
+//! Which pairs of dimensions are examined, and with which stencil.
+
+/// Which mixed derivatives are evaluated.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PairChoice {
+    /// None.
+    None,
+    /// Every pair on which some characteristic can depend jointly.
+    All,
+    /// As many pairs as there are dimensions: those with the largest product of univariate variance shares, in whichever
+    /// characteristic it is largest. Ranked once the axes are known.
+    Strongest,
+    /// Neighbours in the order of the dimensions, the last with the first: as many pairs as dimensions.
+    Adjacent,
+    /// These pairs of dimensions.
+    Listed(Vec<(usize, usize)>),
+}
+
+/// How a mixed derivative is evaluated beside the axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stencil {
+    /// Two evaluations, with both dimensions up and both down. Exact up to the third order; a fourth-order term in
+    /// `u_j^2 u_k^2` disturbs it.
+    TwoPoint,
+    /// Four evaluations, at all four corners, as in the published 6N+1 scheme: free of even terms too.
+    FourPoint,
+}
+
+impl Stencil {
+    /// Evaluations per pair.
+    pub fn evaluations(self) -> usize {
+        match self {
+            Self::TwoPoint => 2,
+            Self::FourPoint => 4,
+        }
+    }
+
+    /// The corners, as the side of the first and of the second dimension.
+    pub(super) fn corners(self) -> &'static [(Side, Side)] {
+        const ALL: [(Side, Side); 4] = [
+            (Side::Right, Side::Right),
+            (Side::Left, Side::Left),
+            (Side::Right, Side::Left),
+            (Side::Left, Side::Right),
+        ];
+        &ALL[..self.evaluations()]
+    }
+}
+
+/// A side of the mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Left,
+    Right,
+}
+
+/// The strongest pairs by the product of two shares, `count` of them, as positions `j < k`; earlier pairs first among
+/// equals. `shares` has a row per characteristic; `joint` says whether a pair matters to a characteristic at all.
+pub(super) fn strongest(
+    count: usize,
+    shares: &[Vec<f64>],
+    joint: impl Fn(usize, usize, usize) -> bool,
+) -> Vec<(usize, usize)> {
+    let dimensions = shares.first().map_or(0, Vec::len);
+    let mut ranked = Vec::new();
+    for j in 0..dimensions {
+        for k in j + 1..dimensions {
+            let of = |c: usize| joint(c, j, k).then(|| shares[c][j] * shares[c][k]);
+            if let Some(score) = (0..shares.len()).filter_map(of).reduce(f64::max) {
+                ranked.push((score, j, k));
+            }
+        }
+    }
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+    let mut pairs: Vec<(usize, usize)> = ranked.into_iter().take(count).map(|(_, j, k)| (j, k)).collect();
+    pairs.sort_unstable();
+    pairs
+}

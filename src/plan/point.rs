@@ -1,0 +1,58 @@
+//! A point by name: the means, but for a few dimensions that stand at one of their nodes.
+
+/// One dimension at one of its nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct At {
+    /// Index of the dimension in the problem.
+    pub dimension: u32,
+    /// Index of the node in the dimension's axis.
+    pub node: u32,
+}
+
+/// A point of the plan: every dimension at its mean but those named, each named once, ascending.
+///
+/// The usual kinds take no memory of their own: a full stencil of a thousand dimensions has a million points.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Point {
+    /// All at their means.
+    Centre,
+    /// One dimension elsewhere.
+    One([At; 1]),
+    /// Two dimensions elsewhere.
+    Two([At; 2]),
+    /// Three or more dimensions elsewhere.
+    Many(Box<[At]>),
+}
+
+impl Point {
+    /// With these dimensions elsewhere, in any order, each once.
+    ///
+    /// ```
+    /// use sensitol::plan::{At, Point};
+    /// let at = |dimension, node| At { dimension, node };
+    /// assert_eq!(Point::of(&[at(4, 0), at(2, 1)]), Point::of(&[at(2, 1), at(4, 0)]));
+    /// ```
+    pub fn of(at: &[At]) -> Self {
+        match *at {
+            [] => Self::Centre,
+            [one] => Self::One([one]),
+            [one, two] if one < two => Self::Two([one, two]),
+            [one, two] => Self::Two([two, one]),
+            _ => {
+                let mut at: Box<[At]> = at.into();
+                at.sort_unstable();
+                Self::Many(at)
+            }
+        }
+    }
+
+    /// The dimensions that are elsewhere.
+    pub fn at(&self) -> &[At] {
+        match self {
+            Self::Centre => &[],
+            Self::One(at) => at,
+            Self::Two(at) => at,
+            Self::Many(at) => at,
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! A batch of points, and what each is for.
+
+use super::Point;
+
+/// Points that can all be evaluated now, side by side.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Stage {
+    /// The points, each once, with their purpose.
+    pub points: Vec<(Point, Purpose)>,
+}
+
+/// What a point is for. One that serves several purposes bears the first of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum Purpose {
+    /// All dimensions at their means: the centre of every difference.
+    Centre,
+    /// All dimensions at their nominal values.
+    Nominal,
+    /// One dimension at a node: slopes and curvatures.
+    Axis,
+    /// Two dimensions at nodes: their mixed derivative.
+    Pair,
+    /// A dimension without tolerance, moved a little to know its sensitivity.
+    Sensitivity,
+    /// A shorter step in place of one at which the model failed.
+    Repair,
+}
+
+impl Purpose {
+    /// All of them, in the order in which they are listed.
+    pub const ALL: [Self; 6] =
+        [Self::Centre, Self::Nominal, Self::Axis, Self::Pair, Self::Sensitivity, Self::Repair];
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Centre => "all dimensions at their means",
+            Self::Nominal => "all dimensions at their nominal values",
+            Self::Axis => "one dimension at a node: slopes and curvatures",
+            Self::Pair => "two dimensions at nodes: mixed derivatives",
+            Self::Sensitivity => "a dimension without tolerance, moved a little: its sensitivity",
+            Self::Repair => "a shorter step where the model failed",
+        }
+    }
+}

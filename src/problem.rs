@@ -1,0 +1,180 @@
+//! The problem: dimensions, an assembly function, and the characteristics asked of it.
+
+use std::sync::Arc;
+
+use crate::assembly::AssemblyFunction;
+use crate::characteristic::Characteristic;
+use crate::dimension::Dimension;
+use crate::names::nearest;
+
+/// N dimensions, K characteristics, and the assembly function between them.
+#[derive(Clone)]
+pub struct Problem {
+    dimensions: Vec<Dimension>,
+    characteristics: Vec<Characteristic>,
+    /// For every characteristic, the output of the function that it is.
+    outputs: Vec<usize>,
+    function: Arc<dyn AssemblyFunction>,
+}
+
+/// Why dimensions, function and characteristics do not fit together.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProblemError {
+    /// There is no dimension.
+    #[error("a problem needs at least one dimension")]
+    NoDimension,
+    /// There is no characteristic.
+    #[error("a problem needs at least one characteristic")]
+    NoCharacteristic,
+    /// Two dimensions, or two characteristics, bear one name.
+    #[error("the name `{name}` is given twice")]
+    DuplicateName {
+        /// The name.
+        name: String,
+    },
+    /// The function has other inputs than the problem has dimensions.
+    #[error("the assembly function's inputs are {expected}, the dimensions are {found}", expected = list(expected), found = list(found))]
+    InputMismatch {
+        /// The function's inputs.
+        expected: Vec<String>,
+        /// The problem's dimensions.
+        found: Vec<String>,
+    },
+    /// A characteristic is no output of the function.
+    #[error("there is no characteristic `{name}`; known: {known}", known = list(known))]
+    UnknownCharacteristic {
+        /// The name asked for.
+        name: String,
+        /// The most similar one.
+        nearest: Option<String>,
+        /// What there is.
+        known: Vec<String>,
+    },
+}
+
+fn list(names: &[String]) -> String {
+    names.join(", ")
+}
+
+impl Problem {
+    /// With every output of the function as a characteristic without limits.
+    ///
+    /// # Errors
+    /// When there is no dimension or output, a name stands twice, or the function names inputs that are not the
+    /// dimensions in this order.
+    pub fn new(
+        dimensions: impl IntoIterator<Item = Dimension>,
+        function: impl AssemblyFunction + 'static,
+    ) -> Result<Self, ProblemError> {
+        let dimensions: Vec<Dimension> = dimensions.into_iter().collect();
+        let signature = function.signature();
+        if dimensions.is_empty() {
+            return Err(ProblemError::NoDimension);
+        }
+        let found: Vec<String> = dimensions.iter().map(|dimension| dimension.name().to_owned()).collect();
+        distinct(&found)?;
+        let expected: Vec<String> = signature.inputs.iter().map(|input| input.name.clone()).collect();
+        if !expected.is_empty() && expected != found {
+            return Err(ProblemError::InputMismatch { expected, found });
+        }
+        let characteristic = |output: &crate::assembly::Output| {
+            let characteristic = Characteristic::new(&output.name);
+            output.unit.iter().fold(characteristic, |characteristic, unit| characteristic.with_unit(unit))
+        };
+        let characteristics: Vec<Characteristic> = signature.outputs.iter().map(characteristic).collect();
+        let outputs = (0..characteristics.len()).collect();
+        let problem = Self { dimensions, characteristics, outputs, function: Arc::new(function) };
+        problem.checked()
+    }
+
+    /// With these characteristics instead: outputs of the function by name, with limits and targets.
+    ///
+    /// # Errors
+    /// When there is none, one stands twice, or one is no output of the function.
+    pub fn asking(
+        mut self,
+        characteristics: impl IntoIterator<Item = Characteristic>,
+    ) -> Result<Self, ProblemError> {
+        let outputs = &self.function.signature().outputs;
+        self.characteristics = characteristics.into_iter().collect();
+        self.outputs = (self.characteristics.iter())
+            .map(|asked| {
+                let index = outputs.iter().position(|output| output.name == asked.name());
+                index.ok_or_else(|| unknown(asked.name(), outputs.iter().map(|output| &output.name)))
+            })
+            .collect::<Result<_, _>>()?;
+        self.checked()
+    }
+
+    /// With only those of its characteristics that bear one of these names, in the problem's order.
+    ///
+    /// # Errors
+    /// When a name is none of its characteristics'.
+    pub fn only(mut self, names: &[impl AsRef<str>]) -> Result<Self, ProblemError> {
+        for name in names.iter().map(AsRef::as_ref) {
+            if !self.characteristics.iter().any(|characteristic| characteristic.name() == name) {
+                return Err(unknown(name, self.characteristics.iter().map(Characteristic::name)));
+            }
+        }
+        let kept = |characteristic: &Characteristic| names.iter().any(|name| name.as_ref() == characteristic.name());
+        let (outputs, characteristics) = (self.outputs.into_iter().zip(self.characteristics))
+            .filter(|(_, characteristic)| kept(characteristic))
+            .unzip();
+        (self.outputs, self.characteristics) = (outputs, characteristics);
+        self.checked()
+    }
+
+    fn checked(self) -> Result<Self, ProblemError> {
+        if self.characteristics.is_empty() {
+            return Err(ProblemError::NoCharacteristic);
+        }
+        let names: Vec<String> = self.characteristics.iter().map(|asked| asked.name().to_owned()).collect();
+        distinct(&names)?;
+        Ok(self)
+    }
+
+    /// The dimensions, in order.
+    pub fn dimensions(&self) -> &[Dimension] {
+        &self.dimensions
+    }
+
+    /// The characteristics asked for, in order.
+    pub fn characteristics(&self) -> &[Characteristic] {
+        &self.characteristics
+    }
+
+    /// The assembly function.
+    pub fn function(&self) -> &dyn AssemblyFunction {
+        &*self.function
+    }
+
+    /// The outputs of the assembly function that the characteristics are.
+    pub fn outputs(&self) -> &[usize] {
+        &self.outputs
+    }
+
+    /// For every characteristic, whether it can depend on each dimension; a black box may depend on all.
+    pub fn dependence(&self) -> Vec<Vec<bool>> {
+        let outputs = &self.function.signature().outputs;
+        let row = |&output: &usize| match &outputs[output].depends_on {
+            None => vec![true; self.dimensions.len()],
+            Some(dimensions) => (0..self.dimensions.len()).map(|d| dimensions.contains(&d)).collect(),
+        };
+        self.outputs.iter().map(row).collect()
+    }
+}
+
+fn unknown(name: &str, known: impl Iterator<Item = impl AsRef<str>>) -> ProblemError {
+    let known: Vec<String> = known.map(|name| name.as_ref().to_owned()).collect();
+    let nearest = nearest(name, known.iter().map(String::as_str)).map(str::to_owned);
+    ProblemError::UnknownCharacteristic { name: name.to_owned(), nearest, known }
+}
+
+fn distinct(names: &[String]) -> Result<(), ProblemError> {
+    let mut seen = std::collections::HashSet::new();
+    match names.iter().find(|name| !seen.insert(name.as_str())) {
+        Some(name) => Err(ProblemError::DuplicateName { name: name.clone() }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,37 @@
+//! The surrogate: what is known of one characteristic near the means, as univariate parts and products.
+//!
+//! ```text
+//! y ~ centre + sum_j g_j(u_j) + sum_{j<k} A_jk u_j u_k          u_j = (x_j - mean_j)/sigma_j,  g_j(0) = 0
+//! ```
+//!
+//! It is filled by difference plans; its moments are exact for any independent inputs.
+
+mod shape;
+mod univariate;
+
+pub use shape::{InputShape, shapes};
+pub use univariate::Univariate;
+
+use crate::moments::{Contributions, Interactions, Term, contributions};
+
+/// One characteristic's surrogate over N dimensions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surrogate {
+    /// The characteristic at the means.
+    pub centre: f64,
+    /// For every dimension its own part; None where no derivative could be had.
+    pub parts: Vec<Option<Univariate>>,
+    /// The products.
+    pub interactions: Interactions,
+}
+
+impl Surrogate {
+    /// Moments and contributions, exact for inputs of these shapes; None when a part is unknown.
+    ///
+    /// Shapes: `shapes` has length N, in the order of the parts.
+    pub fn contributions(&self, shapes: &[InputShape]) -> Option<Contributions> {
+        let terms: Option<Vec<Term<'_>>> =
+            self.parts.iter().zip(shapes).map(|(part, shape)| Some(part.as_ref()?.term(shape))).collect();
+        Some(contributions(self.centre, &terms?, &self.interactions))
+    }
+}

@@ -1,0 +1,208 @@
+//! Warnings: where an assumption of the method fails, what that means, and what to try.
+
+/// Something that a reader of the results must know.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// No characteristic of the study can depend on a dimension.
+    UnusedDimension {
+        /// The dimension.
+        dimension: String,
+    },
+    /// No characteristic of the study uses a constant or formula.
+    UnusedName {
+        /// `constant` or `formula`.
+        what: &'static str,
+        /// Its name.
+        name: String,
+    },
+    /// The model failed at some points.
+    FailedPoints {
+        /// The characteristic that has no value there.
+        characteristic: String,
+        /// At how many points.
+        failed: usize,
+        /// Of how many.
+        points: usize,
+        /// The first such point, in words.
+        point: String,
+        /// Why it has no value there.
+        error: String,
+    },
+    /// A derivative could not be had.
+    LostDerivative {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension, or the two of a mixed derivative.
+        dimensions: Vec<String>,
+        /// What is lost.
+        loss: Loss,
+    },
+    /// The model fails within reach of the tolerances: differences were taken over a shorter step.
+    DomainEdge {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which it fails.
+        dimension: String,
+        /// The node that failed, in sigmas off the mean.
+        failed: f64,
+        /// The node in its place.
+        used: f64,
+    },
+    /// A node that the moments want lies outside a distribution's support.
+    SupportEdge {
+        /// The dimension.
+        dimension: String,
+        /// Where the moments want it, in sigmas off the mean.
+        from: f64,
+        /// Where it is.
+        to: f64,
+    },
+    /// The characteristic is the same at every point.
+    NoReaction {
+        /// The characteristic.
+        characteristic: String,
+    },
+    /// Rounding in the model is not small beside the differences.
+    Noise {
+        /// The characteristic.
+        characteristic: String,
+        /// The rounding error of one value, relative to sigma.
+        rounding: f64,
+    },
+    /// Interactions were left unexamined.
+    PairsNotExamined {
+        /// How many were examined.
+        examined: usize,
+        /// Of how many.
+        possible: usize,
+    },
+    /// A first-order method on a characteristic that is visibly curved.
+    RssInvalid {
+        /// The characteristic.
+        characteristic: String,
+        /// How far curvature moves the mean, in sigmas.
+        mean_shift: f64,
+        /// What curvature adds to the variance, relative to what the slopes make of it.
+        variance: f64,
+    },
+    /// `auto` was asked for.
+    AutoIsSecondOrder,
+}
+
+/// What of a derivative is lost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// Slope and curvature: without them the characteristic has no moments.
+    Slope,
+    /// The curvature; the slope is one-sided.
+    Curvature,
+    /// The mixed derivative.
+    Mixed,
+    /// One side of the mixed derivative.
+    OneSidedMixed,
+}
+
+impl Warning {
+    /// The code that reports use.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::UnusedDimension { .. } => "unused-dimension",
+            Self::UnusedName { .. } => "unused-name",
+            Self::FailedPoints { .. } => "failed-points",
+            Self::LostDerivative { .. } => "lost-derivative",
+            Self::DomainEdge { .. } => "domain-edge",
+            Self::SupportEdge { .. } => "support-edge",
+            Self::NoReaction { .. } => "no-reaction",
+            Self::Noise { .. } => "noise",
+            Self::PairsNotExamined { .. } => "pairs-not-examined",
+            Self::RssInvalid { .. } => "rss-invalid",
+            Self::AutoIsSecondOrder => "auto-is-second-order",
+        }
+    }
+
+    /// The characteristic that it concerns, where it concerns one.
+    pub fn characteristic(&self) -> Option<&str> {
+        match self {
+            Self::FailedPoints { characteristic, .. }
+            | Self::LostDerivative { characteristic, .. }
+            | Self::DomainEdge { characteristic, .. }
+            | Self::NoReaction { characteristic }
+            | Self::Noise { characteristic, .. }
+            | Self::RssInvalid { characteristic, .. } => Some(characteristic),
+            _ => None,
+        }
+    }
+
+    /// The dimension that it concerns, where it concerns one.
+    pub fn dimension(&self) -> Option<&str> {
+        match self {
+            Self::UnusedDimension { dimension }
+            | Self::DomainEdge { dimension, .. }
+            | Self::SupportEdge { dimension, .. } => Some(dimension),
+            Self::LostDerivative { dimensions, .. } => dimensions.first().map(String::as_str),
+            _ => None,
+        }
+    }
+
+    /// Cause, consequence, and what to try.
+    pub fn message(&self) -> String {
+        match self {
+            Self::UnusedDimension { dimension } => {
+                format!("no characteristic depends on dimension `{dimension}`: it has no part in the result")
+            }
+            Self::UnusedName { what, name } => format!("no characteristic uses the {what} `{name}`"),
+            Self::FailedPoints { characteristic, failed, points, point, error } => format!(
+                "`{characteristic}` has no value at {failed} of {points} points; first at {point}: {error}"
+            ),
+            Self::LostDerivative { characteristic, dimensions, loss } => {
+                let to = dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
+                match loss {
+                    Loss::Slope => format!(
+                        "`{characteristic}` could not be differentiated by {to}: it has no moments; \
+                         keep the model defined around the mean, or give the dimension a smaller step"
+                    ),
+                    Loss::Curvature => format!(
+                        "`{characteristic}` could be differentiated by {to} on one side only: its curvature there is \
+                         unknown and left out of the moments; a smaller --step may help"
+                    ),
+                    Loss::Mixed => format!(
+                        "the interaction of {to} in `{characteristic}` could not be evaluated and is left out of the \
+                         moments; a smaller --step may help"
+                    ),
+                    Loss::OneSidedMixed => format!(
+                        "the interaction of {to} in `{characteristic}` could be evaluated at some of its corners only: \
+                         it is less exact"
+                    ),
+                }
+            }
+            Self::DomainEdge { characteristic, dimension, failed, used } => format!(
+                "`{characteristic}` has no value with `{dimension}` at {failed:+.3} sigma: {used:+.3} sigma was used, and \
+                 part of the assemblies may have no value at all"
+            ),
+            Self::SupportEdge { dimension, from, to } => format!(
+                "the node of `{dimension}` at {from:+.3} sigma lies outside its distribution and was moved to \
+                 {to:+.3}: its fourth moment is matched less exactly"
+            ),
+            Self::NoReaction { characteristic } => format!(
+                "`{characteristic}` is the same at every point: check that the model uses the dimensions at all"
+            ),
+            Self::Noise { characteristic, rounding } => format!(
+                "one rounding error of `{characteristic}` is {rounding:.1e} of its sigma: differences lose that much; \
+                 measure it from a nearer datum"
+            ),
+            Self::PairsNotExamined { examined, possible } => format!(
+                "{examined} of {possible} interactions were examined: what the others add to sigma is unknown; \
+                 --method full examines all"
+            ),
+            Self::RssInvalid { characteristic, mean_shift, variance } => format!(
+                "`{characteristic}` is curved: second order moves its mean by {mean_shift:+.2} sigma and adds {:.1} % to \
+                 its variance; use --method second-order",
+                100.0 * variance
+            ),
+            Self::AutoIsSecondOrder => {
+                "method auto is not built yet and stands for second-order; --method full adds every interaction".into()
+            }
+        }
+    }
+}
