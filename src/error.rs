@@ -1,12 +1,13 @@
 //! Every error of the library in one type, for who passes them on.
 
-use crate::assembly::formula::FormulaError;
 use crate::assembly::CompositeError;
+use crate::assembly::formula::FormulaError;
 use crate::characteristic::LimitsError;
 use crate::dimension::DimensionError;
 use crate::distribution::DistributionError;
 use crate::method::MethodError;
 use crate::problem::ProblemError;
+use crate::study::StudyError;
 
 /// Any error of the library.
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +31,9 @@ pub enum Error {
     /// Dimensions, function and characteristics do not fit together.
     #[error(transparent)]
     Problem(#[from] ProblemError),
+    /// A study file is wrong.
+    #[error(transparent)]
+    Study(#[from] StudyError),
     /// A method does not fit the problem.
     #[error(transparent)]
     Method(#[from] MethodError),

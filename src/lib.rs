@@ -3,6 +3,8 @@
 pub mod analysis;
 pub mod assembly;
 pub mod characteristic;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod dimension;
 pub mod distribution;
 pub mod error;
@@ -13,6 +15,8 @@ pub mod moments;
 pub mod names;
 pub mod plan;
 pub mod problem;
+pub mod report;
+pub mod study;
 pub mod surrogate;
 pub mod warning;
 
@@ -24,4 +28,5 @@ pub use error::Error;
 pub use method::{Method, MethodError, Options};
 pub use moments::Moments;
 pub use problem::{Problem, ProblemError};
+pub use study::{Study, StudyError};
 pub use warning::Warning;

@@ -15,8 +15,11 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     let likeness = |name: &str| {
         let name = folded(name);
         let edit = strsim::normalized_damerau_levenshtein(&typed, &name);
-        // A beginning, such as `dist` for `distribution`, is meant even where much is missing.
-        if typed.len() >= 3 && name.starts_with(&typed) { edit.max(0.75) } else { edit }
+        // A beginning, such as `dist` for `distribution`, is meant even where much is missing, and so is a short name
+        // with one slip.
+        let begun = typed.len() >= 3 && name.starts_with(&typed);
+        let slip = typed.len() >= 2 && strsim::damerau_levenshtein(&typed, &name) == 1;
+        if begun || slip { edit.max(0.75) } else { edit }
     };
     let mut best = None;
     for name in known {

@@ -92,10 +92,7 @@ impl Problem {
     ///
     /// # Errors
     /// When there is none, one stands twice, or one is no output of the function.
-    pub fn asking(
-        mut self,
-        characteristics: impl IntoIterator<Item = Characteristic>,
-    ) -> Result<Self, ProblemError> {
+    pub fn asking(mut self, characteristics: impl IntoIterator<Item = Characteristic>) -> Result<Self, ProblemError> {
         let outputs = &self.function.signature().outputs;
         self.characteristics = characteristics.into_iter().collect();
         self.outputs = (self.characteristics.iter())

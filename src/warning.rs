@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// No characteristic of the study can depend on a dimension.
+    /// No asked characteristic can depend on a dimension.
     UnusedDimension {
         /// The dimension.
         dimension: String,
@@ -93,6 +93,8 @@ pub enum Warning {
 /// What of a derivative is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Loss {
+    /// Every derivative: there is no value at the means, from which differences are taken.
+    Centre,
     /// Slope and curvature: without them the characteristic has no moments.
     Slope,
     /// The curvature; the slope is one-sided.
@@ -149,15 +151,19 @@ impl Warning {
     pub fn message(&self) -> String {
         match self {
             Self::UnusedDimension { dimension } => {
-                format!("no characteristic depends on dimension `{dimension}`: it has no part in the result")
+                format!("no asked characteristic depends on dimension `{dimension}`: it has no part in the result")
             }
             Self::UnusedName { what, name } => format!("no characteristic uses the {what} `{name}`"),
-            Self::FailedPoints { characteristic, failed, points, point, error } => format!(
-                "`{characteristic}` has no value at {failed} of {points} points; first at {point}: {error}"
-            ),
+            Self::FailedPoints { characteristic, failed, points, point, error } => {
+                format!("`{characteristic}` has no value at {failed} of {points} points; first at {point}: {error}")
+            }
             Self::LostDerivative { characteristic, dimensions, loss } => {
                 let to = dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
                 match loss {
+                    Loss::Centre => format!(
+                        "`{characteristic}` has no value at the means, from which every difference is taken: it has no \
+                         derivatives and no moments; check the nominal dimensions"
+                    ),
                     Loss::Slope => format!(
                         "`{characteristic}` could not be differentiated by {to}: it has no moments; \
                          keep the model defined around the mean, or give the dimension a smaller step"

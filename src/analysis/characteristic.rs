@@ -38,6 +38,8 @@ pub struct Sensitivity {
     pub first: Option<f64>,
     /// Second derivative at the mean.
     pub second: Option<f64>,
+    /// What a rounding error of the characteristic's own size may make of the two derivatives, at the steps taken.
+    pub rounding: Option<[f64; 2]>,
     /// Share of the variance that the best straight line through its own part explains.
     pub linear_share: Option<f64>,
     /// Share of the variance that its curvature adds.
@@ -53,6 +55,8 @@ pub struct Interaction {
     pub dimensions: [String; 2],
     /// Mixed second derivative at the means; None where it was lost.
     pub mixed: Option<f64>,
+    /// What rounding errors of the characteristic's own size may make of it, at the steps taken.
+    pub rounding: Option<f64>,
     /// Share of the variance.
     pub share: Option<f64>,
 }
@@ -68,12 +72,12 @@ impl CharacteristicAnalysis {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;
         let contributions = fitted.surrogate.as_ref().and_then(|surrogate| surrogate.contributions(plan.shapes()));
-        let sensitivities: Vec<Sensitivity> =
-            (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, contributions.as_ref())).collect();
+        let sensitivities: Vec<Sensitivity> = (0..problem.dimensions().len())
+            .map(|d| sensitivity(problem, outcome, c, d, contributions.as_ref()))
+            .collect();
         let interactions = interactions(problem, outcome, c, contributions.as_ref());
         let n = plan.varying().len();
-        let possible_interactions =
-            (0..n).map(|j| (j + 1..n).filter(|&k| plan.joint(c, j, k)).count()).sum::<usize>();
+        let possible_interactions = (0..n).map(|j| (j + 1..n).filter(|&k| plan.joint(c, j, k)).count()).sum::<usize>();
         let complete = outcome.order == Order::Second
             && interactions.len() == possible_interactions
             && interactions.iter().all(|interaction| interaction.share.is_some())
@@ -102,7 +106,12 @@ fn sensitivity(
 ) -> Sensitivity {
     let (plan, dimension) = (&outcome.plan, &problem.dimensions()[d]);
     let part = outcome.fitted[c].parts[d];
-    let scale = plan.axis(d).scale;
+    let axis = plan.axis(d);
+    let scale = axis.scale;
+    let rounding = outcome.fitted[c].centre.filter(|_| !axis.slots.is_empty() && plan.depends(c, d)).map(|centre| {
+        let slope = f64::EPSILON * centre.abs() / axis.nearest_step();
+        [slope, 4.0 * slope / axis.nearest_step()]
+    });
     // A characteristic that cannot depend on a dimension has slope 0, evaluated or not.
     let per_unit = |value: f64| if plan.depends(c, d) { value / scale } else { 0.0 };
     let position = plan.varying().iter().position(|&varying| varying == d);
@@ -120,6 +129,7 @@ fn sensitivity(
         dimension: dimension.name().to_owned(),
         first: part.map(|part| per_unit(part.slope())),
         second: part.and_then(|part| part.second()).map(|second| per_unit(per_unit(second))),
+        rounding,
         linear_share: of(|contributions| &contributions.linear),
         curvature_share: curved(of(|contributions| &contributions.curvature)),
         mean_shift: curved(of(|contributions| &contributions.mean_shift)),
@@ -142,6 +152,9 @@ fn interactions(
             Interaction {
                 dimensions: [j, k].map(|d| problem.dimensions()[d].name().to_owned()),
                 mixed: mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale),
+                rounding: outcome.fitted[c].centre.map(|centre| {
+                    4.0 * f64::EPSILON * centre.abs() / plan.axis(j).nearest_step() / plan.axis(k).nearest_step()
+                }),
                 share: mixed.and_then(|mixed| share(mixed.value)),
             }
         })

@@ -15,7 +15,7 @@ use crate::warning::Warning;
 /// What an analysis found out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
-    /// The method that was asked for.
+    /// The method that was run: for `auto`, what it stands for.
     pub method: Method,
     /// Dimensions that vary and on which some characteristic can depend, N.
     pub varying: usize,

@@ -16,7 +16,7 @@ const CURVED: f64 = 0.05;
 
 pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[CharacteristicAnalysis]) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    if outcome.method == Method::Auto {
+    if outcome.asked == Method::Auto {
         warnings.push(Warning::AutoIsSecondOrder);
     }
     warnings.extend(unused(problem));
@@ -84,11 +84,17 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
     let (plan, fitted, known) = (&outcome.plan, &outcome.fitted[c], &outcome.evaluated.known);
     let mut warnings = Vec::new();
     let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
-    let lost = |dimensions: Vec<String>, loss| Warning::LostDerivative { characteristic: name(problem, c), dimensions, loss };
+    let lost =
+        |dimensions: Vec<String>, loss| Warning::LostDerivative { characteristic: name(problem, c), dimensions, loss };
+    if fitted.centre.is_none() {
+        return vec![lost(Vec::new(), Loss::Centre)];
+    }
     for &d in plan.varying().iter().filter(|&&d| plan.depends(c, d)) {
         let axis = plan.axis(d);
         let value = |node: u32| {
-            known.value(&Point::of(&[crate::plan::At { dimension: d as u32, node }]), c).map(|_| axis.nodes[node as usize].u)
+            known
+                .value(&Point::of(&[crate::plan::At { dimension: d as u32, node }]), c)
+                .map(|_| axis.nodes[node as usize].u)
         };
         for slot in &axis.slots {
             if let (None, Some(used)) = (value(slot[0]), slot[1..].iter().find_map(|&node| value(node))) {

@@ -75,7 +75,8 @@ impl Composite {
         let names: Vec<String> = formulas.iter().map(|(name, _)| name.clone()).collect();
         let model = model.map(|(function, inputs)| Inner { function, inputs });
         let offers = model.as_ref().map_or(&[][..], |model| &model.function.signature().outputs);
-        let dimensions = inputs.iter().enumerate().map(|(index, input)| (input.name.as_str(), Meaning::Variable(index)));
+        let dimensions =
+            inputs.iter().enumerate().map(|(index, input)| (input.name.as_str(), Meaning::Variable(index)));
         let constants = constants.iter().map(|(name, value)| (name.as_str(), Meaning::Constant(*value)));
         let answers = offers
             .iter()
@@ -210,13 +211,14 @@ impl AssemblyFunction for Composite {
                     return;
                 }
                 // An answer that the formula needed is missing: then it is that answer's error, or still open.
-                let missing = uses[position].iter().find(|&&output| answers.value(rows.start + row, answer(output)).is_none());
+                let missing =
+                    uses[position].iter().find(|&&output| answers.value(rows.start + row, answer(output)).is_none());
                 match missing {
                     Some(&output) => copy(&answers, rows.start + row, answer(output), out, row, column),
                     None => {
                         let explained = self.formulas.explain(formulas[position], |index| variable(index)[row]);
-                        let error = explained
-                            .map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into());
+                        let error =
+                            explained.map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into());
                         out.fail(row, column, error);
                     }
                 }

@@ -35,17 +35,8 @@ pub struct StandardMoments {
 
 impl StandardMoments {
     /// The moments of the standard normal distribution.
-    pub const NORMAL: Self = Self {
-        skewness: 0.0,
-        excess: 0.0,
-        m5: 0.0,
-        m6: 15.0,
-        m7: 0.0,
-        m8: 105.0,
-        h6: 8.0,
-        h7: 0.0,
-        h8: 48.0,
-    };
+    pub const NORMAL: Self =
+        Self { skewness: 0.0, excess: 0.0, m5: 0.0, m6: 15.0, m7: 0.0, m8: 105.0, h6: 8.0, h7: 0.0, h8: 48.0 };
 
     /// From central moments `m2 ..= m8` of any scale; `m2` must be above 0.
     ///

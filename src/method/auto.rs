@@ -8,6 +8,7 @@ use crate::plan::Spread;
 
 pub(super) const AUTO: Ladder = Ladder {
     method: Method::Auto,
+    runs: Method::SecondOrder,
     name: "auto",
     about: "the default; stands for second-order until the adaptive method is built",
     count: "2N+1",

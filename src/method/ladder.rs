@@ -21,6 +21,8 @@ pub enum Order {
 /// A derivative method: what it evaluates, and what it uses of that.
 pub(super) struct Ladder {
     pub(super) method: Method,
+    /// The method that it stands for: itself, but for `auto`.
+    pub(super) runs: Method,
     pub(super) name: &'static str,
     pub(super) about: &'static str,
     pub(super) count: &'static str,
@@ -41,6 +43,8 @@ pub(super) enum Examined {
 /// What a method found out.
 #[derive(Debug, Clone)]
 pub struct Outcome {
+    /// The method that was asked for.
+    pub asked: Method,
     /// The method that was run.
     pub method: Method,
     /// What it planned.
@@ -60,6 +64,8 @@ pub struct Outcome {
 pub struct Fitted {
     /// Its value at the nominal dimensions.
     pub nominal: Option<f64>,
+    /// Its value with every dimension at its mean.
+    pub centre: Option<f64>,
     /// Every dimension's own part, in the problem's order; None where it is unknown or was not asked for.
     pub parts: Vec<Option<Univariate>>,
     /// The mixed derivatives of the pairs examined, in sigma units; None where lost.
@@ -98,21 +104,22 @@ impl Procedure for Ladder {
         let plan = self.plan(problem, options)?;
         let needed = plan.cost().0;
         if let Some(budget) = options.budget.filter(|&budget| needed > budget) {
-            return Err(MethodError::OverBudget { method: self.name, needed, budget, fitting: fitting(problem, budget) });
+            return Err(MethodError::OverBudget {
+                method: self.name,
+                needed,
+                budget,
+                fitting: fitting(problem, budget),
+            });
         }
         let evaluated = evaluate(problem, &plan, run);
         let pairs = plan.pairs(Some(&evaluated.known));
         let fitted = (0..problem.characteristics().len()).map(|c| self.fit(&plan, &evaluated, c, &pairs)).collect();
-        Ok(Outcome { method: self.method, plan, evaluated, order: self.order, fitted, pairs })
+        Ok(Outcome { asked: self.method, method: self.runs, plan, evaluated, order: self.order, fitted, pairs })
     }
 }
 
 impl Ladder {
-    fn differences(
-        &self,
-        problem: &Problem,
-        options: &Options,
-    ) -> Result<(Spread, PairChoice, Stencil), MethodError> {
+    fn differences(&self, problem: &Problem, options: &Options) -> Result<(Spread, PairChoice, Stencil), MethodError> {
         let refused =
             |option| Err(MethodError::OptionDoesNotApply { method: self.name, option, only: Method::SixN.name() });
         match (self.interactions, &options.pairs, options.stencil) {
@@ -140,12 +147,13 @@ impl Ladder {
             Order::Second => parts[d],
         };
         let products = pairs.iter().zip(&mixed).filter_map(|(&(j, k), mixed)| Some((j, k, mixed.as_ref()?.value)));
-        let surrogate = known.value(&Point::Centre, c).map(|centre| Surrogate {
+        let centre = known.value(&Point::Centre, c);
+        let surrogate = centre.map(|centre| Surrogate {
             centre,
             parts: plan.varying().iter().map(used).collect(),
             interactions: Interactions::of_pairs(plan.varying().len(), products.filter(|&(_, _, value)| value != 0.0)),
         });
-        Fitted { nominal: known.value(plan.nominal(), c), parts, mixed, surrogate }
+        Fitted { nominal: known.value(plan.nominal(), c), centre, parts, mixed, surrogate }
     }
 }
 

@@ -39,6 +39,20 @@ pub enum Pairs {
     Listed(Vec<(String, String)>),
 }
 
+impl Pairs {
+    /// The choices that have a name.
+    pub const NAMES: [&str; 2] = ["strongest", "adjacent"];
+
+    /// The choice of this name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        match name {
+            "strongest" => Some(Self::Strongest),
+            "adjacent" => Some(Self::Adjacent),
+            _ => None,
+        }
+    }
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {

@@ -57,8 +57,7 @@ pub static ENGINE_BALANCE: Model = Model {
             name: "M",
             unit: "N.m",
             about: "unbalanced moment about the first cylinder",
-            // Cylinder 1 has no lever about itself: its angle has no part in the moment.
-            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12],
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12],
         },
     ],
     evaluate,

@@ -69,6 +69,12 @@ impl Axis {
         Self { mean, scale: 0.0, nodes: Vec::new(), slots: Vec::new(), moved: Vec::new() }
     }
 
+    /// The distance of the nearest node from the mean, in the dimension's unit.
+    pub fn nearest_step(&self) -> f64 {
+        let nodes = self.slots.iter().map(|slot| self.nodes[slot[0] as usize].u.abs());
+        self.scale * nodes.fold(f64::INFINITY, f64::min)
+    }
+
     fn open_slot(&mut self, u: f64) {
         let mut slot = vec![self.node(self.mean + u * self.scale)];
         slot.extend(REPLACEMENTS.map(|factor| self.node(self.mean + factor * u * self.scale)));

@@ -298,7 +298,9 @@ impl DifferencePlan {
         let Some(centre) = known.value(&Point::Centre, characteristic) else { return vec![None; pairs.len()] };
         // Each axis value is needed by N - 1 pairs: looked up once.
         let on_axis: Vec<[Option<(f64, f64)>; 2]> = (0..self.varying.len())
-            .map(|j| [Side::Left, Side::Right].map(|side| self.axis_value(known, characteristic, j, nodes[j].on(side)?)))
+            .map(|j| {
+                [Side::Left, Side::Right].map(|side| self.axis_value(known, characteristic, j, nodes[j].on(side)?))
+            })
             .collect();
         let corners = self.layout.stencil.corners();
         let mixed = |&(j, k): &(usize, usize)| {
@@ -307,7 +309,8 @@ impl DifferencePlan {
             }
             let (mut sum, mut weight, mut found) = (0.0, 0.0, 0);
             for &(of_j, of_k) in corners {
-                let corner = self.corner(&nodes, j, k, (of_j, of_k)).and_then(|point| known.value(&point, characteristic));
+                let corner =
+                    self.corner(&nodes, j, k, (of_j, of_k)).and_then(|point| known.value(&point, characteristic));
                 if let (Some(corner), Some((u, at_j)), Some((v, at_k))) =
                     (corner, on_axis[j][of_j as usize], on_axis[k][of_k as usize])
                 {

@@ -77,8 +77,8 @@ impl Known {
 
     /// Every error with its point and characteristic, in the order of evaluation.
     pub fn errors(&self) -> impl Iterator<Item = (&Point, usize, &EvaluationError)> {
-        self.errors.iter().map(|(&(row, characteristic), error)| {
-            (&self.points[row as usize], characteristic as usize, error)
-        })
+        self.errors
+            .iter()
+            .map(|(&(row, characteristic), error)| (&self.points[row as usize], characteristic as usize, error))
     }
 }

@@ -27,6 +27,18 @@ pub enum Stencil {
 }
 
 impl Stencil {
+    /// The names of the stencils.
+    pub const NAMES: [&str; 2] = ["two-point", "four-point"];
+
+    /// The stencil of this name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        match name {
+            "two-point" => Some(Self::TwoPoint),
+            "four-point" => Some(Self::FourPoint),
+            _ => None,
+        }
+    }
+
     /// Evaluations per pair.
     pub fn evaluations(self) -> usize {
         match self {

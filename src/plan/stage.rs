@@ -29,8 +29,7 @@ pub enum Purpose {
 
 impl Purpose {
     /// All of them, in the order in which they are listed.
-    pub const ALL: [Self; 6] =
-        [Self::Centre, Self::Nominal, Self::Axis, Self::Pair, Self::Sensitivity, Self::Repair];
+    pub const ALL: [Self; 6] = [Self::Centre, Self::Nominal, Self::Axis, Self::Pair, Self::Sensitivity, Self::Repair];
 
     /// In words.
     pub fn words(self) -> &'static str {

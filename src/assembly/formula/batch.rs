@@ -41,7 +41,12 @@ impl<'a> Machine<'a> {
         }
     }
 
-    fn values<'s, 'v: 's>(&'s self, operand: Operand, rows: usize, variable: &impl Fn(usize) -> &'v [f64]) -> Values<'s> {
+    fn values<'s, 'v: 's>(
+        &'s self,
+        operand: Operand,
+        rows: usize,
+        variable: &impl Fn(usize) -> &'v [f64],
+    ) -> Values<'s> {
         match operand {
             Operand::Constant(value) => Values::Same(value),
             Operand::Variable(index) => Values::Each(&variable(index)[..rows]),
@@ -52,10 +57,10 @@ impl<'a> Machine<'a> {
     fn steps<'v>(&mut self, steps: &'a [Step], rows: usize, variable: &impl Fn(usize) -> &'v [f64]) {
         for step in steps {
             match step {
-                Step::Unary { function, a, to } => self.into_register(*to, |machine, out| {
+                Step::Unary { function, a, to } => self.write_register(*to, |machine, out| {
                     unary(*function, machine.values(*a, rows, variable), &mut out[..rows]);
                 }),
-                Step::Binary { function, a, b, to } => self.into_register(*to, |machine, out| {
+                Step::Binary { function, a, b, to } => self.write_register(*to, |machine, out| {
                     let (a, b) = (machine.values(*a, rows, variable), machine.values(*b, rows, variable));
                     binary(*function, a, b, &mut out[..rows]);
                 }),
@@ -90,7 +95,7 @@ impl<'a> Machine<'a> {
         if !all {
             self.steps(&otherwise.steps, rows, variable);
         }
-        self.into_register(to, |machine, out| {
+        self.write_register(to, |machine, out| {
             let condition = machine.values(condition, rows, variable);
             let branch = |taken: bool, branch: &Branch| {
                 if taken { machine.values(branch.result, rows, variable) } else { Values::Same(f64::NAN) }
@@ -103,7 +108,7 @@ impl<'a> Machine<'a> {
     }
 
     /// Takes a register out while the others are read: no operation writes to one of its own operands.
-    fn into_register(&mut self, to: usize, operation: impl FnOnce(&Self, &mut [f64])) {
+    fn write_register(&mut self, to: usize, operation: impl FnOnce(&Self, &mut [f64])) {
         let mut out = std::mem::take(&mut self.registers[to]);
         operation(self, &mut out);
         self.registers[to] = out;
@@ -126,9 +131,7 @@ fn unary(function: Unary, a: Values<'_>, out: &mut [f64]) {
             match function { $(Unary::$name => map(a, out, |x| Unary::$name.apply(x)),)* }
         };
     }
-    each!(
-        Negate, Abs, Sqrt, Exp, Ln, Log10, Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh, Tanh, Floor, Ceil, Sign
-    );
+    each!(Negate, Abs, Sqrt, Exp, Ln, Log10, Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh, Tanh, Floor, Ceil, Sign);
 }
 
 fn map(a: Values<'_>, out: &mut [f64], function: impl Fn(f64) -> f64) {
@@ -145,8 +148,21 @@ fn binary(function: Binary, a: Values<'_>, b: Values<'_>, out: &mut [f64]) {
         };
     }
     each!(
-        Add, Subtract, Multiply, Divide, Power, Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual, Min, Max,
-        Atan2, Hypot
+        Add,
+        Subtract,
+        Multiply,
+        Divide,
+        Power,
+        Less,
+        LessEqual,
+        Greater,
+        GreaterEqual,
+        Equal,
+        NotEqual,
+        Min,
+        Max,
+        Atan2,
+        Hypot
     );
 }
 

@@ -108,7 +108,13 @@ impl Graph {
     pub(super) fn branch(&mut self, condition: NodeId, then: NodeId, otherwise: NodeId) -> NodeId {
         match self.constant_value(condition) {
             Some(condition) if condition.is_nan() => self.constant(f64::NAN),
-            Some(condition) => if condition != 0.0 { then } else { otherwise },
+            Some(condition) => {
+                if condition != 0.0 {
+                    then
+                } else {
+                    otherwise
+                }
+            }
             None => self.add(GraphNode::If(condition, then, otherwise)),
         }
     }

@@ -49,7 +49,9 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Range<usize>)>, FormulaEr
         if rest.is_empty() {
             return Ok(tokens);
         }
-        let habit = HABITS.iter().find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="));
+        let habit = HABITS
+            .iter()
+            .find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="));
         if let Some(&(sign, instead)) = habit {
             return Err(FormulaError {
                 span: start..start + sign.len(),
@@ -89,10 +91,7 @@ fn token(input: &mut Input<'_>) -> Scan<Result<Token, String>> {
 }
 
 fn number(input: &mut Input<'_>) -> Scan<Result<Token, String>> {
-    let mantissa = alt((
-        (digit1, opt(('.', opt(digit1)))).void(),
-        ('.', digit1).void(),
-    ));
+    let mantissa = alt(((digit1, opt(('.', opt(digit1)))).void(), ('.', digit1).void()));
     let exponent = opt((one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1));
     let text: &str = (mantissa, exponent).take().parse_next(input)?;
     Ok(match text.parse::<f64>() {

@@ -70,10 +70,8 @@ struct Layout {
 impl Layout {
     fn of(graph: &Graph, roots: &[NodeId]) -> Self {
         let count = graph.nodes().len();
-        let mut layout = Self {
-            regions: vec![Region { parent: 0, depth: 0, nodes: Vec::new() }],
-            branches: vec![None; count],
-        };
+        let mut layout =
+            Self { regions: vec![Region { parent: 0, depth: 0, nodes: Vec::new() }], branches: vec![None; count] };
         let mut region_of: Vec<Option<usize>> = vec![None; count];
         for &root in roots {
             region_of[root as usize] = Some(0);

@@ -196,10 +196,7 @@ impl FormulaSet {
     }
 }
 
-fn resolve(
-    formula: &Formula,
-    known: &HashMap<String, Reference>,
-) -> Result<HashMap<usize, Reference>, FormulaError> {
+fn resolve(formula: &Formula, known: &HashMap<String, Reference>) -> Result<HashMap<usize, Reference>, FormulaError> {
     let mut references = HashMap::new();
     for (index, (node, span)) in formula.nodes.iter().enumerate() {
         if let Node::Name(name) = node {
