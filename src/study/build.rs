@@ -1,0 +1,277 @@
+//! From the file's types to a problem: names, model, formulas, characteristics.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use serde_spanned::Spanned;
+
+use super::dimension::dimension;
+use super::error::{Fault, StudyFault, fault};
+use super::file::{CharacteristicEntry, Entries, StudyFile};
+use super::source::Source;
+use crate::assembly::formula::{Formula, FormulaError, is_reserved};
+use crate::assembly::{self, AssemblyFunction, Composite, Parts};
+use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
+use crate::dimension::Dimension;
+use crate::method::Options;
+use crate::models::{self, Model};
+use crate::names::nearest;
+use crate::problem::Problem;
+use crate::warning::Warning;
+
+/// What a study file comes to.
+pub(super) struct Built {
+    pub(super) problem: Problem,
+    pub(super) options: Options,
+    pub(super) warnings: Vec<Warning>,
+}
+
+pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
+    let model = file.model.as_ref().map(|entry| model(&entry.get_ref().builtin)).transpose()?;
+    names(file, model)?;
+    let dimensions = dimensions(file, model)?;
+    let formulas = formulas(file, source)?;
+    for (what, empty) in [("dimension", dimensions.is_empty()), ("characteristic", file.characteristics.0.is_empty())] {
+        if empty {
+            return Err(Fault { span: None, key: String::new(), fault: Box::new(StudyFault::Nothing { what }) });
+        }
+    }
+    let used = |name: &str| formulas.iter().any(|named| named.formula.names().any(|(used, _)| used == name));
+    known_to_model(file, model, &used)?;
+    let (characteristics, outputs) = characteristics(file, model)?;
+    let composite = compose(file, model, &dimensions, &formulas, outputs, source)?;
+    let warnings = unused(file, model, &composite, &formulas, &used);
+    let problem = Problem::new(dimensions, composite)
+        .and_then(|problem| problem.asking(characteristics))
+        .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
+    let options = super::options::options(&file.analysis, &problem)?;
+    Ok(Built { problem, options, warnings })
+}
+
+fn model(name: &Spanned<String>) -> Result<&'static Model, Fault> {
+    let found = name.get_ref();
+    models::by_name(found).ok_or_else(|| {
+        let known: Vec<String> = models::ALL.iter().map(|model| model.name.to_owned()).collect();
+        let nearest = nearest(found, known.iter().map(String::as_str)).map(str::to_owned);
+        let found = found.clone();
+        fault(name.span(), "model.builtin", StudyFault::UnknownWord { what: "built-in model", found, nearest, known })
+    })
+}
+
+/// Every name means one thing.
+fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Fault> {
+    let with_formula = file.characteristics.0.iter().filter(|(_, entry)| entry.get_ref().formula.is_some());
+    let formulas = !file.formulas.0.is_empty() || with_formula.clone().next().is_some();
+    let mut taken: HashMap<&str, &'static str> = HashMap::new();
+    if let Some(model) = model {
+        taken.extend(model.outputs.iter().map(|output| (output.name, "an output of the model")));
+    }
+    let all = [
+        ("dimensions", "a dimension", file.dimensions.names()),
+        ("constants", "a constant", file.constants.names()),
+        ("formulas", "a formula", file.formulas.names()),
+        ("characteristics", "a characteristic", with_formula.map(|(name, _)| name).collect()),
+    ];
+    let all = all.into_iter().flat_map(|(section, by, names)| names.into_iter().map(move |name| (section, by, name)));
+    for (section, by, name) in all {
+        let text = name.get_ref();
+        let at = |found| fault(name.span(), format!("{section}.{text}"), found);
+        if text.is_empty() {
+            return Err(at(StudyFault::EmptyName));
+        }
+        if is_reserved(text) && formulas {
+            return Err(at(StudyFault::ReservedName { name: text.clone() }));
+        }
+        if let Some(by) = taken.insert(text, by) {
+            return Err(at(StudyFault::NameTaken { name: text.clone(), by }));
+        }
+    }
+    Ok(())
+}
+
+fn dimensions(file: &StudyFile, model: Option<&Model>) -> Result<Vec<Dimension>, Fault> {
+    let build = |(name, entry): &(Spanned<String>, _)| {
+        let input = model.and_then(|model| model.inputs.iter().find(|input| input.name == name.get_ref()));
+        let dimension = dimension(name.get_ref(), entry, input.map(|input| input.nominal)).map_err(|found| {
+            let below = if found.key.is_empty() { String::new() } else { format!(".{}", found.key) };
+            // A fault of the line as a whole is shown at the dimension's name.
+            let span = found.span.filter(|span| !span.is_empty()).unwrap_or_else(|| name.span());
+            Fault { span: Some(span), key: format!("dimensions.{}{below}", name.get_ref()), fault: found.fault }
+        })?;
+        Ok(match (dimension.unit(), input) {
+            (None, Some(input)) => dimension.with_unit(input.unit),
+            _ => dimension,
+        })
+    };
+    file.dimensions.0.iter().map(build).collect()
+}
+
+/// A formula of the file: of `[formulas]` or of a characteristic.
+struct Named<'f> {
+    name: String,
+    /// The text with its quotes, in the file.
+    text: &'f Spanned<String>,
+    key: String,
+    formula: Formula,
+}
+
+fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, Fault> {
+    let own = file.formulas.0.iter().map(|(name, text)| (name, text, format!("formulas.{}", name.get_ref())));
+    let of_characteristics = file.characteristics.0.iter().filter_map(|(name, entry)| {
+        Some((name, entry.get_ref().formula.as_ref()?, format!("characteristics.{}.formula", name.get_ref())))
+    });
+    own.chain(of_characteristics)
+        .map(|(name, text, key)| match Formula::parse(text.get_ref()) {
+            Ok(formula) => Ok(Named { name: name.get_ref().clone(), text, key, formula }),
+            Err(error) => Err(in_formula(source, text, key, error)),
+        })
+        .collect()
+}
+
+/// A fault within a formula, at its place in the file.
+fn in_formula(source: &Source, text: &Spanned<String>, key: String, error: FormulaError) -> Fault {
+    let span = source.within_string(text.span(), error.span);
+    fault(span, key, StudyFault::Formula(error.fault))
+}
+
+/// Dimensions and constants are inputs of the model, or else a formula uses them.
+fn known_to_model(file: &StudyFile, model: Option<&Model>, used: &dyn Fn(&str) -> bool) -> Result<(), Fault> {
+    let Some(model) = model else { return Ok(()) };
+    let names = (file.dimensions.names().into_iter().map(|name| ("dimensions", name)))
+        .chain(file.constants.names().into_iter().map(|name| ("constants", name)));
+    for (section, name) in names {
+        let text = name.get_ref();
+        if model.inputs.iter().any(|input| input.name == text) || used(text) {
+            continue;
+        }
+        let known: Vec<String> = model.inputs.iter().map(|input| input.name.to_owned()).collect();
+        let nearest = nearest(text, known.iter().map(String::as_str)).map(str::to_owned);
+        let unknown = StudyFault::UnknownInput { model: model.name.into(), name: text.clone(), nearest, known };
+        return Err(fault(name.span(), format!("{section}.{text}"), unknown));
+    }
+    Ok(())
+}
+
+type Outputs = Vec<(String, Option<String>)>;
+
+fn characteristics(file: &StudyFile, model: Option<&Model>) -> Result<(Vec<Characteristic>, Outputs), Fault> {
+    let (mut characteristics, mut outputs) = (Vec::new(), Vec::new());
+    for (name, entry) in &file.characteristics.0 {
+        let (text, key) = (name.get_ref(), format!("characteristics.{}", name.get_ref()));
+        let entry = entry.get_ref();
+        let mut unit = entry.unit.clone();
+        if entry.formula.is_none() {
+            let output = offered(name, &key, model)?;
+            unit = unit.or_else(|| Some(output.unit.to_owned()));
+        }
+        outputs.push((text.clone(), unit.clone()));
+        characteristics.push(characteristic(text, unit, entry, &key)?);
+    }
+    Ok((characteristics, outputs))
+}
+
+/// The model's output of this name, for a characteristic without formula.
+fn offered<'m>(name: &Spanned<String>, key: &str, model: Option<&'m Model>) -> Result<&'m models::ModelOutput, Fault> {
+    let text = name.get_ref();
+    let Some(model) = model else {
+        let instead = "write what it is, such as formula = \"a + b - c\", or name a model below [model]".to_owned();
+        return Err(fault(name.span(), key, StudyFault::MissingKey { key: "formula".into(), instead }));
+    };
+    model.outputs.iter().find(|output| output.name == text).ok_or_else(|| {
+        let known: Vec<String> = model.outputs.iter().map(|output| output.name.to_owned()).collect();
+        let nearest = nearest(text, known.iter().map(String::as_str)).map(str::to_owned);
+        fault(name.span(), key, StudyFault::UnknownWord { what: "model output", found: text.clone(), nearest, known })
+    })
+}
+
+fn characteristic(
+    name: &str,
+    unit: Option<String>,
+    entry: &CharacteristicEntry,
+    key: &str,
+) -> Result<Characteristic, Fault> {
+    let value = |limit: &Option<Spanned<f64>>| limit.as_ref().map(|limit| *limit.get_ref());
+    let limits = SpecLimits::new(value(&entry.lower), value(&entry.upper)).map_err(|error| {
+        let at = entry.upper.as_ref().or(entry.lower.as_ref()).expect("limits that exist are at fault");
+        fault(at.span(), format!("{key}.upper"), error)
+    })?;
+    let mut characteristic = Characteristic::new(name).with_limits(limits);
+    if let Some(unit) = unit {
+        characteristic = characteristic.with_unit(unit);
+    }
+    if let Some(target) = &entry.target_yield {
+        let at = |error: LimitsError| fault(target.span(), format!("{key}.target_yield"), error);
+        if limits == SpecLimits::default() {
+            let instead = "a target yield needs a limit: write lower, upper or both".to_owned();
+            let missing = StudyFault::MissingKey { key: "lower".into(), instead };
+            return Err(fault(target.span(), format!("{key}.target_yield"), missing));
+        }
+        characteristic = characteristic.with_target_yield(*target.get_ref()).map_err(at)?;
+    }
+    Ok(characteristic)
+}
+
+fn compose(
+    file: &StudyFile,
+    model: Option<&'static Model>,
+    dimensions: &[Dimension],
+    formulas: &[Named<'_>],
+    outputs: Outputs,
+    source: &Source,
+) -> Result<Composite, Fault> {
+    let constant = |name: &str| {
+        file.constants.0.iter().find(|(constant, _)| constant.get_ref() == name).map(|(_, value)| *value.get_ref())
+    };
+    let input =
+        |input: &models::ModelInput| match dimensions.iter().position(|dimension| dimension.name() == input.name) {
+            Some(index) => assembly::Source::Dimension(index),
+            None => assembly::Source::Fixed(constant(input.name).unwrap_or(input.nominal)),
+        };
+    let parts = Parts {
+        inputs: (dimensions.iter())
+            .map(|dimension| assembly::Input {
+                name: dimension.name().to_owned(),
+                unit: dimension.unit().map(str::to_owned),
+            })
+            .collect(),
+        constants: file.constants.0.iter().map(|(name, value)| (name.get_ref().clone(), *value.get_ref())).collect(),
+        model: model.map(|model| {
+            let function: Arc<dyn AssemblyFunction> = Arc::new(model.function());
+            (function, model.inputs.iter().map(input).collect())
+        }),
+        formulas: formulas.iter().map(|named| (named.name.clone(), named.formula.clone())).collect(),
+        outputs,
+    };
+    Composite::new(parts).map_err(|error| {
+        let named = formulas.iter().find(|named| named.name == error.name).expect("the formula came from here");
+        in_formula(source, named.text, named.key.clone(), error.error)
+    })
+}
+
+/// Constants and formulas that no characteristic of the file needs.
+fn unused(
+    file: &StudyFile,
+    model: Option<&Model>,
+    composite: &Composite,
+    formulas: &[Named<'_>],
+    used: &dyn Fn(&str) -> bool,
+) -> Vec<Warning> {
+    let is_asked = |named: &Named<'_>| file.characteristics.0.iter().any(|(name, _)| *name.get_ref() == named.name);
+    let asked = formulas.iter().enumerate().filter(|(_, named)| is_asked(named)).map(|(index, _)| index);
+    let needed = composite.formulas().used(asked);
+    let idle_formulas = (formulas.iter().zip(needed))
+        .filter(|(_, needed)| !needed)
+        .map(|(named, _)| Warning::UnusedName { what: "formula", name: named.name.clone() });
+    let is_input = |name: &str| model.is_some_and(|model| model.inputs.iter().any(|input| input.name == name));
+    let idle_constants = (file.constants.names().into_iter())
+        .filter(|name| !used(name.get_ref()) && !is_input(name.get_ref()))
+        .map(|name| Warning::UnusedName { what: "constant", name: name.get_ref().clone() });
+    idle_constants.chain(idle_formulas).collect()
+}
+
+impl<T> Entries<T> {
+    /// The names, in order.
+    fn names(&self) -> Vec<&Spanned<String>> {
+        self.0.iter().map(|(name, _)| name).collect()
+    }
+}

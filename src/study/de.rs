@@ -1,0 +1,231 @@
+//! The tree as source of serde types, so that every error knows its place and its key.
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use serde::de::value::StrDeserializer;
+use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
+use serde_spanned::de::{SpannedDeserializer, is_spanned};
+
+use super::error::{Fault, StudyFault};
+use super::tree::{Key, Tree, Value};
+use crate::names::nearest;
+
+/// A fault on its way up: the place is that of the innermost value it passed, the key grows outwards.
+#[derive(Debug)]
+pub(super) struct Error {
+    span: Option<Range<usize>>,
+    path: Vec<String>,
+    fault: Box<StudyFault>,
+}
+
+impl Error {
+    fn new(fault: StudyFault) -> Self {
+        Self { span: None, path: Vec::new(), fault: Box::new(fault) }
+    }
+
+    fn at(mut self, span: &Range<usize>) -> Self {
+        self.span.get_or_insert_with(|| span.clone());
+        self
+    }
+
+    pub(super) fn into_fault(self) -> Fault {
+        Fault { span: self.span, key: self.path.join("."), fault: self.fault }
+    }
+
+    fn within(mut self, key: &str) -> Self {
+        self.path.insert(0, key.to_owned());
+        self
+    }
+}
+
+impl Display for Error {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.fault.fmt(f)
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl de::Error for Error {
+    fn custom<T: Display>(message: T) -> Self {
+        Self::new(StudyFault::Syntax { message: message.to_string() })
+    }
+
+    fn invalid_type(found: de::Unexpected<'_>, expected: &dyn de::Expected) -> Self {
+        let found = match found {
+            de::Unexpected::Bool(truth) => format!("`{truth}`"),
+            de::Unexpected::Unsigned(value) => format!("the number {value}"),
+            de::Unexpected::Signed(value) => format!("the number {value}"),
+            de::Unexpected::Float(value) => format!("the number {value}"),
+            de::Unexpected::Str(text) => format!("the text \"{text}\""),
+            de::Unexpected::Seq => "a list".to_owned(),
+            de::Unexpected::Map => "a table".to_owned(),
+            other => other.to_string(),
+        };
+        Self::new(StudyFault::WrongType { expected: words(expected), found })
+    }
+
+    fn invalid_value(found: de::Unexpected<'_>, expected: &dyn de::Expected) -> Self {
+        Self::invalid_type(found, expected)
+    }
+
+    fn invalid_length(length: usize, expected: &dyn de::Expected) -> Self {
+        let found = format!("a list of {length}");
+        Self::new(StudyFault::WrongType { expected: words(expected), found })
+    }
+
+    fn unknown_field(field: &str, expected: &'static [&'static str]) -> Self {
+        let nearest = nearest(field, expected.iter().copied()).map(str::to_owned);
+        let valid = expected.iter().map(|&key| key.to_owned()).collect();
+        Self::new(StudyFault::UnknownKey { key: field.to_owned(), nearest, valid })
+    }
+
+    fn missing_field(field: &'static str) -> Self {
+        Self::new(StudyFault::MissingKey { key: field.to_owned(), instead: format!("add `{field} = ...`") })
+    }
+}
+
+/// What Rust expects, in the words of who writes a study.
+fn words(expected: &dyn de::Expected) -> String {
+    let text = expected.to_string();
+    match text.as_str() {
+        "f64" => "a number".to_owned(),
+        "u64" => "a whole number, 0 or above,".to_owned(),
+        "a string" => "a text in quotes".to_owned(),
+        "a tuple of size 2" => "a pair of names".to_owned(),
+        _ => match text.strip_prefix("an array of length ") {
+            Some(length) => format!("a list of {length} numbers"),
+            None => text,
+        },
+    }
+}
+
+impl<'de> IntoDeserializer<'de, Error> for &'de Tree {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+impl<'de> Deserializer<'de> for &'de Tree {
+    type Error = Error;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        let result = match &self.value {
+            Value::Table(entries) => visitor.visit_map(Entries { entries: entries.iter(), value: None }),
+            Value::Array(values) => {
+                let mut items = Items { items: values.iter(), index: 0 };
+                visitor.visit_seq(&mut items).and_then(|value| match items.items.len() {
+                    0 => Ok(value),
+                    left => {
+                        let wanted = format!("a list of {}", values.len() - left);
+                        Err(de::Error::invalid_length(values.len(), &wanted.as_str()))
+                    }
+                })
+            }
+            Value::Text(text) => visitor.visit_borrowed_str(text),
+            Value::Number(value) => visitor.visit_f64(*value),
+            Value::Integer(value) => visitor.visit_i64(*value),
+            Value::Truth(truth) => visitor.visit_bool(*truth),
+            Value::Other(what) => Err(de::Error::invalid_type(de::Unexpected::Other(what), &visitor)),
+        };
+        result.map_err(|error| error.at(&self.span))
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        if is_spanned(name) {
+            return visitor.visit_map(SpannedDeserializer::new(self, self.span.clone()));
+        }
+        self.deserialize_any(visitor)
+    }
+
+    serde::forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq
+        tuple tuple_struct map enum identifier ignored_any
+    }
+}
+
+struct Entries<'de> {
+    entries: std::slice::Iter<'de, (Key, Tree)>,
+    value: Option<&'de (Key, Tree)>,
+}
+
+impl<'de> MapAccess<'de> for Entries<'de> {
+    type Error = Error;
+
+    fn next_key_seed<K: de::DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
+        self.value = self.entries.next();
+        let Some((key, _)) = self.value else { return Ok(None) };
+        // A key that is not known here is a fault at the key, not at its value.
+        seed.deserialize(key).map(Some).map_err(|error| error.at(&key.span).within(&key.name))
+    }
+
+    fn next_value_seed<V: de::DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Error> {
+        let (key, tree) = self.value.expect("a value follows its key");
+        seed.deserialize(tree).map_err(|error| error.at(&tree.span).within(&key.name))
+    }
+}
+
+struct Items<'de> {
+    items: std::slice::Iter<'de, Tree>,
+    index: usize,
+}
+
+impl<'de> SeqAccess<'de> for Items<'de> {
+    type Error = Error;
+
+    fn next_element_seed<T: de::DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
+        let Some(tree) = self.items.next() else { return Ok(None) };
+        self.index += 1;
+        seed.deserialize(tree).map(Some).map_err(|error| error.at(&tree.span).within(&format!("[{}]", self.index)))
+    }
+}
+
+impl<'de> IntoDeserializer<'de, Error> for &'de Key {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+/// A key is a text that may be asked for its place too.
+impl<'de> Deserializer<'de> for &'de Key {
+    type Error = Error;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        StrDeserializer::new(&self.name).deserialize_any(visitor)
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        if is_spanned(name) {
+            return visitor.visit_map(SpannedDeserializer::new(self, self.span.clone()));
+        }
+        self.deserialize_any(visitor)
+    }
+
+    serde::forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct
+        newtype_struct seq tuple tuple_struct map enum identifier ignored_any
+    }
+}

@@ -1,0 +1,280 @@
+//! What can be wrong with a study, and where.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::assembly::formula::FormulaFault;
+use crate::characteristic::LimitsError;
+use crate::dimension::DimensionFault;
+use crate::method::MethodError;
+use crate::problem::ProblemError;
+
+/// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{}{}{}", self.place(), self.fault, self.help().map(|help| format!(" ({help})")).unwrap_or_default())]
+pub struct StudyError {
+    /// The file's name as it was given.
+    pub file: String,
+    /// The file's text, as far as it could be read.
+    pub text: Arc<str>,
+    /// Byte range in the text; None where the fault has no place.
+    pub span: Option<Range<usize>>,
+    /// The key concerned, with those around it, such as `dimensions.a.tolerance`; empty at the top.
+    pub key: String,
+    /// What is wrong.
+    pub fault: Box<StudyFault>,
+}
+
+impl StudyError {
+    /// Line and column, both from 1, the column in characters.
+    ///
+    /// ```
+    /// use sensitol::study::Study;
+    /// let error = Study::from_toml("[dimensions]\na = { nominal = 1, tolerance = -2 }", "gap.toml").unwrap_err();
+    /// assert_eq!(error.line_column(), Some((2, 32)));
+    /// assert_eq!(error.key, "dimensions.a.tolerance");
+    /// ```
+    pub fn line_column(&self) -> Option<(usize, usize)> {
+        let before = &self.text[..self.span.as_ref()?.start.min(self.text.len())];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Some((1 + before.matches('\n').count(), 1 + before[line_start..].chars().count()))
+    }
+
+    /// What to write instead, where that can be said.
+    pub fn help(&self) -> Option<String> {
+        self.fault.help()
+    }
+
+    /// `file:line:column: key: `, as far as they are known.
+    fn place(&self) -> String {
+        let at = self.line_column().map(|(line, column)| format!(":{line}:{column}")).unwrap_or_default();
+        let key = if self.key.is_empty() { String::new() } else { format!("{}: ", self.key) };
+        format!("{}{at}: {key}", self.file)
+    }
+}
+
+/// What is wrong with a study.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyFault {
+    /// The file cannot be read.
+    #[error("the file cannot be read: {reason}")]
+    Unreadable {
+        /// The operating system's words.
+        reason: String,
+    },
+    /// A folder was given.
+    #[error("this is a folder, not a study")]
+    IsFolder {
+        /// A study within it, if there is one.
+        within: Option<String>,
+    },
+    /// The file is not text.
+    #[error("the file is not UTF-8 text: byte {byte:#04x} at offset {offset}")]
+    NotUtf8 {
+        /// The first byte that is none.
+        byte: u8,
+        /// Where it stands.
+        offset: usize,
+    },
+    /// No study format ends like this.
+    #[error("a study is a .toml or a .json file")]
+    UnknownFormat,
+    /// The text is no TOML or JSON.
+    #[error("{message}")]
+    Syntax {
+        /// The parser's words.
+        message: String,
+    },
+    /// A key that means nothing here.
+    #[error("there is no key `{key}` here")]
+    UnknownKey {
+        /// As written.
+        key: String,
+        /// The most similar valid key.
+        nearest: Option<String>,
+        /// The valid keys.
+        valid: Vec<String>,
+    },
+    /// A key that stands twice.
+    #[error("`{key}` is given twice")]
+    DuplicateKey {
+        /// The key.
+        key: String,
+    },
+    /// A key that must be there is not.
+    #[error("`{key}` is missing")]
+    MissingKey {
+        /// The key.
+        key: String,
+        /// What to do about it.
+        instead: String,
+    },
+    /// A value of the wrong kind.
+    #[error("{found} stands where {expected} is needed")]
+    WrongType {
+        /// What is needed.
+        expected: String,
+        /// What is there.
+        found: String,
+    },
+    /// A word that none of the possible ones is.
+    #[error("there is no {what} `{found}`")]
+    UnknownWord {
+        /// What the word should name.
+        what: &'static str,
+        /// As written.
+        found: String,
+        /// The most similar possible one.
+        nearest: Option<String>,
+        /// The possible ones.
+        known: Vec<String>,
+    },
+    /// NaN or an infinity.
+    #[error("`{text}` is not a finite number")]
+    NotFinite {
+        /// As written.
+        text: String,
+    },
+    /// A number outside its range.
+    #[error("{value} is not {range}")]
+    OutOfRange {
+        /// The number.
+        value: f64,
+        /// What it must be.
+        range: &'static str,
+    },
+    /// Two keys that exclude or contradict each other.
+    #[error("`{a}` and `{b}` {why}")]
+    Conflict {
+        /// One key.
+        a: &'static str,
+        /// The other.
+        b: &'static str,
+        /// How they exclude each other.
+        why: String,
+    },
+    /// A key that means nothing for this kind of distribution.
+    #[error("`{key}` means nothing for {to}")]
+    DoesNotApply {
+        /// The key.
+        key: &'static str,
+        /// For what.
+        to: String,
+        /// What to write instead.
+        instead: &'static str,
+    },
+    /// Deviations or limits the wrong way round.
+    #[error("the lower value {lower} must be below the upper value {upper}")]
+    Swapped {
+        /// The value given first.
+        lower: f64,
+        /// The value given second.
+        upper: f64,
+    },
+    /// The dimension is impossible.
+    #[error(transparent)]
+    Dimension(#[from] DimensionFault),
+    /// The limits are impossible.
+    #[error(transparent)]
+    Limits(#[from] LimitsError),
+    /// A formula is wrong.
+    #[error("{0}")]
+    Formula(FormulaFault),
+    /// A name that formulas already use for something else.
+    #[error("the name `{name}` is reserved in formulas")]
+    ReservedName {
+        /// The name.
+        name: String,
+    },
+    /// A name of nothing.
+    #[error("a name must not be empty")]
+    EmptyName,
+    /// A name that something else in the study bears.
+    #[error("the name `{name}` is taken: {by} bears it already")]
+    NameTaken {
+        /// The name.
+        name: String,
+        /// What bears it.
+        by: &'static str,
+    },
+    /// A dimension or constant that the model does not have and no formula uses.
+    #[error("the model `{model}` has no input `{name}`, and no formula uses it")]
+    UnknownInput {
+        /// The model.
+        model: String,
+        /// The name.
+        name: String,
+        /// The most similar input.
+        nearest: Option<String>,
+        /// The inputs that there are.
+        known: Vec<String>,
+    },
+    /// There is nothing to evaluate.
+    #[error("the study has no {what}")]
+    Nothing {
+        /// `dimension` or `characteristic`.
+        what: &'static str,
+    },
+    /// The analysis options do not fit the study.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    /// Dimensions, model and characteristics do not fit together.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+}
+
+impl StudyFault {
+    /// What to write instead, where that can be said.
+    pub fn help(&self) -> Option<String> {
+        let meant = |name: &String| format!("did you mean `{name}`?");
+        let one_of = |known: &[String]| format!("it is one of {}", known.join(", "));
+        match self {
+            Self::IsFolder { within: Some(study) } => Some(format!("did you mean {study}?")),
+            Self::IsFolder { within: None } => Some("name the study file in it".into()),
+            Self::UnknownKey { nearest: Some(name), .. } | Self::UnknownWord { nearest: Some(name), .. } => {
+                Some(meant(name))
+            }
+            Self::UnknownKey { valid, .. } if valid.is_empty() => None,
+            Self::UnknownKey { valid, .. } => Some(format!("keys are {}", valid.join(", "))),
+            Self::UnknownWord { known, .. } => Some(one_of(known)),
+            Self::UnknownInput { nearest, known, .. } => {
+                let nearest = nearest.as_ref().map(|name| format!("did you mean `{name}`? ")).unwrap_or_default();
+                Some(format!("{nearest}its inputs are {}", known.join(", ")))
+            }
+            Self::MissingKey { instead, .. } => Some(instead.clone()),
+            Self::DoesNotApply { instead, .. } => Some((*instead).to_owned()),
+            Self::NotFinite { .. } => Some("write a finite number, or leave out a limit that does not exist".into()),
+            Self::Swapped { lower, upper } if lower > upper => Some(format!("write [{upper}, {lower}]")),
+            Self::Swapped { .. } => Some("a value that does not vary needs no tolerance".into()),
+            Self::Dimension(DimensionFault::NegativeTolerance { value }) => {
+                Some(format!("write {} for a band on both sides, [{value}, 0] for one below", -value))
+            }
+            Self::Dimension(DimensionFault::Unresolvable { .. }) => {
+                Some("measure from a nearer datum, or leave the tolerance out".into())
+            }
+            Self::Limits(LimitsError::Swapped { .. }) => Some("exchange them".into()),
+            Self::Formula(fault) => fault.help(),
+            Self::ReservedName { .. } => Some("choose another name".into()),
+            Self::NameTaken { .. } => Some("one of the two needs another name".into()),
+            Self::Nothing { what: "dimension" } => {
+                Some("write one a line below [dimensions], such as `a = { nominal = 10.0, tolerance = 0.3 }`".into())
+            }
+            Self::Nothing { .. } => Some(
+                "write one a line below [characteristics], such as `gap = { formula = \"a - b\", lower = 0.1 }`".into(),
+            ),
+            _ => None,
+        }
+    }
+}
+
+/// A fault with its place and its key, on its way to becoming a [`StudyError`].
+pub(super) struct Fault {
+    pub(super) span: Option<Range<usize>>,
+    pub(super) key: String,
+    pub(super) fault: Box<StudyFault>,
+}
+
+pub(super) fn fault(span: Range<usize>, key: impl Into<String>, fault: impl Into<StudyFault>) -> Fault {
+    Fault { span: Some(span), key: key.into(), fault: Box::new(fault.into()) }
+}

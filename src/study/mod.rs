@@ -1,0 +1,134 @@
+//! Study files: an assembly and its characteristics in TOML or JSON.
+//!
+//! One set of types describes both formats. Everything that is wrong is a [`StudyError`] with file, line, column, key and
+//! what to write instead; the first one found is reported.
+
+mod build;
+mod de;
+mod dimension;
+mod error;
+mod file;
+mod options;
+mod source;
+mod tree;
+
+pub use error::{StudyError, StudyFault};
+pub use source::Format;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+
+use crate::method::Options;
+use crate::problem::Problem;
+use crate::warning::Warning;
+use error::Fault;
+use source::Source;
+use tree::Tree;
+
+/// A study: a problem, how it is to be analysed, and what is odd about it.
+#[derive(Clone)]
+pub struct Study {
+    /// Its title.
+    pub title: Option<String>,
+    /// Dimensions, assembly function and characteristics.
+    pub problem: Problem,
+    /// The `[analysis]` section.
+    pub options: Options,
+    /// The seed of the `[analysis]` section, for what draws random numbers.
+    pub seed: Option<u64>,
+    /// What is legal but most likely not meant.
+    pub warnings: Vec<Warning>,
+    /// SHA-256 of the file's bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+impl Study {
+    /// Reads a `.toml` or `.json` file.
+    ///
+    /// # Errors
+    /// The first fault, of the file, its syntax, its keys, its values, or of what they mean together.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let name = path.display().to_string();
+        let failed = |text: &str, fault: StudyFault| StudyError {
+            file: name.clone(),
+            text: Arc::from(text),
+            span: None,
+            key: String::new(),
+            fault: Box::new(fault),
+        };
+        if path.is_dir() {
+            let within =
+                ["study.toml", "study.json"].map(|study| path.join(study)).into_iter().find(|study| study.is_file());
+            let within = within.map(|study| study.display().to_string());
+            return Err(failed("", StudyFault::IsFolder { within }));
+        }
+        let format = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("toml") => Format::Toml,
+            Some("json") => Format::Json,
+            _ => return Err(failed("", StudyFault::UnknownFormat)),
+        };
+        let bytes =
+            std::fs::read(path).map_err(|error| failed("", StudyFault::Unreadable { reason: error.to_string() }))?;
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => Self::parse(text, format, &name),
+            Err(error) => {
+                let offset = error.valid_up_to();
+                let before = std::str::from_utf8(&bytes[..offset]).expect("valid up to here");
+                let fault = StudyFault::NotUtf8 { byte: bytes[offset], offset };
+                Err(StudyError { span: Some(offset..offset), ..failed(before, fault) })
+            }
+        }
+    }
+
+    /// From TOML text; `name` stands for the file in errors.
+    ///
+    /// ```
+    /// use sensitol::study::Study;
+    /// let study = Study::from_toml(r#"
+    ///     [dimensions]
+    ///     a = { nominal = 10.0, tolerance = 0.3 }
+    ///     b = { nominal = 9.5, limits = [9.4, 9.6] }
+    ///     [characteristics]
+    ///     gap = { formula = "a - b", lower = 0.1 }
+    /// "#, "gap.toml")?;
+    /// assert_eq!(study.problem.dimensions().len(), 2);
+    /// # Ok::<(), sensitol::Error>(())
+    /// ```
+    pub fn from_toml(text: &str, name: &str) -> Result<Self, StudyError> {
+        Self::parse(text, Format::Toml, name)
+    }
+
+    /// From JSON text; `name` stands for the file in errors.
+    pub fn from_json(text: &str, name: &str) -> Result<Self, StudyError> {
+        Self::parse(text, Format::Json, name)
+    }
+
+    fn parse(text: &str, format: Format, name: &str) -> Result<Self, StudyError> {
+        let source = Source { name: name.to_owned(), text: Arc::from(text) };
+        let failed = |Fault { span, key, fault }| StudyError {
+            file: source.name.clone(),
+            text: Arc::clone(&source.text),
+            span,
+            key,
+            fault,
+        };
+        let tree = match format {
+            Format::Toml => Tree::of_toml(text),
+            Format::Json => Tree::of_json(text),
+        };
+        let tree = tree.map_err(failed)?;
+        let file = file::StudyFile::deserialize(&tree).map_err(|error| failed(error.into_fault()))?;
+        let built = build::build(&file, &source).map_err(failed)?;
+        Ok(Self {
+            title: file.title,
+            problem: built.problem,
+            options: built.options,
+            seed: file.analysis.seed.map(serde_spanned::Spanned::into_inner),
+            warnings: built.warnings,
+            sha256: Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect(),
+        })
+    }
+}

@@ -1,0 +1,63 @@
+//! From `[analysis]` to options.
+
+use serde_spanned::Spanned;
+
+use super::error::{Fault, StudyFault, fault};
+use super::file::{AnalysisEntry, PairsEntry};
+use crate::method::{ALL as METHODS, Method, Options, Pairs};
+use crate::names::nearest;
+use crate::plan::Stencil;
+use crate::problem::Problem;
+
+pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Options, Fault> {
+    let word = |given: &Spanned<String>, key: &str, what: &'static str, known: &[&str]| {
+        let found = given.get_ref().clone();
+        let nearest = nearest(&found, known.iter().copied()).map(str::to_owned);
+        let known = known.iter().map(|&word| word.to_owned()).collect();
+        fault(given.span(), format!("analysis.{key}"), StudyFault::UnknownWord { what, found, nearest, known })
+    };
+    let positive = |given: &Option<Spanned<f64>>, key: &str| match given {
+        Some(given) if *given.get_ref() <= 0.0 => {
+            let out = StudyFault::OutOfRange { value: *given.get_ref(), range: "above 0" };
+            Err(fault(given.span(), format!("analysis.{key}"), out))
+        }
+        given => Ok(given.as_ref().map(|given| *given.get_ref())),
+    };
+    let mut options = Options {
+        accuracy: positive(&entry.accuracy, "accuracy")?,
+        step: positive(&entry.step, "step")?,
+        budget: entry.budget.as_ref().map(|budget| usize::try_from(*budget.get_ref()).unwrap_or(usize::MAX)),
+        ..Options::default()
+    };
+    if let Some(method) = &entry.method {
+        let known: Vec<&str> = METHODS.iter().map(|method| method.name()).collect();
+        options.method = Method::by_name(method.get_ref()).ok_or_else(|| word(method, "method", "method", &known))?;
+    }
+    if let Some(pairs) = &entry.pairs {
+        options.pairs = Some(match pairs.get_ref() {
+            PairsEntry::Listed(pairs) => Pairs::Listed(pairs.clone()),
+            PairsEntry::Word(text) => Pairs::by_name(text).ok_or_else(|| {
+                let given = Spanned::new(pairs.span(), text.clone());
+                word(&given, "pairs", "choice of pairs", &Pairs::NAMES)
+            })?,
+        });
+    }
+    if let Some(stencil) = &entry.stencil {
+        let found = Stencil::by_name(stencil.get_ref());
+        options.stencil = Some(found.ok_or_else(|| word(stencil, "stencil", "stencil", &Stencil::NAMES))?);
+    }
+    if let Some(sensitivities) = &entry.sensitivities {
+        options.all_sensitivities = match sensitivities.get_ref().as_str() {
+            "all" => true,
+            "varying" => false,
+            _ => return Err(word(sensitivities, "sensitivities", "choice of sensitivities", &["all", "varying"])),
+        };
+    }
+    // Whether the options fit each other and the study shows at its plan; what is at fault is most likely the pairs.
+    options.method.procedure().plan(problem, &options).map_err(|error| {
+        let spans = [entry.pairs.as_ref().map(Spanned::span), entry.stencil.as_ref().map(Spanned::span)];
+        let span = spans.into_iter().flatten().next().or(entry.method.as_ref().map(Spanned::span));
+        Fault { span, key: "analysis".into(), fault: Box::new(error.into()) }
+    })?;
+    Ok(options)
+}
