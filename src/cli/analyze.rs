@@ -1,0 +1,54 @@
+//! `sensitol analyze`.
+
+use std::time::{Duration, Instant};
+
+use super::args::AnalyzeArgs;
+use super::failure::{Exit, Failure};
+use super::output::{Destination, Look, json};
+use super::study;
+use crate::analysis::{Analysis, analyze_within};
+use crate::assembly::Run;
+use crate::method::MethodError;
+use crate::report::{About, Report, text};
+use crate::study::Study;
+
+pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
+    let study = study::read(&asked.study)?;
+    let destination = Destination::open(&asked.output)?;
+    let begun = Instant::now();
+    let analysis = analyze(&study, asked, begun)?;
+    let about = About {
+        title: study.title.clone(),
+        sha256: study.sha256.clone(),
+        seed: asked.seed.or(study.seed),
+        wall_s: begun.elapsed().as_secs_f64(),
+        warnings: study.warnings.clone(),
+    };
+    let report = Report::of(&study.problem, &analysis, about);
+    let printed = if asked.output.json { json(&report) } else { text(&report, look.style()) };
+    let written = destination.write(&printed);
+    for warning in &report.warnings {
+        look.warn(warning.code, &warning.message);
+    }
+    if let (true, Some(limit)) = (analysis.stopped, asked.time) {
+        look.warn("stopped", &format!("stopped after {limit} s with {} evaluations", analysis.evaluations));
+    }
+    written?;
+    let complete = analysis.characteristics.iter().all(|characteristic| characteristic.moments.is_some());
+    Ok(if complete { Exit::Done } else { Exit::NoResult })
+}
+
+fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant) -> Result<Analysis, Failure> {
+    let limit = asked.time.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+    let out_of_time = || limit.is_some_and(|limit| begun.elapsed() >= limit);
+    let run = Run::to_the_end().stopping_when(&out_of_time);
+    let analysis = || analyze_within(&study.problem, &study.options, &run);
+    let result: Result<Analysis, MethodError> = match asked.threads {
+        None => analysis(),
+        Some(threads) => {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
+            pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(analysis)
+        }
+    };
+    Ok(result?)
+}

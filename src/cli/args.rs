@@ -1,0 +1,188 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
+
+/// The heading of the options that say what is printed, and where.
+const OUTPUT: &str = "Output";
+
+/// The open, CAD-agnostic parametric tolerance engine.
+#[derive(Debug, Parser)]
+#[command(name = "sensitol", version, about, max_term_width = 100, subcommand_required = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+
+    /// Print no warnings
+    #[arg(short, long, global = true, help_heading = OUTPUT)]
+    pub(super) quiet: bool,
+
+    /// Print every contribution and interaction, however small
+    #[arg(short, long, global = true, help_heading = OUTPUT)]
+    pub(super) verbose: bool,
+
+    /// When to use colours; `never` prints plain ASCII too
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", help_heading = OUTPUT)]
+    pub(super) color: ColorChoice,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Moments, sensitivities and contributions of every characteristic
+    #[command(after_help = "Example: sensitol analyze examples/engine-balance/study.toml --method full")]
+    Analyze(AnalyzeArgs),
+    /// What would be evaluated, how often, and why; evaluates nothing
+    #[command(after_help = "Example: sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
+    Plan(PlanArgs),
+    /// Validates a study; neither evaluates nor executes anything
+    #[command(after_help = "Example: sensitol check examples/stacked-blocks/study.toml")]
+    Check(CheckArgs),
+    /// The built-in models, or one of them with its inputs and outputs
+    #[command(after_help = "Example: sensitol models engine-balance")]
+    Models(ModelsArgs),
+}
+
+/// A study and how it is to be analysed.
+#[derive(Debug, Args)]
+pub(super) struct StudyArgs {
+    /// The study, a .toml or .json file
+    pub(super) study: PathBuf,
+
+    /// The method [default: that of the study, or auto]
+    #[arg(short, long, value_name = "METHOD")]
+    pub(super) method: Option<MethodArg>,
+
+    /// Ask for this characteristic only (repeatable)
+    #[arg(long = "kc", value_name = "NAME")]
+    pub(super) characteristics: Vec<String>,
+
+    /// Wanted relative error of sigma, for auto
+    #[arg(long, value_name = "R", value_parser = positive)]
+    pub(super) accuracy: Option<f64>,
+
+    /// Most evaluations that may be spent
+    #[arg(long, value_name = "N")]
+    pub(super) budget: Option<usize>,
+
+    /// Evaluate at K sigma on either side instead of at the nodes that suit each distribution
+    #[arg(long, value_name = "K", value_parser = positive)]
+    pub(super) step: Option<f64>,
+
+    /// The interactions that six-n examines: strongest, adjacent, or A:B,C:D (names with : or , in backquotes)
+    #[arg(long, value_name = "PAIRS")]
+    pub(super) pairs: Option<String>,
+
+    /// How six-n evaluates an interaction: two-point, or four-point as the papers do
+    #[arg(long, value_name = "STENCIL")]
+    pub(super) stencil: Option<StencilArg>,
+
+    /// Sensitivities of varying dimensions, or of all: two evaluations each for those without tolerance
+    #[arg(long, value_name = "WHICH")]
+    pub(super) sensitivities: Option<SensitivitiesArg>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AnalyzeArgs {
+    #[command(flatten)]
+    pub(super) study: StudyArgs,
+
+    /// Stop after S seconds and report what is known
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(super) time: Option<f64>,
+
+    /// Seed of random numbers, for the methods that draw some; kept in the report
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+
+    /// Threads that evaluate formulas and built-in models [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) threads: Option<u16>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PlanArgs {
+    #[command(flatten)]
+    pub(super) study: StudyArgs,
+
+    /// Write the points of the first stage to a CSV file
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) write_points: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArgs {
+    /// The study, a .toml or .json file
+    pub(super) study: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ModelsArgs {
+    /// The model to describe
+    pub(super) name: Option<String>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct OutputArgs {
+    /// Print JSON
+    #[arg(long, help_heading = OUTPUT)]
+    pub(super) json: bool,
+
+    /// Write to a file instead of stdout
+    #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
+    pub(super) output: Option<PathBuf>,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        Ok(_) => Err("it must be a number above 0".to_owned()),
+        Err(_) => Err("it is no number".to_owned()),
+    }
+}
+
+/// The registered methods as values of an option.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MethodArg(pub(super) crate::method::Method);
+
+impl ValueEnum for MethodArg {
+    fn value_variants<'a>() -> &'a [Self] {
+        static VARIANTS: std::sync::LazyLock<Vec<MethodArg>> = std::sync::LazyLock::new(|| {
+            crate::method::ALL.iter().map(|procedure| MethodArg(procedure.method())).collect()
+        });
+        &VARIANTS
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        let procedure = self.0.procedure();
+        let help = format!("{} ({})", procedure.about(), procedure.count());
+        Some(clap::builder::PossibleValue::new(procedure.name()).help(help))
+    }
+}
+
+/// The stencils as values of an option.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum StencilArg {
+    /// Both up and both down, beside five-point axes
+    TwoPoint,
+    /// All four corners, beside three-point axes
+    FourPoint,
+}
+
+/// Which sensitivities are wanted, as values of an option.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum SensitivitiesArg {
+    /// Of the dimensions that have a tolerance
+    Varying,
+    /// Of all dimensions
+    All,
+}

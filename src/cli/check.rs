@@ -1,0 +1,26 @@
+//! `sensitol check`.
+
+use super::args::{CheckArgs, OutputArgs};
+use super::failure::{Exit, Failure};
+use super::output::{Destination, Look};
+use crate::study::Study;
+
+pub(super) fn run(asked: &CheckArgs, look: Look) -> Result<Exit, Failure> {
+    let study = Study::read(&asked.study)?;
+    study.warnings.iter().for_each(|warning| look.warn(warning.code(), &warning.message()));
+    let procedure = study.options.method.procedure();
+    let plan = procedure.plan(&study.problem, &study.options)?;
+    let characteristics: Vec<&str> =
+        study.problem.characteristics().iter().map(|characteristic| characteristic.name()).collect();
+    let summary = format!(
+        "{}: valid\n  {} dimensions, {} of which vary and matter\n  characteristics: {}\n  {} would evaluate {} points\n",
+        asked.study.display(),
+        study.problem.dimensions().len(),
+        plan.varying().len(),
+        characteristics.join(", "),
+        procedure.name(),
+        plan.cost().0,
+    );
+    Destination::open(&OutputArgs { json: false, output: None })?.write(&summary)?;
+    Ok(Exit::Done)
+}

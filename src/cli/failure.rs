@@ -1,0 +1,96 @@
+//! How a command ends.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+
+use crate::method::MethodError;
+use crate::problem::ProblemError;
+use crate::study::StudyError;
+
+/// The exit codes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Exit {
+    /// Done, with warnings perhaps.
+    Done = 0,
+    /// The command line or the study is wrong.
+    Usage = 2,
+    /// The model gave some asked characteristic no result.
+    NoResult = 3,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+/// Why a command could not do its work.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Failure {
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    #[error("--pairs {text}: {fault}")]
+    Pairs { text: String, fault: &'static str },
+    #[error("there is no built-in model `{name}`; {help}")]
+    UnknownModel { name: String, help: String },
+    #[error("{path} cannot be written: {error}", path = path.display())]
+    Unwritable { path: PathBuf, error: std::io::Error },
+    #[error("cannot write to standard output: {0}")]
+    Stdout(std::io::Error),
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads { threads: u16, reason: String },
+    #[error("nothing reads the output any more")]
+    ClosedPipe,
+}
+
+impl Failure {
+    pub(super) fn exit(&self) -> Exit {
+        match self {
+            Self::ClosedPipe => Exit::Done,
+            _ => Exit::Usage,
+        }
+    }
+
+    /// The message with its place in the file, or None where there is nothing to say.
+    pub(super) fn render(&self) -> Option<String> {
+        match self {
+            Self::ClosedPipe => None,
+            Self::Study(error) => Some(render(error)),
+            Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. }) => {
+                Some(title(&self.to_string(), Some(format!("did you mean `{nearest}`?"))))
+            }
+            _ => Some(title(&self.to_string(), None)),
+        }
+    }
+}
+
+/// Title, the lines of the file concerned with what is wrong underlined, and what to write instead.
+fn render(error: &StudyError) -> String {
+    let Some(span) = error.span.clone().filter(|_| !error.text.is_empty()) else {
+        let place = if error.key.is_empty() { error.file.clone() } else { format!("{}: {}", error.file, error.key) };
+        return title(&format!("{place}: {}", error.fault), error.help());
+    };
+    let heading = error.fault.to_string();
+    let label = error.key.as_str();
+    let snippet =
+        Snippet::source(&*error.text).path(&error.file).annotation(AnnotationKind::Primary.span(span).label(label));
+    let mut group = Group::with_title(Level::ERROR.primary_title(heading)).element(snippet);
+    if let Some(help) = error.help() {
+        group = group.element(Level::HELP.message(help));
+    }
+    Renderer::styled().render(&[group])
+}
+
+fn title(heading: &str, help: Option<String>) -> String {
+    let mut group = Group::with_title(Level::ERROR.primary_title(heading));
+    if let Some(help) = help {
+        group = group.element(Level::HELP.message(help));
+    }
+    Renderer::styled().render(&[group])
+}

@@ -1,0 +1,48 @@
+//! The command line: the only place that prints.
+//!
+//! Results go to stdout; progress, warnings and errors to stderr. A closed pipe is no error.
+
+mod analyze;
+mod args;
+mod check;
+mod failure;
+mod models;
+mod output;
+mod pairs;
+mod plan;
+mod study;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use failure::{Exit, Failure};
+
+/// Runs the command with these arguments, the program's name first, and says how it went.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are results, everything else is a usage error; a closed pipe is neither.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::Usage } else { Exit::Done }.into();
+        }
+    };
+    output::set_color(arguments.color);
+    let style = output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose };
+    let result = match &arguments.command {
+        Command::Analyze(asked) => analyze::run(asked, style),
+        Command::Plan(asked) => plan::run(asked, style),
+        Command::Check(asked) => check::run(asked, style),
+        Command::Models(asked) => models::run(asked, style),
+    };
+    let exit = result.unwrap_or_else(|failure| {
+        if let Some(message) = failure.render() {
+            output::error(&message);
+        }
+        Failure::exit(&failure)
+    });
+    exit.into()
+}

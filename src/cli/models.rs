@@ -1,0 +1,101 @@
+//! `sensitol models`.
+
+use serde::Serialize;
+
+use super::args::ModelsArgs;
+use super::failure::{Exit, Failure};
+use super::output::{Destination, Look, json};
+use crate::models::{ALL, Model, by_name};
+use crate::names::nearest;
+use crate::report::number::plain;
+
+/// What `models --json` prints of one model.
+#[derive(Debug, Serialize)]
+struct ModelReport {
+    name: &'static str,
+    title: &'static str,
+    source: &'static str,
+    inputs: Vec<InputReport>,
+    outputs: Vec<OutputReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct InputReport {
+    name: &'static str,
+    unit: &'static str,
+    nominal: f64,
+    about: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+struct OutputReport {
+    name: &'static str,
+    unit: &'static str,
+    about: &'static str,
+}
+
+pub(super) fn run(asked: &ModelsArgs, _: Look) -> Result<Exit, Failure> {
+    let printed = match &asked.name {
+        None if asked.output.json => json(&ALL.iter().map(|model| ModelReport::of(model)).collect::<Vec<_>>()),
+        None => list(),
+        Some(name) => {
+            let model = by_name(name).ok_or_else(|| unknown(name))?;
+            if asked.output.json { json(&ModelReport::of(model)) } else { one(model) }
+        }
+    };
+    Destination::open(&asked.output)?.write(&printed)?;
+    Ok(Exit::Done)
+}
+
+fn unknown(name: &str) -> Failure {
+    let known: Vec<&str> = ALL.iter().map(|model| model.name).collect();
+    let help = match nearest(name, known.iter().copied()) {
+        Some(nearest) => format!("did you mean `{nearest}`?"),
+        None => format!("there are {}", known.join(", ")),
+    };
+    Failure::UnknownModel { name: name.to_owned(), help }
+}
+
+fn list() -> String {
+    ALL.iter().map(|model| format!("{:<20}  {}\n", model.name, model.title)).collect()
+}
+
+fn one(model: &Model) -> String {
+    let inputs = model
+        .inputs
+        .iter()
+        .map(|input| format!("  {:<8} {:>14}  {:<6}  {}\n", input.name, plain(input.nominal), input.unit, input.about));
+    let outputs = model
+        .outputs
+        .iter()
+        .map(|output| format!("  {:<8} {:>14}  {:<6}  {}\n", output.name, "", output.unit, output.about));
+    format!(
+        "{}: {}\n{}\n\ninputs, with the nominal value where a study gives none\n{}\noutputs\n{}",
+        model.name,
+        model.title,
+        model.source,
+        inputs.collect::<String>(),
+        outputs.collect::<String>(),
+    )
+}
+
+impl ModelReport {
+    fn of(model: &Model) -> Self {
+        Self {
+            name: model.name,
+            title: model.title,
+            source: model.source,
+            inputs: (model.inputs.iter())
+                .map(|&crate::models::ModelInput { name, unit, nominal, about }| InputReport {
+                    name,
+                    unit,
+                    nominal,
+                    about,
+                })
+                .collect(),
+            outputs: (model.outputs.iter())
+                .map(|output| OutputReport { name: output.name, unit: output.unit, about: output.about })
+                .collect(),
+        }
+    }
+}

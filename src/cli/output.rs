@@ -1,0 +1,119 @@
+//! Where text goes, and how it looks.
+
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use clap::ColorChoice;
+use tempfile::NamedTempFile;
+
+use super::args::OutputArgs;
+use super::failure::Failure;
+use crate::report::{Detail, Style};
+
+/// What the user wants to see.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    pub(super) color: ColorChoice,
+    pub(super) quiet: bool,
+    pub(super) verbose: bool,
+}
+
+impl Look {
+    pub(super) fn style(self) -> Style {
+        let detail = if self.verbose { Detail::Full } else { Detail::Short };
+        Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale() }
+    }
+
+    /// Tells of something that is no error.
+    pub(super) fn warn(self, code: &str, message: &str) {
+        if !self.quiet {
+            anstream::eprintln!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {message}");
+        }
+    }
+}
+
+/// Tells why nothing came of it.
+pub(super) fn error(message: &str) {
+    anstream::eprintln!("{message}");
+}
+
+pub(super) fn set_color(choice: ColorChoice) {
+    match choice {
+        ColorChoice::Auto => anstream::ColorChoice::Auto,
+        ColorChoice::Always => anstream::ColorChoice::Always,
+        ColorChoice::Never => anstream::ColorChoice::Never,
+    }
+    .write_global();
+}
+
+/// Whether the terminal expects UTF-8, as POSIX tells it; elsewhere it does.
+fn utf8_locale() -> bool {
+    if !cfg!(unix) {
+        return true;
+    }
+    let set = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
+    let locale = set("LC_ALL").or_else(|| set("LC_CTYPE")).or_else(|| set("LANG")).unwrap_or_default();
+    let locale = locale.to_lowercase();
+    locale.contains("utf-8") || locale.contains("utf8")
+}
+
+/// Where a result goes: opened before the work, so that a file that cannot be written costs no evaluation.
+pub(super) enum Destination {
+    Stdout,
+    /// Written under another name and renamed, so that no half result ever bears the name.
+    File {
+        path: PathBuf,
+        file: NamedTempFile,
+    },
+}
+
+impl Destination {
+    pub(super) fn open(asked: &OutputArgs) -> Result<Self, Failure> {
+        match &asked.output {
+            None => Ok(Self::Stdout),
+            Some(path) => Self::file(path),
+        }
+    }
+
+    pub(super) fn file(path: &Path) -> Result<Self, Failure> {
+        // The temporary file's own name would only puzzle.
+        let unwritable = |error: std::io::Error| {
+            let error = error.raw_os_error().map_or(error.kind().into(), std::io::Error::from_raw_os_error);
+            Failure::Unwritable { path: path.to_owned(), error }
+        };
+        if path.is_dir() {
+            return Err(unwritable(ErrorKind::IsADirectory.into()));
+        }
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut builder = tempfile::Builder::new();
+        // A private temporary file becomes an ordinary one: readable as the user's other files are.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = builder.prefix(".sensitol-").tempfile_in(folder).map_err(unwritable)?;
+        Ok(Self::File { path: path.to_owned(), file })
+    }
+
+    pub(super) fn write(self, text: &str) -> Result<(), Failure> {
+        match self {
+            Self::Stdout => {
+                let mut stdout = std::io::stdout().lock();
+                stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
+                    ErrorKind::BrokenPipe => Failure::ClosedPipe,
+                    _ => Failure::Stdout(error),
+                })
+            }
+            Self::File { path, mut file } => {
+                let written = file.write_all(text.as_bytes()).and_then(|()| file.flush());
+                let renamed = written.and_then(|()| file.persist(&path).map_err(|error| error.error));
+                renamed.map(drop).map_err(|error| Failure::Unwritable { path, error })
+            }
+        }
+    }
+}
+
+/// JSON for people and programs: indented, with a line break at its end.
+pub(super) fn json(value: &impl serde::Serialize) -> String {
+    let mut text = serde_json::to_string_pretty(value).expect("reports are plain data");
+    text.push('\n');
+    text
+}

@@ -1,0 +1,150 @@
+//! `sensitol plan`.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::args::PlanArgs;
+use super::failure::{Exit, Failure};
+use super::output::{Destination, Look, json};
+use super::study;
+use crate::plan::{DifferencePlan, Known, Purpose, Stage};
+use crate::problem::Problem;
+
+/// What `plan --json` prints.
+#[derive(Debug, Serialize)]
+struct PlanReport {
+    schema: u32,
+    command: &'static str,
+    method: &'static str,
+    about: &'static str,
+    count: &'static str,
+    varying: usize,
+    evaluations: usize,
+    stages: Vec<StageReport>,
+    dimensions: Vec<AxisReport>,
+}
+
+/// One batch; what a later one asks depends on the answers to those before.
+#[derive(Debug, Serialize)]
+struct StageReport {
+    evaluations: usize,
+    known_beforehand: bool,
+    purposes: Vec<PurposeReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct PurposeReport {
+    points: usize,
+    purpose: &'static str,
+}
+
+/// Where one dimension is evaluated.
+#[derive(Debug, Serialize)]
+struct AxisReport {
+    name: String,
+    unit: Option<String>,
+    sigmas: Vec<f64>,
+    values: Vec<f64>,
+}
+
+pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
+    let study = study::read(&asked.study)?;
+    let destination = Destination::open(&asked.output)?;
+    let points = asked.write_points.as_deref().map(Destination::file).transpose()?;
+    let procedure = study.options.method.procedure();
+    let plan = procedure.plan(&study.problem, &study.options)?;
+    let (evaluations, stages) = plan.cost();
+    let first = plan.next(&Known::nothing(study.problem.characteristics().len())).unwrap_or_default();
+    let mut report = PlanReport {
+        schema: crate::report::SCHEMA,
+        command: "plan",
+        method: procedure.name(),
+        about: procedure.about(),
+        count: procedure.count(),
+        varying: plan.varying().len(),
+        evaluations,
+        stages: vec![of_stage(&first)],
+        dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &plan, d)).collect(),
+    };
+    if stages > 1 {
+        let left = evaluations - first.points.len();
+        let purposes = vec![PurposeReport { points: left, purpose: Purpose::Pair.words() }];
+        report.stages.push(StageReport { evaluations: left, known_beforehand: false, purposes });
+    }
+    if let Some(points) = points {
+        points.write(&csv(&study.problem, &plan, &first))?;
+        if stages > 1 {
+            look.warn("first-stage-only", "the points of later stages depend on the answers to those of the first");
+        }
+    }
+    study.warnings.iter().for_each(|warning| look.warn(warning.code(), &warning.message()));
+    destination.write(&if asked.output.json { json(&report) } else { text(&report) })?;
+    Ok(Exit::Done)
+}
+
+fn of_stage(stage: &Stage) -> StageReport {
+    let mut counts: BTreeMap<Purpose, usize> = BTreeMap::new();
+    for (_, purpose) in &stage.points {
+        *counts.entry(*purpose).or_default() += 1;
+    }
+    let purposes =
+        counts.into_iter().map(|(purpose, points)| PurposeReport { points, purpose: purpose.words() }).collect();
+    StageReport { evaluations: stage.points.len(), known_beforehand: true, purposes }
+}
+
+fn axis(problem: &Problem, plan: &DifferencePlan, d: usize) -> AxisReport {
+    let (dimension, axis) = (&problem.dimensions()[d], plan.axis(d));
+    let nodes: Vec<_> = axis.slots.iter().map(|slot| axis.nodes[slot[0] as usize]).collect();
+    AxisReport {
+        name: dimension.name().to_owned(),
+        unit: dimension.unit().map(str::to_owned),
+        sigmas: nodes.iter().map(|node| node.u).collect(),
+        values: nodes.iter().map(|node| node.x).collect(),
+    }
+}
+
+fn text(report: &PlanReport) -> String {
+    let mut lines = vec![
+        format!("{}: {}", report.method, report.about),
+        format!("{} evaluations for {} varying dimensions ({})", report.evaluations, report.varying, report.count),
+    ];
+    for (index, stage) in report.stages.iter().enumerate() {
+        let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };
+        lines.push(format!("stage {}: {} points{chosen}", index + 1, stage.evaluations));
+        lines.extend(stage.purposes.iter().map(|purpose| format!("  {:>6}  {}", purpose.points, purpose.purpose)));
+    }
+    lines.push("steps in sigma about the mean:".to_owned());
+    // Dimensions of one distribution share their nodes, up to rounding.
+    let mut alike: Vec<(String, Vec<&str>)> = Vec::new();
+    for dimension in &report.dimensions {
+        let nodes = dimension.sigmas.iter().map(|u| format!("{u:+.4}")).collect::<Vec<_>>().join("  ");
+        match alike.iter_mut().find(|(known, _)| *known == nodes) {
+            Some((_, names)) => names.push(&dimension.name),
+            None => alike.push((nodes, vec![&dimension.name])),
+        }
+    }
+    for (nodes, names) in alike {
+        let shown = names.iter().take(8).copied().collect::<Vec<_>>().join(", ");
+        let more = names.len().saturating_sub(8);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        lines.push(format!("  {nodes}  {shown}{more}"));
+    }
+    lines.join("\n") + "\n"
+}
+
+/// A column per dimension, a row per point, every number to its last digit.
+fn csv(problem: &Problem, plan: &DifferencePlan, stage: &Stage) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let names = problem.dimensions().iter().map(|dimension| dimension.name());
+    writer.write_record(names).expect("memory takes any record");
+    let centre = plan.centre();
+    for (point, _) in &stage.points {
+        let mut row = centre.clone();
+        for at in point.at() {
+            row[at.dimension as usize] = plan.axis(at.dimension as usize).nodes[at.node as usize].x;
+        }
+        writer.write_record(row.iter().map(f64::to_string)).expect("memory takes any record");
+    }
+    String::from_utf8(writer.into_inner().expect("memory is always flushed")).expect("text and numbers are UTF-8")
+}

@@ -1,0 +1,40 @@
+//! A study as the command line changes it.
+
+use super::args::{SensitivitiesArg, StencilArg, StudyArgs};
+use super::failure::Failure;
+use super::pairs;
+use crate::method::Method;
+use crate::plan::Stencil;
+use crate::study::Study;
+
+/// Reads the study; what the command line says wins over its `[analysis]`.
+pub(super) fn read(asked: &StudyArgs) -> Result<Study, Failure> {
+    let mut study = Study::read(&asked.study)?;
+    if !asked.characteristics.is_empty() {
+        study.problem = study.problem.only(&asked.characteristics)?;
+    }
+    let options = &mut study.options;
+    if let Some(method) = asked.method {
+        options.method = method.0;
+        // The study's choice of pairs was made for its own method.
+        if method.0 != Method::SixN {
+            (options.pairs, options.stencil) = (None, None);
+        }
+    }
+    if let Some(text) = &asked.pairs {
+        options.pairs = Some(pairs::parse(text)?);
+    }
+    if let Some(stencil) = asked.stencil {
+        options.stencil = Some(match stencil {
+            StencilArg::TwoPoint => Stencil::TwoPoint,
+            StencilArg::FourPoint => Stencil::FourPoint,
+        });
+    }
+    if let Some(which) = asked.sensitivities {
+        options.all_sensitivities = which == SensitivitiesArg::All;
+    }
+    options.accuracy = asked.accuracy.or(options.accuracy);
+    options.budget = asked.budget.or(options.budget);
+    options.step = asked.step.or(options.step);
+    Ok(study)
+}

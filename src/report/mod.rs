@@ -1,0 +1,297 @@
+//! Reports: a versioned value with serde, and its text for people.
+
+pub(crate) mod number;
+mod page;
+mod text;
+
+pub use page::{Detail, Style};
+pub use text::text;
+
+use serde::Serialize;
+
+use crate::analysis::{Analysis, CharacteristicAnalysis};
+use crate::dimension::Dimension;
+use crate::problem::Problem;
+use crate::warning::Warning;
+
+/// The version of the JSON report's shape.
+pub const SCHEMA: u32 = 1;
+
+/// The report of an analysis, as `--json` prints it. What is unknown is null, never 0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// The version of this shape.
+    pub schema: u32,
+    /// The version of the program.
+    pub sensitol: &'static str,
+    /// The study's title.
+    pub title: Option<String>,
+    /// SHA-256 of the study file.
+    pub study_sha256: String,
+    /// The command that made the report.
+    pub command: &'static str,
+    /// The method that was run.
+    pub method: &'static str,
+    /// Dimensions that vary and matter, N.
+    pub varying: usize,
+    /// Every point sent to the model.
+    pub evaluations: usize,
+    /// Answers taken from an earlier run.
+    pub reused: usize,
+    /// Points that lost at least one asked characteristic.
+    pub failed: usize,
+    /// Seconds from the first evaluation to the finished result.
+    pub wall_s: f64,
+    /// The seed of what draws random numbers.
+    pub seed: Option<u64>,
+    /// The dimensions, in the study's order.
+    pub dimensions: Vec<DimensionReport>,
+    /// What was asked.
+    pub characteristics: Vec<CharacteristicReport>,
+    /// Where an assumption fails.
+    pub warnings: Vec<WarningReport>,
+}
+
+/// One dimension as the analysis took it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DimensionReport {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// The value on the drawing.
+    pub nominal: f64,
+    /// Lower and upper deviation from the nominal.
+    pub tolerance: Option<[f64; 2]>,
+    /// The kind of its distribution; null when it does not vary.
+    pub distribution: Option<&'static str>,
+    /// Its mean.
+    pub mean: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}
+
+/// One characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CharacteristicReport {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// Its value at the nominal dimensions.
+    pub nominal: Option<f64>,
+    /// First moment.
+    pub mean: Option<f64>,
+    /// Standard deviation.
+    pub sigma: Option<f64>,
+    /// Third standardised moment.
+    pub skewness: Option<f64>,
+    /// Fourth standardised moment, 3 for a normal.
+    pub kurtosis: Option<f64>,
+    /// How far the results may be off; not estimated yet.
+    pub error_estimate: Option<()>,
+    /// Intervals that no assembly leaves.
+    pub worst_case: WorstCaseReport,
+    /// Root of the sum of squares.
+    pub rss: Option<f64>,
+    /// Every dimension, in the study's order.
+    pub sensitivities: Vec<SensitivityReport>,
+    /// The interactions examined, strongest first.
+    pub interactions: Vec<InteractionReport>,
+    /// How many interactions there can be.
+    pub possible_interactions: usize,
+    /// Share of the variance that nothing above accounts for.
+    pub left_out_share: Option<f64>,
+    /// The fitted distribution; not fitted yet.
+    pub distribution: Option<()>,
+    /// Lower limit.
+    pub lower: Option<f64>,
+    /// Upper limit.
+    pub upper: Option<f64>,
+    /// The share of assemblies that must keep the limits.
+    pub target_yield: Option<f64>,
+    /// Whether they do; not known yet.
+    pub met: Option<bool>,
+    /// The share that does; not known yet.
+    #[serde(rename = "yield")]
+    pub yield_: Option<f64>,
+    /// Assemblies below the lower limit, per million; not known yet.
+    pub ppm_below: Option<f64>,
+    /// Assemblies above the upper limit, per million; not known yet.
+    pub ppm_above: Option<f64>,
+    /// Width of the limits by six sigma; not known yet.
+    pub cp: Option<f64>,
+    /// Distance of the nearer limit by three sigma; not known yet.
+    pub cpk: Option<f64>,
+    /// Sigmas to the nearer limit; not known yet.
+    pub sigma_level: Option<f64>,
+}
+
+/// Intervals that no assembly leaves.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WorstCaseReport {
+    /// Of the linear model.
+    pub linear: Option<[f64; 2]>,
+    /// Of the model itself; not searched yet.
+    pub extremes: Option<[f64; 2]>,
+    /// Whether the search proved them; not searched yet.
+    pub proven: Option<bool>,
+}
+
+/// What one dimension does.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SensitivityReport {
+    /// The dimension.
+    pub dimension: String,
+    /// First derivative at the mean.
+    pub first: Option<f64>,
+    /// Second derivative at the mean.
+    pub second: Option<f64>,
+    /// What rounding in the model may make of the two derivatives.
+    pub rounding: Option<[f64; 2]>,
+    /// Share of the variance along the best straight line.
+    pub linear_share: Option<f64>,
+    /// Share of the variance that curvature adds.
+    pub curvature_share: Option<f64>,
+    /// How far curvature moves the mean.
+    pub mean_shift: Option<f64>,
+}
+
+/// What two dimensions do together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InteractionReport {
+    /// The two.
+    pub dimensions: [String; 2],
+    /// Mixed second derivative at the means.
+    pub mixed: Option<f64>,
+    /// What rounding in the model may make of it.
+    pub rounding: Option<f64>,
+    /// Share of the variance.
+    pub share: Option<f64>,
+}
+
+/// A warning.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WarningReport {
+    /// What kind.
+    pub code: &'static str,
+    /// The characteristic concerned.
+    pub characteristic: Option<String>,
+    /// The dimension concerned.
+    pub dimension: Option<String>,
+    /// Cause, consequence, and what to try.
+    pub message: String,
+}
+
+/// What a report says of the study beside the analysis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct About {
+    /// The study's title.
+    pub title: Option<String>,
+    /// SHA-256 of the study file.
+    pub sha256: String,
+    /// The seed.
+    pub seed: Option<u64>,
+    /// Seconds that the analysis took.
+    pub wall_s: f64,
+    /// Warnings of the study itself.
+    pub warnings: Vec<Warning>,
+}
+
+impl Report {
+    /// The report of an analysis.
+    pub fn of(problem: &Problem, analysis: &Analysis, about: About) -> Self {
+        Self {
+            schema: SCHEMA,
+            sensitol: env!("CARGO_PKG_VERSION"),
+            title: about.title,
+            study_sha256: about.sha256,
+            command: "analyze",
+            method: analysis.method.name(),
+            varying: analysis.varying,
+            evaluations: analysis.evaluations,
+            reused: 0,
+            failed: analysis.failed,
+            wall_s: about.wall_s,
+            seed: about.seed,
+            dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
+            characteristics: analysis.characteristics.iter().map(CharacteristicReport::of).collect(),
+            warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
+        }
+    }
+}
+
+impl DimensionReport {
+    fn of(dimension: &Dimension) -> Self {
+        Self {
+            name: dimension.name().to_owned(),
+            unit: dimension.unit().map(str::to_owned),
+            nominal: dimension.nominal(),
+            tolerance: dimension.tolerance(),
+            distribution: dimension.distribution().map(|distribution| distribution.name()),
+            mean: dimension.mean(),
+            sigma: dimension.sigma(),
+        }
+    }
+}
+
+impl CharacteristicReport {
+    fn of(analysis: &CharacteristicAnalysis) -> Self {
+        let (characteristic, moments) = (&analysis.characteristic, analysis.moments);
+        Self {
+            name: characteristic.name().to_owned(),
+            unit: characteristic.unit().map(str::to_owned),
+            nominal: analysis.nominal,
+            mean: moments.map(|moments| moments.mean()),
+            sigma: moments.map(|moments| moments.sigma()),
+            skewness: moments.and_then(|moments| moments.skewness()),
+            kurtosis: moments.and_then(|moments| moments.kurtosis()),
+            error_estimate: None,
+            worst_case: WorstCaseReport { linear: analysis.worst_case, extremes: None, proven: None },
+            rss: analysis.rss,
+            sensitivities: (analysis.sensitivities.iter())
+                .map(|sensitivity| SensitivityReport {
+                    dimension: sensitivity.dimension.clone(),
+                    first: sensitivity.first,
+                    second: sensitivity.second,
+                    rounding: sensitivity.rounding,
+                    linear_share: sensitivity.linear_share,
+                    curvature_share: sensitivity.curvature_share,
+                    mean_shift: sensitivity.mean_shift,
+                })
+                .collect(),
+            interactions: (analysis.interactions.iter())
+                .map(|interaction| InteractionReport {
+                    dimensions: interaction.dimensions.clone(),
+                    mixed: interaction.mixed,
+                    rounding: interaction.rounding,
+                    share: interaction.share,
+                })
+                .collect(),
+            possible_interactions: analysis.possible_interactions,
+            left_out_share: analysis.left_out_share,
+            distribution: None,
+            lower: characteristic.limits().lower(),
+            upper: characteristic.limits().upper(),
+            target_yield: characteristic.target_yield(),
+            met: None,
+            yield_: None,
+            ppm_below: None,
+            ppm_above: None,
+            cp: None,
+            cpk: None,
+            sigma_level: None,
+        }
+    }
+}
+
+impl WarningReport {
+    fn of(warning: &Warning) -> Self {
+        Self {
+            code: warning.code(),
+            characteristic: warning.characteristic().map(str::to_owned),
+            dimension: warning.dimension().map(str::to_owned),
+            message: warning.message(),
+        }
+    }
+}

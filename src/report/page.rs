@@ -1,0 +1,133 @@
+//! Lines and tables without lines, in Unicode or plain ASCII.
+
+use comfy_table::{CellAlignment, Table};
+
+/// How much is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// The strongest contributions.
+    Short,
+    /// Everything.
+    Full,
+}
+
+/// How a text report looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Style {
+    /// How much is shown.
+    pub detail: Detail,
+    /// Whether signs such as ± may be used.
+    pub unicode: bool,
+}
+
+/// No line is longer.
+const WIDTH: usize = 100;
+/// Before every column.
+const GAP: usize = 2;
+/// Names longer than this are shortened in their middle, to no less than `SHORTEST` where a table would be too wide.
+const NAME: usize = 30;
+const SHORTEST: usize = 8;
+/// Signs of the report, and what stands for them in ASCII.
+const ASCII: [(char, &str); 3] = [('±', "+-"), ('×', "x"), ('…', "~")];
+
+/// A text report as it grows.
+pub(super) struct Page {
+    text: String,
+    style: Style,
+}
+
+impl Page {
+    pub(super) fn new(style: Style) -> Self {
+        Self { text: String::new(), style }
+    }
+
+    pub(super) fn style(&self) -> Style {
+        self.style
+    }
+
+    pub(super) fn finish(self) -> String {
+        self.text
+    }
+
+    pub(super) fn line(&mut self, text: &str) {
+        self.text += self.signs(text).trim_end();
+        self.text.push('\n');
+    }
+
+    /// Prints a table that is indented by two and no wider than the page: names, in the first column, give way.
+    pub(super) fn print<const N: usize>(&mut self, table: &Grid<N>) {
+        let mut widths = [0; N];
+        for row in table.rows.iter().chain([&table.titles.map(str::to_owned)]) {
+            for (width, cell) in widths.iter_mut().zip(row) {
+                *width = (*width).max(self.signs(cell).chars().count());
+            }
+        }
+        let total: usize = widths.iter().map(|width| width + GAP).sum();
+        let name = widths[0].saturating_sub(total.saturating_sub(WIDTH)).max(SHORTEST);
+        let mut printed = Table::new();
+        printed.load_style(comfy_table::presets::NOTHING);
+        printed.set_header(table.titles.map(|title| self.signs(title)));
+        for row in &table.rows {
+            let cell = |(column, cell): (usize, &String)| {
+                self.signs(&if column == 0 { shortened(cell, name) } else { cell.clone() })
+            };
+            printed.add_row(row.iter().enumerate().map(cell));
+        }
+        for (column, alignment) in printed.column_iter_mut().zip(table.alignment.chars()) {
+            column.set_padding((GAP as u16, 0));
+            if alignment == '>' {
+                column.set_cell_alignment(CellAlignment::Right);
+            }
+        }
+        for line in printed.lines().filter(|line| !line.trim().is_empty()) {
+            self.text += line.trim_end();
+            self.text.push('\n');
+        }
+    }
+
+    fn signs(&self, text: &str) -> String {
+        if self.style.unicode {
+            return text.to_owned();
+        }
+        ASCII.iter().fold(text.to_owned(), |text, (sign, plain)| text.replace(*sign, plain))
+    }
+}
+
+/// Rows of a table, and how its columns are aligned: left (`<`) or right (`>`).
+pub(super) struct Grid<const N: usize> {
+    titles: [&'static str; N],
+    alignment: &'static str,
+    rows: Vec<[String; N]>,
+}
+
+impl<const N: usize> Grid<N> {
+    /// All empty titles make a table without header.
+    pub(super) fn new(titles: [&'static str; N], alignment: &'static str) -> Self {
+        Self { titles, alignment, rows: Vec::new() }
+    }
+
+    pub(super) fn row(&mut self, cells: [String; N]) {
+        self.rows.push(cells);
+    }
+}
+
+/// A name on one line that does not push everything else off it.
+pub(super) fn short(name: &str) -> String {
+    shortened(&clean(name), NAME)
+}
+
+/// Without its middle, where it is longer than `most` characters.
+fn shortened(name: &str, most: usize) -> String {
+    let count = name.chars().count();
+    if count <= most {
+        return name.to_owned();
+    }
+    let head: String = name.chars().take(most / 2).collect();
+    let tail: String = name.chars().skip(count - (most - most / 2 - 1)).collect();
+    format!("{head}…{tail}")
+}
+
+/// What came from a file cannot move the cursor or break a line.
+pub(super) fn clean(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}

@@ -1,0 +1,195 @@
+//! The report for a terminal: the verdict first, then a table per characteristic; at most 100 columns.
+
+use super::number::{beside, percent, plain, significant, unsigned_zero};
+use super::page::{Detail, Grid, Page, Style, clean, short};
+use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
+
+/// Contributions and interactions that are shown unless all are asked for.
+const CONTRIBUTIONS: usize = 30;
+const INTERACTIONS: usize = 5;
+/// Interactions below this share of the variance are no news.
+const NEWS: f64 = 1e-4;
+const UNKNOWN: &str = "-";
+
+/// The report as text, without its warnings.
+pub fn text(report: &Report, style: Style) -> String {
+    let mut page = Page::new(style);
+    if let Some(title) = &report.title {
+        page.line(&clean(title));
+    }
+    page.line(&summary(report));
+    page.line("");
+    verdicts(&mut page, report);
+    for characteristic in &report.characteristics {
+        page.line("");
+        one(&mut page, report, characteristic);
+    }
+    page.finish()
+}
+
+/// What was done for it, in one line.
+fn summary(report: &Report) -> String {
+    let plural = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    let failed = match report.failed {
+        0 => String::new(),
+        failed => format!(", {} failed", plural(failed, "point")),
+    };
+    let (evaluations, varying) =
+        (plural(report.evaluations, "evaluation"), plural(report.varying, "varying dimension"));
+    format!("{}: {evaluations}, {varying}{failed}", report.method)
+}
+
+/// A line per characteristic: where it lies, and its limits.
+fn verdicts(page: &mut Page, report: &Report) {
+    let mut table = Grid::new(["", "mean", "± 3 sigma", "", "limits", ""], "<>><<<");
+    for one in &report.characteristics {
+        let limit = |limit: Option<f64>| limit.map_or(String::new(), plain);
+        let limits = match (one.lower, one.upper) {
+            (None, None) => String::new(),
+            (Some(lower), None) => format!("above {}", plain(lower)),
+            (None, Some(upper)) => format!("below {}", plain(upper)),
+            (lower, upper) => format!("{} .. {}", limit(lower), limit(upper)),
+        };
+        let (mean, reach) = match (one.mean, one.sigma) {
+            (Some(mean), Some(sigma)) => (beside(mean, sigma), beside(3.0 * sigma, sigma)),
+            _ => ("unknown".to_owned(), UNKNOWN.to_owned()),
+        };
+        let unit = one.unit.as_deref().map(clean).unwrap_or_default();
+        table.row([short(&one.name), mean, reach, unit, limits, verdict(one).to_owned()]);
+    }
+    page.print(&table);
+}
+
+/// Whether three sigma keep the limits, where there are any.
+fn verdict(one: &CharacteristicReport) -> &'static str {
+    let (Some(mean), Some(sigma)) = (one.mean, one.sigma) else { return "" };
+    match (one.lower, one.upper) {
+        (None, None) => "",
+        (lower, upper) => {
+            let inside = lower.is_none_or(|lower| mean - 3.0 * sigma >= lower)
+                && upper.is_none_or(|upper| mean + 3.0 * sigma <= upper);
+            if inside { "3 sigma inside" } else { "3 sigma OUTSIDE" }
+        }
+    }
+}
+
+fn one(page: &mut Page, report: &Report, one: &CharacteristicReport) {
+    let unit = one.unit.as_deref().map(|unit| format!(" [{}]", clean(unit))).unwrap_or_default();
+    page.line(&format!("{}{unit}", clean(&one.name)));
+    figures(page, one);
+    page.line("");
+    contributions(page, report, one);
+    interactions(page, one);
+}
+
+fn figures(page: &mut Page, one: &CharacteristicReport) {
+    let scale = one.sigma.filter(|&sigma| sigma > 0.0).or(one.rss).unwrap_or(0.0);
+    let number = |value: Option<f64>| value.map_or(UNKNOWN.to_owned(), |value| beside(value, scale));
+    let shape = |value: Option<f64>| value.map_or(UNKNOWN.to_owned(), |value| unsigned_zero(format!("{value:.4}")));
+    let interval = |interval: Option<[f64; 2]>| match interval {
+        Some([low, high]) => format!("{} .. {}", beside(low, scale), beside(high, scale)),
+        None => UNKNOWN.to_owned(),
+    };
+    let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
+    let shift = one.mean.and_then(|mean| Some(mean - one.nominal?));
+    let mut table = Grid::new(["", "", "", ""], "<><<");
+    for [name, value, other, text] in [
+        ["nominal", &number(one.nominal), "", ""],
+        ["mean", &number(one.mean), "mean shift", &number(shift)],
+        ["sigma", &number(one.sigma), "3 sigma", &interval(around(one.mean, one.sigma.map(|sigma| 3.0 * sigma)))],
+        ["skewness", &shape(one.skewness), "rss", &interval(around(one.nominal, one.rss))],
+        ["kurtosis", &shape(one.kurtosis), "worst case", &interval(one.worst_case.linear)],
+    ] {
+        table.row([name, value, other, text].map(str::to_owned));
+    }
+    page.print(&table);
+}
+
+fn contributions(page: &mut Page, report: &Report, one: &CharacteristicReport) {
+    let share = |row: &SensitivityReport| Some(row.linear_share? + row.curvature_share.unwrap_or(0.0));
+    let mut rows: Vec<(&SensitivityReport, &DimensionReport)> = (one.sensitivities.iter().zip(&report.dimensions))
+        .filter(|(row, dimension)| dimension.sigma > 0.0 || row.first.is_some_and(|first| first != 0.0))
+        .collect();
+    rows.sort_by(|(a, _), (b, _)| share(b).unwrap_or(-1.0).total_cmp(&share(a).unwrap_or(-1.0)));
+    let shown = if page.style().detail == Detail::Full { rows.len() } else { rows.len().min(CONTRIBUTIONS) };
+    let header = ["", "nominal", "tolerance", "", "slope", "curvature", "linear %", "curved %", "mean shift"];
+    let mut table = Grid::new(header, "<><<>>>>>");
+    for (row, dimension) in &rows[..shown] {
+        let number = |value, order: usize| derivative(value, row.rounding.map(|rounding| rounding[order]));
+        let shift = match (row.mean_shift, one.sigma) {
+            (Some(shift), Some(sigma)) => rounded(shift, sigma),
+            _ => UNKNOWN.to_owned(),
+        };
+        let cells = [
+            short(&row.dimension),
+            plain(dimension.nominal),
+            tolerance(dimension),
+            dimension.unit.as_deref().map(clean).unwrap_or_default(),
+            number(row.first, 0),
+            number(row.second, 1),
+            row.linear_share.map_or(UNKNOWN.to_owned(), percent),
+            row.curvature_share.map_or(UNKNOWN.to_owned(), percent),
+            shift,
+        ];
+        table.row(cells);
+    }
+    page.print(&table);
+    let rest = &rows[shown..];
+    if !rest.is_empty() {
+        let together: f64 = rest.iter().filter_map(|(row, _)| share(row)).sum();
+        page.line(&format!("  and {} more with {} % together; -v shows all", rest.len(), percent(together)));
+    }
+}
+
+/// A derivative to six digits; what rounding alone can make is 0 as far as anybody knows.
+fn derivative(value: Option<f64>, rounding: Option<f64>) -> String {
+    match (value, rounding) {
+        (None, _) => UNKNOWN.to_owned(),
+        (Some(value), Some(rounding)) if value.abs() <= 2.0 * rounding => "0".to_owned(),
+        (Some(value), _) => significant(value, 6),
+    }
+}
+
+/// Beside sigma, where nothing but zeros is 0.
+fn rounded(shift: f64, sigma: f64) -> String {
+    let text = beside(shift, sigma);
+    if text.parse() == Ok(0.0) { "0".to_owned() } else { text }
+}
+
+fn tolerance(dimension: &DimensionReport) -> String {
+    match dimension.tolerance {
+        Some([lower, upper]) if lower == -upper => format!("± {}", plain(upper)),
+        Some([lower, upper]) => {
+            let signed = |value: f64| if value >= 0.0 { format!("+{}", plain(value)) } else { plain(value) };
+            format!("{} / {}", signed(lower), signed(upper))
+        }
+        None if dimension.sigma > 0.0 => format!("sigma {}", significant(dimension.sigma, 4)),
+        None => UNKNOWN.to_owned(),
+    }
+}
+
+fn interactions(page: &mut Page, one: &CharacteristicReport) {
+    let detail = page.style().detail;
+    let possible = one.possible_interactions;
+    if possible == 0 {
+        return;
+    }
+    let examined = one.interactions.len();
+    if examined == 0 {
+        return page.line(&format!("  interactions: none of {possible} examined"));
+    }
+    let known: Option<Vec<f64>> = one.interactions.iter().map(|interaction| interaction.share).collect();
+    let together = known.map_or("an unknown part".to_owned(), |shares| format!("{} %", percent(shares.iter().sum())));
+    page.line(&format!("  interactions: {examined} of {possible} examined, {together} of the variance together"));
+    let shown = one
+        .interactions
+        .iter()
+        .filter(|interaction| detail == Detail::Full || interaction.share.is_none_or(|share| share >= NEWS));
+    let most = if detail == Detail::Full { examined } else { INTERACTIONS };
+    for interaction in shown.take(most) {
+        let [a, b] = &interaction.dimensions;
+        let mixed = derivative(interaction.mixed, interaction.rounding);
+        let share = interaction.share.map_or(UNKNOWN.to_owned(), percent);
+        page.line(&format!("    {} × {}  {share} %  mixed derivative {mixed}", short(a), short(b)));
+    }
+}
