@@ -1,0 +1,294 @@
+//! The command line: output to the letter, exit codes, files, pipes and wrong input.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use super::support::repository;
+
+/// A command of the program, run at the repository's root in a UTF-8 locale.
+fn sensitol(arguments: &[&str]) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+    command.args(arguments).current_dir(repository("")).env("LC_ALL", "C.UTF-8").env_remove("NO_COLOR");
+    command
+}
+
+/// Exit code, stdout and stderr in one text.
+fn run(arguments: &[&str]) -> String {
+    let output = sensitol(arguments).output().unwrap();
+    let part = |name: &str, bytes: &[u8]| match String::from_utf8(bytes.to_vec()).unwrap() {
+        empty if empty.is_empty() => String::new(),
+        text => format!("--- {name}\n{text}"),
+    };
+    let code = output.status.code().expect("no signal");
+    format!("exit {code}\n{}{}", part("stdout", &output.stdout), part("stderr", &output.stderr))
+}
+
+const ENGINE: &str = "examples/engine-balance/study.toml";
+
+#[test]
+fn analyze_prints_the_report() {
+    insta::assert_snapshot!("analyze-engine", run(&["analyze", ENGINE]));
+    insta::assert_snapshot!(
+        "analyze-one",
+        run(&["analyze", ENGINE, "--kc", "M", "--method", "rss", "--color", "never"])
+    );
+    insta::assert_snapshot!(
+        "analyze-all",
+        run(&["analyze", "examples/stacked-blocks/study.toml", "-v", "--sensitivities", "all"])
+    );
+}
+
+/// Everything but the time, which nobody can know beforehand.
+#[test]
+fn analyze_prints_json() {
+    let output =
+        sensitol(&["analyze", "examples/shaft-and-bore/study.toml", "--json", "--seed", "5"]).output().unwrap();
+    let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(report["wall_s"].as_f64().unwrap() > 0.0);
+    report["wall_s"] = 0.0.into();
+    insta::assert_json_snapshot!("analyze-json", report);
+}
+
+#[test]
+fn plan_says_what_would_be_evaluated() {
+    insta::assert_snapshot!("plan-six-n", run(&["plan", ENGINE]));
+    insta::assert_snapshot!("plan-full", run(&["plan", "examples/shaft-and-bore/study.toml", "-m", "full", "--json"]));
+    insta::assert_snapshot!("check", run(&["check", "examples/stacked-blocks/study.toml"]));
+    insta::assert_snapshot!("models", run(&["models"]) + &run(&["models", "engine-balance"]));
+}
+
+#[test]
+fn help_is_there() {
+    for command in ["", "analyze", "plan", "check", "models"] {
+        let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
+        insta::assert_snapshot!(format!("help-{}", if command.is_empty() { "all" } else { command }), run(&arguments));
+    }
+}
+
+/// Wrong input: one error that says what, where and what to write instead; nothing on stdout; exit 2.
+#[test]
+fn wrong_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    std::fs::write(
+        &study,
+        "[dimensions]\na = { nominal = 1, tolerance = -0.1 }\n[characteristics]\ny = { formula = \"a\" }\n",
+    )
+    .unwrap();
+    let study = study.to_str().unwrap();
+    let commands: &[&[&str]] = &[
+        &[],
+        &["analyse", ENGINE],
+        &["analyze"],
+        &["analyze", "nowhere.toml"],
+        &["analyze", "examples/engine-balance"],
+        &["analyze", "README.md"],
+        &["analyze", study],
+        &["check", study],
+        &["plan", study],
+        &["analyze", ENGINE, "--method", "seven-n"],
+        &["analyze", ENGINE, "--kc", "f"],
+        &["analyze", ENGINE, "--budget", "20"],
+        &["analyze", ENGINE, "--budget", "-1"],
+        &["analyze", ENGINE, "--step", "0"],
+        &["analyze", ENGINE, "--step", "nan"],
+        &["analyze", ENGINE, "--accuracy", "much"],
+        &["analyze", ENGINE, "--threads", "0"],
+        &["analyze", ENGINE, "--pairs", "R"],
+        &["analyze", ENGINE, "--pairs", "R:Q"],
+        &["analyze", ENGINE, "--pairs", "R:`L"],
+        &["analyze", ENGINE, "--method", "full", "--pairs", "adjacent"],
+        &["analyze", ENGINE, "--stencil", "nine"],
+        &["analyze", ENGINE, "-o", "/nowhere/report.txt"],
+        &["analyze", ENGINE, "-o", "examples"],
+        &["plan", ENGINE, "--write-points", "/nowhere/points.csv"],
+        &["models", "engine-ballance"],
+        &["models", "rocket"],
+    ];
+    let mut all = String::new();
+    for arguments in commands {
+        let output = sensitol(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+        let shown = arguments.join(" ").replace(study, "STUDY");
+        let error = String::from_utf8(output.stderr).unwrap().replace(study, "STUDY");
+        all += &format!("$ sensitol {shown}\n{error}\n");
+    }
+    insta::assert_snapshot!("wrong-input", all);
+}
+
+/// A characteristic without result: the report is printed all the same, and the exit code is 3.
+#[test]
+fn a_characteristic_without_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let text = "[dimensions]\na = { nominal = -1, tolerance = 0.1 }\nb = { nominal = 1, tolerance = 0.1 }\n\
+                [characteristics]\nroot = { formula = \"sqrt(a) + b\", upper = 3 }\nsum = { formula = \"a + b\", unit = \"mm\" }\n";
+    std::fs::write(&study, text).unwrap();
+    insta::assert_snapshot!("no-result", run(&["analyze", study.to_str().unwrap(), "-m", "full"]));
+    let json = sensitol(&["analyze", study.to_str().unwrap(), "--json"]).output().unwrap();
+    assert_eq!(json.status.code(), Some(3));
+    let report: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let root = &report["characteristics"][0];
+    for key in ["nominal", "mean", "sigma", "skewness", "kurtosis", "rss"] {
+        assert!(root[key].is_null(), "{key}");
+    }
+    assert!(root["sensitivities"][0]["first"].is_null() && root["worst_case"]["linear"].is_null());
+}
+
+#[test]
+fn files_are_written_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("report.json");
+    let to = path.to_str().unwrap();
+    let output = sensitol(&["analyze", ENGINE, "--json", "-o", to]).output().unwrap();
+    assert!(output.status.success() && output.stdout.is_empty());
+    let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    assert_eq!(report["evaluations"], 61);
+    // What stands there stays when the command fails, and no other file is left behind.
+    let output = sensitol(&["analyze", ENGINE, "--budget", "3", "-o", to]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(serde_json::from_slice::<serde_json::Value>(&std::fs::read(&path).unwrap()).unwrap(), report);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    #[cfg(unix)]
+    {
+        let mode = std::os::unix::fs::PermissionsExt::mode(&std::fs::metadata(&path).unwrap().permissions());
+        assert_eq!(mode & 0o444, 0o444 & mode, "as readable as the user's other files");
+        assert_ne!(mode & 0o044, 0, "not private");
+    }
+}
+
+/// The points of a stage as exact numbers, a column per dimension.
+#[test]
+fn points_can_be_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.csv");
+    let output = sensitol(&["plan", ENGINE, "--write-points", path.to_str().unwrap()]).output().unwrap();
+    assert!(output.status.success());
+    assert!(String::from_utf8(output.stderr).unwrap().contains("first-stage-only"));
+    let text = std::fs::read_to_string(&path).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!((lines.len(), lines[0]), (42, "a,R,L,hp,hc,t,phi1,phi2,phi3,phi4"));
+    assert_eq!(lines[1], "0.05,0.0425,0.1345,0.0973,0.0372,0,0,3.141592653589793,9.42477796076938,6.283185307179586");
+    let moved: f64 = lines[2].split(',').next().unwrap().parse().unwrap();
+    assert!((moved - (0.05 - 2.856_970_013_872_806 * 0.0001 / 3.0)).abs() < 1e-16);
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    for arguments in [&["analyze", ENGINE, "--json"][..], &["models"], &["plan", ENGINE], &["analyze", "--help"]] {
+        let mut child = sensitol(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{arguments:?}: {error}");
+        assert!(!error.contains("panic") && !error.contains("pipe"), "{error}");
+    }
+}
+
+/// Escape sequences go to terminals alone, unless they are asked for.
+#[test]
+fn colours_are_for_terminals() {
+    let coloured = |arguments: &[&str], set: &[(&str, &str)]| {
+        let output = sensitol(arguments).envs(set.iter().copied()).output().unwrap();
+        output.stderr.contains(&0x1b)
+    };
+    let warns = ["analyze", ENGINE];
+    assert!(!coloured(&warns, &[]));
+    assert!(coloured(&[&warns[..], &["--color", "always"]].concat(), &[]));
+    assert!(!coloured(&[&warns[..], &["--color", "never"]].concat(), &[("CLICOLOR_FORCE", "1")]));
+    assert!(!coloured(&warns, &[("NO_COLOR", "1")]));
+}
+
+/// `--color never` and a locale without UTF-8 get plain ASCII.
+#[test]
+fn plain_terminals_get_ascii() {
+    let stdout = |locale: &str, color: &str| {
+        sensitol(&["analyze", "examples/quick-return-published/study.toml", "--color", color])
+            .env("LC_ALL", locale)
+            .output()
+            .unwrap()
+            .stdout
+    };
+    assert!(stdout("C", "auto").is_ascii());
+    assert!(stdout("C.UTF-8", "never").is_ascii());
+    assert!(!stdout("C.UTF-8", "auto").is_ascii());
+}
+
+#[test]
+fn no_line_is_too_long() {
+    for path in ["engine-balance/study.toml", "quick-return-published/study.toml", "stacked-blocks/study.toml"] {
+        for extra in [&[][..], &["-v"], &["-v", "--method", "full"]] {
+            let study = format!("examples/{path}");
+            let output = sensitol(&[&["analyze", &study][..], extra].concat()).output().unwrap();
+            for line in String::from_utf8(output.stdout).unwrap().lines() {
+                assert!(line.chars().count() <= 100, "{} columns: {line}", line.chars().count());
+            }
+        }
+    }
+}
+
+/// Thirty dimensions fit a page: the contributions in order, the rest counted.
+#[test]
+fn many_dimensions_stay_readable() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let dimensions: String = (0..40)
+        .map(|i| format!("part_{i} = {{ nominal = {i}, tolerance = {} }}\n", 1.0 / (1.0 + f64::from(i))))
+        .collect();
+    let sum = (0..40).map(|i| format!("part_{i}")).collect::<Vec<_>>().join(" + ");
+    std::fs::write(&study, format!("[dimensions]\n{dimensions}[characteristics]\nstack = {{ formula = \"{sum}\" }}\n"))
+        .unwrap();
+    let report = run(&["analyze", study.to_str().unwrap(), "-q"]);
+    assert!(report.contains("  and 10 more with 0.50 % together; -v shows all"), "{report}");
+    let rows: Vec<&str> = report.lines().filter(|line| line.starts_with("  part_")).collect();
+    assert_eq!((rows.len(), rows[0].split_whitespace().next()), (30, Some("part_0")));
+    let all = run(&["analyze", study.to_str().unwrap(), "-q", "-v"]);
+    assert_eq!(all.lines().filter(|line| line.starts_with("  part_")).count(), 40);
+}
+
+/// Names from a file cannot forge lines or move the cursor.
+#[test]
+fn names_cannot_disturb_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let text = "title = \"one\\ntwo\"\n[dimensions]\n\"a\\u001b[2J\" = { nominal = 1, tolerance = 0.1, unit = \"m\\nm\" }\n\
+                [characteristics]\n\"y\\r\" = { formula = \"`a\\u001b[2J`\" }\n";
+    std::fs::write(&study, text).unwrap();
+    let output = sensitol(&["analyze", study.to_str().unwrap()]).output().unwrap();
+    assert!(output.status.success());
+    let printed = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+    assert!(!printed.contains('\u{1b}') && !printed.contains('\r') && !printed.contains("one\ntwo"), "{printed:?}");
+}
+
+/// `--time` ends an analysis that would take longer, with what is known.
+#[test]
+fn time_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let dimensions: String = (0..600).map(|i| format!("x{i} = {{ nominal = 1, tolerance = 0.1 }}\n")).collect();
+    let formula = (0..600).map(|i| format!("sin(x{i})")).collect::<Vec<_>>().join("*");
+    std::fs::write(&study, format!("[dimensions]\n{dimensions}[characteristics]\ny = {{ formula = \"{formula}\" }}\n"))
+        .unwrap();
+    let output =
+        sensitol(&["analyze", study.to_str().unwrap(), "-m", "full", "--time", "0.001", "--json"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(report["evaluations"].as_u64().unwrap() < 360_601);
+    assert!(String::from_utf8(output.stderr).unwrap().contains("stopped after 0.001 s"));
+}
+
+#[test]
+fn the_number_of_threads_does_not_show() {
+    let of = |threads: &str| {
+        sensitol(&["analyze", ENGINE, "--method", "full", "--threads", threads]).output().unwrap().stdout
+    };
+    assert_eq!(of("1"), of("3"));
+}
+
+#[test]
+fn studies_run_from_any_folder() {
+    let absolute = repository(ENGINE);
+    let output = sensitol(&["analyze", absolute.to_str().unwrap(), "-q"]).current_dir(Path::new("/")).output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty());
+}

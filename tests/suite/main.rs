@@ -1,0 +1,14 @@
+//! Every test of the project, a module per theme; `cargo test --test suite moments::` runs one theme.
+
+mod analysis;
+mod architecture;
+mod cli;
+mod distributions;
+mod docs;
+mod formulas;
+mod methods;
+mod moments;
+mod plans;
+mod published;
+mod studies;
+mod support;

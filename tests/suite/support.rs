@@ -1,0 +1,90 @@
+//! What the themes share.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+use sensitol::assembly::EvaluationError;
+use sensitol::{Closure, Dimension};
+
+/// A file of the repository.
+pub fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// A JSON file of `tests/data`.
+pub fn data(name: &str) -> serde_json::Value {
+    let text = std::fs::read_to_string(repository("tests/data").join(name)).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+/// Asserts `|found - expected| <= tolerance max(|expected|, scale)`.
+#[track_caller]
+pub fn close(found: f64, expected: f64, tolerance: f64, scale: f64) {
+    let error = (found - expected).abs();
+    let allowed = tolerance * expected.abs().max(scale);
+    assert!(error <= allowed, "{found} is {error:e} off {expected}, more than {allowed:e}");
+}
+
+/// Asserts a relative error.
+#[track_caller]
+pub fn relative(found: f64, expected: f64, tolerance: f64) {
+    close(found, expected, tolerance, 0.0);
+}
+
+/// Normal dimensions `x0`, `x1` and so on with these means and tolerances.
+pub fn normals(means: &[f64], tolerances: &[f64]) -> Vec<Dimension> {
+    let dimension = |(index, (&mean, &tolerance)): (usize, (&f64, &f64))| {
+        Dimension::normal(format!("x{index}"), mean, tolerance).unwrap()
+    };
+    means.iter().zip(tolerances).enumerate().map(dimension).collect()
+}
+
+/// `n` normal dimensions with mean 0 and sigma 1.
+pub fn standard(n: usize) -> Vec<Dimension> {
+    normals(&vec![0.0; n], &vec![3.0; n])
+}
+
+/// Every point that a function was asked for.
+#[derive(Clone, Default)]
+pub struct Asked(Arc<Mutex<Vec<Vec<f64>>>>);
+
+impl Asked {
+    /// The points so far, in order of their coordinates.
+    pub fn points(&self) -> Vec<Vec<f64>> {
+        let mut points = self.0.lock().unwrap().clone();
+        points.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        points
+    }
+
+    /// How many points were asked, each of them once.
+    #[track_caller]
+    pub fn distinct(&self) -> usize {
+        let points = self.points();
+        let mut once = points.clone();
+        once.dedup();
+        assert_eq!(once.len(), points.len(), "a point was evaluated twice");
+        points.len()
+    }
+
+    /// A characteristic `y` that remembers its points.
+    pub fn watching(&self, function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Closure {
+        let asked = self.clone();
+        Closure::scalar("y", move |x| {
+            asked.0.lock().unwrap().push(x.to_vec());
+            function(x)
+        })
+    }
+}
+
+/// A function with one output that refuses some points.
+pub fn refusing(
+    function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
+    refuses: impl Fn(&[f64]) -> bool + Send + Sync + 'static,
+) -> Closure {
+    Closure::fallible(["y"], move |x| {
+        if refuses(x) {
+            return Err(EvaluationError::Refused { message: "does not assemble".into() });
+        }
+        Ok([function(x)])
+    })
+}
