@@ -57,6 +57,15 @@ fn list(names: &[String]) -> String {
     names.join(", ")
 }
 
+impl std::fmt::Debug for Problem {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // The function is a black box here too.
+        let mut parts = f.debug_struct("Problem");
+        parts.field("dimensions", &self.dimensions).field("characteristics", &self.characteristics);
+        parts.finish_non_exhaustive()
+    }
+}
+
 impl Problem {
     /// With every output of the function as a characteristic without limits.
     ///

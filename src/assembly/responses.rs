@@ -46,6 +46,10 @@ impl Responses {
     /// Answers one entry; a value that is not finite becomes an error.
     pub fn set(&mut self, row: usize, output: usize, value: f64) {
         if value.is_finite() {
+            // The last answer counts, after an error too.
+            if !self.errors.is_empty() {
+                self.errors.remove(&(row, output));
+            }
             self.values[output * self.rows + row] = value;
         } else {
             self.fail(row, output, EvaluationError::NotFinite { value });

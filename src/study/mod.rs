@@ -29,7 +29,7 @@ use source::Source;
 use tree::Tree;
 
 /// A study: a problem, how it is to be analysed, and what is odd about it.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Study {
     /// Its title.
     pub title: Option<String>,

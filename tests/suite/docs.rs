@@ -8,9 +8,13 @@ use sensitol::{Method, Options, Study, analyze};
 
 use super::support::{data, repository};
 
-/// Console blocks of the README and of every example, run from the repository's root.
+/// Console blocks of the README and of every example, run from the repository's root; none leaves anything out.
 #[test]
 fn console_blocks_are_real() {
+    for document in documents() {
+        let elided = read(&document).lines().any(|line| line == "..." || line.contains("[..]"));
+        assert!(!elided, "{document} leaves out some output");
+    }
     trycmd::TestCases::new()
         .case("README.md")
         .case("CONTRIBUTING.md")
@@ -106,12 +110,21 @@ fn every_example_is_described() {
     }
 }
 
-/// The documents speak of the project alone.
+/// Every document of the repository, by its path in it.
+fn documents() -> Vec<String> {
+    let examples = std::fs::read_dir(repository("examples")).unwrap();
+    let of_example = |folder: std::io::Result<std::fs::DirEntry>| {
+        format!("examples/{}/README.md", folder.unwrap().file_name().into_string().unwrap())
+    };
+    let own = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "benches/README.md"].map(str::to_owned);
+    own.into_iter().chain(examples.map(of_example)).collect()
+}
+
 #[test]
 fn links_within_the_repository_lead_somewhere() {
-    for document in ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "benches/README.md"] {
-        let text = read(document);
-        let folder = repository(document).parent().unwrap().to_path_buf();
+    for document in documents() {
+        let text = read(&document);
+        let folder = repository(&document).parent().unwrap().to_path_buf();
         for target in text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap()) {
             if !target.contains("://") && !target.starts_with('#') {
                 let file = target.split('#').next().unwrap();
