@@ -13,6 +13,7 @@ pub mod method;
 pub mod models;
 pub mod moments;
 pub mod names;
+pub mod pearson;
 pub mod plan;
 pub mod problem;
 pub mod report;

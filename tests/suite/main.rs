@@ -8,6 +8,7 @@ mod docs;
 mod formulas;
 mod methods;
 mod moments;
+mod pearson;
 mod plans;
 mod published;
 mod studies;

@@ -1,0 +1,72 @@
+//! Moments that no distribution of the system has.
+
+/// The law with two values that has the least kurtosis of all laws with its skewness: mean 0, variance 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TwoPoint {
+    /// The two values, in sigmas from the mean.
+    pub values: [f64; 2],
+    /// Their probabilities.
+    pub probabilities: [f64; 2],
+}
+
+impl TwoPoint {
+    /// Values `(s ± sqrt(s^2 + 4)) / 2`: their product is -1, and the mean fixes the probabilities.
+    ///
+    /// ```
+    /// use sensitol::pearson::TwoPoint;
+    /// let coin = TwoPoint::with_skewness(0.0);
+    /// assert_eq!((coin.values, coin.probabilities), ([-1.0, 1.0], [0.5, 0.5]));
+    /// ```
+    pub fn with_skewness(skewness: f64) -> Self {
+        let far = 0.5 * (skewness.abs() + skewness.abs().hypot(2.0));
+        let rare = 1.0 / (1.0 + far * far);
+        let law = Self { values: [-1.0 / far, far], probabilities: [1.0 - rare, rare] };
+        match skewness < 0.0 {
+            true => Self { values: [-far, 1.0 / far], probabilities: [rare, 1.0 - rare] },
+            false => law,
+        }
+    }
+}
+
+/// Moments to which no member of the Pearson system belongs.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PearsonError {
+    /// A moment is NaN or infinite.
+    #[error("a moment is not a finite number")]
+    NotFinite,
+    /// Sigma is 0 or negative.
+    #[error("sigma must be above 0, not {sigma}")]
+    Sigma {
+        /// As given.
+        sigma: f64,
+    },
+    /// No distribution at all has this pair: kurtosis is above 1 + skewness squared for all but the laws with two values.
+    #[error(
+        "no distribution has skewness {skewness} and kurtosis {kurtosis}: the kurtosis must be above 1 + skewness^2 = {bound}, \
+         which only the law with the two values {:.4} and {:.4} sigma attains", law.values[0], law.values[1]
+    )]
+    Infeasible {
+        /// As given.
+        skewness: f64,
+        /// As given.
+        kurtosis: f64,
+        /// What the kurtosis must exceed.
+        bound: f64,
+        /// The law at the bound.
+        law: TwoPoint,
+    },
+    /// Possible, but beyond what doubles can compute.
+    #[error("kurtosis {kurtosis:e} is beyond 1e100")]
+    TooLarge {
+        /// As given.
+        kurtosis: f64,
+    },
+}
+
+impl PearsonError {
+    pub(super) fn infeasible(skewness: f64, kurtosis: f64) -> Self {
+        let bound = 1.0 + skewness * skewness;
+        Self::Infeasible { skewness, kurtosis, bound, law: TwoPoint::with_skewness(skewness) }
+    }
+}

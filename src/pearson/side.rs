@@ -1,0 +1,269 @@
+//! One side of a Pearson law, from an anchor outwards: density and mass beyond, and the inverse of the latter.
+
+use super::ending::Ending;
+use super::equation::{Equation, Panel};
+
+/// Tables end where log p has fallen by this: what lies beyond is computed when it is asked for.
+const CORE: f64 = -45.0;
+/// A factor to p from which on the rest adds no digit.
+const REST: f64 = 1e-19;
+/// Panels that a side may take; the longest seen has a sixth of them.
+const PANELS: usize = 600;
+/// The logarithms between which the distance from an end can lie, relative to where its series begins.
+const LEAST: f64 = -800.0;
+const LARGEST: f64 = 700.0;
+/// Steps of an iteration, which takes three to six when all is well.
+const STEPS: usize = 200;
+
+/// All densities are relative to that at the anchor.
+#[derive(Debug, Clone)]
+pub(super) struct Side {
+    /// 1 to the right, -1 to the left.
+    sign: f64,
+    equation: Equation,
+    pieces: Vec<Piece>,
+    ending: Option<Ending>,
+    anchor: f64,
+    /// Where the tables end, with log p there.
+    edge: f64,
+    edge_log: f64,
+    /// `log p` minus that of the ending; None where the tables end before the ending begins.
+    ending_log: Option<f64>,
+    /// Where the support ends.
+    limit: f64,
+    /// log of the mass beyond the tables' end.
+    edge_log_mass: f64,
+    /// Mills' ratio at the anchor: the mass of the whole side.
+    pub(super) mass: f64,
+}
+
+#[derive(Debug, Clone)]
+struct Piece {
+    panel: Panel,
+    /// Distance of its inner end from the anchor.
+    from: f64,
+    /// log p at its middle.
+    log: f64,
+    /// `p / p(middle)` times Mills' ratio at its outer end, plus the mass from the middle to there: what lies beyond the
+    /// middle.
+    beyond: f64,
+    /// log of the mass beyond its inner end.
+    log_mass: f64,
+}
+
+/// A place on a side: density, and the mass beyond by the density.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) log_density: f64,
+    pub(super) mills: f64,
+}
+
+impl Place {
+    const BEYOND: Self = Self { log_density: f64::NEG_INFINITY, mills: 0.0 };
+
+    pub(super) fn log_mass(&self) -> f64 {
+        if self.mills == 0.0 { f64::NEG_INFINITY } else { self.log_density + self.mills.ln() }
+    }
+}
+
+impl Side {
+    pub(super) fn new(equation: Equation, anchor: f64, sign: f64, ending: Option<Ending>, limit: f64) -> Self {
+        let mut panels: Vec<(Panel, f64)> = Vec::new();
+        let (mut edge, mut edge_log) = (anchor, 0.0);
+        let covered = |z: f64| ending.as_ref().is_some_and(|ending| ending.covers(z));
+        while !covered(edge) && edge_log > CORE && panels.len() < PANELS {
+            let Some(panel) = equation.panel(edge, sign) else { break };
+            let middle_log = edge_log - panel.density(-1.0).ln();
+            edge_log = middle_log + panel.density(1.0).ln();
+            edge = panel.end();
+            panels.push((panel, middle_log));
+        }
+        let ending_log = (ending.as_ref().filter(|ending| ending.covers(edge)))
+            .map(|ending| edge_log - ending.log_density(ending.relative(edge)));
+        let mut mills = mills(&equation, ending.as_ref(), sign, edge);
+        let edge_log_mass = edge_log + mills.ln();
+        let mut pieces = Vec::with_capacity(panels.len());
+        for (panel, log) in panels.into_iter().rev() {
+            let beyond = panel.mass(1.0) + panel.density(1.0) * mills;
+            let inner = panel.density(-1.0);
+            mills = (beyond - panel.mass(-1.0)) / inner;
+            let log_mass = log + (inner * mills).ln();
+            pieces.push(Piece { from: sign * (panel.position(-1.0) - anchor), panel, log, beyond, log_mass });
+        }
+        pieces.reverse();
+        Self { sign, equation, pieces, ending, anchor, edge, edge_log, ending_log, limit, edge_log_mass, mass: mills }
+    }
+
+    /// Density and mass beyond at a place on this side.
+    pub(super) fn at(&self, z: f64) -> Place {
+        if z.is_infinite() || self.sign * (self.limit - z) <= 0.0 {
+            return Place::BEYOND;
+        }
+        if self.sign * (z - self.edge) < 0.0 {
+            let from = self.sign * (z - self.anchor);
+            let index = self.pieces.partition_point(|piece| piece.from <= from).max(1) - 1;
+            let piece = &self.pieces[index];
+            let u = piece.panel.coordinate(z).clamp(-1.0, 1.0);
+            let density = piece.panel.density(u);
+            let mills = (piece.beyond - piece.panel.mass(u)) / density;
+            return Place { log_density: piece.log + density.ln(), mills };
+        }
+        if let Some((ending, log)) = self.tabled_ending() {
+            let v = ending.relative(z);
+            return Place { log_density: log + ending.log_density(v), mills: ending.mills(v) };
+        }
+        let log_density = self.edge_log + self.equation.fall(self.edge, z);
+        if log_density == f64::NEG_INFINITY {
+            return Place::BEYOND;
+        }
+        Place { log_density, mills: mills(&self.equation, self.ending.as_ref(), self.sign, z) }
+    }
+
+    /// The ending, where the tables reach it, with its constant.
+    fn tabled_ending(&self) -> Option<(&Ending, f64)> {
+        self.ending.as_ref().zip(self.ending_log)
+    }
+
+    /// The mass between the anchor and `z`, where it has digits that the difference of the masses beyond has not: next to
+    /// an end of the support with nearly all of the mass.
+    pub(super) fn inner(&self, z: f64) -> Option<f64> {
+        let (ending, log) = self.tabled_ending().filter(|(ending, _)| ending.is_finite() && ending.covers(z))?;
+        let own = log.exp() * ending.inner(ending.relative(z).max(0.0), ending.relative(self.edge));
+        Some(own + (self.mass - self.edge_log_mass.exp()).max(0.0))
+    }
+
+    /// Where the mass beyond has this logarithm.
+    pub(super) fn with_mass_beyond(&self, log_mass: f64) -> f64 {
+        if log_mass == f64::NEG_INFINITY {
+            return self.limit;
+        }
+        if log_mass > self.edge_log_mass && !self.pieces.is_empty() {
+            return self.within_tables(log_mass);
+        }
+        match self.tabled_ending() {
+            Some((ending, log)) => {
+                let off = |log_v: f64| {
+                    let (found, slope) = ending.log_mass(log_v);
+                    (found + log - log_mass, slope)
+                };
+                self.in_ending(ending, ending.relative(self.edge).ln(), off)
+            }
+            None => self.beyond_tables(log_mass),
+        }
+    }
+
+    /// Where the mass between the anchor and there is `mass`, next to an end of the support with nearly all of it; None
+    /// where this is nowhere there.
+    pub(super) fn with_inner_mass(&self, mass: f64) -> Option<f64> {
+        let (ending, log) = self.tabled_ending().filter(|(ending, _)| ending.is_finite())?;
+        let own = mass - (self.mass - self.edge_log_mass.exp()).max(0.0);
+        if own <= 0.0 {
+            return None;
+        }
+        let edge = ending.relative(self.edge);
+        let off = |log_v: f64| {
+            let v = log_v.exp();
+            let slope = (log + ending.log_density(v)).exp() * ending.length(v);
+            (own - log.exp() * ending.inner(v, edge), slope)
+        };
+        // What lies beyond is a good start, if only that.
+        let start = ending.relative(self.with_mass_beyond((self.mass - mass).max(0.0).ln())).ln();
+        Some(self.in_ending(ending, start, off))
+    }
+
+    /// Newton's method in log v, in which every mass of an ending is nearly a straight line, from `start` on; safeguarded.
+    fn in_ending(&self, ending: &Ending, start: f64, off: impl Fn(f64) -> (f64, f64)) -> f64 {
+        let edge = ending.relative(self.edge).ln();
+        // Below, there is no double left between the end and the place.
+        let [mut low, mut high] = if ending.is_finite() { [LEAST, edge] } else { [edge, LARGEST] };
+        let mut log_v = start.clamp(low, high);
+        for _ in 0..STEPS {
+            let (error, slope) = off(log_v);
+            if (error > 0.0) == (slope > 0.0) {
+                high = log_v;
+            } else {
+                low = log_v;
+            }
+            let next = log_v - error / slope;
+            let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
+            let step = (next - log_v).abs();
+            log_v = next;
+            if step <= 4.0 * f64::EPSILON * log_v.abs().max(1.0) {
+                break;
+            }
+        }
+        if log_v <= LEAST + 1.0 { self.limit } else { ending.position(log_v.exp()) }
+    }
+
+    /// Newton's method on the logarithm of the mass, within the panel where it lies.
+    fn within_tables(&self, log_mass: f64) -> f64 {
+        let index = self.pieces.partition_point(|piece| piece.log_mass >= log_mass).max(1) - 1;
+        let piece = &self.pieces[index];
+        let outer = self.pieces.get(index + 1).map_or(self.edge_log_mass, |next| next.log_mass);
+        let target = (log_mass - piece.log).exp();
+        let (mut low, mut high) = (-1.0, 1.0);
+        let mut u = (-1.0 + 2.0 * (piece.log_mass - log_mass) / (piece.log_mass - outer)).clamp(low, high);
+        for _ in 0..STEPS {
+            let beyond = piece.beyond - piece.panel.mass(u);
+            let error = (beyond / target).ln();
+            if error > 0.0 {
+                low = u;
+            } else {
+                high = u;
+            }
+            let next = u + error * beyond / (piece.panel.density(u) * piece.panel.half.abs());
+            let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
+            let step = (next - u).abs();
+            u = next;
+            if step <= 2.0 * f64::EPSILON {
+                break;
+            }
+        }
+        piece.panel.position(u)
+    }
+
+    /// Newton's method on the logarithm of the mass, safeguarded, where nothing is tabled.
+    fn beyond_tables(&self, log_mass: f64) -> f64 {
+        let (mut low, mut high) = (self.edge, self.limit);
+        let mut z = self.edge;
+        for _ in 0..STEPS {
+            let place = self.at(z);
+            let error = place.log_mass() - log_mass;
+            if error > 0.0 {
+                low = z;
+            } else {
+                high = z;
+            }
+            let mut next = z + self.sign * error * place.mills;
+            let within = self.sign * (next - low) > 0.0 && self.sign * (high - next) > 0.0;
+            if !within && error != 0.0 {
+                next = if high.is_finite() { 0.5 * (low + high) } else { z + (z - self.anchor) };
+            }
+            // Next to an end of the support every double counts.
+            if next == z || (self.limit.is_infinite() && (next - z).abs() <= 2.0 * f64::EPSILON * z.abs()) {
+                break;
+            }
+            z = next;
+        }
+        z
+    }
+}
+
+/// Mills' ratio beyond the tables: from panel to panel until nothing is left or the ending takes over.
+fn mills(equation: &Equation, ending: Option<&Ending>, sign: f64, mut z: f64) -> f64 {
+    let (mut mass, mut density) = (0.0, 1.0);
+    for _ in 0..PANELS {
+        if let Some(ending) = ending.filter(|ending| ending.covers(z)) {
+            return mass + density * ending.mills(ending.relative(z));
+        }
+        if density < REST {
+            break;
+        }
+        let Some(panel) = equation.panel(z, sign) else { break };
+        let inner = panel.density(-1.0);
+        mass += density * (panel.mass(1.0) - panel.mass(-1.0)) / inner;
+        density *= panel.density(1.0) / inner;
+        z = panel.end();
+    }
+    mass
+}

@@ -1,0 +1,92 @@
+//! A Pearson law with mean 0, variance 1 and a skewness that is not negative.
+
+use super::PearsonError;
+use super::ending::Ending;
+use super::equation::Equation;
+use super::shape::{PearsonType, Roots, Shape};
+use super::side::{Place, Side};
+
+/// Two sides that meet at the anchor.
+#[derive(Debug, Clone)]
+pub(super) struct Standard {
+    pub(super) kind: PearsonType,
+    pub(super) support: [f64; 2],
+    anchor: f64,
+    left: Side,
+    right: Side,
+    /// The mass of both sides, with the density at the anchor as unit.
+    total: f64,
+}
+
+impl Standard {
+    pub(super) fn new(skewness: f64, kurtosis: [f64; 2]) -> Result<Self, PearsonError> {
+        let shape = Shape::new(skewness, kurtosis)?;
+        let equation = Equation::of(&shape);
+        let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
+        let (mut left, mut right) = (None, None);
+        match shape.roots {
+            Roots::Real { near, far, ends } => {
+                lower = near;
+                left = Ending::finite(near, -1.0, &ends[0]);
+                if far > 0.0 {
+                    upper = far;
+                    right = Ending::finite(far, 1.0, &ends[1]);
+                }
+            }
+            Roots::Double { at } => lower = at,
+            Roots::Complex { .. } | Roots::None => {}
+        }
+        if let Some(infinity) = shape.infinity() {
+            let ratio = shape.c1 / shape.c2;
+            right = Ending::infinite(&infinity, 1.0, ratio);
+            if lower.is_infinite() {
+                left = Ending::infinite(&infinity, -1.0, ratio);
+            }
+        }
+        // Where nearly all of the mass lies at the lower end, the series there is a better start than the mean.
+        let anchor = match &left {
+            Some(left) if left.is_finite() && left.covers(0.0) => left.border(),
+            _ => 0.0,
+        };
+        let left = Side::new(equation, anchor, -1.0, left, lower);
+        let right = Side::new(equation, anchor, 1.0, right, upper);
+        let total = left.mass + right.mass;
+        Ok(Self { kind: shape.kind, support: [lower, upper], anchor, left, right, total })
+    }
+
+    fn place(&self, z: f64) -> Place {
+        if z < self.anchor { self.left.at(z) } else { self.right.at(z) }
+    }
+
+    pub(super) fn log_pdf(&self, z: f64) -> f64 {
+        self.place(z).log_density - self.total.ln()
+    }
+
+    /// Probabilities below and above, each with all its digits.
+    pub(super) fn cdf_sf(&self, z: f64) -> [f64; 2] {
+        let place = self.place(z);
+        let beyond = place.log_mass().exp();
+        let (side, other) = if z < self.anchor { (&self.left, &self.right) } else { (&self.right, &self.left) };
+        let inner = side.inner(z).unwrap_or(side.mass - beyond).max(0.0);
+        let (outer, rest) = ((beyond / self.total).min(1.0), ((other.mass + inner) / self.total).min(1.0));
+        if z < self.anchor { [outer, rest] } else { [rest, outer] }
+    }
+
+    /// Logarithms of the same; they go on where the probabilities vanish.
+    pub(super) fn log_cdf_sf(&self, z: f64) -> [f64; 2] {
+        let [below, above] = self.cdf_sf(z);
+        let outer = self.place(z).log_mass() - self.total.ln();
+        // Of a probability close to 1, by the other.
+        let of = |probability: f64, other: f64| if other < 0.5 { (-other).ln_1p() } else { probability.ln() };
+        if z < self.anchor { [outer.min(0.0), of(above, below)] } else { [of(below, above), outer.min(0.0)] }
+    }
+
+    /// Where the probabilities below and above are these, whose sum is 1: one is exact, the other its complement.
+    pub(super) fn quantile(&self, [below, above]: [f64; 2]) -> f64 {
+        if below * self.total > self.left.mass {
+            return self.right.with_mass_beyond((above * self.total).ln());
+        }
+        let inner = if below > 0.5 { self.left.with_inner_mass(above * self.total - self.right.mass) } else { None };
+        inner.unwrap_or_else(|| self.left.with_mass_beyond((below * self.total).ln()))
+    }
+}
