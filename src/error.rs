@@ -6,6 +6,7 @@ use crate::characteristic::LimitsError;
 use crate::dimension::DimensionError;
 use crate::distribution::DistributionError;
 use crate::method::MethodError;
+use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
 use crate::study::StudyError;
 
@@ -34,6 +35,9 @@ pub enum Error {
     /// A study file is wrong.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// No distribution has the moments.
+    #[error(transparent)]
+    Pearson(#[from] PearsonError),
     /// A method does not fit the problem.
     #[error(transparent)]
     Method(#[from] MethodError),

@@ -2,6 +2,7 @@
 
 pub mod analysis;
 pub mod assembly;
+pub mod capability;
 pub mod characteristic;
 #[cfg(feature = "cli")]
 pub mod cli;

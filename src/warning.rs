@@ -86,6 +86,22 @@ pub enum Warning {
         /// What curvature adds to the variance, relative to what the slopes make of it.
         variance: f64,
     },
+    /// No distribution has the moments.
+    InfeasibleMoments {
+        /// The characteristic.
+        characteristic: String,
+        /// Why not, with the law at the bound.
+        reason: String,
+    },
+    /// Hardly any distribution has the moments.
+    NearInfeasibleMoments {
+        /// The characteristic.
+        characteristic: String,
+        /// Third standardised moment.
+        skewness: f64,
+        /// Fourth standardised moment.
+        kurtosis: f64,
+    },
     /// `auto` was asked for.
     AutoIsSecondOrder,
 }
@@ -119,6 +135,8 @@ impl Warning {
             Self::Noise { .. } => "noise",
             Self::PairsNotExamined { .. } => "pairs-not-examined",
             Self::RssInvalid { .. } => "rss-invalid",
+            Self::InfeasibleMoments { .. } => "infeasible-moments",
+            Self::NearInfeasibleMoments { .. } => "near-infeasible-moments",
             Self::AutoIsSecondOrder => "auto-is-second-order",
         }
     }
@@ -131,6 +149,8 @@ impl Warning {
             | Self::DomainEdge { characteristic, .. }
             | Self::NoReaction { characteristic }
             | Self::Noise { characteristic, .. }
+            | Self::InfeasibleMoments { characteristic, .. }
+            | Self::NearInfeasibleMoments { characteristic, .. }
             | Self::RssInvalid { characteristic, .. } => Some(characteristic),
             _ => None,
         }
@@ -205,6 +225,15 @@ impl Warning {
                 "`{characteristic}` is curved: second order moves its mean by {mean_shift:+.2} sigma and adds {:.1} % to \
                  its variance; use --method second-order",
                 100.0 * variance
+            ),
+            Self::InfeasibleMoments { characteristic, reason } => format!(
+                "`{characteristic}` has no yield: {reason}. Either it has two values indeed, or a strong interaction was \
+                 not examined (try --method full), or the `moments` of a dimension are rounded"
+            ),
+            Self::NearInfeasibleMoments { characteristic, skewness, kurtosis } => format!(
+                "the kurtosis {kurtosis:.4} of `{characteristic}` is hardly above 1 + skewness^2 = {:.4}, the least that there \
+                 is: it has nearly two values only, and its yield hangs on every digit of that",
+                1.0 + skewness * skewness
             ),
             Self::AutoIsSecondOrder => {
                 "method auto is not built yet and stands for second-order; --method full adds every interaction".into()

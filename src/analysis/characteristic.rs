@@ -1,8 +1,10 @@
 //! What is known of one characteristic.
 
+use crate::capability::{Capability, Law};
 use crate::characteristic::Characteristic;
 use crate::method::{Order, Outcome};
 use crate::moments::{Contributions, Moments};
+use crate::pearson::PearsonError;
 use crate::problem::Problem;
 
 /// Moments, sensitivities and contributions of one characteristic. What is unknown is None.
@@ -14,6 +16,12 @@ pub struct CharacteristicAnalysis {
     pub nominal: Option<f64>,
     /// Its first four moments.
     pub moments: Option<Moments>,
+    /// The distribution that has these moments, or why none has.
+    pub law: Option<Result<Law, PearsonError>>,
+    /// How that keeps the limits.
+    pub capability: Option<Capability>,
+    /// How the normal distribution with the same mean and sigma would.
+    pub normal: Option<Capability>,
     /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
     /// band that hurts.
     pub worst_case: Option<[f64; 2]>,
@@ -68,6 +76,11 @@ impl CharacteristicAnalysis {
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
     }
 
+    /// Whether its target yield is met; None where it has none, or its yield is unknown.
+    pub fn met(&self) -> Option<bool> {
+        self.capability?.meets(self.characteristic.target_yield())
+    }
+
     pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> Self {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;
@@ -82,11 +95,21 @@ impl CharacteristicAnalysis {
             && interactions.len() == possible_interactions
             && interactions.iter().all(|interaction| interaction.share.is_some())
             && plan.varying().iter().all(|&d| fitted.parts[d].is_some_and(|part| part.degree() >= 2));
+        let characteristic = problem.characteristics()[c].clone();
+        let moments = contributions.as_ref().map(|contributions| contributions.moments);
+        let law = moments.map(|moments| Law::fit(&moments));
+        let capability = |law: &Law| {
+            moments.map(|moments| Capability::of(law, moments.mean(), moments.sigma(), characteristic.limits()))
+        };
+        let normal = moments.and_then(|moments| capability(&Law::normal(&moments).ok()?));
         let (worst_case, rss) = extremes(problem, plan.varying(), &sensitivities, fitted.nominal);
         Self {
-            characteristic: problem.characteristics()[c].clone(),
             nominal: fitted.nominal,
-            moments: contributions.as_ref().map(|contributions| contributions.moments),
+            moments,
+            capability: law.as_ref().and_then(|law| capability(law.as_ref().ok()?)),
+            normal,
+            law,
+            characteristic,
             worst_case,
             rss,
             sensitivities,

@@ -1,6 +1,7 @@
 //! Where the results of an analysis rest on something that does not hold.
 
 use super::CharacteristicAnalysis;
+use crate::capability::Law;
 use crate::method::{Method, Order, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
@@ -13,6 +14,9 @@ const NOISE: f64 = 1e-4;
 const SHIFT: f64 = 0.1;
 /// and so does curvature that adds more than this part of the linear variance.
 const CURVED: f64 = 0.05;
+
+/// A kurtosis that exceeds the least possible by no more than this part is worth one too.
+const MARGIN: f64 = 0.1;
 
 pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[CharacteristicAnalysis]) -> Vec<Warning> {
     let mut warnings = Vec::new();
@@ -137,6 +141,7 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
     if rounding > NOISE {
         warnings.push(Warning::Noise { characteristic: characteristic.clone(), rounding });
     }
+    warnings.extend(law(analysis, &characteristic));
     if outcome.order == Order::First {
         let plan = &outcome.plan;
         let parts = plan.varying().iter().map(|&d| outcome.fitted[c].parts[d]).collect();
@@ -150,6 +155,18 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
         }
     }
     warnings
+}
+
+/// Moments that no distribution has, or hardly any.
+fn law(analysis: &CharacteristicAnalysis, characteristic: &str) -> Option<Warning> {
+    let characteristic = characteristic.to_owned();
+    match analysis.law.as_ref()? {
+        Err(error) => Some(Warning::InfeasibleMoments { characteristic, reason: error.to_string() }),
+        Ok(Law::Pearson(law)) if law.margin() < MARGIN => {
+            Some(Warning::NearInfeasibleMoments { characteristic, skewness: law.skewness(), kurtosis: law.kurtosis() })
+        }
+        Ok(_) => None,
+    }
 }
 
 fn name(problem: &Problem, c: usize) -> String {

@@ -14,6 +14,9 @@ use crate::study::Study;
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read(&asked.study)?;
+    if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
+        return Err(Failure::NothingToCheck);
+    }
     let destination = Destination::open(&asked.output)?;
     let begun = Instant::now();
     let analysis = analyze(&study, asked, begun)?;
@@ -35,7 +38,14 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     }
     written?;
     let complete = analysis.characteristics.iter().all(|characteristic| characteristic.moments.is_some());
-    Ok(if complete { Exit::Done } else { Exit::NoResult })
+    if !complete {
+        return Ok(Exit::NoResult);
+    }
+    let missed = analysis
+        .characteristics
+        .iter()
+        .any(|one| one.characteristic.target_yield().is_some() && one.met() != Some(true));
+    Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
 }
 
 fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant) -> Result<Analysis, Failure> {

@@ -41,6 +41,9 @@ pub(super) enum Command {
     /// The built-in models, or one of them with its inputs and outputs
     #[command(after_help = "Example: sensitol models engine-balance")]
     Models(ModelsArgs),
+    /// The Pearson distribution of four moments: densities, probabilities, quantiles
+    #[command(after_help = "Example: sensitol pearson --skewness 0.5 --kurtosis 3.4 --sf 4 --upper-quantile 1e-6,1e-9")]
+    Pearson(PearsonArgs),
 }
 
 /// A study and how it is to be analysed.
@@ -91,6 +94,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "S", value_parser = positive)]
     pub(super) time: Option<f64>,
 
+    /// Exit with 1 when a characteristic misses its target_yield, or its yield is unknown
+    #[arg(long)]
+    pub(super) check: bool,
+
     /// Seed of random numbers, for the methods that draw some; kept in the report
     #[arg(long, value_name = "N")]
     pub(super) seed: Option<u64>,
@@ -132,6 +139,49 @@ pub(super) struct ModelsArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub(super) struct PearsonArgs {
+    /// Third standardised moment
+    #[arg(long, value_name = "G", value_parser = finite)]
+    pub(super) skewness: f64,
+
+    /// Fourth standardised moment, 3 for a normal; above 1 + skewness^2
+    #[arg(long, value_name = "B", value_parser = finite)]
+    pub(super) kurtosis: f64,
+
+    /// First moment
+    #[arg(long, value_name = "M", value_parser = finite, default_value = "0")]
+    pub(super) mean: f64,
+
+    /// Standard deviation
+    #[arg(long, value_name = "S", value_parser = positive, default_value = "1")]
+    pub(super) sigma: f64,
+
+    /// Densities at these values
+    #[arg(long, value_name = "X,..", value_parser = finite, value_delimiter = ',', allow_hyphen_values = true)]
+    pub(super) pdf: Vec<f64>,
+
+    /// Probabilities below these values
+    #[arg(long, value_name = "X,..", value_parser = finite, value_delimiter = ',', allow_hyphen_values = true)]
+    pub(super) cdf: Vec<f64>,
+
+    /// Probabilities above these values
+    #[arg(long, value_name = "X,..", value_parser = finite, value_delimiter = ',', allow_hyphen_values = true)]
+    pub(super) sf: Vec<f64>,
+
+    /// Values below which these probabilities lie
+    #[arg(long, value_name = "P,..", value_parser = probability, value_delimiter = ',')]
+    pub(super) quantile: Vec<f64>,
+
+    /// Values above which these probabilities lie
+    #[arg(long, value_name = "P,..", value_parser = probability, value_delimiter = ',')]
+    pub(super) upper_quantile: Vec<f64>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct OutputArgs {
     /// Print JSON
     #[arg(long, help_heading = OUTPUT)]
@@ -143,9 +193,21 @@ pub(super) struct OutputArgs {
 }
 
 fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        Ok(_) => Err("it must be a number above 0".to_owned()),
+    number(text, |value| value.is_finite() && value > 0.0, "it must be a number above 0")
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    number(text, f64::is_finite, "it must be a finite number")
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    number(text, |value| (0.0..=1.0).contains(&value), "a probability lies between 0 and 1")
+}
+
+fn number(text: &str, holds: fn(f64) -> bool, must: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if holds(value) => Ok(value),
+        Ok(_) => Err(must.to_owned()),
         Err(_) => Err("it is no number".to_owned()),
     }
 }

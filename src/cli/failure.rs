@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use crate::method::MethodError;
+use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
 use crate::study::StudyError;
 
@@ -14,6 +15,8 @@ use crate::study::StudyError;
 pub(super) enum Exit {
     /// Done, with warnings perhaps.
     Done = 0,
+    /// `--check`: a target is missed.
+    Missed = 1,
     /// The command line or the study is wrong.
     Usage = 2,
     /// The model gave some asked characteristic no result.
@@ -35,6 +38,10 @@ pub(super) enum Failure {
     Problem(#[from] ProblemError),
     #[error(transparent)]
     Method(#[from] MethodError),
+    #[error(transparent)]
+    Pearson(#[from] PearsonError),
+    #[error("--check has nothing to check: no characteristic asked for has a target_yield")]
+    NothingToCheck,
     #[error("--pairs {text}: {fault}")]
     Pairs { text: String, fault: &'static str },
     #[error("there is no built-in model `{name}`; {help}")]

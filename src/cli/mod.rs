@@ -9,6 +9,7 @@ mod failure;
 mod models;
 mod output;
 mod pairs;
+mod pearson;
 mod plan;
 mod study;
 
@@ -37,6 +38,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Plan(asked) => plan::run(asked, style),
         Command::Check(asked) => check::run(asked, style),
         Command::Models(asked) => models::run(asked, style),
+        Command::Pearson(asked) => pearson::run(asked, style),
     };
     let exit = result.unwrap_or_else(|failure| {
         if let Some(message) = failure.render() {

@@ -85,6 +85,10 @@ impl Destination {
             return Err(unwritable(ErrorKind::IsADirectory.into()));
         }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if !folder.is_dir() {
+            let missing = std::io::Error::new(ErrorKind::NotFound, format!("there is no folder {}", folder.display()));
+            return Err(Failure::Unwritable { path: path.to_owned(), error: missing });
+        }
         let mut builder = tempfile::Builder::new();
         // A private temporary file becomes an ordinary one: readable as the user's other files are.
         #[cfg(unix)]

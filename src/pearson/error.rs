@@ -43,8 +43,9 @@ pub enum PearsonError {
     },
     /// No distribution at all has this pair: kurtosis is above 1 + skewness squared for all but the laws with two values.
     #[error(
-        "no distribution has skewness {skewness} and kurtosis {kurtosis}: the kurtosis must be above 1 + skewness^2 = {bound}, \
-         which only the law with the two values {:.4} and {:.4} sigma attains", law.values[0], law.values[1]
+        "{}: it must be above 1 + skewness^2 = {bound}, which is attained only by two values, {:.4} and {:.4} sigma off \
+         the mean with probabilities {:.4} and {:.4}",
+        below(*skewness, *kurtosis, *bound), law.values[0], law.values[1], law.probabilities[0], law.probabilities[1]
     )]
     Infeasible {
         /// As given.
@@ -68,5 +69,15 @@ impl PearsonError {
     pub(super) fn infeasible(skewness: f64, kurtosis: f64) -> Self {
         let bound = 1.0 + skewness * skewness;
         Self::Infeasible { skewness, kurtosis, bound, law: TwoPoint::with_skewness(skewness) }
+    }
+}
+
+/// How far a kurtosis is below the bound.
+fn below(skewness: f64, kurtosis: f64, bound: f64) -> String {
+    match bound - kurtosis {
+        0.0 => format!("with skewness {skewness} the kurtosis {kurtosis} is the least that there is"),
+        far => format!(
+            "with skewness {skewness} no distribution has the kurtosis {kurtosis}, which is {far:.3e} too small"
+        ),
     }
 }

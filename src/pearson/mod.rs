@@ -49,8 +49,17 @@ use standard::Standard;
 pub struct Pearson {
     mean: f64,
     sigma: f64,
-    mirrored: bool,
+    skewness: f64,
+    kurtosis: [f64; 2],
     standard: Standard,
+}
+
+/// Laws with the same moments are the same.
+impl PartialEq for Pearson {
+    fn eq(&self, other: &Self) -> bool {
+        let moments = |law: &Self| (law.mean, law.sigma, law.skewness, law.kurtosis);
+        moments(self) == moments(other)
+    }
 }
 
 impl Pearson {
@@ -88,12 +97,11 @@ impl Pearson {
         if sigma <= 0.0 {
             return Err(PearsonError::Sigma { sigma });
         }
-        let mirrored = skewness < 0.0;
         let standard = Standard::new(skewness.abs(), kurtosis).map_err(|error| match error {
             PearsonError::Infeasible { kurtosis, .. } => PearsonError::infeasible(skewness, kurtosis),
             other => other,
         })?;
-        Ok(Self { mean, sigma, mirrored, standard })
+        Ok(Self { mean, sigma, skewness, kurtosis, standard })
     }
 
     /// Its type.
@@ -111,25 +119,44 @@ impl Pearson {
         self.sigma
     }
 
+    /// Third standardised moment.
+    pub fn skewness(&self) -> f64 {
+        self.skewness
+    }
+
+    /// Fourth standardised moment, 3 for a normal.
+    pub fn kurtosis(&self) -> f64 {
+        self.kurtosis[0] + self.kurtosis[1]
+    }
+
+    /// How far the kurtosis is above the least that any law with this skewness has, relative to that.
+    pub fn margin(&self) -> f64 {
+        self.kurtosis() / (1.0 + self.skewness * self.skewness) - 1.0
+    }
+
+    fn mirrored(&self) -> bool {
+        self.skewness < 0.0
+    }
+
     /// Lower and upper end, infinite where there is none.
     pub fn support(&self) -> [f64; 2] {
         let [lower, upper] = self.standard.support;
-        let ends = if self.mirrored { [-upper, -lower] } else { [lower, upper] };
+        let ends = if self.mirrored() { [-upper, -lower] } else { [lower, upper] };
         ends.map(|end| self.mean + self.sigma * end)
     }
 
     /// In sigmas from the mean, on the side where the skewness is positive.
     fn z(&self, x: f64) -> f64 {
         let z = (x - self.mean) / self.sigma;
-        if self.mirrored { -z } else { z }
+        if self.mirrored() { -z } else { z }
     }
 
     fn x(&self, z: f64) -> f64 {
-        self.mean + self.sigma * if self.mirrored { -z } else { z }
+        self.mean + self.sigma * if self.mirrored() { -z } else { z }
     }
 
     fn turned(&self, [below, above]: [f64; 2]) -> [f64; 2] {
-        if self.mirrored { [above, below] } else { [below, above] }
+        if self.mirrored() { [above, below] } else { [below, above] }
     }
 
     /// Density, per unit of x.

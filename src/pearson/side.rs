@@ -235,13 +235,14 @@ impl Side {
                 high = z;
             }
             let mut next = z + self.sign * error * place.mills;
-            let within = self.sign * (next - low) > 0.0 && self.sign * (high - next) > 0.0;
-            if !within && error != 0.0 {
-                next = if high.is_finite() { 0.5 * (low + high) } else { z + (z - self.anchor) };
-            }
             // Next to an end of the support every double counts.
-            if next == z || (self.limit.is_infinite() && (next - z).abs() <= 2.0 * f64::EPSILON * z.abs()) {
+            let last = if self.limit.is_finite() { 0.0 } else { 2.0 * f64::EPSILON * z.abs() };
+            if (next - z).abs() <= last {
                 break;
+            }
+            let within = self.sign * (next - low) > 0.0 && self.sign * (high - next) > 0.0;
+            if !within {
+                next = if high.is_finite() { 0.5 * (low + high) } else { z + (z - self.anchor) };
             }
             z = next;
         }

@@ -1,15 +1,21 @@
 //! Reports: a versioned value with serde, and its text for people.
 
+mod distribution;
+mod limits;
 pub(crate) mod number;
 mod page;
+mod sketch;
 mod text;
 
+pub use distribution::{DistributionReport, Quantiles};
+pub use limits::law_text;
 pub use page::{Detail, Style};
 pub use text::text;
 
 use serde::Serialize;
 
 use crate::analysis::{Analysis, CharacteristicAnalysis};
+use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
 use crate::problem::Problem;
 use crate::warning::Warning;
@@ -102,29 +108,38 @@ pub struct CharacteristicReport {
     pub possible_interactions: usize,
     /// Share of the variance that nothing above accounts for.
     pub left_out_share: Option<f64>,
-    /// The fitted distribution; not fitted yet.
-    pub distribution: Option<()>,
+    /// The distribution that has these moments; None where they are unknown, or none has.
+    pub distribution: Option<DistributionReport>,
+    /// The same, to be drawn.
+    #[serde(skip)]
+    pub law: Option<Law>,
     /// Lower limit.
     pub lower: Option<f64>,
     /// Upper limit.
     pub upper: Option<f64>,
     /// The share of assemblies that must keep the limits.
     pub target_yield: Option<f64>,
-    /// Whether they do; not known yet.
+    /// Whether they do.
     pub met: Option<bool>,
-    /// The share that does; not known yet.
+    /// The share that does.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
-    /// Assemblies below the lower limit, per million; not known yet.
+    /// Assemblies below the lower limit, per million.
     pub ppm_below: Option<f64>,
-    /// Assemblies above the upper limit, per million; not known yet.
+    /// Assemblies above the upper limit, per million.
     pub ppm_above: Option<f64>,
-    /// Width of the limits by six sigma; not known yet.
+    /// Width of the limits by six sigma.
     pub cp: Option<f64>,
-    /// Distance of the nearer limit by three sigma; not known yet.
+    /// Distance of the nearer limit by three sigma.
     pub cpk: Option<f64>,
-    /// Sigmas to the nearer limit; not known yet.
+    /// Width of the limits by that between the quantiles 0.00135 and 0.99865.
+    pub cp_percentile: Option<f64>,
+    /// Distance of the nearer limit from the median by that of the quantile on its side.
+    pub cpk_percentile: Option<f64>,
+    /// Sigmas of a normal beyond which, on one side, as many lie as are rejected.
     pub sigma_level: Option<f64>,
+    /// What a normal distribution with the same mean and sigma would make of the limits.
+    pub normal_fit: Option<NormalFitReport>,
 }
 
 /// Intervals that no assembly leaves.
@@ -136,6 +151,18 @@ pub struct WorstCaseReport {
     pub extremes: Option<[f64; 2]>,
     /// Whether the search proved them; not searched yet.
     pub proven: Option<bool>,
+}
+
+/// What a normal distribution with the same mean and sigma would make of the limits.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NormalFitReport {
+    /// The share of assemblies within them.
+    #[serde(rename = "yield")]
+    pub yield_: Option<f64>,
+    /// Assemblies below the lower limit, per million.
+    pub ppm_below: Option<f64>,
+    /// Assemblies above the upper limit, per million.
+    pub ppm_above: Option<f64>,
 }
 
 /// What one dimension does.
@@ -238,6 +265,11 @@ impl DimensionReport {
 impl CharacteristicReport {
     fn of(analysis: &CharacteristicAnalysis) -> Self {
         let (characteristic, moments) = (&analysis.characteristic, analysis.moments);
+        let law = analysis.law.clone().and_then(Result::ok);
+        let of = |what: fn(&Capability) -> Option<f64>| analysis.capability.as_ref().and_then(what);
+        fn ppm(share: f64) -> f64 {
+            1e6 * share
+        }
         Self {
             name: characteristic.name().to_owned(),
             unit: characteristic.unit().map(str::to_owned),
@@ -270,17 +302,25 @@ impl CharacteristicReport {
                 .collect(),
             possible_interactions: analysis.possible_interactions,
             left_out_share: analysis.left_out_share,
-            distribution: None,
+            distribution: law.as_ref().map(DistributionReport::of),
+            law,
             lower: characteristic.limits().lower(),
             upper: characteristic.limits().upper(),
             target_yield: characteristic.target_yield(),
-            met: None,
-            yield_: None,
-            ppm_below: None,
-            ppm_above: None,
-            cp: None,
-            cpk: None,
-            sigma_level: None,
+            met: analysis.met(),
+            yield_: of(|capability| capability.yield_()),
+            ppm_below: of(|capability| capability.below.map(ppm)),
+            ppm_above: of(|capability| capability.above.map(ppm)),
+            cp: of(|capability| capability.cp),
+            cpk: of(|capability| capability.cpk),
+            cp_percentile: of(|capability| capability.cp_percentile),
+            cpk_percentile: of(|capability| capability.cpk_percentile),
+            sigma_level: of(|capability| capability.sigma_level()),
+            normal_fit: analysis.normal.map(|normal| NormalFitReport {
+                yield_: normal.yield_(),
+                ppm_below: normal.below.map(ppm),
+                ppm_above: normal.above.map(ppm),
+            }),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The report for a terminal: the verdict first, then a table per characteristic; at most 100 columns.
 
+use super::limits::{distribution, verdict};
 use super::number::{beside, percent, plain, significant, unsigned_zero};
 use super::page::{Detail, Grid, Page, Style, clean, short};
 use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
@@ -55,28 +56,16 @@ fn verdicts(page: &mut Page, report: &Report) {
             _ => ("unknown".to_owned(), UNKNOWN.to_owned()),
         };
         let unit = one.unit.as_deref().map(clean).unwrap_or_default();
-        table.row([short(&one.name), mean, reach, unit, limits, verdict(one).to_owned()]);
+        table.row([short(&one.name), mean, reach, unit, limits, verdict(one)]);
     }
     page.print(&table);
-}
-
-/// Whether three sigma keep the limits, where there are any.
-fn verdict(one: &CharacteristicReport) -> &'static str {
-    let (Some(mean), Some(sigma)) = (one.mean, one.sigma) else { return "" };
-    match (one.lower, one.upper) {
-        (None, None) => "",
-        (lower, upper) => {
-            let inside = lower.is_none_or(|lower| mean - 3.0 * sigma >= lower)
-                && upper.is_none_or(|upper| mean + 3.0 * sigma <= upper);
-            if inside { "3 sigma inside" } else { "3 sigma OUTSIDE" }
-        }
-    }
 }
 
 fn one(page: &mut Page, report: &Report, one: &CharacteristicReport) {
     let unit = one.unit.as_deref().map(|unit| format!(" [{}]", clean(unit))).unwrap_or_default();
     page.line(&format!("{}{unit}", clean(&one.name)));
     figures(page, one);
+    distribution(page, one);
     page.line("");
     contributions(page, report, one);
     interactions(page, one);

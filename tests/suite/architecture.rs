@@ -16,6 +16,8 @@ const LAYERS: &[&[&str]] = &[
     &["problem"],
     &["plan"],
     &["surrogate"],
+    &["capability"],
+    &["pearson"],
     &["moments"],
     &["models"],
     &["assembly"],

@@ -38,6 +38,18 @@ fn analyze_prints_the_report() {
     );
 }
 
+/// To twelve digits: the last ones are those of a machine's logarithm.
+fn rounded(value: &mut serde_json::Value) {
+    match value {
+        serde_json::Value::Number(number) if number.is_f64() => {
+            *value = format!("{:.11e}", number.as_f64().unwrap()).parse::<f64>().unwrap().into();
+        }
+        serde_json::Value::Array(items) => items.iter_mut().for_each(rounded),
+        serde_json::Value::Object(fields) => fields.values_mut().for_each(rounded),
+        _ => {}
+    }
+}
+
 /// Everything but the time, which nobody can know beforehand.
 #[test]
 fn analyze_prints_json() {
@@ -46,6 +58,7 @@ fn analyze_prints_json() {
     let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(report["wall_s"].as_f64().unwrap() > 0.0);
     report["wall_s"] = 0.0.into();
+    rounded(&mut report);
     insta::assert_json_snapshot!("analyze-json", report);
 }
 
@@ -59,7 +72,7 @@ fn plan_says_what_would_be_evaluated() {
 
 #[test]
 fn help_is_there() {
-    for command in ["", "analyze", "plan", "check", "models"] {
+    for command in ["", "analyze", "plan", "check", "models", "pearson"] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
         insta::assert_snapshot!(format!("help-{}", if command.is_empty() { "all" } else { command }), run(&arguments));
     }
@@ -102,6 +115,17 @@ fn wrong_input() {
         &["analyze", ENGINE, "-o", "/nowhere/report.txt"],
         &["analyze", ENGINE, "-o", "examples"],
         &["plan", ENGINE, "--write-points", "/nowhere/points.csv"],
+        &["analyze", ENGINE, "--check"],
+        &["pearson"],
+        &["pearson", "--skewness", "1", "--kurtosis", "three"],
+        &["pearson", "--skewness", "1", "--kurtosis", "1.9"],
+        &["pearson", "--skewness", "-1", "--kurtosis", "2"],
+        &["pearson", "--skewness", "nan", "--kurtosis", "3"],
+        &["pearson", "--skewness", "0", "--kurtosis", "1e200"],
+        &["pearson", "--skewness", "0", "--kurtosis", "3", "--sigma", "0"],
+        &["pearson", "--skewness", "0", "--kurtosis", "3", "--quantile", "0.5,1.5"],
+        &["pearson", "--skewness", "0", "--kurtosis", "3", "--cdf", "1;2"],
+        &["pearson", "--skewness", "0", "--kurtosis", "3", "-o", "/nowhere/law.txt"],
         &["models", "engine-ballance"],
         &["models", "rocket"],
     ];
@@ -115,6 +139,53 @@ fn wrong_input() {
         all += &format!("$ sensitol {shown}\n{error}\n");
     }
     insta::assert_snapshot!("wrong-input", all);
+}
+
+#[test]
+fn pearson_is_a_calculator() {
+    let exponential = ["pearson", "--skewness", "2", "--kurtosis", "9"];
+    let asked = |more: &[&str]| run(&[&exponential[..], more].concat());
+    insta::assert_snapshot!(
+        "pearson-law",
+        asked(&[]) + &asked(&["--color", "never", "--mean", "-3", "--sigma", "0.5"])
+    );
+    insta::assert_snapshot!("pearson-infinite", run(&["pearson", "--skewness", "-0.5", "--kurtosis", "4"]));
+    let asked = ["--mean", "1", "--sf", "0,3", "--cdf", "-1,1e-3", "--upper-quantile", "1e-9,0", "--json"];
+    let output = sensitol(&[&exponential[..], &asked[..]].concat()).output().unwrap();
+    let answers: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    // In the order asked; the exponential by hand.
+    let [sf, cdf, quantile] = ["sf", "cdf", "upper_quantile"].map(|name| answers[name].as_array().unwrap().clone());
+    let close = |found: &serde_json::Value, expected: f64| (found.as_f64().unwrap() / expected - 1.0).abs() < 1e-13;
+    assert!(sf[0] == 1.0 && close(&sf[1], (-3.0f64).exp()));
+    assert!(cdf[0] == 0.0 && close(&cdf[1], -(-1e-3f64).exp_m1()));
+    assert!(close(&quantile[0], 1e9f64.ln()) && quantile[1].is_null(), "infinite is null");
+    assert_eq!((answers["type"].as_str(), &answers["support"]), (Some("III"), &serde_json::json!([0.0, null])));
+}
+
+/// `--check`: 0 when every target is met, 1 when one is missed, and the report all the same.
+#[test]
+fn check_answers_by_the_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let code = |target: &str, more: &[&str]| {
+        let text = format!(
+            "[dimensions]\na = {{ nominal = 1, tolerance = 0.3 }}\n[characteristics]\ny = {{ formula = \"a\", lower = 0.7 {target} }}\nz = {{ formula = \"2*a\" }}"
+        );
+        std::fs::write(&study, text).unwrap();
+        let output = sensitol(&[&["analyze", study.to_str().unwrap(), "--check"], more].concat()).output().unwrap();
+        (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
+    };
+    // Three sigma: 99.865 %.
+    assert_eq!(code(", target_yield = 0.998", &[]).0, 0);
+    let (missed, report) = code(", target_yield = 0.999", &[]);
+    assert_eq!(missed, 1);
+    assert!(report.contains("yield 99.865 %, target MISSED"), "{report}");
+    let (missed, report) = code(", target_yield = 0.999", &["--json"]);
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    assert_eq!((missed, &report["characteristics"][0]["met"]), (1, &false.into()));
+    // Nothing to check is no success; neither is a characteristic without target beside one that misses its own.
+    assert_eq!(code("", &[]).0, 2);
+    assert_eq!(code(", target_yield = 0.999", &["--kc", "z"]).0, 2);
 }
 
 /// A characteristic without result: the report is printed all the same, and the exit code is 3.

@@ -2,6 +2,7 @@
 
 mod analysis;
 mod architecture;
+mod capability;
 mod cli;
 mod distributions;
 mod docs;

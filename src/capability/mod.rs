@@ -1,0 +1,93 @@
+//! Yield and capability: how a characteristic's distribution lies between its limits.
+
+mod law;
+
+pub use law::Law;
+
+use std::sync::LazyLock;
+
+use crate::characteristic::SpecLimits;
+use crate::pearson::Pearson;
+
+/// Half of the share that six sigma of a normal leave out: 1 - 0.9973 on both sides.
+pub const TAIL: f64 = 0.001_349_898_031_630_094_6;
+
+/// How a distribution keeps limits. What does not exist, for want of a limit or because nothing varies, is None.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capability {
+    /// Share of assemblies below the lower limit.
+    pub below: Option<f64>,
+    /// Share of assemblies above the upper limit.
+    pub above: Option<f64>,
+    /// `(U - L) / 6 sigma`; needs both limits.
+    pub cp: Option<f64>,
+    /// `min(U - mean, mean - L) / 3 sigma`, of the limits that there are.
+    pub cpk: Option<f64>,
+    /// `(U - L)` by the width between the quantiles 0.00135 and 0.99865: Cp for any distribution.
+    pub cp_percentile: Option<f64>,
+    /// `min((U - median) / (q_0.99865 - median), (median - L) / (median - q_0.00135))`: Cpk for any distribution.
+    pub cpk_percentile: Option<f64>,
+}
+
+impl Capability {
+    /// Of a law with this mean and sigma.
+    ///
+    /// Source: ISO 22514-2 (2017), which calls the percentile forms Pp and Ppk by its method M2.
+    ///
+    /// ```
+    /// use sensitol::{Moments, SpecLimits, capability::{Capability, Law}};
+    /// let moments = Moments::new(6.0, 0.25, 0.0, 0.0);
+    /// let limits = SpecLimits::new(Some(5.0), Some(7.0))?;
+    /// let capability = Capability::of(&Law::fit(&moments)?, 6.0, 0.25, limits);
+    /// assert!((capability.cp.unwrap() - 4.0 / 3.0).abs() < 1e-12);
+    /// assert!((capability.cpk_percentile.unwrap() - 4.0 / 3.0).abs() < 1e-12);
+    /// // 4 sigma on both sides.
+    /// assert!((1e6 * capability.rejected().unwrap() - 63.342).abs() < 1e-3);
+    /// # Ok::<(), sensitol::Error>(())
+    /// ```
+    pub fn of(law: &Law, mean: f64, sigma: f64, limits: SpecLimits) -> Self {
+        let (lower, upper) = (limits.lower(), limits.upper());
+        let [low, middle, high] = [law.quantile(TAIL), law.quantile(0.5), law.upper_quantile(TAIL)];
+        let width = |narrow: f64, wide: f64| (wide > 0.0).then_some(narrow / wide);
+        let both = |wide: f64| width(upper? - lower?, wide);
+        let nearer = |middle: f64, down: f64, up: f64| {
+            let below = lower.map(|lower| width(middle - lower, down));
+            let above = upper.map(|upper| width(upper - middle, up));
+            below.into_iter().chain(above).reduce(|a, b| Some(a?.min(b?))).flatten()
+        };
+        Self {
+            below: lower.map(|lower| law.below(lower)),
+            above: upper.map(|upper| law.above(upper)),
+            cp: both(6.0 * sigma),
+            cpk: nearer(mean, 3.0 * sigma, 3.0 * sigma),
+            cp_percentile: both(high - low),
+            cpk_percentile: nearer(middle, middle - low, high - middle),
+        }
+    }
+
+    /// Share of assemblies outside the limits; None without any limit.
+    pub fn rejected(&self) -> Option<f64> {
+        match (self.below, self.above) {
+            (None, None) => None,
+            (below, above) => Some((below.unwrap_or(0.0) + above.unwrap_or(0.0)).min(1.0)),
+        }
+    }
+
+    /// Share of assemblies within the limits; None without any limit.
+    pub fn yield_(&self) -> Option<f64> {
+        self.rejected().map(|rejected| 1.0 - rejected)
+    }
+
+    /// Sigmas from the mean of a normal beyond which, on one side, as many lie as are rejected: `-Phi^-1(rejected)`.
+    /// Without the shift of 1.5 that some add. None where all or nothing is rejected.
+    pub fn sigma_level(&self) -> Option<f64> {
+        static NORMAL: LazyLock<Pearson> =
+            LazyLock::new(|| Pearson::normal(0.0, 1.0).expect("the standard normal exists"));
+        self.rejected().map(|rejected| NORMAL.upper_quantile(rejected)).filter(|level| level.is_finite())
+    }
+
+    /// Whether no more are rejected than a target yield allows; None where there is no target or no limit.
+    pub fn meets(&self, target: Option<f64>) -> Option<bool> {
+        Some(self.rejected()? <= 1.0 - target?)
+    }
+}

@@ -1,0 +1,83 @@
+//! The fitted distribution, as reports show it.
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use crate::capability::{Law, TAIL};
+use crate::pearson::Pearson;
+
+/// The probabilities whose quantiles every report has, by their names; the upper ones by what lies above, for `1 - p` would
+/// lose digits.
+const PROBABILITIES: [(&str, Tail); 7] = [
+    ("0.00135", Tail::Below(TAIL)),
+    ("0.01", Tail::Below(0.01)),
+    ("0.05", Tail::Below(0.05)),
+    ("0.5", Tail::Below(0.5)),
+    ("0.95", Tail::Above(0.05)),
+    ("0.99", Tail::Above(0.01)),
+    ("0.99865", Tail::Above(TAIL)),
+];
+
+#[derive(Clone, Copy)]
+enum Tail {
+    Below(f64),
+    Above(f64),
+}
+
+/// The distribution that has a characteristic's moments.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "family", rename_all = "lowercase")]
+pub enum DistributionReport {
+    /// Every assembly has the same value.
+    Point {
+        /// The value.
+        at: f64,
+    },
+    /// A member of the Pearson system.
+    Pearson {
+        /// Its type.
+        #[serde(rename = "type")]
+        kind: &'static str,
+        /// Lower and upper end, where there are any.
+        support: [Option<f64>; 2],
+        /// Quantiles.
+        quantiles: Quantiles,
+    },
+}
+
+/// Quantiles by the names of their probabilities.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantiles(pub Vec<(&'static str, f64)>);
+
+impl Serialize for Quantiles {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
+    }
+}
+
+impl DistributionReport {
+    pub(super) fn of(law: &Law) -> Self {
+        match law {
+            Law::Point { at } => Self::Point { at: *at },
+            Law::Pearson(pearson) => Self::Pearson {
+                kind: pearson.kind().name(),
+                support: pearson.support().map(|end| Some(end).filter(|end| end.is_finite())),
+                quantiles: Quantiles::of(pearson),
+            },
+        }
+    }
+}
+
+impl Quantiles {
+    pub(super) fn of(law: &Pearson) -> Self {
+        let quantile = |tail| match tail {
+            Tail::Below(p) => law.quantile(p),
+            Tail::Above(p) => law.upper_quantile(p),
+        };
+        Self(PROBABILITIES.map(|(name, tail)| (name, quantile(tail))).to_vec())
+    }
+}
