@@ -64,6 +64,7 @@ impl Evaluated {
             for (row, (point, _)) in batch.iter().enumerate() {
                 self.learn(point, row, &out);
             }
+            self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
             if self.stopped {
                 return;
             }

@@ -144,8 +144,8 @@ impl Composite {
         (of_dimensions, of_model.into_iter().map(|index| index - dimensions).collect())
     }
 
-    /// Asks the model for just what `origins` need: its outputs, ascending, and its answers.
-    fn ask_model(&self, ask: &Ask<'_>, run: &Run<'_>, origins: &[Origin]) -> (Vec<usize>, Responses) {
+    /// The outputs of the model that `origins` need, ascending.
+    fn needed(&self, origins: &[Origin]) -> Vec<usize> {
         let mut needed: Vec<usize> = origins
             .iter()
             .flat_map(|&origin| match origin {
@@ -155,6 +155,12 @@ impl Composite {
             .collect();
         needed.sort_unstable();
         needed.dedup();
+        needed
+    }
+
+    /// Asks the model for just what `origins` need: its outputs, ascending, and its answers.
+    fn ask_model(&self, ask: &Ask<'_>, run: &Run<'_>, origins: &[Origin]) -> (Vec<usize>, Responses) {
+        let needed = self.needed(origins);
         let mut answers = Responses::open(ask.points.rows(), needed.len());
         if let (Some(model), false) = (&self.model, needed.is_empty()) {
             let rows = ask.points.rows();
@@ -174,6 +180,15 @@ impl Composite {
 impl AssemblyFunction for Composite {
     fn signature(&self) -> &Signature {
         &self.signature
+    }
+
+    fn prepare(&self, outputs: &[usize]) -> Result<(), EvaluationError> {
+        let origins: Vec<Origin> = outputs.iter().map(|&output| self.outputs[output]).collect();
+        let needed = self.needed(&origins);
+        match &self.model {
+            Some(model) if !needed.is_empty() => model.function.prepare(&needed),
+            _ => Ok(()),
+        }
     }
 
     fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
@@ -224,6 +239,7 @@ impl AssemblyFunction for Composite {
                 }
             });
         });
+        out.spent(answers.extra());
     }
 }
 

@@ -15,6 +15,9 @@ pub enum EvaluationError {
     /// A formula has no value there.
     #[error(transparent)]
     Formula(#[from] Box<FormulaFailure>),
+    /// An external program failed.
+    #[error(transparent)]
+    Process(#[from] Box<super::process::ProcessError>),
     /// The model said why itself.
     #[error("{message}")]
     Refused {

@@ -14,6 +14,7 @@ mod closure;
 mod composite;
 mod error;
 pub mod formula;
+pub mod process;
 mod responses;
 mod run;
 mod signature;
@@ -31,6 +32,16 @@ pub use signature::{Input, Output, Signature};
 pub trait AssemblyFunction: Send + Sync {
     /// Names and units of inputs and outputs, and what is known of the function beforehand.
     fn signature(&self) -> &Signature;
+
+    /// Starts whatever must run before the first point, for these outputs. What fails here would fail at every point:
+    /// nothing has been evaluated yet.
+    ///
+    /// # Errors
+    /// When the function cannot be had at all, such as a program that does not exist.
+    fn prepare(&self, outputs: &[usize]) -> Result<(), EvaluationError> {
+        let _ = outputs;
+        Ok(())
+    }
 
     /// Answers `ask.points` for `ask.outputs` into `out`, whose rows are the points and whose columns are the asked
     /// outputs in the order asked.

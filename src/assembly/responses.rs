@@ -25,12 +25,14 @@ pub struct Responses {
     /// NaN where there is no value.
     values: Vec<f64>,
     errors: BTreeMap<(usize, usize), EvaluationError>,
+    /// Evaluations beyond one for each answered row.
+    extra: i64,
 }
 
 impl Responses {
     /// For `rows` points and `outputs` asked outputs, all of them open.
     pub fn open(rows: usize, outputs: usize) -> Self {
-        Self { rows, outputs, values: vec![f64::NAN; rows * outputs], errors: BTreeMap::new() }
+        Self { rows, outputs, values: vec![f64::NAN; rows * outputs], errors: BTreeMap::new(), extra: 0 }
     }
 
     /// Number of points.
@@ -78,6 +80,16 @@ impl Responses {
         self.value(row, output).is_none() && self.error(row, output).is_none()
     }
 
+    /// Adds evaluations beyond one for each answered row: points tried again; fewer than none where answers came without.
+    pub fn spent(&mut self, extra: i64) {
+        self.extra += extra;
+    }
+
+    /// Evaluations beyond one for each answered row.
+    pub fn extra(&self) -> i64 {
+        self.extra
+    }
+
     /// All values of one output, NaN where there is none.
     pub fn column(&self, output: usize) -> &[f64] {
         &self.values[output * self.rows..(output + 1) * self.rows]
@@ -94,6 +106,7 @@ impl Responses {
             let start = output * self.rows + first;
             self.values[start..start + block.rows].copy_from_slice(block.column(output));
         }
+        self.extra += block.extra;
         self.errors.extend(block.errors.into_iter().map(|((row, output), error)| ((first + row, output), error)));
     }
 }

@@ -111,6 +111,7 @@ impl Procedure for Ladder {
                 fitting: fitting(problem, budget),
             });
         }
+        problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
         let evaluated = evaluate(problem, &plan, run);
         let pairs = plan.pairs(Some(&evaluated.known));
         let fitted = (0..problem.characteristics().len()).map(|c| self.fit(&plan, &evaluated, c, &pairs)).collect();

@@ -17,7 +17,7 @@ mod worst_case;
 pub use ladder::{Fitted, Order, Outcome};
 pub use options::{Options, Pairs};
 
-use crate::assembly::Run;
+use crate::assembly::{EvaluationError, Run};
 use crate::plan::DifferencePlan;
 use crate::problem::Problem;
 
@@ -115,6 +115,12 @@ pub enum MethodError {
         budget: usize,
         /// The best method that fits the budget, and what it needs.
         fitting: Option<(&'static str, usize)>,
+    },
+    /// The model cannot be used at all; nothing was evaluated.
+    #[error("{error}")]
+    Model {
+        /// Why not.
+        error: EvaluationError,
     },
     /// An option that the method does not have.
     #[error("{method} has no choice of {option}; only {only} has one")]

@@ -8,9 +8,11 @@ use serde_spanned::Spanned;
 use super::dimension::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
+use super::model::{ModelOf, model, process};
 use super::source::Source;
 use crate::assembly::formula::{Formula, FormulaError, is_reserved};
-use crate::assembly::{self, AssemblyFunction, Composite, Parts};
+use crate::assembly::process::Greeting;
+use crate::assembly::{self, AssemblyFunction, Composite, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
 use crate::dimension::Dimension;
 use crate::method::Options;
@@ -27,7 +29,9 @@ pub(super) struct Built {
 }
 
 pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
-    let model = file.model.as_ref().map(|entry| model(&entry.get_ref().builtin)).transpose()?;
+    let evaluated = file.model.as_ref().map(|entry| model(entry, source)).transpose()?;
+    let program = matches!(evaluated, Some(ModelOf::Program(_)));
+    let model = evaluated.as_ref().and_then(ModelOf::built_in);
     names(file, model)?;
     let dimensions = dimensions(file, model)?;
     let formulas = formulas(file, source)?;
@@ -38,24 +42,14 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     }
     let used = |name: &str| formulas.iter().any(|named| named.formula.names().any(|(used, _)| used == name));
     known_to_model(file, model, &used)?;
-    let (characteristics, outputs) = characteristics(file, model)?;
-    let composite = compose(file, model, &dimensions, &formulas, outputs, source)?;
-    let warnings = unused(file, model, &composite, &formulas, &used);
+    let (characteristics, outputs) = characteristics(file, model, program)?;
+    let composite = compose(file, evaluated.as_ref(), &dimensions, &formulas, outputs, source)?;
+    let warnings = unused(file, evaluated.as_ref(), &composite, &formulas, &used);
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
     let options = super::options::options(&file.analysis, &problem)?;
     Ok(Built { problem, options, warnings })
-}
-
-fn model(name: &Spanned<String>) -> Result<&'static Model, Fault> {
-    let found = name.get_ref();
-    models::by_name(found).ok_or_else(|| {
-        let known: Vec<String> = models::ALL.iter().map(|model| model.name.to_owned()).collect();
-        let nearest = nearest(found, known.iter().map(String::as_str)).map(str::to_owned);
-        let found = found.clone();
-        fault(name.span(), "model.builtin", StudyFault::UnknownWord { what: "built-in model", found, nearest, known })
-    })
 }
 
 /// Every name means one thing.
@@ -154,13 +148,18 @@ fn known_to_model(file: &StudyFile, model: Option<&Model>, used: &dyn Fn(&str) -
 
 type Outputs = Vec<(String, Option<String>)>;
 
-fn characteristics(file: &StudyFile, model: Option<&Model>) -> Result<(Vec<Characteristic>, Outputs), Fault> {
+fn characteristics(
+    file: &StudyFile,
+    model: Option<&Model>,
+    program: bool,
+) -> Result<(Vec<Characteristic>, Outputs), Fault> {
     let (mut characteristics, mut outputs) = (Vec::new(), Vec::new());
     for (name, entry) in &file.characteristics.0 {
         let (text, key) = (name.get_ref(), format!("characteristics.{}", name.get_ref()));
         let entry = entry.get_ref();
         let mut unit = entry.unit.clone();
-        if entry.formula.is_none() {
+        // What a program offers it says itself.
+        if entry.formula.is_none() && !program {
             let output = offered(name, &key, model)?;
             unit = unit.or_else(|| Some(output.unit.to_owned()));
         }
@@ -213,32 +212,40 @@ fn characteristic(
 
 fn compose(
     file: &StudyFile,
-    model: Option<&'static Model>,
+    model: Option<&ModelOf>,
     dimensions: &[Dimension],
     formulas: &[Named<'_>],
     outputs: Outputs,
     source: &Source,
 ) -> Result<Composite, Fault> {
-    let constant = |name: &str| {
-        file.constants.0.iter().find(|(constant, _)| constant.get_ref() == name).map(|(_, value)| *value.get_ref())
-    };
-    let input =
-        |input: &models::ModelInput| match dimensions.iter().position(|dimension| dimension.name() == input.name) {
-            Some(index) => assembly::Source::Dimension(index),
-            None => assembly::Source::Fixed(constant(input.name).unwrap_or(input.nominal)),
-        };
+    let inputs: Vec<Input> = (dimensions.iter())
+        .map(|dimension| Input { name: dimension.name().to_owned(), unit: dimension.unit().map(str::to_owned) })
+        .collect();
+    let constants: Vec<(String, f64)> =
+        file.constants.0.iter().map(|(name, value)| (name.get_ref().clone(), *value.get_ref())).collect();
+    let model = model.map(|model| -> (Arc<dyn AssemblyFunction>, Vec<assembly::Source>) {
+        match model {
+            ModelOf::BuiltIn(model) => (Arc::new(model.function()), sources(model, dimensions, &constants)),
+            ModelOf::Program(settings) => {
+                let used =
+                    |name: &str| formulas.iter().any(|named| named.formula.names().any(|(used, _)| used == name));
+                let names =
+                    dimensions.iter().map(Dimension::name).chain(constants.iter().map(|(name, _)| name.as_str()));
+                let greeting = Greeting {
+                    nominal: dimensions.iter().map(Dimension::nominal).collect(),
+                    constants: constants.clone(),
+                    optional: names.filter(|name| used(name)).map(str::to_owned).collect(),
+                };
+                let offered = asked_of_program(&inputs, &constants, formulas, &outputs);
+                let all = (0..dimensions.len()).map(assembly::Source::Dimension).collect();
+                (process(settings, &inputs, greeting, offered), all)
+            }
+        }
+    });
     let parts = Parts {
-        inputs: (dimensions.iter())
-            .map(|dimension| assembly::Input {
-                name: dimension.name().to_owned(),
-                unit: dimension.unit().map(str::to_owned),
-            })
-            .collect(),
-        constants: file.constants.0.iter().map(|(name, value)| (name.get_ref().clone(), *value.get_ref())).collect(),
-        model: model.map(|model| {
-            let function: Arc<dyn AssemblyFunction> = Arc::new(model.function());
-            (function, model.inputs.iter().map(input).collect())
-        }),
+        inputs,
+        constants,
+        model,
         formulas: formulas.iter().map(|named| (named.name.clone(), named.formula.clone())).collect(),
         outputs,
     };
@@ -248,10 +255,43 @@ fn compose(
     })
 }
 
+/// Where the inputs of a built-in model come from: a dimension, a constant, or its own nominal value.
+fn sources(model: &Model, dimensions: &[Dimension], constants: &[(String, f64)]) -> Vec<assembly::Source> {
+    let constant = |name: &str| constants.iter().find(|(constant, _)| constant == name).map(|(_, value)| *value);
+    let input =
+        |input: &models::ModelInput| match dimensions.iter().position(|dimension| dimension.name() == input.name) {
+            Some(index) => assembly::Source::Dimension(index),
+            None => assembly::Source::Fixed(constant(input.name).unwrap_or(input.nominal)),
+        };
+    model.inputs.iter().map(input).collect()
+}
+
+/// What a program is asked for: characteristics without formula, and names in formulas that mean nothing else.
+fn asked_of_program(
+    inputs: &[Input],
+    constants: &[(String, f64)],
+    formulas: &[Named<'_>],
+    outputs: &Outputs,
+) -> Outputs {
+    let is_formula = |name: &str| formulas.iter().any(|named| named.name == name);
+    let mut asked: Outputs = outputs.iter().filter(|(name, _)| !is_formula(name)).cloned().collect();
+    for (name, _) in formulas.iter().flat_map(|named| named.formula.names()) {
+        let known = is_formula(name)
+            || inputs.iter().any(|input| input.name == name)
+            || constants.iter().any(|(constant, _)| constant == name)
+            || asked.iter().any(|(known, _)| known == name)
+            || is_reserved(name);
+        if !known {
+            asked.push((name.to_owned(), None));
+        }
+    }
+    asked
+}
+
 /// Constants and formulas that no characteristic of the file needs.
 fn unused(
     file: &StudyFile,
-    model: Option<&Model>,
+    model: Option<&ModelOf>,
     composite: &Composite,
     formulas: &[Named<'_>],
     used: &dyn Fn(&str) -> bool,
@@ -262,7 +302,12 @@ fn unused(
     let idle_formulas = (formulas.iter().zip(needed))
         .filter(|(_, needed)| !needed)
         .map(|(named, _)| Warning::UnusedName { what: "formula", name: named.name.clone() });
-    let is_input = |name: &str| model.is_some_and(|model| model.inputs.iter().any(|input| input.name == name));
+    let is_input = |name: &str| match model {
+        None => false,
+        Some(ModelOf::BuiltIn(model)) => model.inputs.iter().any(|input| input.name == name),
+        // A program says itself what it does not know.
+        Some(ModelOf::Program(_)) => true,
+    };
     let idle_constants = (file.constants.names().into_iter())
         .filter(|name| !used(name.get_ref()) && !is_input(name.get_ref()))
         .map(|name| Warning::UnusedName { what: "constant", name: name.get_ref().clone() });

@@ -72,9 +72,17 @@ pub(super) struct CharacteristicEntry {
 
 /// `[model]`.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table such as { builtin = \"engine-balance\" }")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table such as { builtin = \"engine-balance\" } or { command = [\"python3\", \"gap.py\"] }"
+)]
 pub(super) struct ModelEntry {
-    pub(super) builtin: Spanned<String>,
+    pub(super) builtin: Option<Spanned<String>>,
+    pub(super) command: Option<Spanned<Vec<String>>>,
+    pub(super) workers: Option<Spanned<u64>>,
+    pub(super) timeout_s: Option<Spanned<f64>>,
+    pub(super) start_timeout_s: Option<Spanned<f64>>,
+    pub(super) retries: Option<Spanned<u64>>,
 }
 
 /// `[analysis]`.

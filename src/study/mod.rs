@@ -8,6 +8,7 @@ mod de;
 mod dimension;
 mod error;
 mod file;
+mod model;
 mod options;
 mod source;
 mod tree;
@@ -15,7 +16,7 @@ mod tree;
 pub use error::{StudyError, StudyFault};
 pub use source::Format;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Deserialize;
@@ -73,7 +74,10 @@ impl Study {
         let bytes =
             std::fs::read(path).map_err(|error| failed("", StudyFault::Unreadable { reason: error.to_string() }))?;
         match std::str::from_utf8(&bytes) {
-            Ok(text) => Self::parse(text, format, &name),
+            Ok(text) => {
+                let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+                Self::parse(text, format, &name, folder.to_owned())
+            }
             Err(error) => {
                 let offset = error.valid_up_to();
                 let before = std::str::from_utf8(&bytes[..offset]).expect("valid up to here");
@@ -83,7 +87,7 @@ impl Study {
         }
     }
 
-    /// From TOML text; `name` stands for the file in errors.
+    /// From TOML text; `name` stands for the file in errors, and relative paths start from the current folder.
     ///
     /// ```
     /// use sensitol::study::Study;
@@ -98,16 +102,16 @@ impl Study {
     /// # Ok::<(), sensitol::Error>(())
     /// ```
     pub fn from_toml(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Toml, name)
+        Self::parse(text, Format::Toml, name, PathBuf::from("."))
     }
 
     /// From JSON text; `name` stands for the file in errors.
     pub fn from_json(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Json, name)
+        Self::parse(text, Format::Json, name, PathBuf::from("."))
     }
 
-    fn parse(text: &str, format: Format, name: &str) -> Result<Self, StudyError> {
-        let source = Source { name: name.to_owned(), text: Arc::from(text) };
+    fn parse(text: &str, format: Format, name: &str, folder: PathBuf) -> Result<Self, StudyError> {
+        let source = Source { name: name.to_owned(), text: Arc::from(text), folder };
         let failed = |Fault { span, key, fault }| StudyError {
             file: source.name.clone(),
             text: Arc::clone(&source.text),

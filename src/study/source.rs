@@ -1,6 +1,7 @@
 //! The text of a study file, and places in it.
 
 use std::ops::Range;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The two formats of one schema.
@@ -17,6 +18,8 @@ pub enum Format {
 pub(super) struct Source {
     pub(super) name: String,
     pub(super) text: Arc<str>,
+    /// The folder that relative paths start from.
+    pub(super) folder: PathBuf,
 }
 
 impl Source {

@@ -1,0 +1,239 @@
+"""One function as a model: names from its signature, lines in, lines out."""
+
+import inspect
+import json
+import logging
+import math
+import os
+import sys
+
+VERSION = 1
+log = logging.getLogger("sensitol")
+
+_POSITIONAL = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+
+
+class NoValue(Exception):
+    """Raised by a model that has no value at a point; `retry=True` when another try may have one."""
+
+    def __init__(self, message, retry=False):
+        super().__init__(message)
+        self.retry = retry
+
+
+def adapter(function=None, **options):
+    """Decorates a function of named dimensions and constants; see `Adapter` for the options."""
+    if function is None:
+        return lambda function: Adapter(function, **options)
+    return Adapter(function, **options)
+
+
+class Adapter:
+    """A function as a model.
+
+    The function's parameters are dimensions and constants by name (names that are no identifiers reach it through
+    `names`, a dict from parameter to dimension, or through `**values`). It returns a number for a model with one
+    characteristic, or a dict from characteristic to number; `None`, NaN or a missing entry is "no value". An exception is
+    an error of that point alone.
+
+    name, version   who answers; part of what kept answers are known by
+    outputs         the characteristics it offers, so that a misspelt one is refused at once; by default the function's
+                    name when it returns a number
+    window          points that may be sent ahead; more than 1 hides the time between processes
+    batch           the function takes a list for every parameter and returns a list (or a dict of lists)
+    setup           called once, before the model is ready
+    """
+
+    def __init__(self, function, *, name=None, version=None, outputs=None, window=64, batch=False, names=None, setup=None):
+        self.function = function
+        self.name = name or function.__name__
+        self.version = version
+        self.outputs = list(outputs) if outputs is not None else None
+        self.window = window
+        self.batch = batch
+        self.setup = setup
+        self._names = dict(names or {})
+        parameters = inspect.signature(function).parameters.values()
+        self._any = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters)
+        self._parameters = {
+            self._names.get(parameter.name, parameter.name): parameter
+            for parameter in parameters
+            if parameter.kind in _POSITIONAL
+        }
+        self.__doc__ = function.__doc__
+
+    def __call__(self, *args, **kwargs):
+        return self.function(*args, **kwargs)
+
+    def serve(self):
+        """Answers on stdin and stdout until stdin ends."""
+        lines, answers = _own_pipes()
+        try:
+            first = lines.readline()
+            if not first:
+                return
+            try:
+                if self.setup is not None:
+                    self.setup()
+                session = _Session(self, json.loads(first))
+            except Exception as error:
+                _write(answers, [{"error": _words(error)}])
+                return
+            ready = {"ready": True, "name": self.name, "window": self.window}
+            if self.version is not None:
+                ready["version"] = str(self.version)
+            _write(answers, [ready])
+            for requests in lines.batches():
+                _write(answers, session.answer(requests))
+        except (BrokenPipeError, KeyboardInterrupt):
+            pass
+
+
+class _Session:
+    """What one study asks of an adapter."""
+
+    def __init__(self, adapter, hello):
+        self.adapter = adapter
+        if hello.get("sensitol") != VERSION:
+            raise ValueError(f"this adapter speaks version {VERSION} of the protocol, not {hello.get('sensitol')}")
+        self.characteristics = hello["characteristics"]
+        optional = set(hello.get("optional", ()))
+        dimensions, constants = hello["dimensions"], hello.get("constants", {})
+        known = adapter._parameters
+        unknown = [name for name in [*dimensions, *constants] if name not in known and name not in optional]
+        if unknown and not adapter._any:
+            raise ValueError(f"no dimension or constant `{unknown[0]}`; there are {', '.join(known)}")
+        given = {*dimensions, *constants}
+        missing = [
+            name for name, parameter in known.items() if name not in given and parameter.default is inspect.Parameter.empty
+        ]
+        if missing:
+            raise ValueError(f"`{missing[0]}` is needed and the study does not have it")
+        offered = adapter.outputs
+        for name in self.characteristics:
+            if offered is not None and name not in offered:
+                raise ValueError(f"no characteristic `{name}`; there are {', '.join(offered)}")
+        taken = (lambda name: True) if adapter._any else known.__contains__
+        back = {dimension: parameter for parameter, dimension in adapter._names.items()}
+        self.columns = [(back.get(name, name), index) for index, name in enumerate(dimensions) if taken(name)]
+        self.constants = {back.get(name, name): value for name, value in constants.items() if taken(name)}
+
+    def answer(self, requests):
+        if self.adapter.batch and len(requests) > 0:
+            return self._together(requests)
+        return [self._one(request) for request in requests]
+
+    def _one(self, request):
+        x = request["x"]
+        values = {name: x[index] for name, index in self.columns}
+        try:
+            result = self.adapter.function(**values, **self.constants)
+            return self._values(request["id"], result)
+        except Exception as error:
+            return self._failed(request["id"], error)
+
+    def _together(self, requests):
+        columns = {name: [request["x"][index] for request in requests] for name, index in self.columns}
+        try:
+            result = self.adapter.function(**columns, **self.constants)
+        except Exception as error:
+            if len(requests) == 1:
+                return [self._failed(requests[0]["id"], error)]
+            # One bad point must not take the others with it.
+            return [answer for request in requests for answer in self._together([request])]
+        if isinstance(result, dict):
+            rows = [{name: column[row] for name, column in result.items()} for row in range(len(requests))]
+        else:
+            rows = list(result)
+        return [self._checked(request["id"], row) for request, row in zip(requests, rows)]
+
+    def _checked(self, id, row):
+        try:
+            return self._values(id, row)
+        except Exception as error:
+            return self._failed(id, error)
+
+    def _values(self, id, result):
+        if not isinstance(result, dict):
+            if len(self.characteristics) != 1:
+                raise TypeError(f"a dict with {', '.join(self.characteristics)} is asked for, not {type(result).__name__}")
+            result = {self.characteristics[0]: result}
+        y, errors = [], {}
+        for name in self.characteristics:
+            value = result.get(name)
+            if isinstance(value, Exception):
+                errors[name] = _words(value)
+                value = None
+            elif value is None:
+                errors[name] = "no value" if name in result else f"the model returned no `{name}`"
+            else:
+                value = float(value)
+                if not math.isfinite(value):
+                    errors[name] = f"the model returned {value}"
+                    value = None
+            y.append(value)
+        answer = {"id": id, "y": y}
+        if errors:
+            answer["errors"] = errors
+        return answer
+
+    @staticmethod
+    def _failed(id, error):
+        if not isinstance(error, NoValue):
+            log.debug("point %s", id, exc_info=error)
+        return {"id": id, "error": _words(error), "retry": bool(getattr(error, "retry", False))}
+
+
+def _words(error):
+    text = str(error) or type(error).__name__
+    plain = isinstance(error, (NoValue, ValueError))
+    return text if plain else f"{type(error).__name__}: {text}"
+
+
+class _Lines:
+    """Lines of a descriptor, with everything that is there at once."""
+
+    def __init__(self, descriptor):
+        self._descriptor = descriptor
+        self._rest = b""
+
+    def readline(self):
+        while b"\n" not in self._rest:
+            chunk = os.read(self._descriptor, 1 << 16)
+            if not chunk:
+                return b""
+            self._rest += chunk
+        line, self._rest = self._rest.split(b"\n", 1)
+        return line
+
+    def batches(self):
+        """Requests that arrived together, as soon as there is one."""
+        while True:
+            *lines, rest = self._rest.split(b"\n")
+            requests = [json.loads(line) for line in lines if line.strip()]
+            self._rest = rest
+            if requests:
+                yield requests
+            chunk = os.read(self._descriptor, 1 << 16)
+            if not chunk:
+                return
+            self._rest += chunk
+
+
+def _own_pipes():
+    """Takes descriptors 0 and 1 for the protocol: native libraries that print to stdout print to stderr from now on."""
+    sys.stdout.flush()
+    requests, answers = os.dup(0), os.dup(1)
+    null = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(null, 0)
+    os.close(null)
+    os.dup2(2, 1)
+    sys.stdout = sys.stderr
+    return _Lines(requests), answers
+
+
+def _write(descriptor, answers):
+    dump = json.JSONEncoder(separators=(",", ":"), ensure_ascii=True, allow_nan=False).encode
+    data = "".join(dump(answer) + "\n" for answer in answers).encode()
+    while data:
+        data = data[os.write(descriptor, data):]

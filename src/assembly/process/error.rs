@@ -1,0 +1,174 @@
+//! What an external process can do wrong.
+
+use std::fmt;
+use std::time::Duration;
+
+/// Why a process gave no value. Each names what was seen, and quotes the last lines that it wrote to stderr.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{fault}{stderr}")]
+pub struct ProcessError {
+    /// What went wrong.
+    pub fault: ProcessFault,
+    /// The last lines of its stderr.
+    pub stderr: StderrTail,
+}
+
+/// What went wrong with a process.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProcessFault {
+    /// There is no such program.
+    #[error("there is no program `{program}`; it is looked for in {}", place(program, folder))]
+    NotFound {
+        /// As the study names it.
+        program: String,
+        /// The study's folder.
+        folder: String,
+    },
+    /// The operating system does not run it.
+    #[error("`{program}` cannot be started: {reason}")]
+    NotStarted {
+        /// As the study names it.
+        program: String,
+        /// The operating system's words.
+        reason: String,
+    },
+    /// It ended before it was ready.
+    #[error("the model ended before it said that it is ready ({exit})")]
+    EndedAtStart {
+        /// How it ended.
+        exit: Exit,
+    },
+    /// It did not say in time that it is ready.
+    #[error("the model did not say within {} s that it is ready; start_timeout_s allows for more", .after.as_secs_f64())]
+    SilentAtStart {
+        /// For how long it was waited for.
+        after: Duration,
+    },
+    /// It does not serve this study.
+    #[error("the model does not serve this study: {message}")]
+    RefusedStudy {
+        /// Its own words.
+        message: String,
+    },
+    /// Its first line was none of the protocol.
+    #[error("the model's first line is no `ready` of this protocol: {line}")]
+    NotReady {
+        /// What it wrote.
+        line: Quoted,
+    },
+    /// It ended with points under way.
+    #[error("the model ended while it evaluated this point ({exit})")]
+    Crashed {
+        /// How it ended.
+        exit: Exit,
+    },
+    /// It did not answer in time.
+    #[error("the model did not answer within {} s; timeout_s allows for more", .after.as_secs_f64())]
+    TimedOut {
+        /// For how long it was waited for.
+        after: Duration,
+    },
+    /// It wrote a line that is no answer.
+    #[error("the model wrote a line that is no answer ({reason}): {line}")]
+    Garbage {
+        /// What is wrong with it.
+        reason: String,
+        /// What it wrote.
+        line: Quoted,
+    },
+    /// It wrote a line without end.
+    #[error("the model wrote a line of more than {limit} bytes: {line}")]
+    Oversized {
+        /// The longest line that is read.
+        limit: usize,
+        /// How it began.
+        line: Quoted,
+    },
+    /// It answered with another number of values.
+    #[error("the model answered with {found} values where {expected} were asked for")]
+    WrongLength {
+        /// How many characteristics were asked for.
+        expected: usize,
+        /// How many values came.
+        found: usize,
+    },
+    /// It answered a point that nobody asked for.
+    #[error("the model answered point {id}, which was not under way")]
+    UnknownPoint {
+        /// The point's number.
+        id: u64,
+    },
+    /// It answered a point for the second time.
+    #[error("the model answered point {id} twice")]
+    AnsweredTwice {
+        /// The point's number.
+        id: u64,
+    },
+    /// It has no value for one characteristic.
+    #[error("{message}")]
+    NoValue {
+        /// Its own words, or ours where it said nothing.
+        message: String,
+    },
+}
+
+/// How a process ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exit {
+    /// With this code.
+    Code(i32),
+    /// By a signal, or in some other way.
+    Signal(Option<i32>),
+    /// Not at all: it closed its stdout.
+    ClosedStdout,
+}
+
+impl fmt::Display for Exit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Code(code) => write!(f, "exit code {code}"),
+            Self::Signal(Some(signal)) => write!(f, "signal {signal}"),
+            Self::Signal(None) => write!(f, "killed"),
+            Self::ClosedStdout => write!(f, "it closed its stdout"),
+        }
+    }
+}
+
+/// The beginning of a line that somebody else wrote, fit to be shown.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Quoted(pub String);
+
+impl Quoted {
+    /// As many characters as an error message bears.
+    const LENGTH: usize = 120;
+
+    pub(super) fn of(bytes: &[u8]) -> Self {
+        let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * Self::LENGTH)]);
+        let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+        Self(text.trim().chars().take(Self::LENGTH).map(clean).collect())
+    }
+}
+
+impl fmt::Display for Quoted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`", self.0)
+    }
+}
+
+/// The last lines of a process's stderr; shown behind the error, if there are any.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct StderrTail(pub Vec<String>);
+
+impl fmt::Display for StderrTail {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_empty() {
+            return Ok(());
+        }
+        write!(f, "; its stderr ended with: {}", self.0.join(" | "))
+    }
+}
+
+fn place(program: &str, folder: &str) -> String {
+    if program.contains('/') { format!("`{folder}`, the study's folder") } else { "the PATH".to_owned() }
+}

@@ -1,0 +1,519 @@
+//! Children side by side, and the points under way in each.
+
+use std::collections::{HashMap, VecDeque};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::{Duration, Instant};
+
+use super::Settings;
+use super::child::{Child, Event, What};
+use super::error::{ProcessError, ProcessFault, Quoted, StderrTail};
+use super::protocol::{Adapter, Hello, Line, VERSION, request};
+use crate::assembly::{Points, Responses, Run};
+
+/// How often a stop is looked for.
+const TICK: Duration = Duration::from_millis(50);
+/// The first pause before a child that failed is started again; it doubles with every failure in a row.
+const PAUSE: Duration = Duration::from_millis(50);
+const LONGEST_PAUSE: Duration = Duration::from_secs(5);
+/// Starts in a row that may fail before no more are tried.
+const STARTS: u32 = 4;
+
+/// The children of one model, asked for one choice of outputs.
+pub(super) struct Pool {
+    settings: Settings,
+    hello: Hello,
+    slots: Vec<Slot>,
+    events: (Sender<Event>, Receiver<Event>),
+    /// Number of the next child, and of the next point.
+    next_child: u64,
+    next_point: u64,
+    /// Starts in a row that failed.
+    failed_starts: u32,
+    adapter: Option<Adapter>,
+}
+
+/// A place for one child.
+#[derive(Default)]
+struct Slot {
+    state: State,
+    /// Failures since the last answer.
+    failures: u32,
+}
+
+#[derive(Default)]
+enum State {
+    /// No child, and none wanted yet.
+    #[default]
+    Empty,
+    /// No child before this moment.
+    Pausing(Instant),
+    /// A child that has not said that it is ready.
+    Starting(Child, Instant),
+    Ready(Worker),
+}
+
+struct Worker {
+    child: Child,
+    window: usize,
+    /// Points under way, in the order in which they were sent: number and row.
+    under_way: VecDeque<(u64, usize)>,
+    /// Since when the oldest of them is being waited for.
+    since: Instant,
+    /// The number of the first point that it was sent.
+    first: u64,
+}
+
+/// What is left to do of a batch.
+struct Batch<'a> {
+    points: &'a Points,
+    out: &'a mut Responses,
+    waiting: VecDeque<usize>,
+    /// Rows under way in a child that crashed with several: each is tried again alone, to see which one it was.
+    suspects: VecDeque<usize>,
+    /// Failures of every row that had one.
+    failures: HashMap<usize, u32>,
+    left: usize,
+    /// Rows that are final and not yet told of.
+    done: Vec<usize>,
+    sent: usize,
+}
+
+impl Pool {
+    pub(super) fn new(settings: Settings, hello: Hello) -> Self {
+        let slots = (0..settings.workers.max(1)).map(|_| Slot::default()).collect();
+        Self {
+            settings,
+            hello,
+            slots,
+            events: channel(),
+            next_child: 0,
+            next_point: 0,
+            failed_starts: 0,
+            adapter: None,
+        }
+    }
+
+    pub(super) fn asks(&self, characteristics: &[String]) -> bool {
+        self.hello.characteristics == characteristics
+    }
+
+    /// Starts one child and waits until it is ready: whether the model can be used at all.
+    pub(super) fn prepare(&mut self) -> Result<&Adapter, ProcessError> {
+        while self.adapter.is_none() {
+            if matches!(self.slots[0].state, State::Empty | State::Pausing(_)) {
+                self.start(0)?;
+            }
+            self.turn(&mut None)?;
+        }
+        Ok(self.adapter.as_ref().expect("a child is ready"))
+    }
+
+    /// Evaluates every row of `points`; what a stop leaves undone stays open, but what is under way is waited for.
+    pub(super) fn evaluate(&mut self, points: &Points, run: &Run<'_>, out: &mut Responses) {
+        let rows = points.rows();
+        let mut batch = Some(Batch {
+            points,
+            out,
+            waiting: (0..rows).collect(),
+            suspects: VecDeque::new(),
+            failures: HashMap::new(),
+            left: rows,
+            done: Vec::new(),
+            sent: 0,
+        });
+        loop {
+            let stopping = run.stopped();
+            let work = batch.as_mut().expect("a batch");
+            if work.left == 0 || (stopping && !self.busy()) {
+                break;
+            }
+            if !stopping {
+                self.dispatch(work);
+            }
+            let turned = self.turn(&mut batch);
+            let work = batch.as_mut().expect("a batch");
+            if let Err(error) = turned {
+                work.give_up(&error);
+            }
+            work.tell(run);
+        }
+        let work = batch.expect("a batch");
+        work.out.spent(work.sent as i64 - (rows - work.left) as i64);
+        // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
+        for slot in &mut self.slots {
+            if matches!(&slot.state, State::Ready(worker) if !worker.under_way.is_empty()) {
+                slot.state = State::Empty;
+            }
+        }
+    }
+
+    fn busy(&self) -> bool {
+        self.slots.iter().any(|slot| matches!(&slot.state, State::Ready(worker) if !worker.under_way.is_empty()))
+    }
+
+    /// Starts children where there is work for them, and gives every ready one as much as it may have.
+    fn dispatch(&mut self, batch: &mut Batch<'_>) {
+        let now = Instant::now();
+        let mut wanted = batch.waiting.len() + batch.suspects.len();
+        for index in 0..self.slots.len() {
+            let start = match &self.slots[index].state {
+                State::Empty => wanted > 0,
+                State::Pausing(until) => wanted > 0 && *until <= now,
+                State::Starting(..) => false,
+                State::Ready(_) => {
+                    self.give(index, batch);
+                    wanted = batch.waiting.len() + batch.suspects.len();
+                    continue;
+                }
+            };
+            // One child for each window of points: no more than there is work for.
+            wanted = wanted.saturating_sub(self.adapter.as_ref().map_or(1, |adapter| adapter.window));
+            if start {
+                // What goes wrong is heard of as an event or at the next turn.
+                if let Err(error) = self.start(index) {
+                    self.failed_start(index);
+                    if self.failed_starts >= STARTS {
+                        batch.give_up(&error);
+                    }
+                }
+            }
+        }
+    }
+
+    fn give(&mut self, index: usize, batch: &mut Batch<'_>) {
+        let State::Ready(worker) = &mut self.slots[index].state else { return };
+        let mut lines = Vec::new();
+        let alone = worker.under_way.front().is_some_and(|&(_, row)| batch.failures.contains_key(&row));
+        while worker.under_way.len() < worker.window && !alone {
+            let row = if worker.under_way.is_empty() && !batch.suspects.is_empty() {
+                batch.suspects.pop_front()
+            } else {
+                batch.waiting.pop_front()
+            };
+            let Some(row) = row else { break };
+            let id = self.next_point;
+            self.next_point += 1;
+            if worker.under_way.is_empty() {
+                worker.since = Instant::now();
+            }
+            worker.under_way.push_back((id, row));
+            batch.sent += 1;
+            let columns = batch.points.dimensions();
+            request(&mut lines, id, (0..columns).map(|column| batch.points.column(column)[row]));
+            if batch.failures.contains_key(&row) {
+                break;
+            }
+        }
+        if !lines.is_empty() {
+            worker.child.send(lines);
+        }
+    }
+
+    fn start(&mut self, index: usize) -> Result<(), ProcessError> {
+        let Settings { argv, folder, listener, .. } = &self.settings;
+        let number = self.next_child;
+        self.next_child += 1;
+        let child = Child::start(argv, folder, number, &self.events.0, listener.clone())
+            .map_err(|fault| ProcessError { fault, stderr: StderrTail::default() })?;
+        child.send(self.hello.line());
+        self.slots[index].state = State::Starting(child, Instant::now() + self.settings.start_timeout);
+        Ok(())
+    }
+
+    /// Waits for something to happen, or for a deadline, and acts on it. An error is one of every start.
+    fn turn(&mut self, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
+        let now = Instant::now();
+        let pause = self.deadlines().map(|deadline| deadline.saturating_duration_since(now)).min();
+        let timeout = pause.unwrap_or(TICK).min(TICK);
+        match self.events.1.recv_timeout(timeout) {
+            Ok(event) => {
+                self.hear(event, batch)?;
+                // Whatever came meanwhile, before points are sent for it.
+                while let Ok(event) = self.events.1.try_recv() {
+                    self.hear(event, batch)?;
+                }
+            }
+            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {}
+        }
+        self.late(batch)
+    }
+
+    fn deadlines(&self) -> impl Iterator<Item = Instant> {
+        self.slots.iter().filter_map(|slot| match &slot.state {
+            State::Empty => None,
+            State::Pausing(until) => Some(*until),
+            State::Starting(_, until) => Some(*until),
+            State::Ready(worker) if worker.under_way.is_empty() => None,
+            State::Ready(worker) => Some(worker.since + self.settings.timeout),
+        })
+    }
+
+    /// Ends what has taken too long.
+    fn late(&mut self, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
+        let now = Instant::now();
+        for index in 0..self.slots.len() {
+            match &mut self.slots[index].state {
+                State::Starting(child, until) if *until <= now => {
+                    let (_, stderr) = child.kill();
+                    let fault = ProcessFault::SilentAtStart { after: self.settings.start_timeout };
+                    self.lost_start(index, ProcessError { fault, stderr })?;
+                }
+                State::Ready(worker) if !worker.under_way.is_empty() && worker.since + self.settings.timeout <= now => {
+                    let fault = ProcessFault::TimedOut { after: self.settings.timeout };
+                    self.fail(index, fault, batch);
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn hear(&mut self, event: Event, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
+        let of = |slot: &Slot| match &slot.state {
+            State::Starting(child, _) => child.number == event.child,
+            State::Ready(worker) => worker.child.number == event.child,
+            _ => false,
+        };
+        // A child that was ended already may still have something to say.
+        let Some(index) = self.slots.iter().position(of) else { return Ok(()) };
+        match event.what {
+            What::Closed => self.closed(index, batch),
+            What::Lines(lines) => {
+                for line in lines {
+                    match &self.slots[index].state {
+                        State::Starting(..) => self.greet(index, line)?,
+                        State::Ready(_) => self.answer(index, line, batch),
+                        // An earlier line ended the child.
+                        _ => break,
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// The first line of a child.
+    fn greet(&mut self, index: usize, line: Result<Line, ProcessFault>) -> Result<(), ProcessError> {
+        let State::Starting(child, _) = &mut self.slots[index].state else { return Ok(()) };
+        let fault = match line {
+            Err(ProcessFault::Garbage { line, .. }) => ProcessFault::NotReady { line },
+            Err(fault) => fault,
+            Ok(line) => match line {
+                Line { error: Some(message), .. } => ProcessFault::RefusedStudy { message },
+                Line { sensitol: Some(version), .. } if version != VERSION => ProcessFault::RefusedStudy {
+                    message: format!("it speaks version {version} of the protocol, and this is version {VERSION}"),
+                },
+                Line { ready: Some(true), name, version, window, .. } => {
+                    let version = version.map(|version| match version {
+                        serde_json::Value::String(text) => text,
+                        other => other.to_string(),
+                    });
+                    let window = window.unwrap_or(1).max(1);
+                    self.adapter = Some(Adapter { name, version, window });
+                    self.failed_starts = 0;
+                    let State::Starting(child, _) = std::mem::take(&mut self.slots[index].state) else { return Ok(()) };
+                    self.slots[index].state = State::Ready(Worker {
+                        child,
+                        window,
+                        under_way: VecDeque::new(),
+                        since: Instant::now(),
+                        first: self.next_point,
+                    });
+                    return Ok(());
+                }
+                other => ProcessFault::NotReady { line: other.quoted.unwrap_or_else(|| Quoted(String::new())) },
+            },
+        };
+        let stderr = child.kill().1;
+        self.lost_start(index, ProcessError { fault, stderr })
+    }
+
+    /// A child that could not be started after others could is tried again, a few times.
+    fn lost_start(&mut self, index: usize, error: ProcessError) -> Result<(), ProcessError> {
+        let hopeless = self.adapter.is_none() || self.failed_starts + 1 >= STARTS;
+        self.failed_start(index);
+        if hopeless { Err(error) } else { Ok(()) }
+    }
+
+    fn failed_start(&mut self, index: usize) {
+        self.failed_starts += 1;
+        self.pause(index);
+    }
+
+    /// Leaves a place empty for a while that grows with every failure.
+    fn pause(&mut self, index: usize) {
+        let slot = &mut self.slots[index];
+        let pause = if slot.failures == 0 { Duration::ZERO } else { PAUSE * 2u32.pow(slot.failures.min(10) - 1) };
+        slot.failures += 1;
+        slot.state = State::Pausing(Instant::now() + pause.min(LONGEST_PAUSE));
+    }
+
+    /// An answer, or something that should have been one.
+    fn answer(&mut self, index: usize, line: Result<Line, ProcessFault>, batch: &mut Option<Batch<'_>>) {
+        let slot = &mut self.slots[index];
+        let State::Ready(worker) = &mut slot.state else { return };
+        let line = match line {
+            Ok(line) => line,
+            Err(fault) => return self.fail(index, fault, batch),
+        };
+        let Some(id) = line.id else {
+            return self.fail(index, line.garbage("it has no id"), batch);
+        };
+        let Some(position) = worker.under_way.iter().position(|&(known, _)| known == id) else {
+            let twice = id >= worker.first && id < self.next_point;
+            let fault = if twice { ProcessFault::AnsweredTwice { id } } else { ProcessFault::UnknownPoint { id } };
+            return self.fail(index, fault, batch);
+        };
+        let expected = self.hello.characteristics.len();
+        let found = line.y.as_ref().map(Vec::len);
+        if let Some(found) = found.filter(|&found| found != expected) {
+            // Only this point: the line was whole, and the others may be right.
+            worker.under_way.remove(position).map(|(_, row)| {
+                worker.since = Instant::now();
+                let error =
+                    ProcessError { fault: ProcessFault::WrongLength { expected, found }, stderr: worker.child.tail() };
+                batch.as_mut().map(|batch| batch.fail(row, &error))
+            });
+            return;
+        }
+        if line.y.is_none() && line.error.is_none() {
+            return self.fail(index, line.garbage("it has neither y nor error"), batch);
+        }
+        let (_, row) = worker.under_way.remove(position).expect("it was found there");
+        worker.since = Instant::now();
+        slot.failures = 0;
+        if let Some(batch) = batch {
+            let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
+            if again {
+                batch.suspects.push_back(row);
+            } else {
+                batch.settle(row, line, &self.hello.characteristics);
+            }
+        }
+    }
+
+    /// A child closed its stdout.
+    fn closed(&mut self, index: usize, batch: &mut Option<Batch<'_>>) -> Result<(), ProcessError> {
+        match &mut self.slots[index].state {
+            State::Starting(child, _) => {
+                let (exit, stderr) = child.ended();
+                self.lost_start(index, ProcessError { fault: ProcessFault::EndedAtStart { exit }, stderr })
+            }
+            State::Ready(_) => {
+                self.crash(index, None, batch);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A child that did something wrong: it is ended, its oldest point is charged with it, the others are free.
+    fn fail(&mut self, index: usize, fault: ProcessFault, batch: &mut Option<Batch<'_>>) {
+        self.crash(index, Some(fault), batch);
+    }
+
+    fn crash(&mut self, index: usize, fault: Option<ProcessFault>, batch: &mut Option<Batch<'_>>) {
+        let State::Ready(mut worker) = std::mem::take(&mut self.slots[index].state) else { return };
+        let (exit, stderr) = if fault.is_some() { worker.child.kill() } else { worker.child.ended() };
+        let known = fault.is_some();
+        let error = ProcessError { fault: fault.unwrap_or(ProcessFault::Crashed { exit }), stderr };
+        if let Some(batch) = batch {
+            let mut rows = worker.under_way.iter().map(|&(_, row)| row);
+            // Of several points under way in a child that crashed nobody knows which one it was.
+            if known || worker.under_way.len() == 1 {
+                if let Some(row) = rows.next() {
+                    batch.charge(row, &error, self.settings.retries);
+                }
+                for row in rows.rev() {
+                    batch.waiting.push_front(row);
+                }
+            } else {
+                for row in rows {
+                    batch.failures.entry(row).or_insert(0);
+                    batch.suspects.push_back(row);
+                }
+            }
+        }
+        self.pause(index);
+    }
+}
+
+impl Batch<'_> {
+    /// Notes a failure of a row, and how many there are now.
+    fn charged(&mut self, row: usize) -> u32 {
+        let failures = self.failures.entry(row).or_insert(0);
+        *failures += 1;
+        *failures
+    }
+
+    /// Tries a row again, or gives it up when it has failed too often.
+    fn charge(&mut self, row: usize, error: &ProcessError, retries: u32) {
+        if self.charged(row) <= retries {
+            self.suspects.push_back(row);
+        } else {
+            self.fail(row, error);
+        }
+    }
+
+    fn fail(&mut self, row: usize, error: &ProcessError) {
+        for output in 0..self.out.outputs() {
+            self.out.fail(row, output, Box::new(error.clone()).into());
+        }
+        self.finish(row);
+    }
+
+    fn finish(&mut self, row: usize) {
+        self.left -= 1;
+        self.done.push(row);
+    }
+
+    /// What the model said: values, and for what has none the reason.
+    fn settle(&mut self, row: usize, line: Line, names: &[String]) {
+        let no_value = |message: String| {
+            Box::new(ProcessError { fault: ProcessFault::NoValue { message }, stderr: StderrTail::default() }).into()
+        };
+        for (output, name) in names.iter().enumerate() {
+            let value = line.y.as_ref().and_then(|values| values[output]);
+            match (value, &line.error) {
+                (Some(value), None) => self.out.set(row, output, value),
+                (_, Some(message)) => self.out.fail(row, output, no_value(message.clone())),
+                (None, None) => {
+                    let message = line.errors.get(name).cloned();
+                    self.out.fail(row, output, no_value(message.unwrap_or_else(|| "the model returned null".into())));
+                }
+            }
+        }
+        self.finish(row);
+    }
+
+    /// No child can be had any more: everything left fails with this.
+    fn give_up(&mut self, error: &ProcessError) {
+        for row in 0..self.out.rows() {
+            if (0..self.out.outputs()).any(|output| self.out.is_open(row, output)) {
+                self.fail(row, error);
+            }
+        }
+        self.waiting.clear();
+        self.suspects.clear();
+    }
+
+    fn tell(&mut self, run: &Run<'_>) {
+        if !self.done.is_empty() {
+            run.finished(&self.done, self.out);
+            self.done.clear();
+        }
+    }
+}
+
+impl Drop for Pool {
+    /// All are told first, so that they end side by side.
+    fn drop(&mut self) {
+        for slot in &mut self.slots {
+            match &mut slot.state {
+                State::Starting(child, _) => child.close(),
+                State::Ready(worker) => worker.child.close(),
+                State::Empty | State::Pausing(_) => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The lines of the protocol, version 1 (`adapters/PROTOCOL.md`).
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::error::{ProcessFault, Quoted};
+
+/// The version that is spoken here.
+pub(super) const VERSION: u32 = 1;
+
+/// The engine's first line: what the study has, and what it asks for.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Hello {
+    pub(super) sensitol: u32,
+    pub(super) dimensions: Vec<String>,
+    pub(super) units: Vec<Option<String>>,
+    pub(super) nominal: Vec<f64>,
+    pub(super) constants: serde_json::Map<String, serde_json::Value>,
+    pub(super) characteristics: Vec<String>,
+    /// Dimensions and constants that formulas use too: the child need not know them.
+    pub(super) optional: Vec<String>,
+}
+
+/// Anything that a child may say. Keys that are not known here are for others.
+#[derive(Debug, Deserialize)]
+pub(super) struct Line {
+    pub(super) ready: Option<bool>,
+    /// The version that the child speaks, where it says so.
+    pub(super) sensitol: Option<u32>,
+    pub(super) name: Option<String>,
+    pub(super) version: Option<serde_json::Value>,
+    pub(super) window: Option<usize>,
+    pub(super) id: Option<u64>,
+    pub(super) y: Option<Vec<Option<f64>>>,
+    #[serde(default)]
+    pub(super) errors: BTreeMap<String, String>,
+    pub(super) error: Option<String>,
+    #[serde(default)]
+    pub(super) retry: bool,
+    /// How it began, where it is odd.
+    #[serde(skip)]
+    pub(super) quoted: Option<Quoted>,
+}
+
+impl Line {
+    /// Reads a line; what may have to be shown is kept.
+    pub(super) fn parse(text: &[u8]) -> Result<Self, ProcessFault> {
+        let mut line: Self = serde_json::from_slice(text)
+            .map_err(|error| ProcessFault::Garbage { reason: error.to_string(), line: Quoted::of(text) })?;
+        if line.id.is_none() || (line.y.is_none() && line.error.is_none()) {
+            line.quoted = Some(Quoted::of(text));
+        }
+        Ok(line)
+    }
+
+    /// As something that should have been an answer.
+    pub(super) fn garbage(&self, reason: &str) -> ProcessFault {
+        let line = self.quoted.clone().unwrap_or_else(|| Quoted(String::new()));
+        ProcessFault::Garbage { reason: reason.to_owned(), line }
+    }
+}
+
+/// What a child says of itself when it is ready.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Adapter {
+    /// Its name.
+    pub name: Option<String>,
+    /// Its version.
+    pub version: Option<String>,
+    /// Points that may be under way in one child.
+    pub window: usize,
+}
+
+impl Hello {
+    pub(super) fn line(&self) -> Vec<u8> {
+        let mut line = serde_json::to_vec(self).expect("names and numbers are JSON");
+        line.push(b'\n');
+        line
+    }
+}
+
+/// A request for one point. Numbers are the shortest that read back as the same double.
+pub(super) fn request(line: &mut Vec<u8>, id: u64, point: impl Iterator<Item = f64>) {
+    line.extend_from_slice(b"{\"id\":");
+    line.extend_from_slice(id.to_string().as_bytes());
+    line.extend_from_slice(b",\"x\":[");
+    for (index, value) in point.enumerate() {
+        if index > 0 {
+            line.push(b',');
+        }
+        serde_json::to_writer(&mut *line, &value).expect("a point is finite, and memory does not fail");
+    }
+    line.extend_from_slice(b"]}\n");
+}

@@ -1,0 +1,121 @@
+//! From `[model]` to what is evaluated: a built-in model or an external program.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use serde_spanned::Spanned;
+
+use super::error::{Fault, StudyFault, fault};
+use super::file::ModelEntry;
+use super::source::Source;
+use crate::assembly::process::{Greeting, Process, Settings};
+use crate::assembly::{Input, Output, Signature};
+use crate::models::{self, Model};
+use crate::names::nearest;
+
+/// Most children side by side: more is a slip of the pen.
+const WORKERS: u64 = 1024;
+
+/// What a study evaluates beside its formulas.
+pub(super) enum ModelOf {
+    BuiltIn(&'static Model),
+    Program(Settings),
+}
+
+impl ModelOf {
+    pub(super) fn built_in(&self) -> Option<&'static Model> {
+        match self {
+            Self::BuiltIn(model) => Some(model),
+            Self::Program(_) => None,
+        }
+    }
+}
+
+pub(super) fn model(entry: &Spanned<ModelEntry>, source: &Source) -> Result<ModelOf, Fault> {
+    let (line, entry) = (entry.span(), entry.get_ref());
+    match (&entry.builtin, &entry.command) {
+        (None, None) => {
+            let instead = "name a built-in model, such as builtin = \"engine-balance\", or a program, such as \
+                           command = [\"python3\", \"gap.py\"]";
+            Err(fault(line, "model", StudyFault::MissingKey { key: "builtin".into(), instead: instead.into() }))
+        }
+        (Some(_), Some(command)) => {
+            let why = "are two models: leave one out".to_owned();
+            Err(fault(command.span(), "model.command", StudyFault::Conflict { a: "builtin", b: "command", why }))
+        }
+        (Some(name), None) => {
+            let of_programs: [(&'static str, Option<std::ops::Range<usize>>); 4] = [
+                ("workers", entry.workers.as_ref().map(Spanned::span)),
+                ("timeout_s", entry.timeout_s.as_ref().map(Spanned::span)),
+                ("start_timeout_s", entry.start_timeout_s.as_ref().map(Spanned::span)),
+                ("retries", entry.retries.as_ref().map(Spanned::span)),
+            ];
+            for (key, span) in of_programs {
+                if let Some(span) = span {
+                    let (to, instead) = ("a built-in model".to_owned(), "it is for a command");
+                    return Err(fault(span, format!("model.{key}"), StudyFault::DoesNotApply { key, to, instead }));
+                }
+            }
+            built_in(name).map(ModelOf::BuiltIn)
+        }
+        (None, Some(command)) => program(command, entry, source).map(ModelOf::Program),
+    }
+}
+
+fn built_in(name: &Spanned<String>) -> Result<&'static Model, Fault> {
+    let found = name.get_ref();
+    models::by_name(found).ok_or_else(|| {
+        let known: Vec<String> = models::ALL.iter().map(|model| model.name.to_owned()).collect();
+        let nearest = nearest(found, known.iter().map(String::as_str)).map(str::to_owned);
+        let found = found.clone();
+        fault(name.span(), "model.builtin", StudyFault::UnknownWord { what: "built-in model", found, nearest, known })
+    })
+}
+
+fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) -> Result<Settings, Fault> {
+    if command.get_ref().first().is_none_or(String::is_empty) {
+        let expected = "a program and its arguments, such as [\"python3\", \"gap.py\"],".to_owned();
+        let found = "an empty list".to_owned();
+        return Err(fault(command.span(), "model.command", StudyFault::WrongType { expected, found }));
+    }
+    let seconds = |given: &Option<Spanned<f64>>, key: &str, default: Duration| match given {
+        None => Ok(default),
+        Some(given) => {
+            let value = *given.get_ref();
+            let duration = Duration::try_from_secs_f64(value).ok().filter(|duration| !duration.is_zero());
+            let out = StudyFault::OutOfRange { value, range: "a time above 0, in seconds" };
+            duration.ok_or_else(|| fault(given.span(), format!("model.{key}"), out))
+        }
+    };
+    let count = |given: &Option<Spanned<u64>>, key: &str, default: u64, least: u64, most: u64, range: &'static str| {
+        let Some(given) = given else { return Ok(default) };
+        let value = *given.get_ref();
+        if (least..=most).contains(&value) {
+            Ok(value)
+        } else {
+            let out = StudyFault::OutOfRange { value: value as f64, range };
+            Err(fault(given.span(), format!("model.{key}"), out))
+        }
+    };
+    let defaults = Settings::new(command.get_ref().iter());
+    Ok(Settings {
+        folder: source.folder.clone(),
+        workers: count(&entry.workers, "workers", 1, 1, WORKERS, "between 1 and 1024")? as usize,
+        retries: count(&entry.retries, "retries", u64::from(defaults.retries), 0, 1000, "between 0 and 1000")? as u32,
+        timeout: seconds(&entry.timeout_s, "timeout_s", defaults.timeout)?,
+        start_timeout: seconds(&entry.start_timeout_s, "start_timeout_s", defaults.start_timeout)?,
+        ..defaults
+    })
+}
+
+/// The program as assembly function: of all dimensions, with `outputs` by name and unit.
+pub(super) fn process(
+    settings: &Settings,
+    inputs: &[Input],
+    greeting: Greeting,
+    outputs: Vec<(String, Option<String>)>,
+) -> Arc<Process> {
+    let outputs = outputs.into_iter().map(|(name, unit)| Output { name, unit, depends_on: None }).collect();
+    let signature = Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() };
+    Arc::new(Process::new(signature, greeting, settings.clone()))
+}
