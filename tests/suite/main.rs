@@ -11,6 +11,7 @@ mod methods;
 mod moments;
 mod pearson;
 mod plans;
+mod process;
 mod published;
 mod studies;
 mod support;

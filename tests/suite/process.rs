@@ -1,0 +1,386 @@
+//! External programs: what they do right, and every way in which they go wrong. The children are `tests/children`.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use sensitol::assembly::process::{Exit, Greeting, Process, ProcessFault, Settings};
+use sensitol::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Responses, Run, Signature};
+
+use super::support::repository;
+
+/// A child in a mode, with short deadlines that none but the slow ones reach.
+fn settings(mode: &str, more: &[&str]) -> Settings {
+    let script = repository("tests/children/child.py").display().to_string();
+    let argv = ["python3", &script, mode].into_iter().chain(more.iter().copied());
+    Settings { timeout: Duration::from_secs(20), start_timeout: Duration::from_secs(20), ..Settings::new(argv) }
+}
+
+fn model(settings: Settings) -> Process {
+    let greeting = Greeting { nominal: vec![1.0, 2.0], ..Greeting::default() };
+    Process::new(Signature::of_names(["a", "b"], ["sum", "product"]), greeting, settings)
+}
+
+/// Both outputs at these values of `a`, where b is 2.
+fn at(model: &Process, a: &[f64]) -> Responses {
+    let rows: Vec<[f64; 2]> = a.iter().map(|&a| [a, 2.0]).collect();
+    let points = Points::from_rows(&rows);
+    let mut out = Responses::open(rows.len(), 2);
+    model.evaluate(&Ask::values(&points, &[0, 1]), &Run::to_the_end(), &mut out);
+    out
+}
+
+/// Every row but these is right.
+#[track_caller]
+fn right_but(a: &[f64], out: &Responses, wrong: &[usize]) {
+    for (row, &a) in a.iter().enumerate() {
+        if !wrong.contains(&row) {
+            assert_eq!((out.value(row, 0), out.value(row, 1)), (Some(a + 2.0), Some(2.0 * a)), "row {row}");
+        }
+    }
+}
+
+/// What went wrong at an entry.
+#[track_caller]
+fn fault(out: &Responses, row: usize, output: usize) -> ProcessFault {
+    match out.error(row, output) {
+        Some(EvaluationError::Process(error)) => error.fault.clone(),
+        other => panic!("row {row}, output {output}: {other:?}"),
+    }
+}
+
+const POINTS: [f64; 5] = [1.0, 2.5, 13.0, 1e-300, -0.1];
+
+#[test]
+fn points_are_answered_exactly() {
+    let model = model(settings("good", &[]));
+    let out = at(&model, &POINTS);
+    right_but(&POINTS, &out, &[]);
+    assert_eq!(out.extra(), 0);
+    let adapter = model.adapter(&[0, 1]).unwrap();
+    assert_eq!(
+        (adapter.name.as_deref(), adapter.version.as_deref(), adapter.window),
+        (Some("test child"), Some("3"), 1)
+    );
+    // Numbers arrive as the same doubles: 0.1 + 0.2 is not 0.3.
+    assert_eq!(at(&model, &[0.1 + 0.2]).value(0, 0), Some(0.1 + 0.2 + 2.0));
+}
+
+/// Only what is asked for is named to the child; another question takes another child.
+#[test]
+fn a_child_is_asked_for_what_is_needed() {
+    let model = model(settings("good", &[]));
+    let points = Points::from_rows(&[[3.0, 4.0]]);
+    let mut sum = Responses::open(1, 1);
+    model.evaluate(&Ask::values(&points, &[0]), &Run::to_the_end(), &mut sum);
+    assert_eq!(sum.value(0, 0), Some(7.0));
+    right_but(&POINTS, &at(&model, &POINTS), &[]);
+}
+
+#[test]
+fn answers_may_come_in_any_order() {
+    let a: Vec<f64> = (0..40).map(f64::from).chain([99.0]).collect();
+    let out = at(&model(settings("out-of-order", &["8"])), &a);
+    right_but(&a, &out, &[]);
+}
+
+/// Children side by side; every row is told of once, as it becomes final.
+#[test]
+fn workers_share_the_points() {
+    let settings = Settings { workers: 3, ..settings("slow", &["0.01"]) };
+    let model = model(settings);
+    let a: Vec<f64> = (0..60).map(f64::from).collect();
+    let points = Points::from_rows(&a.iter().map(|&a| [a, 2.0]).collect::<Vec<_>>());
+    let told = AtomicUsize::new(0);
+    let hear = |rows: &[usize], out: &Responses| {
+        assert!(rows.iter().all(|&row| out.value(row, 0).is_some()));
+        told.fetch_add(rows.len(), Ordering::Relaxed);
+    };
+    let mut out = Responses::open(a.len(), 2);
+    model.evaluate(&Ask::values(&points, &[0, 1]), &Run::to_the_end().telling(&hear), &mut out);
+    right_but(&a, &out, &[]);
+    assert_eq!(told.load(Ordering::Relaxed), 60);
+}
+
+/// What keeps a model from being used at all is known before any point is sent.
+#[test]
+fn models_that_cannot_start() {
+    let fault_of = |settings: Settings| match model(settings).prepare(&[0, 1]) {
+        Err(EvaluationError::Process(error)) => *error,
+        other => panic!("{other:?}"),
+    };
+    let error = fault_of(settings("crash-at-start", &[]));
+    assert_eq!(error.fault, ProcessFault::EndedAtStart { exit: Exit::Code(7) });
+    assert!(error.to_string().contains("licence server not found"), "{error}");
+    let silent = fault_of(settings("silent-exit", &[]));
+    assert_eq!(silent.fault, ProcessFault::EndedAtStart { exit: Exit::Code(0) });
+    let never = Settings { start_timeout: Duration::from_millis(300), ..settings("never-ready", &[]) };
+    assert!(matches!(fault_of(never).fault, ProcessFault::SilentAtStart { .. }));
+    let talks = fault_of(settings("talks-first", &[])).to_string();
+    assert!(talks.contains("Loading CAD kernel 7.3"), "{talks}");
+    assert!(matches!(fault_of(settings("answers-first", &[])).fault, ProcessFault::NotReady { .. }));
+    let refuses = fault_of(settings("refuses", &[])).to_string();
+    assert!(refuses.contains("no dimension `b`; there are a, c"), "{refuses}");
+    let version = fault_of(settings("other-version", &[])).to_string();
+    assert!(version.contains("version 2"), "{version}");
+    let program = |program: &str| fault_of(Settings { folder: repository("tests"), ..Settings::new([program]) }).fault;
+    assert!(matches!(program("no-such-program"), ProcessFault::NotFound { .. }));
+    assert!(matches!(program("./no-such-program"), ProcessFault::NotFound { .. }));
+    // A file that is no program.
+    assert!(matches!(program("./children/child.py"), ProcessFault::NotStarted { .. }));
+    let moved = Settings { folder: PathBuf::from("/nowhere"), ..settings("good", &[]) };
+    assert!(matches!(fault_of(moved).fault, ProcessFault::NotStarted { .. }));
+}
+
+/// A point at which the child does something wrong is lost, after one more try, with the right error; nothing else is.
+#[test]
+fn a_point_that_goes_wrong_takes_no_other_with_it() {
+    type Is = fn(&ProcessFault) -> bool;
+    let cases: [(&str, Is); 7] = [
+        ("crash", |fault| matches!(fault, ProcessFault::Crashed { exit: Exit::Code(139) })),
+        ("garbage", |fault| matches!(fault, ProcessFault::Garbage { line, .. } if line.0.contains("recompute failed"))),
+        ("nan-text", |fault| matches!(fault, ProcessFault::Garbage { line, .. } if line.0.contains("NaN"))),
+        (
+            "no-answer",
+            |fault| matches!(fault, ProcessFault::Garbage { reason, .. } if reason.contains("neither y nor error")),
+        ),
+        ("wrong-length", |fault| *fault == ProcessFault::WrongLength { expected: 2, found: 3 }),
+        ("wrong-id", |fault| matches!(fault, ProcessFault::UnknownPoint { .. })),
+        ("huge-line", |fault| matches!(fault, ProcessFault::Oversized { .. })),
+    ];
+    for (mode, is) in cases {
+        let model = model(settings(mode, &[]));
+        let out = at(&model, &POINTS);
+        right_but(&POINTS, &out, &[2]);
+        for output in 0..2 {
+            let fault = fault(&out, 2, output);
+            assert!(is(&fault), "{mode}: {fault:?}");
+        }
+        // One try more, and it is counted; a whole line with the wrong number of values is an answer like any other.
+        assert_eq!(out.extra(), if mode == "wrong-length" { 0 } else { 1 }, "{mode}");
+        // The model goes on.
+        right_but(&POINTS[..2], &at(&model, &POINTS[..2]), &[]);
+    }
+    let out = at(&model(settings("crash", &[])), &POINTS);
+    assert!(out.error(2, 0).unwrap().to_string().contains("Segmentation fault in sketch solver"));
+}
+
+/// A second answer to a point: the first one counts, the child that does so is not trusted with another.
+#[test]
+fn an_answer_given_twice() {
+    let model = model(Settings { retries: 0, ..settings("twice", &[]) });
+    let a = [1.0, 13.0, 3.0];
+    let out = at(&model, &a);
+    assert_eq!(out.value(1, 0), Some(15.0));
+    right_but(&a[..1], &out, &[]);
+    // It was found out with the third point under way, which is charged with it, or before that was sent.
+    if out.value(2, 0).is_none() {
+        assert!(matches!(fault(&out, 2, 0), ProcessFault::AnsweredTwice { .. }));
+    }
+}
+
+#[test]
+fn what_fails_once_succeeds_the_second_time() {
+    let folder = tempfile::tempdir().unwrap();
+    for mode in ["crash-once", "garbage-once", "error-once"] {
+        let memory = folder.path().join(mode);
+        let out = at(&model(settings(mode, &[memory.to_str().unwrap()])), &POINTS);
+        right_but(&POINTS, &out, &[]);
+        assert_eq!(out.extra(), 1, "{mode}");
+        let memory = folder.path().join(format!("{mode}-without-retries"));
+        let once = Settings { retries: 0, ..settings(mode, &[memory.to_str().unwrap()]) };
+        let out = at(&model(once), &POINTS);
+        right_but(&POINTS, &out, &[2]);
+        assert_eq!((out.value(2, 0), out.extra()), (None, 0), "{mode}");
+    }
+    let out = at(&model(Settings { retries: 3, ..settings("error-always", &[]) }), &POINTS);
+    assert_eq!((fault(&out, 2, 0), out.extra()), (ProcessFault::NoValue { message: "licence busy".into() }, 3));
+}
+
+/// What the child says itself is an error of just that characteristic or point, and not tried again.
+#[test]
+fn a_child_may_have_no_value() {
+    let no_value = |message: &str| ProcessFault::NoValue { message: message.into() };
+    let out = at(&model(settings("partial", &[])), &POINTS);
+    right_but(&POINTS, &out, &[2]);
+    assert_eq!((out.value(2, 0), fault(&out, 2, 1)), (Some(15.0), no_value("face 7 is gone")));
+    let out = at(&model(settings("null", &[])), &POINTS);
+    assert_eq!((fault(&out, 2, 0), out.value(2, 1)), (no_value("the model returned null"), Some(26.0)));
+    let out = at(&model(settings("error", &[])), &POINTS);
+    assert_eq!(fault(&out, 2, 1), no_value("sketch does not solve: redundant constraint 7"));
+    assert_eq!(out.extra(), 0);
+}
+
+/// Deadlines hold, for a child that hangs, that never reads, and that closes its stdout.
+#[test]
+fn children_that_say_nothing() {
+    let short = |mode: &str| Settings { timeout: Duration::from_millis(300), ..settings(mode, &[]) };
+    let hang = model(short("hang"));
+    let out = at(&hang, &POINTS);
+    right_but(&POINTS, &out, &[2]);
+    assert!(matches!(fault(&out, 2, 0), ProcessFault::TimedOut { .. }));
+    let never = Settings { retries: 0, ..short("never-reads") };
+    let out = at(&model(never), &POINTS[..2]);
+    assert!((0..2).all(|row| matches!(fault(&out, row, 0), ProcessFault::TimedOut { .. })));
+    let out = at(&model(Settings { retries: 0, ..short("closes-stdout") }), &POINTS[..2]);
+    assert!((0..2).all(|row| fault(&out, row, 0) == ProcessFault::Crashed { exit: Exit::ClosedStdout }));
+    let out = at(&model(Settings { retries: 0, ..short("dies-idle") }), &POINTS[..2]);
+    assert!((0..2).all(|row| matches!(fault(&out, row, 0), ProcessFault::Crashed { .. })));
+}
+
+/// One of several points under way crashes the child, or hangs: the others are answered all the same.
+#[test]
+fn the_culprit_in_a_window_is_found() {
+    let a: Vec<f64> = (0..30).map(f64::from).collect();
+    for (mode, timeout) in [("crash-in-window", 20.0), ("hang-in-window", 0.4)] {
+        let settings = Settings { timeout: Duration::from_secs_f64(timeout), ..settings(mode, &["8"]) };
+        let out = at(&model(settings), &a);
+        right_but(&a, &out, &[13]);
+        let fault = fault(&out, 13, 0);
+        assert!(matches!(fault, ProcessFault::Crashed { .. } | ProcessFault::TimedOut { .. }), "{mode}: {fault:?}");
+    }
+}
+
+/// A stop leaves the rest open, and waits for what is under way: that was paid for.
+#[test]
+fn a_stop_loses_nothing() {
+    let model = model(settings("slow", &["0.02"]));
+    let a: Vec<f64> = (0..500).map(f64::from).collect();
+    let points = Points::from_rows(&a.iter().map(|&a| [a, 2.0]).collect::<Vec<_>>());
+    let begun = Instant::now();
+    let stop = || begun.elapsed() > Duration::from_millis(400);
+    let mut out = Responses::open(a.len(), 2);
+    model.evaluate(&Ask::values(&points, &[0, 1]), &Run::to_the_end().stopping_when(&stop), &mut out);
+    let answered = (0..a.len()).filter(|&row| !out.is_open(row, 0)).count();
+    assert!(answered > 0 && answered < a.len());
+    right_but(&a[..answered], &out, &[]);
+    assert_eq!((out.extra(), out.errors().count()), (0, 0));
+    // And nothing of it disturbs what is asked next.
+    right_but(&POINTS, &at(&model, &POINTS), &[]);
+}
+
+/// Processes whose command line holds this text.
+fn alive(text: &str) -> Vec<String> {
+    let own = std::process::id().to_string();
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir("/proc").into_iter().flatten().flatten() {
+        let command = std::fs::read(entry.path().join("cmdline")).unwrap_or_default();
+        let command = String::from_utf8_lossy(&command).replace('\0', " ");
+        let stat = std::fs::read_to_string(entry.path().join("stat")).unwrap_or_default();
+        let parent =
+            stat.rsplit(')').next().and_then(|rest| rest.split_whitespace().nth(1)).unwrap_or_default().to_owned();
+        // A zombie has no command line: it is ours when we are its parent.
+        let zombie = stat.rsplit(')').next().is_some_and(|rest| rest.trim_start().starts_with('Z')) && parent == own;
+        if command.contains(text) || (zombie && stat.contains("(python3)")) {
+            found.push(format!("{} {command}", entry.file_name().display()));
+        }
+    }
+    found
+}
+
+/// Whatever a child started ends with the model.
+#[test]
+#[cfg(target_os = "linux")]
+fn no_orphan_is_left() {
+    {
+        let model = model(settings("grandchild", &[]));
+        right_but(&POINTS, &at(&model, &POINTS), &[]);
+        assert_eq!(alive("sleep 300.125").len(), 1, "the child has a child");
+    }
+    let begun = Instant::now();
+    while !(alive("sleep 300.125").is_empty() && alive("sleep 300.25").is_empty()) {
+        assert!(begun.elapsed() < Duration::from_secs(5), "{:?} {:?}", alive("sleep 300.125"), alive("sleep 300.25"));
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// Ten thousand points through one child that may have many under way, and none is lost or mixed up.
+#[test]
+fn many_points_through_one_child() {
+    let a: Vec<f64> = (100..10_100).map(f64::from).collect();
+    right_but(&a, &at(&model(settings("echo", &["64"])), &a), &[]);
+}
+
+fn python(script: &Path) -> Settings {
+    Settings::new(["python3".to_owned(), script.display().to_string()])
+}
+
+/// The SDK: names, errors of a point and of a characteristic, and a library that prints to descriptor 1.
+#[test]
+fn the_sdk_serves() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = folder.path().join("model.py");
+    let sdk = repository("adapters/python").display().to_string();
+    let source = format!(
+        r#"
+import os, sys
+sys.path.insert(0, {sdk:?})
+from sensitol_adapter import adapter, NoValue
+
+@adapter(outputs=["sum", "product"], version="2")
+def model(a, b, scale=1.0):
+    print("progress", a)
+    os.write(1, b"native library speaking\n")
+    if a == 13:
+        raise NoValue("does not assemble")
+    if a == 14:
+        return {{"sum": a + b}}
+    if a == 15:
+        return {{"sum": float("nan"), "product": a * b}}
+    if a == 16:
+        return 1 / 0
+    return {{"sum": a + b, "product": scale * a * b}}
+
+if __name__ == "__main__":
+    model.serve()
+"#
+    );
+    std::fs::write(&script, source).unwrap();
+    let model = model(python(&script));
+    let a = [1.0, 13.0, 14.0, 15.0, 16.0, 2.0];
+    let out = at(&model, &a);
+    right_but(&a, &out, &[1, 2, 3, 4]);
+    let message = |row: usize, output: usize| fault(&out, row, output).to_string();
+    assert_eq!((message(1, 0), message(1, 1)), ("does not assemble".into(), "does not assemble".into()));
+    assert_eq!((out.value(2, 0), message(2, 1)), (Some(16.0), "the model returned no `product`".into()));
+    assert_eq!((message(3, 0), out.value(3, 1)), ("the model returned nan".into(), Some(30.0)));
+    assert_eq!(message(4, 0), "ZeroDivisionError: division by zero");
+    assert_eq!(model.adapter(&[0, 1]).unwrap().version.as_deref(), Some("2"));
+    // It knows what it does not know.
+    let unknown = |inputs: [&str; 2], outputs: [&str; 1]| {
+        let greeting = Greeting { nominal: vec![0.0; 2], ..Greeting::default() };
+        let process = Process::new(Signature::of_names(inputs, outputs), greeting, python(&script));
+        process.prepare(&[0]).unwrap_err().to_string()
+    };
+    assert!(unknown(["a", "c"], ["sum"]).contains("no dimension or constant `c`; there are a, b, scale"));
+    assert!(unknown(["a", "scale"], ["sum"]).contains("`b` is needed"));
+    assert!(unknown(["a", "b"], ["quotient"]).contains("no characteristic `quotient`; there are sum, product"));
+}
+
+/// A function of whole columns; one bad point in them takes no other with it.
+#[test]
+fn the_sdk_serves_batches() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = folder.path().join("model.py");
+    let sdk = repository("adapters/python").display().to_string();
+    let source = format!(
+        r#"
+import sys
+sys.path.insert(0, {sdk:?})
+from sensitol_adapter import adapter
+
+@adapter(batch=True, window=16)
+def model(a, b):
+    if 13 in a:
+        raise RuntimeError("13")
+    return {{"sum": [x + y for x, y in zip(a, b)], "product": [x * y for x, y in zip(a, b)]}}
+
+model.serve()
+"#
+    );
+    std::fs::write(&script, source).unwrap();
+    let a: Vec<f64> = (0..50).map(f64::from).collect();
+    let out = at(&model(python(&script)), &a);
+    right_but(&a, &out, &[13]);
+    assert_eq!(fault(&out, 13, 0).to_string(), "RuntimeError: 13");
+}
