@@ -16,6 +16,8 @@ pub struct Evaluated {
     pub known: Known,
     /// Points sent to the model.
     pub evaluations: usize,
+    /// Points whose answers were known from an earlier run.
+    pub reused: usize,
     /// In how many stages.
     pub stages: usize,
     /// Whether it was stopped before the plan was done.
@@ -31,6 +33,7 @@ pub fn evaluate(problem: &Problem, plan: &DifferencePlan, run: &Run<'_>) -> Eval
     let mut evaluated = Evaluated {
         known: Known::nothing(problem.characteristics().len()),
         evaluations: 0,
+        reused: 0,
         stages: 0,
         stopped: false,
         in_model: Duration::ZERO,
@@ -65,6 +68,7 @@ impl Evaluated {
                 self.learn(point, row, &out);
             }
             self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
+            self.reused += out.count_reused();
             if self.stopped {
                 return;
             }

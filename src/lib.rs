@@ -10,6 +10,8 @@ pub mod dimension;
 pub mod distribution;
 pub mod error;
 pub mod evaluation;
+#[cfg(feature = "journal")]
+pub mod journal;
 pub mod method;
 pub mod models;
 pub mod moments;

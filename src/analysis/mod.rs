@@ -21,6 +21,8 @@ pub struct Analysis {
     pub varying: usize,
     /// Points sent to the model.
     pub evaluations: usize,
+    /// Points whose answers were known from an earlier run.
+    pub reused: usize,
     /// Points that lost at least one characteristic.
     pub failed: usize,
     /// Batches in which they were sent.
@@ -69,6 +71,7 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         method: outcome.method,
         varying: outcome.plan.varying().len(),
         evaluations: outcome.evaluated.evaluations,
+        reused: outcome.evaluated.reused,
         failed: outcome.evaluated.known.failed_points(),
         stages: outcome.evaluated.stages,
         stopped: outcome.evaluated.stopped,

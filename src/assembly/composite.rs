@@ -205,7 +205,9 @@ impl AssemblyFunction for Composite {
         let uses: Vec<Vec<usize>> =
             formulas.iter().map(|&formula| self.split(self.formulas.variables(formula)).1).collect();
 
-        in_blocks(ask, run, out, |points, rows, out| {
+        // What the model has answered is not lost to a stop: only the model itself is stopped.
+        let run = if needed.is_empty() { *run } else { run.unstopped() };
+        in_blocks(ask, &run, out, |points, rows, out| {
             let variable = |index: usize| -> &[f64] {
                 let dimensions = self.signature.inputs.len();
                 let column = match index.checked_sub(dimensions) {
@@ -239,7 +241,8 @@ impl AssemblyFunction for Composite {
                 }
             });
         });
-        out.spent(answers.extra());
+        out.spent(answers.extra() + answers.count_reused() as i64);
+        out.reused(answers.count_reused());
     }
 }
 

@@ -18,6 +18,12 @@ pub enum EvaluationError {
     /// An external program failed.
     #[error(transparent)]
     Process(#[from] Box<super::process::ProcessError>),
+    /// The answer could not be kept, or what is kept could not be read.
+    #[error("{message}")]
+    NotKept {
+        /// What is wrong with the journal.
+        message: String,
+    },
     /// The model said why itself.
     #[error("{message}")]
     Refused {

@@ -25,7 +25,7 @@ pub use closure::Closure;
 pub use composite::{Composite, CompositeError, Parts, Source};
 pub use error::EvaluationError;
 pub use responses::Responses;
-pub use run::Run;
+pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};
 
 /// The black box: object-safe, batch first, told what is asked, with an error per point and output.

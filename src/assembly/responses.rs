@@ -27,12 +27,14 @@ pub struct Responses {
     errors: BTreeMap<(usize, usize), EvaluationError>,
     /// Evaluations beyond one for each answered row.
     extra: i64,
+    /// Rows whose answers were known already.
+    reused: usize,
 }
 
 impl Responses {
     /// For `rows` points and `outputs` asked outputs, all of them open.
     pub fn open(rows: usize, outputs: usize) -> Self {
-        Self { rows, outputs, values: vec![f64::NAN; rows * outputs], errors: BTreeMap::new(), extra: 0 }
+        Self { rows, outputs, values: vec![f64::NAN; rows * outputs], errors: BTreeMap::new(), extra: 0, reused: 0 }
     }
 
     /// Number of points.
@@ -85,6 +87,17 @@ impl Responses {
         self.extra += extra;
     }
 
+    /// Notes rows whose answers were known already: they cost no evaluation.
+    pub fn reused(&mut self, rows: usize) {
+        self.reused += rows;
+        self.extra -= rows as i64;
+    }
+
+    /// Rows whose answers were known already.
+    pub fn count_reused(&self) -> usize {
+        self.reused
+    }
+
     /// Evaluations beyond one for each answered row.
     pub fn extra(&self) -> i64 {
         self.extra
@@ -107,6 +120,7 @@ impl Responses {
             self.values[start..start + block.rows].copy_from_slice(block.column(output));
         }
         self.extra += block.extra;
+        self.reused += block.reused;
         self.errors.extend(block.errors.into_iter().map(|((row, output), error)| ((first + row, output), error)));
     }
 }

@@ -5,6 +5,17 @@ use super::Responses;
 /// Called with rows that are final, and the responses that hold them.
 type Finished<'a> = dyn Fn(&[usize], &Responses) + Sync + 'a;
 
+/// Points that a costly model has done with, as they come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Progress {
+    /// Points that are answered, by the model or from what is known.
+    pub points: usize,
+    /// Those of them with an output that has no value.
+    pub failed: usize,
+    /// Those of them that were known already.
+    pub reused: usize,
+}
+
 /// How a batch is to be evaluated: whom to tell of finished rows, and whether to stop.
 ///
 /// ```
@@ -15,6 +26,8 @@ type Finished<'a> = dyn Fn(&[usize], &Responses) + Sync + 'a;
 pub struct Run<'a> {
     finished: Option<&'a Finished<'a>>,
     stop: Option<&'a (dyn Fn() -> bool + Sync)>,
+    abandon: Option<&'a (dyn Fn() -> bool + Sync)>,
+    progress: Option<&'a (dyn Fn(Progress) + Sync)>,
 }
 
 impl<'a> Run<'a> {
@@ -33,9 +46,24 @@ impl<'a> Run<'a> {
         Self { stop: Some(stop), ..self }
     }
 
+    /// Gives up at once, with what is under way, when `abandon` says so.
+    pub fn abandoning_when(self, abandon: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        Self { abandon: Some(abandon), ..self }
+    }
+
+    /// Tells `progress` of the points of costly models, which others keep to themselves.
+    pub fn showing(self, progress: &'a (dyn Fn(Progress) + Sync)) -> Self {
+        Self { progress: Some(progress), ..self }
+    }
+
     /// The same, telling nobody: for a part of an answer that is no answer yet.
     pub fn quiet(self) -> Self {
         Self { finished: None, ..self }
+    }
+
+    /// The same, without a stop: for what follows quickly from answers that were paid for.
+    pub fn unstopped(self) -> Self {
+        Self { stop: None, ..self }
     }
 
     /// These rows of `out` are final: values or errors, for every output asked.
@@ -43,6 +71,23 @@ impl<'a> Run<'a> {
         if let Some(finished) = self.finished {
             finished(rows, out);
         }
+    }
+
+    /// A costly model has done with more points.
+    pub fn progressed(&self, progress: Progress) {
+        if let Some(show) = self.progress {
+            show(progress);
+        }
+    }
+
+    /// Whether to return at once: even what is under way is not waited for.
+    pub fn abandoned(&self) -> bool {
+        self.abandon.is_some_and(|abandon| abandon())
+    }
+
+    /// The conditions of a part of the work: told to `finished` rather than to whom this one tells, and stopped by `stop`.
+    pub fn within<'b>(&'b self, finished: &'b Finished<'b>, stop: &'b (dyn Fn() -> bool + Sync)) -> Run<'b> {
+        Run { finished: Some(finished), stop: Some(stop), abandon: self.abandon, progress: self.progress }
     }
 
     /// Whether to return now, with what is answered so far.

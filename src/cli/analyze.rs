@@ -1,25 +1,29 @@
 //! `sensitol analyze`.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::args::AnalyzeArgs;
 use super::failure::{Exit, Failure};
+use super::interrupt;
 use super::output::{Destination, Look, json};
+use super::progress::Bar;
 use super::study;
 use crate::analysis::{Analysis, analyze_within};
-use crate::assembly::Run;
+use crate::assembly::process::Listener;
+use crate::assembly::{Progress, Run};
 use crate::method::MethodError;
 use crate::report::{About, Report, text};
-use crate::study::Study;
+use crate::study::{Externals, JournalPlace, Study};
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
-    let study = study::read(&asked.study)?;
+    let study = study::read(&asked.study, externals(asked, look))?;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }
     let destination = Destination::open(&asked.output)?;
     let begun = Instant::now();
-    let analysis = analyze(&study, asked, begun)?;
+    let analysis = analyze(&study, asked, begun, look)?;
     let about = About {
         title: study.title.clone(),
         sha256: study.sha256.clone(),
@@ -32,6 +36,11 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let written = destination.write(&printed);
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
+    }
+    if interrupt::stopped() {
+        look.warn("stopped", &format!("interrupted after {} evaluations", analysis.evaluations));
+        written?;
+        return Ok(Exit::Interrupted);
     }
     if let (true, Some(limit)) = (analysis.stopped, asked.time) {
         look.warn("stopped", &format!("stopped after {limit} s with {} evaluations", analysis.evaluations));
@@ -48,10 +57,25 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
 }
 
-fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant) -> Result<Analysis, Failure> {
+/// Where the answers of an external model are kept, and who hears it.
+fn externals(asked: &AnalyzeArgs, look: Look) -> Externals {
+    let journal = match &asked.journal {
+        None => JournalPlace::BesideStudy,
+        Some(path) if path.as_os_str() == "none" => JournalPlace::Nowhere,
+        Some(path) => JournalPlace::At(path.clone()),
+    };
+    let listener = look.verbose.then(|| Arc::new(|line: &str| anstream::eprintln!("model: {line}")) as Listener);
+    Externals { journal, listener }
+}
+
+fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant, look: Look) -> Result<Analysis, Failure> {
+    interrupt::listen();
     let limit = asked.time.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
-    let out_of_time = || limit.is_some_and(|limit| begun.elapsed() >= limit);
-    let run = Run::to_the_end().stopping_when(&out_of_time);
+    let stop = || interrupt::stopped() || limit.is_some_and(|limit| begun.elapsed() >= limit);
+    let plan = study.options.method.procedure().plan(&study.problem, &study.options)?;
+    let bar = study.problem.function().signature().costly.then(|| Bar::new(plan.cost().0, look.quiet));
+    let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
+    let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
     let analysis = || analyze_within(&study.problem, &study.options, &run);
     let result: Result<Analysis, MethodError> = match asked.threads {
         None => analysis(),
@@ -60,5 +84,8 @@ fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant) -> Result<Analysi
             pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(analysis)
         }
     };
+    if let Some(bar) = bar {
+        bar.clear();
+    }
     Ok(result?)
 }

@@ -18,7 +18,7 @@ pub(super) struct Arguments {
     #[arg(short, long, global = true, help_heading = OUTPUT)]
     pub(super) quiet: bool,
 
-    /// Print every contribution and interaction, however small
+    /// Print every contribution and interaction, however small, and what an external model writes to stderr
     #[arg(short, long, global = true, help_heading = OUTPUT)]
     pub(super) verbose: bool,
 
@@ -44,6 +44,9 @@ pub(super) enum Command {
     /// The Pearson distribution of four moments: densities, probabilities, quantiles
     #[command(after_help = "Example: sensitol pearson --skewness 0.5 --kurtosis 3.4 --sf 4 --upper-quantile 1e-6,1e-9")]
     Pearson(PearsonArgs),
+    /// What is kept of external models: show, export or forget it
+    #[command(after_help = "Example: sensitol journal show gap.journal.sqlite")]
+    Journal(JournalArgs),
 }
 
 /// A study and how it is to be analysed.
@@ -94,6 +97,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "S", value_parser = positive)]
     pub(super) time: Option<f64>,
 
+    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
+    #[arg(long, value_name = "FILE")]
+    pub(super) journal: Option<PathBuf>,
+
     /// Exit with 1 when a characteristic misses its target_yield, or its yield is unknown
     #[arg(long)]
     pub(super) check: bool,
@@ -136,6 +143,45 @@ pub(super) struct ModelsArgs {
 
     #[command(flatten)]
     pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(subcommand_required = true)]
+pub(super) struct JournalArgs {
+    #[command(subcommand)]
+    pub(super) command: JournalCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum JournalCommand {
+    /// The models in a journal, with how much is known of each
+    Show {
+        /// The journal
+        file: PathBuf,
+        #[command(flatten)]
+        output: OutputArgs,
+    },
+    /// Every answer of a model as CSV: dimensions, outputs, reasons for no value
+    Export {
+        /// The journal
+        file: PathBuf,
+        /// The model's number, where there are several
+        #[arg(long, value_name = "N")]
+        model: Option<i64>,
+        #[command(flatten)]
+        output: OutputArgs,
+    },
+    /// Forgets the answers of a model
+    Forget {
+        /// The journal
+        file: PathBuf,
+        /// The model's number, where there are several
+        #[arg(long, value_name = "N", conflicts_with = "all")]
+        model: Option<i64>,
+        /// Forget every model
+        #[arg(long)]
+        all: bool,
+    },
 }
 
 #[derive(Debug, Args)]

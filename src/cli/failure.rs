@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
+use crate::journal::JournalError;
 use crate::method::MethodError;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
@@ -21,6 +22,8 @@ pub(super) enum Exit {
     Usage = 2,
     /// The model gave some asked characteristic no result.
     NoResult = 3,
+    /// Ctrl-C.
+    Interrupted = 130,
 }
 
 impl From<Exit> for ExitCode {
@@ -40,6 +43,12 @@ pub(super) enum Failure {
     Method(#[from] MethodError),
     #[error(transparent)]
     Pearson(#[from] PearsonError),
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    #[error("{}; there are {known}", number.map_or("--model N says which of several models".to_owned(), |number| format!("there is no model {number} in the journal")))]
+    UnknownJournalModel { number: Option<i64>, known: String },
+    #[error("the table cannot be written: {reason}")]
+    Table { reason: String },
     #[error("--check has nothing to check: no characteristic asked for has a target_yield")]
     NothingToCheck,
     #[error("--pairs {text}: {fault}")]

@@ -6,11 +6,14 @@ mod analyze;
 mod args;
 mod check;
 mod failure;
+mod interrupt;
+mod journal;
 mod models;
 mod output;
 mod pairs;
 mod pearson;
 mod plan;
+mod progress;
 mod study;
 
 use std::ffi::OsString;
@@ -38,6 +41,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Plan(asked) => plan::run(asked, style),
         Command::Check(asked) => check::run(asked, style),
         Command::Models(asked) => models::run(asked, style),
+        Command::Journal(asked) => journal::run(asked, style),
         Command::Pearson(asked) => pearson::run(asked, style),
     };
     let exit = result.unwrap_or_else(|failure| {

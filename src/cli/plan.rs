@@ -10,6 +10,7 @@ use super::output::{Destination, Look, json};
 use super::study;
 use crate::plan::{DifferencePlan, Known, Purpose, Stage};
 use crate::problem::Problem;
+use crate::study::Externals;
 
 /// What `plan --json` prints.
 #[derive(Debug, Serialize)]
@@ -49,7 +50,7 @@ struct AxisReport {
 }
 
 pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
-    let study = study::read(&asked.study)?;
+    let study = study::read(&asked.study, Externals::default())?;
     let destination = Destination::open(&asked.output)?;
     let points = asked.write_points.as_deref().map(Destination::file).transpose()?;
     let procedure = study.options.method.procedure();

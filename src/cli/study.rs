@@ -5,11 +5,11 @@ use super::failure::Failure;
 use super::pairs;
 use crate::method::Method;
 use crate::plan::Stencil;
-use crate::study::Study;
+use crate::study::{Externals, Study};
 
 /// Reads the study; what the command line says wins over its `[analysis]`.
-pub(super) fn read(asked: &StudyArgs) -> Result<Study, Failure> {
-    let mut study = Study::read(&asked.study)?;
+pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Failure> {
+    let mut study = Study::read_with(&asked.study, externals)?;
     if !asked.characteristics.is_empty() {
         study.problem = study.problem.only(&asked.characteristics)?;
     }

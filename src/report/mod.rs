@@ -237,7 +237,7 @@ impl Report {
             method: analysis.method.name(),
             varying: analysis.varying,
             evaluations: analysis.evaluations,
-            reused: 0,
+            reused: analysis.reused,
             failed: analysis.failed,
             wall_s: about.wall_s,
             seed: about.seed,

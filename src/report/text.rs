@@ -37,7 +37,11 @@ fn summary(report: &Report) -> String {
     };
     let (evaluations, varying) =
         (plural(report.evaluations, "evaluation"), plural(report.varying, "varying dimension"));
-    format!("{}: {evaluations}, {varying}{failed}", report.method)
+    let reused = match report.reused {
+        0 => String::new(),
+        reused => format!(", {reused} known from the journal"),
+    };
+    format!("{}: {evaluations}{reused}, {varying}{failed}", report.method)
 }
 
 /// A line per characteristic: where it lies, and its limits.

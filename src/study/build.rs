@@ -226,7 +226,7 @@ fn compose(
     let model = model.map(|model| -> (Arc<dyn AssemblyFunction>, Vec<assembly::Source>) {
         match model {
             ModelOf::BuiltIn(model) => (Arc::new(model.function()), sources(model, dimensions, &constants)),
-            ModelOf::Program(settings) => {
+            ModelOf::Program(program) => {
                 let used =
                     |name: &str| formulas.iter().any(|named| named.formula.names().any(|(used, _)| used == name));
                 let names =
@@ -238,7 +238,7 @@ fn compose(
                 };
                 let offered = asked_of_program(&inputs, &constants, formulas, &outputs);
                 let all = (0..dimensions.len()).map(assembly::Source::Dimension).collect();
-                (process(settings, &inputs, greeting, offered), all)
+                (process(program, &inputs, greeting, offered, source), all)
             }
         }
     });

@@ -210,6 +210,12 @@ pub enum StudyFault {
         /// The inputs that there are.
         known: Vec<String>,
     },
+    /// A file that the model depends on is not there.
+    #[error("there is no file {}", path.display())]
+    MissingFile {
+        /// Where it was looked for.
+        path: std::path::PathBuf,
+    },
     /// There is nothing to evaluate.
     #[error("the study has no {what}")]
     Nothing {

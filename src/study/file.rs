@@ -83,6 +83,7 @@ pub(super) struct ModelEntry {
     pub(super) timeout_s: Option<Spanned<f64>>,
     pub(super) start_timeout_s: Option<Spanned<f64>>,
     pub(super) retries: Option<Spanned<u64>>,
+    pub(super) files: Option<Vec<Spanned<String>>>,
 }
 
 /// `[analysis]`.

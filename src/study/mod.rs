@@ -7,6 +7,7 @@ mod build;
 mod de;
 mod dimension;
 mod error;
+mod externals;
 mod file;
 mod model;
 mod options;
@@ -14,6 +15,7 @@ mod source;
 mod tree;
 
 pub use error::{StudyError, StudyFault};
+pub use externals::{Externals, JournalPlace};
 pub use source::Format;
 
 use std::path::{Path, PathBuf};
@@ -52,6 +54,14 @@ impl Study {
     /// # Errors
     /// The first fault, of the file, its syntax, its keys, its values, or of what they mean together.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
+        Self::read_with(path, Externals::default())
+    }
+
+    /// [`read`](Self::read), with external programs treated like this. Nothing is started by reading.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_with(path: &Path, externals: Externals) -> Result<Self, StudyError> {
         let name = path.display().to_string();
         let failed = |text: &str, fault: StudyFault| StudyError {
             file: name.clone(),
@@ -76,7 +86,7 @@ impl Study {
         match std::str::from_utf8(&bytes) {
             Ok(text) => {
                 let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-                Self::parse(text, format, &name, folder.to_owned())
+                Self::parse(text, format, &name, folder.to_owned(), externals)
             }
             Err(error) => {
                 let offset = error.valid_up_to();
@@ -102,16 +112,22 @@ impl Study {
     /// # Ok::<(), sensitol::Error>(())
     /// ```
     pub fn from_toml(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Toml, name, PathBuf::from("."))
+        Self::parse(text, Format::Toml, name, PathBuf::from("."), Externals::default())
     }
 
     /// From JSON text; `name` stands for the file in errors.
     pub fn from_json(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Json, name, PathBuf::from("."))
+        Self::parse(text, Format::Json, name, PathBuf::from("."), Externals::default())
     }
 
-    fn parse(text: &str, format: Format, name: &str, folder: PathBuf) -> Result<Self, StudyError> {
-        let source = Source { name: name.to_owned(), text: Arc::from(text), folder };
+    fn parse(
+        text: &str,
+        format: Format,
+        name: &str,
+        folder: PathBuf,
+        externals: Externals,
+    ) -> Result<Self, StudyError> {
+        let source = Source { name: name.to_owned(), text: Arc::from(text), folder, externals };
         let failed = |Fault { span, key, fault }| StudyError {
             file: source.name.clone(),
             text: Arc::clone(&source.text),

@@ -1,5 +1,6 @@
 //! From `[model]` to what is evaluated: a built-in model or an external program.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -9,7 +10,7 @@ use super::error::{Fault, StudyFault, fault};
 use super::file::ModelEntry;
 use super::source::Source;
 use crate::assembly::process::{Greeting, Process, Settings};
-use crate::assembly::{Input, Output, Signature};
+use crate::assembly::{AssemblyFunction, Input, Output, Signature};
 use crate::models::{self, Model};
 use crate::names::nearest;
 
@@ -19,7 +20,14 @@ const WORKERS: u64 = 1024;
 /// What a study evaluates beside its formulas.
 pub(super) enum ModelOf {
     BuiltIn(&'static Model),
-    Program(Settings),
+    Program(Program),
+}
+
+/// An external program.
+pub(super) struct Program {
+    settings: Settings,
+    /// What it depends on beside its arguments.
+    files: Vec<PathBuf>,
 }
 
 impl ModelOf {
@@ -44,11 +52,12 @@ pub(super) fn model(entry: &Spanned<ModelEntry>, source: &Source) -> Result<Mode
             Err(fault(command.span(), "model.command", StudyFault::Conflict { a: "builtin", b: "command", why }))
         }
         (Some(name), None) => {
-            let of_programs: [(&'static str, Option<std::ops::Range<usize>>); 4] = [
+            let of_programs: [(&'static str, Option<std::ops::Range<usize>>); 5] = [
                 ("workers", entry.workers.as_ref().map(Spanned::span)),
                 ("timeout_s", entry.timeout_s.as_ref().map(Spanned::span)),
                 ("start_timeout_s", entry.start_timeout_s.as_ref().map(Spanned::span)),
                 ("retries", entry.retries.as_ref().map(Spanned::span)),
+                ("files", entry.files.as_ref().and_then(|files| files.first()).map(Spanned::span)),
             ];
             for (key, span) in of_programs {
                 if let Some(span) = span {
@@ -72,7 +81,7 @@ fn built_in(name: &Spanned<String>) -> Result<&'static Model, Fault> {
     })
 }
 
-fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) -> Result<Settings, Fault> {
+fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) -> Result<Program, Fault> {
     if command.get_ref().first().is_none_or(String::is_empty) {
         let expected = "a program and its arguments, such as [\"python3\", \"gap.py\"],".to_owned();
         let found = "an empty list".to_owned();
@@ -97,25 +106,41 @@ fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) 
             Err(fault(given.span(), format!("model.{key}"), out))
         }
     };
+    let file = |file: &Spanned<String>| {
+        let path = source.folder.join(file.get_ref());
+        if path.is_file() { Ok(path) } else { Err(fault(file.span(), "model.files", StudyFault::MissingFile { path })) }
+    };
+    let files = entry.files.iter().flatten().map(file).collect::<Result<_, _>>()?;
     let defaults = Settings::new(command.get_ref().iter());
-    Ok(Settings {
+    let settings = Settings {
         folder: source.folder.clone(),
         workers: count(&entry.workers, "workers", 1, 1, WORKERS, "between 1 and 1024")? as usize,
         retries: count(&entry.retries, "retries", u64::from(defaults.retries), 0, 1000, "between 0 and 1000")? as u32,
         timeout: seconds(&entry.timeout_s, "timeout_s", defaults.timeout)?,
         start_timeout: seconds(&entry.start_timeout_s, "start_timeout_s", defaults.start_timeout)?,
+        listener: source.externals.listener.clone(),
         ..defaults
-    })
+    };
+    Ok(Program { settings, files })
 }
 
-/// The program as assembly function: of all dimensions, with `outputs` by name and unit.
+/// The program as assembly function: of all dimensions, with `outputs` by name and unit; its answers kept where the study is
+/// read to be evaluated.
 pub(super) fn process(
-    settings: &Settings,
+    program: &Program,
     inputs: &[Input],
     greeting: Greeting,
     outputs: Vec<(String, Option<String>)>,
-) -> Arc<Process> {
+    source: &Source,
+) -> Arc<dyn AssemblyFunction> {
     let outputs = outputs.into_iter().map(|(name, unit)| Output { name, unit, depends_on: None }).collect();
     let signature = Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() };
-    Arc::new(Process::new(signature, greeting, settings.clone()))
+    let process = Process::new(signature, greeting, program.settings.clone());
+    #[cfg(feature = "journal")]
+    if let Some(path) = source.externals.journal.path(&source.name) {
+        return Arc::new(crate::journal::Journaled::new(process, path, program.files.clone()));
+    }
+    #[cfg(not(feature = "journal"))]
+    let _ = (source, &program.files);
+    Arc::new(process)
 }

@@ -4,6 +4,8 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::externals::Externals;
+
 /// The two formats of one schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
@@ -14,12 +16,13 @@ pub enum Format {
 }
 
 /// A study file's name and text.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(super) struct Source {
     pub(super) name: String,
     pub(super) text: Arc<str>,
     /// The folder that relative paths start from.
     pub(super) folder: PathBuf,
+    pub(super) externals: Externals,
 }
 
 impl Source {

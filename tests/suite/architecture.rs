@@ -19,7 +19,7 @@ const LAYERS: &[&[&str]] = &[
     &["capability"],
     &["pearson"],
     &["moments"],
-    &["models"],
+    &["models", "journal"],
     &["assembly"],
     &["warning"],
     &["dimension", "characteristic"],

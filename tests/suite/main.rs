@@ -7,6 +7,7 @@ mod cli;
 mod distributions;
 mod docs;
 mod formulas;
+mod journal;
 mod methods;
 mod moments;
 mod pearson;

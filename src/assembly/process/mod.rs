@@ -100,6 +100,16 @@ impl Process {
         self.with_pool(outputs, |pool| pool.prepare().cloned())
     }
 
+    /// How it is run.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What its first line says beside names.
+    pub fn greeting(&self) -> &Greeting {
+        &self.greeting
+    }
+
     fn with_pool<T>(&self, outputs: &[usize], act: impl FnOnce(&mut Pool) -> T) -> T {
         let names: Vec<String> = outputs.iter().map(|&output| self.signature.outputs[output].name.clone()).collect();
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);

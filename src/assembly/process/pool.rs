@@ -8,7 +8,7 @@ use super::Settings;
 use super::child::{Child, Event, What};
 use super::error::{ProcessError, ProcessFault, Quoted, StderrTail};
 use super::protocol::{Adapter, Hello, Line, VERSION, request};
-use crate::assembly::{Points, Responses, Run};
+use crate::assembly::{Points, Progress, Responses, Run};
 
 /// How often a stop is looked for.
 const TICK: Duration = Duration::from_millis(50);
@@ -123,6 +123,9 @@ impl Pool {
         });
         loop {
             let stopping = run.stopped();
+            if run.abandoned() {
+                break;
+            }
             let work = batch.as_mut().expect("a batch");
             if work.left == 0 || (stopping && !self.busy()) {
                 break;
@@ -141,7 +144,10 @@ impl Pool {
         work.out.spent(work.sent as i64 - (rows - work.left) as i64);
         // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
         for slot in &mut self.slots {
-            if matches!(&slot.state, State::Ready(worker) if !worker.under_way.is_empty()) {
+            if let State::Ready(worker) = &mut slot.state
+                && !worker.under_way.is_empty()
+            {
+                worker.child.kill();
                 slot.state = State::Empty;
             }
         }
@@ -499,6 +505,9 @@ impl Batch<'_> {
 
     fn tell(&mut self, run: &Run<'_>) {
         if !self.done.is_empty() {
+            let failed = |&&row: &&usize| (0..self.out.outputs()).any(|output| self.out.value(row, output).is_none());
+            let failed = self.done.iter().filter(failed).count();
+            run.progressed(Progress { points: self.done.len(), failed, reused: 0 });
             run.finished(&self.done, self.out);
             self.done.clear();
         }

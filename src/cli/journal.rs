@@ -1,0 +1,143 @@
+//! `sensitol journal`: what is kept of external models.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::args::{JournalArgs, JournalCommand, OutputArgs};
+use super::failure::{Exit, Failure};
+use super::output::{Destination, Look, json};
+use crate::journal::{Kept, KnownModel, Store};
+
+/// What `journal show --json` prints of one model.
+#[derive(Debug, Serialize)]
+struct ModelReport {
+    id: i64,
+    since: String,
+    points: usize,
+    values: usize,
+    errors: usize,
+    dimensions: Vec<String>,
+    identity: serde_json::Value,
+}
+
+pub(super) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {
+    match &asked.command {
+        JournalCommand::Show { file, output } => {
+            let models = Store::open_existing(file)?.models()?;
+            let reports: Vec<ModelReport> = models.into_iter().map(ModelReport::of).collect();
+            print(output, &if output.json { json(&reports) } else { reports.iter().map(ModelReport::text).collect() })
+        }
+        JournalCommand::Export { file, model, output } => {
+            let store = Store::open_existing(file)?;
+            let model = chosen(&store, *model)?;
+            let mut answers = store.answers(model.id)?;
+            // In order of the numbers, not of their bytes.
+            let order = |kept: &Kept| kept.point.clone();
+            answers.sort_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal));
+            print(output, &table(&model, &answers)?)
+        }
+        JournalCommand::Forget { file, model, all } => {
+            let mut store = Store::open_existing(file)?;
+            let id = if *all { None } else { Some(chosen(&store, *model)?.id) };
+            let forgotten = store.forget(id)?;
+            if !look.quiet {
+                print(&OutputArgs { json: false, output: None }, &format!("{forgotten} answers forgotten\n"))?;
+            }
+            Ok(Exit::Done)
+        }
+    }
+}
+
+fn print(output: &OutputArgs, text: &str) -> Result<Exit, Failure> {
+    Destination::open(output)?.write(text)?;
+    Ok(Exit::Done)
+}
+
+/// The model of this number; the only one where none is named.
+fn chosen(store: &Store, number: Option<i64>) -> Result<KnownModel, Failure> {
+    let mut models = store.models()?;
+    match number {
+        Some(number) => {
+            let known: Vec<String> = models.iter().map(|model| model.id.to_string()).collect();
+            let found = models.into_iter().find(|model| model.id == number);
+            found.ok_or(Failure::UnknownJournalModel { number: Some(number), known: known.join(", ") })
+        }
+        None if models.len() == 1 => Ok(models.remove(0)),
+        None => {
+            let known: Vec<String> = models.iter().map(|model| model.id.to_string()).collect();
+            Err(Failure::UnknownJournalModel { number: None, known: known.join(", ") })
+        }
+    }
+}
+
+/// A row for each point: its dimensions, and a column and a reason for every output.
+fn table(model: &KnownModel, answers: &[Kept]) -> Result<String, Failure> {
+    let mut outputs: Vec<&str> = answers.iter().map(|kept| kept.output.as_str()).collect();
+    outputs.sort_unstable();
+    outputs.dedup();
+    let bits = |point: &[f64]| point.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
+    let mut order: Vec<&[f64]> = Vec::new();
+    let mut rows: BTreeMap<Vec<u64>, BTreeMap<&str, &Kept>> = BTreeMap::new();
+    for kept in answers {
+        let row = rows.entry(bits(&kept.point)).or_insert_with(|| {
+            order.push(&kept.point);
+            BTreeMap::new()
+        });
+        row.insert(&kept.output, kept);
+    }
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let errors: Vec<String> = outputs.iter().map(|output| format!("{output} error")).collect();
+    let header = model.dimensions.iter().map(String::as_str).chain(outputs.iter().copied());
+    let written = writer.write_record(header.chain(errors.iter().map(String::as_str)));
+    written
+        .and_then(|()| {
+            for point in order {
+                let row = &rows[&bits(point)];
+                let answer = |output: &&str| row.get(output).map(|kept| &kept.answer);
+                let value = |output: &&str| {
+                    answer(output).and_then(|answer| answer.as_ref().ok()).map_or(String::new(), f64::to_string)
+                };
+                let error = |output: &&str| {
+                    answer(output).and_then(|answer| answer.as_ref().err().cloned()).unwrap_or_default()
+                };
+                let cells =
+                    point.iter().map(f64::to_string).chain(outputs.iter().map(value)).chain(outputs.iter().map(error));
+                writer.write_record(cells)?;
+            }
+            Ok(())
+        })
+        .map_err(|error| Failure::Table { reason: error.to_string() })?;
+    let bytes = writer.into_inner().map_err(|error| Failure::Table { reason: error.to_string() })?;
+    Ok(String::from_utf8(bytes).expect("names and numbers are UTF-8"))
+}
+
+impl ModelReport {
+    fn of(model: KnownModel) -> Self {
+        let identity = serde_json::from_str(&model.identity).unwrap_or(serde_json::Value::Null);
+        let KnownModel { id, since, points, values, errors, dimensions, .. } = model;
+        Self { id, since, points, values, errors, dimensions, identity }
+    }
+
+    fn text(&self) -> String {
+        let word = |key: &str| match &self.identity[key] {
+            serde_json::Value::String(text) => text.clone(),
+            serde_json::Value::Array(words) => {
+                words.iter().filter_map(|word| word.as_str()).collect::<Vec<_>>().join(" ")
+            }
+            _ => "-".to_owned(),
+        };
+        format!(
+            "model {}: {}\n  adapter {}, version {}\n  {} points, {} values, {} without a value; since {} UTC\n  dimensions: {}\n",
+            self.id,
+            word("command"),
+            word("adapter"),
+            word("version"),
+            self.points,
+            self.values,
+            self.errors,
+            self.since,
+            self.dimensions.join(", "),
+        )
+    }
+}

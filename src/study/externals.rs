@@ -1,0 +1,37 @@
+//! What a study file does not say of external programs: where their answers are kept, who hears them.
+
+use std::path::{Path, PathBuf};
+
+use crate::assembly::process::Listener;
+
+/// How the external programs of a study are treated.
+#[derive(Clone, Default)]
+pub struct Externals {
+    /// Where their answers are kept.
+    pub journal: JournalPlace,
+    /// Who hears every line that they write to stderr.
+    pub listener: Option<Listener>,
+}
+
+/// Where the answers of external programs are kept.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum JournalPlace {
+    /// Nowhere: they are gone with the run.
+    #[default]
+    Nowhere,
+    /// Beside the study: `gap.journal.sqlite` for `gap.toml`.
+    BesideStudy,
+    /// In this file.
+    At(PathBuf),
+}
+
+impl JournalPlace {
+    /// The file for the study of this name.
+    pub fn path(&self, study: &str) -> Option<PathBuf> {
+        match self {
+            Self::Nowhere => None,
+            Self::BesideStudy => Some(Path::new(study).with_extension("journal.sqlite")),
+            Self::At(path) => Some(path.clone()),
+        }
+    }
+}

@@ -1,0 +1,18 @@
+"""A slow child that counts its evaluations in a file: `counting.py FILE SECONDS WINDOW`."""
+
+import json
+import os
+import sys
+import time
+
+counter = os.open(sys.argv[1], os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+seconds, window = float(sys.argv[2]), int(sys.argv[3])
+hello = json.loads(sys.stdin.readline())
+print(json.dumps({"ready": True, "name": "counting", "version": "1", "window": window}), flush=True)
+for line in sys.stdin:
+    request = json.loads(line)
+    time.sleep(seconds)
+    os.write(counter, b".")
+    x = request["x"]
+    y = sum((index + 1) * value for index, value in enumerate(x)) + 0.01 * x[0] * x[1]
+    print(json.dumps({"id": request["id"], "y": [y] * len(hello["characteristics"])}), flush=True)

@@ -1,0 +1,302 @@
+//! What external models answered is never lost: killed runs, shared journals, full disks, broken files, Ctrl-C.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use sensitol::journal::{JournalFault, Kept, Store};
+
+use super::support::repository;
+
+/// A study behind a slow child, in a folder of its own.
+struct Slow {
+    folder: tempfile::TempDir,
+    workers: usize,
+    window: usize,
+}
+
+impl Slow {
+    /// Of `n` dimensions: `full` evaluates n² + n + 1 points.
+    fn new(n: usize, seconds: f64, workers: usize, window: usize) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let counter = folder.path().join("count").display().to_string();
+        let script = repository("tests/children/counting.py").display().to_string();
+        let dimensions: String = (0..n).map(|d| format!("x{d} = {{ nominal = {d}.5, tolerance = 0.1 }}\n")).collect();
+        let study = format!(
+            "[model]\ncommand = [\"python3\", {script:?}, {counter:?}, \"{seconds}\", \"{window}\"]\nworkers = {workers}\n\
+             [dimensions]\n{dimensions}[characteristics]\ny = {{ lower = 0.0 }}\n[analysis]\nmethod = \"full\"\n"
+        );
+        std::fs::write(folder.path().join("study.toml"), study).unwrap();
+        Self { folder, workers, window }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn command(&self, more: &[&str]) -> Command {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+        command.arg("analyze").arg(self.path("study.toml")).arg("--json").args(more);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    fn run(&self, more: &[&str]) -> Output {
+        self.command(more).output().unwrap()
+    }
+
+    /// Evaluations that the children have done in all runs.
+    fn evaluations(&self) -> usize {
+        std::fs::metadata(self.path("count")).map_or(0, |file| file.len() as usize)
+    }
+}
+
+/// A report without what tells one run from another.
+fn result(output: &Output) -> serde_json::Value {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for key in ["wall_s", "evaluations", "reused", "study_sha256"] {
+        report[key] = serde_json::Value::Null;
+    }
+    report
+}
+
+fn field(output: &Output, key: &str) -> u64 {
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    report[key].as_u64().unwrap()
+}
+
+#[test]
+fn nothing_is_evaluated_twice() {
+    let study = Slow::new(5, 0.0, 2, 4);
+    let first = study.run(&[]);
+    assert_eq!((field(&first, "evaluations"), field(&first, "reused"), study.evaluations()), (31, 0, 31));
+    let second = study.run(&[]);
+    assert_eq!((field(&second, "evaluations"), field(&second, "reused"), study.evaluations()), (0, 31, 31));
+    assert_eq!(result(&first), result(&second));
+    // A smaller method needs nothing new where its nodes are the same.
+    let axes = study.run(&["--method", "second-order"]);
+    assert_eq!((field(&axes, "evaluations"), field(&axes, "reused")), (0, 11));
+    // Without a journal all is evaluated, and nothing is left behind.
+    let without = study.run(&["--journal", "none"]);
+    assert_eq!((field(&without, "evaluations"), study.evaluations()), (31, 62));
+    let elsewhere = study.path("elsewhere.sqlite");
+    let other = study.run(&["--journal", elsewhere.to_str().unwrap()]);
+    assert_eq!((field(&other, "evaluations"), elsewhere.is_file()), (31, true));
+}
+
+/// Another tolerance keeps the nodes that stay, another constant or file makes another model.
+#[test]
+fn answers_belong_to_their_model() {
+    let study = Slow::new(3, 0.0, 1, 1);
+    let text = std::fs::read_to_string(study.path("study.toml")).unwrap();
+    let evaluated = |text: &str| {
+        std::fs::write(study.path("study.toml"), text).unwrap();
+        field(&study.run(&[]), "evaluations")
+    };
+    assert_eq!(evaluated(&text), 13);
+    // One dimension's nodes move: its two, and four of the six corners of pairs.
+    assert_eq!(evaluated(&text.replacen("tolerance = 0.1", "tolerance = 0.2", 1)), 6);
+    assert_eq!(evaluated(&text.replace("[dimensions]", "[constants]\ng = 1.0\n[dimensions]")), 13);
+    std::fs::write(study.path("part.txt"), "one").unwrap();
+    let with_file = text.replace("workers", "files = [\"part.txt\"]\nworkers");
+    assert_eq!(evaluated(&with_file), 13);
+    assert_eq!(evaluated(&with_file), 0);
+    std::fs::write(study.path("part.txt"), "two").unwrap();
+    assert_eq!(evaluated(&with_file), 13);
+    // And the first is still known.
+    assert_eq!(evaluated(&text), 0);
+}
+
+/// `kill -9` of the engine at twenty random moments: the result is that of an undisturbed run, and only what was under way
+/// was evaluated twice.
+#[test]
+fn killed_runs_go_on_where_they_were() {
+    let study = Slow::new(13, 0.02, 2, 2);
+    let undisturbed = result(&study.run(&["--journal", "none"]));
+    let before = study.evaluations();
+    assert_eq!(before, 183);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(4);
+    let mut kills = 0;
+    for _ in 0..20 {
+        let mut engine = study.command(&[]).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(rng.random_range(1..260)));
+        engine.kill().unwrap();
+        engine.wait().unwrap();
+        kills += 1;
+    }
+    let resumed = study.run(&[]);
+    assert_eq!(result(&resumed), undisturbed);
+    // A child of a killed engine ends when it finds its stdin closed; until then it finishes what it has.
+    std::thread::sleep(Duration::from_millis(200));
+    let evaluations = study.evaluations() - before;
+    assert!(evaluations <= 183 + kills * study.workers * study.window, "{evaluations}");
+    assert!(field(&resumed, "reused") > 0, "some of it was kept");
+}
+
+/// Two runs at once on one journal: both are right.
+#[test]
+fn runs_share_a_journal() {
+    let study = Slow::new(6, 0.003, 1, 1);
+    let both = [study.command(&[]).spawn().unwrap(), study.command(&[]).spawn().unwrap()];
+    let both = both.map(|run| run.wait_with_output().unwrap());
+    assert_eq!(result(&both[0]), result(&both[1]));
+    assert_eq!(field(&study.run(&[]), "evaluations"), 0);
+}
+
+/// A disk that is full: what was known and what was answered is in the report or in the file, and the error says why it ended.
+#[test]
+#[cfg(unix)]
+fn a_full_disk_is_an_error_that_loses_nothing() {
+    let study = Slow::new(12, 0.0, 1, 1);
+    let few = study.run(&["--method", "second-order"]);
+    assert_eq!(field(&few, "evaluations"), 25);
+    // Files may grow to 100 blocks of 512 bytes or 1024, by the shell: the index has 32 KiB, the log of so many commits more; the signal that tells of it is ignored.
+    let engine = study.command(&[]);
+    let line: Vec<String> = std::iter::once(engine.get_program())
+        .chain(engine.get_args())
+        .map(|word| format!("'{}'", word.to_str().unwrap()))
+        .collect();
+    let script = format!("trap '' XFSZ; ulimit -f 100; exec {}", line.join(" "));
+    let full = Command::new("sh").args(["-c", &script]).output().unwrap();
+    let error = String::from_utf8_lossy(&full.stderr).into_owned();
+    // Every slope is known from before: the characteristic has moments, and warnings.
+    assert_eq!(full.status.code(), Some(0), "{error}");
+    assert!(error.contains("disk") && error.contains("what it holds already is not touched"), "{error}");
+    assert!(field(&full, "evaluations") < 132 && field(&full, "reused") == 25);
+    // With room again, what was kept is there.
+    let again = study.run(&[]);
+    assert!(field(&again, "reused") >= 25);
+    assert_eq!(field(&again, "evaluations") + field(&again, "reused"), 157);
+}
+
+#[test]
+fn files_that_are_no_journals() {
+    let folder = tempfile::tempdir().unwrap();
+    let fault = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        let error = Store::open(&path).err().unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), bytes, "{name} is not touched");
+        error.fault
+    };
+    assert_eq!(fault("text", &b"[dimensions]\n".repeat(100)), JournalFault::NotAJournal);
+    // A database of somebody else.
+    let other = folder.path().join("other.sqlite");
+    let connection = rusqlite::Connection::open(&other).unwrap();
+    connection.execute_batch("CREATE TABLE parts (name TEXT)").unwrap();
+    drop(connection);
+    assert_eq!(Store::open(&other).err().unwrap().fault, JournalFault::NotAJournal);
+    // One that a later version wrote.
+    let later = folder.path().join("later.sqlite");
+    drop(Store::open(&later).unwrap());
+    rusqlite::Connection::open(&later).unwrap().pragma_update(None, "user_version", 99).unwrap();
+    assert_eq!(Store::open(&later).err().unwrap().fault, JournalFault::Later { found: 99 });
+    assert_eq!(Store::open_existing(Path::new("nowhere.sqlite")).err().unwrap().fault, JournalFault::Missing);
+    // A broken one: what is wrong is said, and the file stays for who can mend it.
+    let broken = folder.path().join("broken.sqlite");
+    let mut store = Store::open(&broken).unwrap();
+    let model = store.model("{}", &["x".to_owned()]).unwrap();
+    let kept = |x: i32| Kept { point: vec![f64::from(x)], output: "y".into(), answer: Ok(f64::from(x)) };
+    store.keep(model, &(0..2000).map(kept).collect::<Vec<_>>()).unwrap();
+    drop(store);
+    let mut bytes = std::fs::read(&broken).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle..middle + 4096].fill(0xff);
+    std::fs::write(&broken, &bytes).unwrap();
+    let failed = Store::open(&broken).and_then(|store| store.answers(model)).unwrap_err();
+    assert!(
+        matches!(failed.fault, JournalFault::Failed { .. }) && failed.to_string().contains("malformed"),
+        "{failed}"
+    );
+}
+
+/// Doubles come back as they were, and what has no value keeps its reason.
+#[test]
+fn answers_are_kept_exactly() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut store = Store::open(&folder.path().join("j.sqlite")).unwrap();
+    let model = store.model("{}", &["x".to_owned()]).unwrap();
+    let values = [0.1 + 0.2, -0.0, 5e-324, f64::MAX, 1.0 / 3.0];
+    let kept = |&value: &f64| Kept { point: vec![value], output: "y".into(), answer: Ok(value) };
+    store.keep(model, &values.iter().map(kept).collect::<Vec<_>>()).unwrap();
+    for value in values {
+        assert_eq!(store.answer(model, &[value], "y").unwrap(), Some(Ok(value)));
+    }
+    // 0 and -0 are one point.
+    assert!(store.answer(model, &[0.0], "y").unwrap().is_some());
+    assert_eq!(store.answer(model, &[0.3], "y").unwrap(), None, "0.1 + 0.2 is another point");
+    let reason = Kept { point: vec![0.3], output: "y".into(), answer: Err("face 7 is gone".into()) };
+    store.keep(model, &[reason]).unwrap();
+    assert_eq!(store.answer(model, &[0.3], "y").unwrap(), Some(Err("face 7 is gone".into())));
+    assert_eq!((store.models().unwrap()[0].values, store.models().unwrap()[0].errors), (5, 1));
+}
+
+fn interrupt(pid: u32) {
+    assert!(Command::new("kill").args(["-INT", &pid.to_string()]).status().unwrap().success());
+}
+
+/// Ctrl-C stops cleanly: what is known is reported, what was evaluated is kept, the exit code is 130.
+#[test]
+#[cfg(unix)]
+fn ctrl_c_keeps_everything() {
+    let study = Slow::new(13, 0.02, 1, 1);
+    let engine = study.command(&[]).spawn().unwrap();
+    while study.evaluations() < 20 {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    interrupt(engine.id());
+    let output = engine.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let done = study.evaluations();
+    assert!(done < 183);
+    assert_eq!(field(&output, "evaluations") as usize, done);
+    let resumed = study.run(&[]);
+    assert_eq!((field(&resumed, "reused") as usize, study.evaluations()), (done, 183));
+}
+
+/// The second Ctrl-C does not wait for an evaluation that takes a minute.
+#[test]
+#[cfg(unix)]
+fn ctrl_c_twice_gives_up_what_is_under_way() {
+    let study = Slow::new(3, 60.0, 1, 1);
+    let engine = study.command(&[]).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(500));
+    let begun = Instant::now();
+    interrupt(engine.id());
+    std::thread::sleep(Duration::from_millis(200));
+    interrupt(engine.id());
+    let output = engine.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert!(begun.elapsed() < Duration::from_secs(20), "it did not wait for the minute");
+}
+
+/// The command of the journal: what is known, as text and as a table, and how to be rid of it.
+#[test]
+fn the_journal_can_be_read() {
+    let study = Slow::new(2, 0.0, 1, 1);
+    study.run(&[]);
+    let file = study.path("study.journal.sqlite").display().to_string();
+    let journal = |arguments: &[&str]| {
+        let output =
+            Command::new(assert_cmd::cargo::cargo_bin!("sensitol")).arg("journal").args(arguments).output().unwrap();
+        (
+            output.status.code().unwrap(),
+            String::from_utf8(output.stdout).unwrap() + &String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let (code, shown) = journal(&["show", &file]);
+    assert!(
+        code == 0 && shown.contains("adapter counting, version 1") && shown.contains("7 points, 7 values"),
+        "{shown}"
+    );
+    let (code, table) = journal(&["export", &file]);
+    assert!(code == 0 && table.starts_with("x0,x1,y,y error\n") && table.lines().count() == 8, "{table}");
+    assert_eq!(journal(&["export", &file, "--model", "7"]).0, 2);
+    assert_eq!(journal(&["show", "nowhere.sqlite"]).0, 2);
+    assert_eq!(journal(&["forget"]).0, 2);
+    assert_eq!(journal(&["forget", &file]), (0, "7 answers forgotten\n".into()));
+    assert_eq!(field(&study.run(&[]), "evaluations"), 7);
+}
