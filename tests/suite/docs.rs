@@ -116,7 +116,15 @@ fn documents() -> Vec<String> {
     let of_example = |folder: std::io::Result<std::fs::DirEntry>| {
         format!("examples/{}/README.md", folder.unwrap().file_name().into_string().unwrap())
     };
-    let own = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "benches/README.md"].map(str::to_owned);
+    let own = [
+        "README.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "benches/README.md",
+        "adapters/PROTOCOL.md",
+        "adapters/python/README.md",
+    ];
+    let own = own.map(str::to_owned);
     own.into_iter().chain(examples.map(of_example)).collect()
 }
 

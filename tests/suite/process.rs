@@ -1,6 +1,7 @@
 //! External programs: what they do right, and every way in which they go wrong. The children are `tests/children`.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -383,4 +384,58 @@ model.serve()
     let out = at(&model(python(&script)), &a);
     right_but(&a, &out, &[13]);
     assert_eq!(fault(&out, 13, 0).to_string(), "RuntimeError: 13");
+}
+
+/// Difference of two dimensions, by the children that PROTOCOL.md shows: what is printed there works.
+#[test]
+fn the_children_of_the_documentation_work() {
+    let text = std::fs::read_to_string(repository("adapters/PROTOCOL.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for (language, program, file) in [
+        ("python", vec!["python3"], "gap.py"),
+        ("sh", vec!["sh"], "gap.sh"),
+        ("octave", vec!["octave-cli", "--quiet"], "gap.m"),
+    ] {
+        if Command::new(program[0]).arg("--version").output().is_err() {
+            // Not passed in silence: the word stands in the log of the tests.
+            eprintln!("skipped: {} is not installed", program[0]);
+            continue;
+        }
+        let start = text.find(&format!("```{language}\n")).unwrap() + language.len() + 4;
+        let block = &text[start..start + text[start..].find("```").unwrap()];
+        std::fs::write(folder.path().join(file), block).unwrap();
+        let argv = program.iter().copied().chain([file]);
+        let settings = Settings { folder: folder.path().to_owned(), ..Settings::new(argv) };
+        let greeting = Greeting { nominal: vec![10.0, 30.0], ..Greeting::default() };
+        let process = Process::new(Signature::of_names(["a", "b"], ["gap"]), greeting, settings);
+        let points = Points::from_rows(&[[10.125, 30.0], [-1e-3, 2.5e10], [0.1, 0.3]]);
+        let mut out = Responses::open(3, 1);
+        process.evaluate(&Ask::values(&points, &[0]), &Run::to_the_end(), &mut out);
+        for (row, expected) in [10.125 - 30.0, -1e-3 - 2.5e10, 0.1 - 0.3].into_iter().enumerate() {
+            assert_eq!(out.value(row, 0), Some(expected), "{language}: {:?}", out.error(row, 0));
+        }
+    }
+}
+
+/// The lines that PROTOCOL.md shows have the keys that the schema requires, and no others.
+#[test]
+fn the_schema_describes_the_lines() {
+    let read = |path: &str| std::fs::read_to_string(repository(path)).unwrap();
+    let schema: serde_json::Value = serde_json::from_str(&read("adapters/protocol.schema.json")).unwrap();
+    let kinds = schema["$defs"].as_object().unwrap();
+    let text = read("adapters/PROTOCOL.md");
+    let lines: Vec<serde_json::Value> = (text.lines())
+        .filter_map(|line| line.strip_prefix("> {").or(line.strip_prefix("< {")))
+        .map(|line| serde_json::from_str(&format!("{{{line}")).unwrap())
+        .collect();
+    assert_eq!(lines.len(), 9);
+    for line in lines {
+        let line = line.as_object().unwrap();
+        let fits = |kind: &&serde_json::Value| {
+            let required = kind["required"].as_array().unwrap();
+            required.iter().all(|key| line.contains_key(key.as_str().unwrap()))
+                && line.keys().all(|key| kind["properties"].get(key).is_some())
+        };
+        assert_eq!(kinds.values().filter(fits).count(), 1, "{line:?}");
+    }
 }
