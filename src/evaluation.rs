@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use crate::assembly::process::Doubt;
 use crate::assembly::{Ask, Points, Responses, Run};
 use crate::plan::{DifferencePlan, Known, Stage};
 use crate::problem::Problem;
@@ -18,6 +19,8 @@ pub struct Evaluated {
     pub evaluations: usize,
     /// Points whose answers were known from an earlier run.
     pub reused: usize,
+    /// Where the model answered the nominal point otherwise than before.
+    pub doubts: Vec<Doubt>,
     /// In how many stages.
     pub stages: usize,
     /// Whether it was stopped before the plan was done.
@@ -34,6 +37,7 @@ pub fn evaluate(problem: &Problem, plan: &DifferencePlan, run: &Run<'_>) -> Eval
         known: Known::nothing(problem.characteristics().len()),
         evaluations: 0,
         reused: 0,
+        doubts: Vec::new(),
         stages: 0,
         stopped: false,
         in_model: Duration::ZERO,
@@ -69,6 +73,7 @@ impl Evaluated {
             }
             self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
             self.reused += out.count_reused();
+            self.doubts.extend(out.doubts().iter().cloned());
             if self.stopped {
                 return;
             }

@@ -86,6 +86,21 @@ pub enum Warning {
         /// What curvature adds to the variance, relative to what the slopes make of it.
         variance: f64,
     },
+    /// An external model answered the nominal point otherwise than before.
+    History {
+        /// What of the model: a characteristic, or something that formulas use.
+        output: String,
+        /// What it was at first; None where it had no value.
+        expected: Option<f64>,
+        /// What it was then.
+        found: Option<f64>,
+        /// Whether the difference is of the size of what the output varies by: another solution, not a drift.
+        flip: bool,
+        /// How often.
+        times: usize,
+        /// Points that were evaluated again for it.
+        points: usize,
+    },
     /// No distribution has the moments.
     InfeasibleMoments {
         /// The characteristic.
@@ -135,6 +150,8 @@ impl Warning {
             Self::Noise { .. } => "noise",
             Self::PairsNotExamined { .. } => "pairs-not-examined",
             Self::RssInvalid { .. } => "rss-invalid",
+            Self::History { flip: true, .. } => "branch-flip",
+            Self::History { flip: false, .. } => "history",
             Self::InfeasibleMoments { .. } => "infeasible-moments",
             Self::NearInfeasibleMoments { .. } => "near-infeasible-moments",
             Self::AutoIsSecondOrder => "auto-is-second-order",
@@ -149,6 +166,7 @@ impl Warning {
             | Self::DomainEdge { characteristic, .. }
             | Self::NoReaction { characteristic }
             | Self::Noise { characteristic, .. }
+            | Self::History { output: characteristic, .. }
             | Self::InfeasibleMoments { characteristic, .. }
             | Self::NearInfeasibleMoments { characteristic, .. }
             | Self::RssInvalid { characteristic, .. } => Some(characteristic),
@@ -226,6 +244,20 @@ impl Warning {
                  its variance; use --method second-order",
                 100.0 * variance
             ),
+            Self::History { output, expected, found, flip, times, points } => {
+                let value = |value: &Option<f64>| value.map_or("no value".to_owned(), |value| value.to_string());
+                let cause = match flip {
+                    true => "the model seems to have settled in another solution: reset it before every point",
+                    false => "its answers depend on what it was asked before: reset it before every point",
+                };
+                let times = if *times == 1 { "once".to_owned() } else { format!("{times} times") };
+                format!(
+                    "`{output}` at the nominal dimensions was {} at first and {} later ({times}): {cause}; {points} points were \
+                     evaluated again by a fresh process",
+                    value(expected),
+                    value(found)
+                )
+            }
             Self::InfeasibleMoments { characteristic, reason } => format!(
                 "`{characteristic}` has no yield: {reason}. Either it has two values indeed, or a strong interaction was \
                  not examined (try --method full), or the `moments` of a dimension are rounded"

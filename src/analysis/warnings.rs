@@ -15,6 +15,8 @@ const SHIFT: f64 = 0.1;
 /// and so does curvature that adds more than this part of the linear variance.
 const CURVED: f64 = 0.05;
 
+/// A change of the nominal value by more than this part of what a characteristic varies by is another solution of the model.
+const FLIP: f64 = 0.01;
 /// A kurtosis that exceeds the least possible by no more than this part is worth one too.
 const MARGIN: f64 = 0.1;
 
@@ -32,6 +34,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         };
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
+    warnings.extend(history(outcome));
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
         warnings.extend(lost(problem, outcome, c));
@@ -42,6 +45,26 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
     warnings
+}
+
+/// External models that do not answer as they did: one warning for each output.
+fn history(outcome: &Outcome) -> Vec<Warning> {
+    let doubts = &outcome.evaluated.doubts;
+    let first = |index: &usize| !doubts[..*index].iter().any(|earlier| earlier.output == doubts[*index].output);
+    let warning = |index: usize| {
+        let doubt = &doubts[index];
+        let same = || doubts.iter().filter(|other| other.output == doubt.output);
+        let far = |a: f64, b: f64| (a - b).abs() > FLIP * doubt.spread;
+        Warning::History {
+            output: doubt.output.clone(),
+            expected: doubt.expected,
+            found: doubt.found,
+            flip: doubt.expected.zip(doubt.found).is_some_and(|(a, b)| far(a, b)),
+            times: same().count(),
+            points: same().map(|doubt| doubt.points).sum(),
+        }
+    };
+    (0..doubts.len()).filter(first).map(warning).collect()
 }
 
 /// Dimensions that vary and on which no characteristic can depend.

@@ -243,6 +243,7 @@ impl AssemblyFunction for Composite {
         });
         out.spent(answers.extra() + answers.count_reused() as i64);
         out.reused(answers.count_reused());
+        out.doubt(answers.doubts().iter().cloned());
     }
 }
 

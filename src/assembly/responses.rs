@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::EvaluationError;
+use super::process::Doubt;
 
 /// Answers of a batch: a column per asked output, and an error wherever there is no value.
 ///
@@ -29,12 +30,22 @@ pub struct Responses {
     extra: i64,
     /// Rows whose answers were known already.
     reused: usize,
+    /// What the model is not trusted in.
+    doubts: Vec<Doubt>,
 }
 
 impl Responses {
     /// For `rows` points and `outputs` asked outputs, all of them open.
     pub fn open(rows: usize, outputs: usize) -> Self {
-        Self { rows, outputs, values: vec![f64::NAN; rows * outputs], errors: BTreeMap::new(), extra: 0, reused: 0 }
+        Self {
+            rows,
+            outputs,
+            values: vec![f64::NAN; rows * outputs],
+            errors: BTreeMap::new(),
+            extra: 0,
+            reused: 0,
+            doubts: Vec::new(),
+        }
     }
 
     /// Number of points.
@@ -93,6 +104,16 @@ impl Responses {
         self.extra -= rows as i64;
     }
 
+    /// Notes that the model answered the nominal point otherwise than before.
+    pub fn doubt(&mut self, doubts: impl IntoIterator<Item = Doubt>) {
+        self.doubts.extend(doubts);
+    }
+
+    /// Where the model answered the nominal point otherwise than before.
+    pub fn doubts(&self) -> &[Doubt] {
+        &self.doubts
+    }
+
     /// Rows whose answers were known already.
     pub fn count_reused(&self) -> usize {
         self.reused
@@ -121,6 +142,7 @@ impl Responses {
         }
         self.extra += block.extra;
         self.reused += block.reused;
+        self.doubts.extend(block.doubts.iter().cloned());
         self.errors.extend(block.errors.into_iter().map(|((row, output), error)| ((first + row, output), error)));
     }
 }

@@ -155,6 +155,7 @@ impl AssemblyFunction for Journaled {
         self.process.evaluate(&Ask { points: &points, ..*ask }, &run.within(&finished, &stop), &mut answers);
         let out = told.into_inner().unwrap_or_else(PoisonError::into_inner);
         out.spent(answers.extra());
+        out.doubt(answers.doubts().iter().cloned());
         if let Some(error) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
             refuse(out, &not_kept(&error));
         }

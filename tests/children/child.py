@@ -62,6 +62,7 @@ if mode == "dies-idle":
     sys.exit(3)
 
 waiting = []
+flipped = False
 for line in sys.stdin:
     request = json.loads(line)
     id, (a, b) = request["id"], request["x"]
@@ -76,6 +77,21 @@ for line in sys.stdin:
                 say(answer)
             waiting = []
         continue
+    # A solver that settles in the mirrored assembly, and stays there; or one that drifts.
+    if mode == "flips":
+        flipped = flipped or a == 13
+        if flipped:
+            answer["y"][0] = -answer["y"][0]
+    if mode == "always-flips" and len(waiting) > 0:
+        answer["y"][0] += len(waiting)
+    if mode == "always-flips":
+        waiting.append(id)
+    if mode == "poisoned-by-errors":
+        flipped = flipped or a == 13
+        if a == 13:
+            answer = {"id": id, "error": "does not assemble"}
+        elif flipped:
+            answer["y"][1] += 1e-3
     if a == 13:
         if mode == "crash" or mode == "crash-in-window":
             sys.stderr.write("Segmentation fault in sketch solver\n")

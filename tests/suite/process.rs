@@ -14,7 +14,9 @@ use super::support::repository;
 fn settings(mode: &str, more: &[&str]) -> Settings {
     let script = repository("tests/children/child.py").display().to_string();
     let argv = ["python3", &script, mode].into_iter().chain(more.iter().copied());
-    Settings { timeout: Duration::from_secs(20), start_timeout: Duration::from_secs(20), ..Settings::new(argv) }
+    // Without sentinels, whose evaluations would be counted too; they have tests of their own.
+    let patient = Duration::from_secs(20);
+    Settings { timeout: patient, start_timeout: patient, sentinels: false, ..Settings::new(argv) }
 }
 
 fn model(settings: Settings) -> Process {
@@ -258,6 +260,33 @@ fn a_stop_loses_nothing() {
     assert_eq!((out.extra(), out.errors().count()), (0, 0));
     // And nothing of it disturbs what is asked next.
     right_but(&POINTS, &at(&model, &POINTS), &[]);
+}
+
+/// A child that no longer answers the nominal point as it did: what it has said since is evaluated again by another one.
+#[test]
+fn children_that_flip_are_found_out() {
+    let guarded = |mode: &str, more: &[&str]| Settings { sentinels: true, ..settings(mode, more) };
+    // The nominal point, some right answers, the flip, and wrong ones after it.
+    let a = [1.0, 2.0, 3.0, 13.0, 4.0, 5.0];
+    let out = at(&model(guarded("flips", &[])), &a);
+    // The point that flips the model flips the fresh child too: its own answer stays doubtful, all others are right.
+    right_but(&a, &out, &[3]);
+    let [first, second] = out.doubts() else { panic!("{:?}", out.doubts()) };
+    assert_eq!((first.output.as_str(), first.expected, first.found, first.points), ("sum", Some(3.0), Some(-3.0), 5));
+    assert_eq!((second.output.as_str(), second.points), ("sum", 1));
+    // An error is followed by a look at the nominal point: what comes after it is right again.
+    let a = [1.0, 2.0, 13.0, 4.0, 5.0];
+    let out = at(&model(guarded("poisoned-by-errors", &[])), &a);
+    right_but(&a, &out, &[2]);
+    assert_eq!(fault(&out, 2, 0), ProcessFault::NoValue { message: "does not assemble".into() });
+    assert_eq!((out.doubts().len(), out.doubts()[0].output.as_str()), (2, "product"));
+    // A model that never answers alike ends all the same, and says so.
+    let out = at(&model(guarded("always-flips", &[])), &a);
+    assert!(!out.doubts().is_empty());
+    // One that always does costs one evaluation more.
+    let out = at(&model(guarded("good", &[])), &a);
+    assert_eq!((out.doubts().len(), out.extra()), (0, 1));
+    right_but(&a, &out, &[]);
 }
 
 /// Processes whose command line holds this text.

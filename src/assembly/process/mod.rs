@@ -4,6 +4,10 @@
 //! its own that is ended on every way out, every point has a deadline, every line is checked, and what goes wrong is an error of
 //! one point with what the program wrote to stderr. The protocol is in `adapters/PROTOCOL.md`.
 //!
+//! A solver that starts from its last solution may settle in a mirrored assembly and stay there, with status "solved". So
+//! every child evaluates the nominal point again after some points, after every error and at the end of every batch; where the
+//! answer is another than before, it is ended, and what it has answered since is evaluated again by a fresh one.
+//!
 //! A point that fails is tried again `retries` times, in a fresh child and alone, so that a point that crashes children is
 //! found out and takes no other with it. A child that fails is started again, after a pause that doubles every time.
 
@@ -11,10 +15,12 @@ mod child;
 mod error;
 mod pool;
 mod protocol;
+mod sentinel;
 
 pub use child::Listener;
 pub use error::{Exit, ProcessError, ProcessFault, Quoted, StderrTail};
 pub use protocol::Adapter;
+pub use sentinel::Doubt;
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -39,6 +45,8 @@ pub struct Settings {
     pub start_timeout: Duration,
     /// How often a point that failed is tried again.
     pub retries: u32,
+    /// Whether the nominal point is evaluated again every so often, to see whether the model still answers as it did.
+    pub sentinels: bool,
     /// Hears every line that a child writes to stderr.
     pub listener: Option<Listener>,
 }
@@ -53,6 +61,7 @@ impl Settings {
             timeout: Duration::from_secs(60),
             start_timeout: Duration::from_secs(60),
             retries: 1,
+            sentinels: true,
             listener: None,
         }
     }

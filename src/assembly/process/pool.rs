@@ -1,6 +1,6 @@
 //! Children side by side, and the points under way in each.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{HashMap, HashSet, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
@@ -8,6 +8,7 @@ use super::Settings;
 use super::child::{Child, Event, What};
 use super::error::{ProcessError, ProcessFault, Quoted, StderrTail};
 use super::protocol::{Adapter, Hello, Line, VERSION, request};
+use super::sentinel::{Reference, SENTINEL, interval, values};
 use crate::assembly::{Points, Progress, Responses, Run};
 
 /// How often a stop is looked for.
@@ -30,6 +31,7 @@ pub(super) struct Pool {
     /// Starts in a row that failed.
     failed_starts: u32,
     adapter: Option<Adapter>,
+    reference: Reference,
 }
 
 /// A place for one child.
@@ -61,6 +63,10 @@ struct Worker {
     since: Instant,
     /// The number of the first point that it was sent.
     first: u64,
+    /// Rows that it has answered since it was last known to be right.
+    unchecked: Vec<usize>,
+    /// Whether it had no value somewhere: a failed request may poison later ones.
+    troubled: bool,
 }
 
 /// What is left to do of a batch.
@@ -73,6 +79,8 @@ struct Batch<'a> {
     /// Failures of every row that had one.
     failures: HashMap<usize, u32>,
     left: usize,
+    /// Rows that are evaluated again because the child that answered them is not trusted: once.
+    again: HashSet<usize>,
     /// Rows that are final and not yet told of.
     done: Vec<usize>,
     sent: usize,
@@ -90,6 +98,7 @@ impl Pool {
             next_point: 0,
             failed_starts: 0,
             adapter: None,
+            reference: Reference::default(),
         }
     }
 
@@ -118,6 +127,7 @@ impl Pool {
             suspects: VecDeque::new(),
             failures: HashMap::new(),
             left: rows,
+            again: HashSet::new(),
             done: Vec::new(),
             sent: 0,
         });
@@ -127,7 +137,8 @@ impl Pool {
                 break;
             }
             let work = batch.as_mut().expect("a batch");
-            if work.left == 0 || (stopping && !self.busy()) {
+            let checked = work.left == 0 && self.slots.iter().all(Slot::is_checked);
+            if checked || (stopping && !self.busy()) {
                 break;
             }
             if !stopping {
@@ -144,11 +155,12 @@ impl Pool {
         work.out.spent(work.sent as i64 - (rows - work.left) as i64);
         // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
         for slot in &mut self.slots {
-            if let State::Ready(worker) = &mut slot.state
-                && !worker.under_way.is_empty()
-            {
-                worker.child.kill();
-                slot.state = State::Empty;
+            if let State::Ready(worker) = &mut slot.state {
+                worker.unchecked.clear();
+                if !worker.under_way.is_empty() {
+                    worker.child.kill();
+                    slot.state = State::Empty;
+                }
             }
         }
     }
@@ -189,7 +201,22 @@ impl Pool {
     fn give(&mut self, index: usize, batch: &mut Batch<'_>) {
         let State::Ready(worker) = &mut self.slots[index].state else { return };
         let mut lines = Vec::new();
-        let alone = worker.under_way.front().is_some_and(|&(_, row)| batch.failures.contains_key(&row));
+        let idle = batch.waiting.is_empty() && batch.suspects.is_empty();
+        // After every point that is evaluated again: the one that led the model astray will do so once more.
+        let again = worker.unchecked.last().is_some_and(|row| batch.again.contains(row));
+        let due = worker.troubled || again || worker.unchecked.len() >= interval(worker.window) || idle;
+        if self.settings.sentinels && due && !worker.unchecked.is_empty() {
+            if worker.under_way.is_empty() {
+                request(&mut lines, self.next_point, self.hello.nominal.iter().copied());
+                worker.under_way.push_back((self.next_point, SENTINEL));
+                worker.since = Instant::now();
+                self.next_point += 1;
+                batch.sent += 1;
+                worker.child.send(lines);
+            }
+            return;
+        }
+        let alone = worker.under_way.front().is_some_and(|&(_, row)| batch.goes_alone(row));
         while worker.under_way.len() < worker.window && !alone {
             let row = if worker.under_way.is_empty() && !batch.suspects.is_empty() {
                 batch.suspects.pop_front()
@@ -206,7 +233,7 @@ impl Pool {
             batch.sent += 1;
             let columns = batch.points.dimensions();
             request(&mut lines, id, (0..columns).map(|column| batch.points.column(column)[row]));
-            if batch.failures.contains_key(&row) {
+            if batch.goes_alone(row) {
                 break;
             }
         }
@@ -324,6 +351,8 @@ impl Pool {
                         under_way: VecDeque::new(),
                         since: Instant::now(),
                         first: self.next_point,
+                        unchecked: Vec::new(),
+                        troubled: false,
                     });
                     return Ok(());
                 }
@@ -388,7 +417,21 @@ impl Pool {
         let (_, row) = worker.under_way.remove(position).expect("it was found there");
         worker.since = Instant::now();
         slot.failures = 0;
+        let values = values(&line, expected);
+        if row == SENTINEL {
+            return self.checked(index, values, batch);
+        }
+        self.reference.learn(&values);
         if let Some(batch) = batch {
+            let nominal = |(column, x): (usize, &f64)| batch.points.column(column)[row] == *x;
+            if self.hello.nominal.iter().enumerate().all(nominal) {
+                // The study's own evaluation of the nominal point is the first sentinel.
+                let doubts = self.reference.check(values, &self.hello.characteristics, worker.unchecked.len());
+                batch.out.doubt(doubts);
+            } else if self.settings.sentinels {
+                worker.unchecked.push(row);
+                worker.troubled |= values.contains(&None);
+            }
             let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
             if again {
                 batch.suspects.push_back(row);
@@ -396,6 +439,23 @@ impl Pool {
                 batch.settle(row, line, &self.hello.characteristics);
             }
         }
+    }
+
+    /// The nominal point, evaluated again: a child that answers otherwise than before is not trusted any more.
+    fn checked(&mut self, index: usize, found: Vec<Option<f64>>, batch: &mut Option<Batch<'_>>) {
+        let State::Ready(worker) = &mut self.slots[index].state else { return };
+        worker.troubled = false;
+        let rows = std::mem::take(&mut worker.unchecked);
+        let doubts = self.reference.check(found, &self.hello.characteristics, rows.len());
+        if doubts.is_empty() {
+            return;
+        }
+        worker.child.kill();
+        if let Some(batch) = batch {
+            batch.out.doubt(doubts);
+            batch.distrust(&rows);
+        }
+        self.pause(index);
     }
 
     /// A child closed its stdout.
@@ -424,6 +484,11 @@ impl Pool {
         let known = fault.is_some();
         let error = ProcessError { fault: fault.unwrap_or(ProcessFault::Crashed { exit }), stderr };
         if let Some(batch) = batch {
+            if worker.under_way.iter().any(|&(_, row)| row == SENTINEL) {
+                // It did not survive the nominal point, which it had answered before.
+                batch.distrust(&worker.unchecked);
+                return self.pause(index);
+            }
             let mut rows = worker.under_way.iter().map(|&(_, row)| row);
             // Of several points under way in a child that crashed nobody knows which one it was.
             if known || worker.under_way.len() == 1 {
@@ -445,6 +510,11 @@ impl Pool {
 }
 
 impl Batch<'_> {
+    /// Whether a row is evaluated with nothing else under way in its child.
+    fn goes_alone(&self, row: usize) -> bool {
+        self.failures.contains_key(&row) || self.again.contains(&row)
+    }
+
     /// Notes a failure of a row, and how many there are now.
     fn charged(&mut self, row: usize) -> u32 {
         let failures = self.failures.entry(row).or_insert(0);
@@ -466,6 +536,16 @@ impl Batch<'_> {
             self.out.fail(row, output, Box::new(error.clone()).into());
         }
         self.finish(row);
+    }
+
+    /// Evaluates rows again whose answers are in doubt; once.
+    fn distrust(&mut self, rows: &[usize]) {
+        for &row in rows {
+            if self.again.insert(row) {
+                self.waiting.push_back(row);
+                self.left += 1;
+            }
+        }
     }
 
     fn finish(&mut self, row: usize) {
@@ -510,6 +590,16 @@ impl Batch<'_> {
             run.progressed(Progress { points: self.done.len(), failed, reused: 0 });
             run.finished(&self.done, self.out);
             self.done.clear();
+        }
+    }
+}
+
+impl Slot {
+    /// Whether nothing is left that its child has answered and nobody has checked.
+    fn is_checked(&self) -> bool {
+        match &self.state {
+            State::Ready(worker) => worker.unchecked.is_empty() && worker.under_way.is_empty(),
+            _ => true,
         }
     }
 }

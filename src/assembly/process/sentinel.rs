@@ -1,0 +1,78 @@
+//! Whether a model still answers as it did: the nominal point, evaluated again.
+
+use super::protocol::Line;
+
+/// In place of a row: the point is the nominal one, evaluated again.
+pub(super) const SENTINEL: usize = usize::MAX;
+/// Windows of points after which a child is checked, and points at the least.
+const WINDOWS: usize = 16;
+const POINTS: usize = 50;
+/// Answers agree when they differ by no more than this part of what the model has been seen to vary by,
+const NOISE: f64 = 1e-7;
+/// and this part of themselves.
+const ROUNDING: f64 = 1e-12;
+
+/// A child answered the nominal point otherwise than before.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Doubt {
+    /// The output.
+    pub output: String,
+    /// What it was at first; None where it had no value.
+    pub expected: Option<f64>,
+    /// What it is now.
+    pub found: Option<f64>,
+    /// How far the output has been seen to vary.
+    pub spread: f64,
+    /// Points that the child had answered since it was last right; they are evaluated again.
+    pub points: usize,
+}
+
+/// What is known of the nominal point, and of how far answers vary.
+#[derive(Debug, Default)]
+pub(super) struct Reference {
+    nominal: Option<Vec<Option<f64>>>,
+    range: Vec<[f64; 2]>,
+}
+
+/// Points that a child may answer before it is checked.
+pub(super) fn interval(window: usize) -> usize {
+    (WINDOWS * window).max(POINTS)
+}
+
+/// The values of an answer, None where it has none.
+pub(super) fn values(line: &Line, outputs: usize) -> Vec<Option<f64>> {
+    match (&line.y, &line.error) {
+        (Some(values), None) => values.clone(),
+        _ => vec![None; outputs],
+    }
+}
+
+impl Reference {
+    /// Learns from an answer how far the model varies.
+    pub(super) fn learn(&mut self, values: &[Option<f64>]) {
+        self.range.resize(values.len(), [f64::INFINITY, f64::NEG_INFINITY]);
+        for (range, value) in self.range.iter_mut().zip(values) {
+            if let Some(value) = value {
+                *range = [range[0].min(*value), range[1].max(*value)];
+            }
+        }
+    }
+
+    /// The first answer to the nominal point is what later ones are held against: whether this one is like it.
+    pub(super) fn check(&mut self, found: Vec<Option<f64>>, names: &[String], points: usize) -> Vec<Doubt> {
+        let Some(nominal) = &self.nominal else {
+            self.nominal = Some(found);
+            return Vec::new();
+        };
+        let doubt = |(output, (&expected, found)): (usize, (&Option<f64>, Option<f64>))| {
+            let spread = self.range.get(output).map_or(0.0, |range| (range[1] - range[0]).max(0.0));
+            let same = match (expected, found) {
+                (Some(a), Some(b)) => (a - b).abs() <= NOISE * spread + ROUNDING * a.abs(),
+                (None, None) => true,
+                _ => false,
+            };
+            (!same).then(|| Doubt { output: names[output].clone(), expected, found, spread, points })
+        };
+        nominal.iter().zip(found).enumerate().filter_map(doubt).collect()
+    }
+}
