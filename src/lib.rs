@@ -18,6 +18,7 @@ pub mod moments;
 pub mod names;
 pub mod pearson;
 pub mod plan;
+pub mod probe;
 pub mod problem;
 pub mod report;
 pub mod study;

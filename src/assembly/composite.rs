@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
+use super::process::Adapter;
 use super::{Ask, AssemblyFunction, EvaluationError, Input, Output, Points, Responses, Run, Signature, in_blocks};
 
 /// Where a model's input comes from.
@@ -182,12 +183,12 @@ impl AssemblyFunction for Composite {
         &self.signature
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<(), EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
         let origins: Vec<Origin> = outputs.iter().map(|&output| self.outputs[output]).collect();
         let needed = self.needed(&origins);
         match &self.model {
             Some(model) if !needed.is_empty() => model.function.prepare(&needed),
-            _ => Ok(()),
+            _ => Ok(None),
         }
     }
 

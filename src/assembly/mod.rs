@@ -33,14 +33,14 @@ pub trait AssemblyFunction: Send + Sync {
     /// Names and units of inputs and outputs, and what is known of the function beforehand.
     fn signature(&self) -> &Signature;
 
-    /// Starts whatever must run before the first point, for these outputs. What fails here would fail at every point:
-    /// nothing has been evaluated yet.
+    /// Starts whatever must run before the first point, for these outputs, and tells what an external program says of
+    /// itself. What fails here would fail at every point: nothing has been evaluated yet.
     ///
     /// # Errors
     /// When the function cannot be had at all, such as a program that does not exist.
-    fn prepare(&self, outputs: &[usize]) -> Result<(), EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<process::Adapter>, EvaluationError> {
         let _ = outputs;
-        Ok(())
+        Ok(None)
     }
 
     /// Answers `ask.points` for `ask.outputs` into `out`, whose rows are the points and whose columns are the asked

@@ -1,6 +1,5 @@
 //! `sensitol analyze`.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::args::AnalyzeArgs;
@@ -10,7 +9,6 @@ use super::output::{Destination, Look, json};
 use super::progress::Bar;
 use super::study;
 use crate::analysis::{Analysis, analyze_within};
-use crate::assembly::process::Listener;
 use crate::assembly::{Progress, Run};
 use crate::method::MethodError;
 use crate::report::{About, Report, text};
@@ -64,8 +62,7 @@ fn externals(asked: &AnalyzeArgs, look: Look) -> Externals {
         Some(path) if path.as_os_str() == "none" => JournalPlace::Nowhere,
         Some(path) => JournalPlace::At(path.clone()),
     };
-    let listener = look.verbose.then(|| Arc::new(|line: &str| anstream::eprintln!("model: {line}")) as Listener);
-    Externals { journal, listener }
+    Externals { journal, listener: super::listener(look), sentinels: true }
 }
 
 fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant, look: Look) -> Result<Analysis, Failure> {

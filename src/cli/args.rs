@@ -44,6 +44,9 @@ pub(super) enum Command {
     /// The Pearson distribution of four moments: densities, probabilities, quantiles
     #[command(after_help = "Example: sensitol pearson --skewness 0.5 --kurtosis 3.4 --sf 4 --upper-quantile 1e-6,1e-9")]
     Pearson(PearsonArgs),
+    /// Checks an external model: protocol, names, repeatability, noise, speed, least step
+    #[command(after_help = "Example: sensitol probe examples/external-python/study.toml")]
+    Probe(ProbeArgs),
     /// What is kept of external models: show, export or forget it
     #[command(after_help = "Example: sensitol journal show gap.journal.sqlite")]
     Journal(JournalArgs),
@@ -140,6 +143,15 @@ pub(super) struct CheckArgs {
 pub(super) struct ModelsArgs {
     /// The model to describe
     pub(super) name: Option<String>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ProbeArgs {
+    #[command(flatten)]
+    pub(super) study: StudyArgs,
 
     #[command(flatten)]
     pub(super) output: OutputArgs,

@@ -13,16 +13,24 @@ mod output;
 mod pairs;
 mod pearson;
 mod plan;
+mod probe;
 mod progress;
 mod study;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Parser;
 
+use crate::assembly::process::Listener;
 use args::{Arguments, Command};
 use failure::{Exit, Failure};
+
+/// Who shows what an external program writes to stderr: somebody, when all details are asked for.
+fn listener(look: output::Look) -> Option<Listener> {
+    look.verbose.then(|| Arc::new(|line: &str| anstream::eprintln!("model: {line}")) as Listener)
+}
 
 /// Runs the command with these arguments, the program's name first, and says how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -41,6 +49,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Plan(asked) => plan::run(asked, style),
         Command::Check(asked) => check::run(asked, style),
         Command::Models(asked) => models::run(asked, style),
+        Command::Probe(asked) => probe::run(asked, style),
         Command::Journal(asked) => journal::run(asked, style),
         Command::Pearson(asked) => pearson::run(asked, style),
     };

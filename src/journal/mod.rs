@@ -14,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 
 use sha2::{Digest, Sha256};
 
-use crate::assembly::process::{Process, ProcessFault, Settings};
+use crate::assembly::process::{Adapter, Process, ProcessFault, Settings};
 use crate::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Progress, Responses, Run, Signature};
 
 /// A program whose answers are kept.
@@ -87,12 +87,13 @@ impl AssemblyFunction for Journaled {
         self.process.signature()
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<(), EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
         let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         if open.is_none() {
             *open = Some(self.opened(outputs)?);
         }
-        Ok(())
+        drop(open);
+        self.process.prepare(outputs)
     }
 
     fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {

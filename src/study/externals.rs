@@ -5,12 +5,20 @@ use std::path::{Path, PathBuf};
 use crate::assembly::process::Listener;
 
 /// How the external programs of a study are treated.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub struct Externals {
     /// Where their answers are kept.
     pub journal: JournalPlace,
     /// Who hears every line that they write to stderr.
     pub listener: Option<Listener>,
+    /// Whether they are asked again and again for the nominal point, to see whether they still answer as they did.
+    pub sentinels: bool,
+}
+
+impl Default for Externals {
+    fn default() -> Self {
+        Self { journal: JournalPlace::Nowhere, listener: None, sentinels: true }
+    }
 }
 
 /// Where the answers of external programs are kept.

@@ -118,6 +118,7 @@ fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) 
         retries: count(&entry.retries, "retries", u64::from(defaults.retries), 0, 1000, "between 0 and 1000")? as u32,
         timeout: seconds(&entry.timeout_s, "timeout_s", defaults.timeout)?,
         start_timeout: seconds(&entry.start_timeout_s, "start_timeout_s", defaults.start_timeout)?,
+        sentinels: source.externals.sentinels,
         listener: source.externals.listener.clone(),
         ..defaults
     };

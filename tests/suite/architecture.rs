@@ -10,7 +10,7 @@ const LAYERS: &[&[&str]] = &[
     &["cli"],
     &["error"],
     &["study", "report"],
-    &["analysis"],
+    &["analysis", "probe"],
     &["method"],
     &["evaluation"],
     &["problem"],

@@ -72,7 +72,7 @@ fn plan_says_what_would_be_evaluated() {
 
 #[test]
 fn help_is_there() {
-    for command in ["", "analyze", "plan", "check", "models", "pearson"] {
+    for command in ["", "analyze", "plan", "check", "models", "pearson", "probe", "journal"] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
         insta::assert_snapshot!(format!("help-{}", if command.is_empty() { "all" } else { command }), run(&arguments));
     }
@@ -139,6 +139,25 @@ fn wrong_input() {
         all += &format!("$ sensitol {shown}\n{error}\n");
     }
     insta::assert_snapshot!("wrong-input", all);
+}
+
+/// A probe of the example passes; one of a model that fails says what is wrong, and exits with 1.
+#[test]
+fn probe_answers_by_the_exit_code() {
+    let output = sensitol(&["probe", "examples/external-python/study.toml", "--json"]).output().unwrap();
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((output.status.code(), &report["passed"], &report["evaluations"]), (Some(0), &true.into(), &47.into()));
+    assert_eq!((&report["adapter"]["name"], &report["adapter"]["window"]), (&"gap".into(), &64.into()));
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    std::fs::write(
+        &study,
+        "[dimensions]\na = { nominal = 1, tolerance = 0.3 }\n[characteristics]\ny = { formula = \"0*a\" }",
+    )
+    .unwrap();
+    let output = sensitol(&["probe", study.to_str().unwrap()]).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.code() == Some(1) && text.contains("FAIL  every characteristic reacts"), "{text}");
 }
 
 #[test]

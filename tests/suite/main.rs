@@ -12,6 +12,7 @@ mod methods;
 mod moments;
 mod pearson;
 mod plans;
+mod probe;
 mod process;
 mod published;
 mod studies;

@@ -149,8 +149,8 @@ impl AssemblyFunction for Process {
         &self.signature
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<(), EvaluationError> {
-        self.adapter(outputs).map(drop).map_err(|error| Box::new(error).into())
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+        self.adapter(outputs).map(Some).map_err(|error| Box::new(error).into())
     }
 
     fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {

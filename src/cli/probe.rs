@@ -1,0 +1,149 @@
+//! `sensitol probe`.
+
+use serde::Serialize;
+
+use super::args::ProbeArgs;
+use super::failure::{Exit, Failure};
+use super::output::{Destination, Look, json};
+use super::{interrupt, study};
+use crate::assembly::Run;
+use crate::method::MethodError;
+use crate::probe::{Probe, probe};
+use crate::report::number::significant;
+use crate::study::{Externals, JournalPlace};
+
+/// What `probe --json` prints.
+#[derive(Debug, Serialize)]
+struct ProbeReport {
+    schema: u32,
+    command: &'static str,
+    adapter: Option<AdapterReport>,
+    evaluations: usize,
+    start_s: f64,
+    evaluation_alone_s: f64,
+    evaluation_together_s: f64,
+    passed: bool,
+    checks: Vec<CheckReport>,
+    characteristics: Vec<CharacteristicReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct AdapterReport {
+    name: Option<String>,
+    version: Option<String>,
+    window: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct CheckReport {
+    check: &'static str,
+    passed: bool,
+    fault: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct CharacteristicReport {
+    name: String,
+    nominal: Option<f64>,
+    noise: Option<f64>,
+    steps: Vec<StepReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct StepReport {
+    dimension: String,
+    /// In sigmas.
+    least_step: Option<f64>,
+    reacts: bool,
+}
+
+pub(super) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
+    // Answers from a journal would prove nothing, and sentinels would hide what is looked for.
+    let externals = Externals { journal: JournalPlace::Nowhere, listener: super::listener(look), sentinels: false };
+    let study = study::read(&asked.study, externals)?;
+    let destination = Destination::open(&asked.output)?;
+    interrupt::listen();
+    let within = Run::to_the_end().stopping_when(&interrupt::stopped).abandoning_when(&interrupt::abandoned);
+    let found = probe(&study.problem, &within).map_err(|error| MethodError::Model { error })?;
+    if interrupt::stopped() {
+        return Ok(Exit::Interrupted);
+    }
+    let names: Vec<&str> = study.problem.dimensions().iter().map(|dimension| dimension.name()).collect();
+    let report = ProbeReport::of(&found, &names);
+    destination.write(&if asked.output.json { json(&report) } else { report.text() })?;
+    Ok(if found.passed() { Exit::Done } else { Exit::Missed })
+}
+
+impl ProbeReport {
+    fn of(found: &Probe, dimensions: &[&str]) -> Self {
+        let adapter = found.adapter.clone().map(|adapter| AdapterReport {
+            name: adapter.name,
+            version: adapter.version,
+            window: adapter.window,
+        });
+        let check = |check: &crate::probe::Check| CheckReport {
+            check: check.what,
+            passed: check.fault.is_none(),
+            fault: check.fault.clone(),
+        };
+        let characteristic = |one: &crate::probe::Probed| CharacteristicReport {
+            name: one.name.clone(),
+            nominal: one.nominal,
+            noise: one.noise,
+            steps: (dimensions.iter().zip(&one.least_step))
+                .map(|(name, &least_step)| StepReport {
+                    dimension: (*name).to_owned(),
+                    least_step,
+                    reacts: !one.silent.iter().any(|silent| silent == name),
+                })
+                .collect(),
+        };
+        Self {
+            schema: crate::report::SCHEMA,
+            command: "probe",
+            adapter,
+            evaluations: found.evaluations,
+            start_s: found.start.as_secs_f64(),
+            evaluation_alone_s: found.alone.as_secs_f64(),
+            evaluation_together_s: found.together.as_secs_f64(),
+            passed: found.passed(),
+            checks: found.checks.iter().map(check).collect(),
+            characteristics: found.characteristics.iter().map(characteristic).collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut text = String::new();
+        if let Some(AdapterReport { name, version, window }) = &self.adapter {
+            let word = |word: &Option<String>| word.clone().unwrap_or_else(|| "-".to_owned());
+            text += &format!("{}, version {}, window {window}\n", word(name), word(version));
+        }
+        let seconds = |value: f64| format!("{} s", significant(value, 2));
+        text += &format!(
+            "ready after {}; {} for a point alone, {} for one of many; {} evaluations\n\n",
+            seconds(self.start_s),
+            seconds(self.evaluation_alone_s),
+            seconds(self.evaluation_together_s),
+            self.evaluations,
+        );
+        for check in &self.checks {
+            let fault = check.fault.as_ref().map(|fault| format!(": {fault}")).unwrap_or_default();
+            text += &format!("  {}  {}{fault}\n", if check.passed { "ok  " } else { "FAIL" }, check.check);
+        }
+        for one in &self.characteristics {
+            let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| significant(value, 6));
+            let noise = one.noise.map_or("none to be seen".to_owned(), |noise| significant(noise, 2));
+            text += &format!("\n{}: nominal {}, noise {noise}\n", one.name, number(one.nominal));
+            let coarse = one.steps.iter().filter_map(|step| step.least_step).fold(0.0, f64::max);
+            if coarse > 0.0 {
+                text += &format!("  steps of {} sigma and more are safe for every dimension\n", significant(coarse, 2));
+            }
+            let silent: Vec<&str> =
+                one.steps.iter().filter(|step| !step.reacts).map(|step| step.dimension.as_str()).collect();
+            if !silent.is_empty() {
+                text += &format!("  does not react to {}\n", silent.join(", "));
+            }
+        }
+        text
+    }
+}

@@ -1,0 +1,250 @@
+//! Whether a model can be trusted, and how it is best asked: repeatability, order, errors, noise, speed.
+//!
+//! Evaluations: `2N + 31` for N varying dimensions. The points are always the same ones.
+//!
+//! Source of the noise level: Moré and Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), algorithm
+//! ECnoise: the standard deviation of differences of order k of values at equal distances, where it no longer depends on k.
+
+use std::time::{Duration, Instant};
+
+use crate::assembly::process::Adapter;
+use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
+use crate::problem::Problem;
+
+/// Points in the two passes that must agree.
+const SCATTERED: usize = 8;
+/// Points of the noise estimate, and their distance as a part of the tolerances.
+const LINE: usize = 9;
+const CLOSE: f64 = 1e-5;
+/// How far outside the tolerances a point is taken at which the model may well fail.
+const FAR: f64 = 30.0;
+/// Noise may spoil a slope by this part at the least step.
+const SPOILT: f64 = 1e-3;
+
+/// What a probe found out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probe {
+    /// What an external program says of itself.
+    pub adapter: Option<Adapter>,
+    /// Points sent.
+    pub evaluations: usize,
+    /// From nothing to ready.
+    pub start: Duration,
+    /// For a point by itself, and for one of many.
+    pub alone: Duration,
+    /// For a point among others.
+    pub together: Duration,
+    /// What was checked, with what is wrong.
+    pub checks: Vec<Check>,
+    /// What is known of every characteristic.
+    pub characteristics: Vec<Probed>,
+}
+
+/// One thing that a model should do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    /// What.
+    pub what: &'static str,
+    /// What is wrong with it; None when nothing is.
+    pub fault: Option<String>,
+}
+
+/// One characteristic.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probed {
+    /// Its name.
+    pub name: String,
+    /// Its value at the nominal dimensions.
+    pub nominal: Option<f64>,
+    /// Standard deviation of what is random in its last digits; None where no level shows.
+    pub noise: Option<f64>,
+    /// For every dimension, the least step in sigmas at which noise spoils the slope by no more than a thousandth; None
+    /// where the characteristic does not react to it, or the noise is unknown.
+    pub least_step: Vec<Option<f64>>,
+    /// The dimensions to which it does not react within one sigma.
+    pub silent: Vec<String>,
+}
+
+impl Probe {
+    /// Whether everything is as it should be.
+    pub fn passed(&self) -> bool {
+        self.checks.iter().all(|check| check.fault.is_none())
+    }
+}
+
+/// Probes the model of a problem.
+///
+/// # Errors
+/// When the model cannot be used at all.
+pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError> {
+    let begun = Instant::now();
+    let adapter = problem.function().prepare(problem.outputs())?;
+    let start = begun.elapsed();
+    let asked = Asked { problem, run };
+    let nominal: Vec<f64> = problem.dimensions().iter().map(|dimension| dimension.nominal()).collect();
+    let names: Vec<String> = problem.characteristics().iter().map(|one| one.name().to_owned()).collect();
+    let mut evaluations = 0;
+    let mut ask = |rows: &[Vec<f64>]| {
+        evaluations += rows.len();
+        asked.rows(rows)
+    };
+    let mut checks = Vec::new();
+    let mut check = |what, fault| checks.push(Check { what, fault });
+
+    // The first point may warm something up.
+    let first = ask(std::slice::from_ref(&nominal));
+    let begun = Instant::now();
+    let second = ask(std::slice::from_ref(&nominal));
+    let alone = begun.elapsed();
+    let missing = (0..names.len()).find(|&c| first.value(0, c).is_none());
+    check("the nominal dimensions have values", missing.map(|c| format!("`{}`: {}", names[c], reason(&first, 0, c))));
+    let same = |a: &Responses, row: usize, b: &Responses, other: usize| differing(&names, a, row, b, other, 0.0);
+    check("the same point twice has the same values", same(&first, 0, &second, 0));
+
+    let scattered: Vec<Vec<f64>> = (0..SCATTERED).map(|index| asked.scattered(index)).collect();
+    let begun = Instant::now();
+    let forward = ask(&scattered);
+    let together = begun.elapsed() / SCATTERED as u32;
+    let back: Vec<Vec<f64>> = scattered.iter().rev().cloned().collect();
+    let backward = ask(&back);
+    let line: Vec<Vec<f64>> = (0..LINE).map(|index| asked.along(&nominal, CLOSE * (index as f64 - 4.0))).collect();
+    let close = ask(&line);
+    let noise: Vec<Option<f64>> = (0..names.len())
+        .map(|c| {
+            (0..LINE).map(|row| close.value(row, c)).collect::<Option<Vec<f64>>>().and_then(|values| level(&values))
+        })
+        .collect();
+    let largest = noise.iter().flatten().copied().fold(0.0, f64::max);
+    let order =
+        (0..SCATTERED).find_map(|row| differing(&names, &forward, row, &backward, SCATTERED - 1 - row, 10.0 * largest));
+    check("the order of the points does not matter", order);
+    let after = ask(std::slice::from_ref(&nominal));
+    check(
+        "the nominal values are the same after other points",
+        differing(&names, &first, 0, &after, 0, 10.0 * largest),
+    );
+    // Whether these fail is the model's business; what matters is what comes after.
+    let outside: Vec<Vec<f64>> = [FAR, -FAR].map(|far| asked.along(&nominal, far)).to_vec();
+    ask(&outside);
+    let after = ask(std::slice::from_ref(&nominal));
+    check(
+        "the nominal values are the same after points where it may fail",
+        differing(&names, &first, 0, &after, 0, 10.0 * largest),
+    );
+
+    let steps: Vec<Vec<f64>> = asked.steps(&nominal);
+    let stepped = ask(&steps);
+    let varying = asked.varying();
+    let characteristics = names.iter().enumerate().map(|(c, name)| {
+        let change = |index: usize| Some((stepped.value(2 * index, c)? - stepped.value(2 * index + 1, c)?).abs() / 2.0);
+        // Over a step of h sigmas noise makes `noise / h` of a slope that is `change` per sigma.
+        let step = |index: usize| {
+            let (change, noise) = (change(index)?, noise[c]?);
+            (change > 10.0 * noise && change > 0.0).then_some(noise / change / SPOILT)
+        };
+        let nominal = first.value(0, c);
+        let still = |row: usize| nominal.is_some() && stepped.value(row, c) == nominal;
+        let silent = (0..varying.len()).filter(|&index| still(2 * index) && still(2 * index + 1));
+        Probed {
+            name: name.clone(),
+            nominal,
+            noise: noise[c],
+            least_step: (0..problem.dimensions().len())
+                .map(|d| varying.iter().position(|&v| v == d).and_then(step))
+                .collect(),
+            silent: silent.map(|index| problem.dimensions()[varying[index]].name().to_owned()).collect(),
+        }
+    });
+    let characteristics: Vec<Probed> = characteristics.collect();
+    let mute = characteristics.iter().find(|one| !varying.is_empty() && one.silent.len() == varying.len());
+    check(
+        "every characteristic reacts to some dimension",
+        mute.map(|one| format!("`{}` is the same at every point within one sigma", one.name)),
+    );
+    Ok(Probe { adapter, evaluations, start, alone, together, checks, characteristics })
+}
+
+struct Asked<'a> {
+    problem: &'a Problem,
+    run: &'a Run<'a>,
+}
+
+impl Asked<'_> {
+    fn rows(&self, rows: &[Vec<f64>]) -> Responses {
+        let outputs = self.problem.outputs();
+        let mut out = Responses::open(rows.len(), outputs.len());
+        self.problem.function().evaluate(&Ask::values(&Points::from_rows(rows), outputs), self.run, &mut out);
+        out
+    }
+
+    fn varying(&self) -> Vec<usize> {
+        (0..self.problem.dimensions().len()).filter(|&d| self.problem.dimensions()[d].sigma() > 0.0).collect()
+    }
+
+    /// All dimensions off the nominal by a part of what they reach.
+    fn along(&self, nominal: &[f64], part: f64) -> Vec<f64> {
+        let dimensions = self.problem.dimensions();
+        nominal.iter().zip(dimensions).map(|(x, dimension)| x + part * dimension.half_band()).collect()
+    }
+
+    /// A point within the tolerances: fractions of the golden ratio, which fill any box evenly.
+    fn scattered(&self, index: usize) -> Vec<f64> {
+        let fraction = |d: usize| (0.5 + (1 + index + SCATTERED * d) as f64 * 0.618_033_988_749_894_9).fract();
+        let place = |(d, dimension): (usize, &crate::dimension::Dimension)| {
+            let [lower, upper] = dimension.reach();
+            dimension.nominal() + lower + fraction(d) * (upper - lower)
+        };
+        self.problem.dimensions().iter().enumerate().map(place).collect()
+    }
+
+    /// One sigma up and down for every dimension that varies.
+    fn steps(&self, nominal: &[f64]) -> Vec<Vec<f64>> {
+        let step = |d: usize, sigmas: f64| {
+            let mut point = nominal.to_vec();
+            point[d] += sigmas * self.problem.dimensions()[d].sigma();
+            point
+        };
+        self.varying().into_iter().flat_map(|d| [step(d, 1.0), step(d, -1.0)]).collect()
+    }
+}
+
+fn reason(out: &Responses, row: usize, c: usize) -> String {
+    out.error(row, c).map_or("it was not evaluated".to_owned(), ToString::to_string)
+}
+
+/// The first characteristic that differs between two answers by more than this.
+fn differing(names: &[String], a: &Responses, row: usize, b: &Responses, other: usize, by: f64) -> Option<String> {
+    names.iter().enumerate().find_map(|(c, name)| match (a.value(row, c), b.value(other, c)) {
+        (Some(x), Some(y)) if (x - y).abs() <= by => None,
+        (None, None) => None,
+        (Some(x), Some(y)) => Some(format!("`{name}` was {x} and then {y}")),
+        (Some(x), None) => Some(format!("`{name}` was {x} and then had no value: {}", reason(b, other, c))),
+        (None, Some(y)) => Some(format!("`{name}` had no value ({}) and then was {y}", reason(a, row, c))),
+    })
+}
+
+/// The noise in values at equal distances; None where their differences show none.
+fn level(values: &[f64]) -> Option<f64> {
+    let mut differences = values.to_vec();
+    let mut levels: Vec<(f64, bool)> = Vec::new();
+    let mut gamma = 1.0;
+    for order in 1..values.len() {
+        differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let k = order as f64;
+        gamma *= 0.5 * k / (2.0 * k - 1.0);
+        let mean_square = differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64;
+        let both_signs = differences.iter().any(|&d| d > 0.0) && differences.iter().any(|&d| d < 0.0);
+        levels.push(((gamma * mean_square).sqrt(), both_signs));
+    }
+    if values.windows(2).all(|pair| pair[0] == pair[1]) {
+        return None;
+    }
+    // Three orders that agree, and differences that go either way: what is left is noise and no slope.
+    let settled = |three: &[(f64, bool)]| {
+        let (least, most) = three
+            .iter()
+            .fold((f64::INFINITY, 0.0f64), |(least, most), (level, _)| (least.min(*level), most.max(*level)));
+        three[0].1 && most <= 4.0 * least
+    };
+    levels.windows(3).find(|three| settled(three)).map(|three| three[0].0)
+}
