@@ -63,6 +63,13 @@ pub enum Warning {
         /// The characteristic.
         characteristic: String,
     },
+    /// The characteristic is exactly 0 at several points, though not at the means.
+    Atom {
+        /// The characteristic.
+        characteristic: String,
+        /// At how many points.
+        points: usize,
+    },
     /// Rounding in the model is not small beside the differences.
     Noise {
         /// The characteristic.
@@ -147,6 +154,7 @@ impl Warning {
             Self::DomainEdge { .. } => "domain-edge",
             Self::SupportEdge { .. } => "support-edge",
             Self::NoReaction { .. } => "no-reaction",
+            Self::Atom { .. } => "atom",
             Self::Noise { .. } => "noise",
             Self::PairsNotExamined { .. } => "pairs-not-examined",
             Self::RssInvalid { .. } => "rss-invalid",
@@ -165,6 +173,7 @@ impl Warning {
             | Self::LostDerivative { characteristic, .. }
             | Self::DomainEdge { characteristic, .. }
             | Self::NoReaction { characteristic }
+            | Self::Atom { characteristic, .. }
             | Self::Noise { characteristic, .. }
             | Self::History { output: characteristic, .. }
             | Self::InfeasibleMoments { characteristic, .. }
@@ -230,6 +239,10 @@ impl Warning {
             ),
             Self::NoReaction { characteristic } => format!(
                 "`{characteristic}` is the same at every point: check that the model uses the dimensions at all"
+            ),
+            Self::Atom { characteristic, points } => format!(
+                "`{characteristic}` is exactly 0 at {points} points: a distance that ends at contact hides interference; \
+                 let the model offer a signed measure"
             ),
             Self::Noise { characteristic, rounding } => format!(
                 "one rounding error of `{characteristic}` is {rounding:.1e} of its sigma: differences lose that much; \

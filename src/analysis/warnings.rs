@@ -17,6 +17,8 @@ const CURVED: f64 = 0.05;
 
 /// A change of the nominal value by more than this part of what a characteristic varies by is another solution of the model.
 const FLIP: f64 = 0.01;
+/// Points at which a characteristic that is not 0 at the means may be exactly 0 by chance.
+const ATOM: usize = 2;
 /// A kurtosis that exceeds the least possible by no more than this part is worth one too.
 const MARGIN: f64 = 0.1;
 
@@ -38,6 +40,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
         warnings.extend(lost(problem, outcome, c));
+        warnings.extend(atom(problem, outcome, c));
         warnings.extend(doubtful(outcome, c, analysis));
     }
     let possible = outcome.plan.possible_pairs();
@@ -148,6 +151,14 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
         }
     }
     warnings
+}
+
+/// A minimum distance saturates at 0: several points at which a characteristic is exactly 0, and others at which it is not.
+fn atom(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
+    let known = &outcome.evaluated.known;
+    let points = known.values(c).filter(|&value| value == 0.0).count();
+    let elsewhere = outcome.fitted[c].centre.is_some_and(|centre| centre != 0.0);
+    (points >= ATOM && elsewhere).then(|| Warning::Atom { characteristic: name(problem, c), points })
 }
 
 /// Results that exist but should not be taken at face value.

@@ -18,6 +18,9 @@ pub enum EvaluationError {
     /// An external program failed.
     #[error(transparent)]
     Process(#[from] Box<super::process::ProcessError>),
+    /// The table of answers that were evaluated elsewhere has none for this point.
+    #[error("no answer is given for this point")]
+    NotGiven,
     /// The answer could not be kept, or what is kept could not be read.
     #[error("{message}")]
     NotKept {

@@ -1,21 +1,24 @@
 //! `sensitol analyze`.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::args::AnalyzeArgs;
 use super::failure::{Exit, Failure};
 use super::interrupt;
 use super::output::{Destination, Look, json};
+use super::points;
 use super::progress::Bar;
 use super::study;
 use crate::analysis::{Analysis, analyze_within};
-use crate::assembly::{Progress, Run};
+use crate::assembly::{Progress, Run, Table};
 use crate::method::MethodError;
 use crate::report::{About, Report, text};
 use crate::study::{Externals, JournalPlace, Study};
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
-    let study = study::read(&asked.study, externals(asked, look))?;
+    let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
+    let study = study::read(&asked.study, externals(asked, look, given.clone()))?;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }
@@ -34,6 +37,9 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let written = destination.write(&printed);
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
+    }
+    if let Some(given) = &given {
+        unmatched(given, look);
     }
     if interrupt::stopped() {
         look.warn("stopped", &format!("interrupted after {} evaluations", analysis.evaluations));
@@ -55,14 +61,30 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
 }
 
+/// Tells of points without an answer, and of answers to points that nobody asked for.
+fn unmatched(given: &Table, look: Look) {
+    match given.missing() {
+        0 => {}
+        count => look.warn("missing-points", &format!("{count} points have no answer; plan --write-points lists all")),
+    }
+    let unused = given.unused();
+    if !unused.is_empty() {
+        let lines: Vec<String> = unused.iter().take(10).map(|row| (row + 2).to_string()).collect();
+        let more = if unused.len() > 10 { ", ..." } else { "" };
+        let what =
+            format!("{} answers are of points that nobody asked for: lines {}{more}", unused.len(), lines.join(", "));
+        look.warn("unmatched-points", &what);
+    }
+}
+
 /// Where the answers of an external model are kept, and who hears it.
-fn externals(asked: &AnalyzeArgs, look: Look) -> Externals {
+fn externals(asked: &AnalyzeArgs, look: Look, points: Option<Arc<Table>>) -> Externals {
     let journal = match &asked.journal {
         None => JournalPlace::BesideStudy,
         Some(path) if path.as_os_str() == "none" => JournalPlace::Nowhere,
         Some(path) => JournalPlace::At(path.clone()),
     };
-    Externals { journal, listener: super::listener(look), sentinels: true }
+    Externals { journal, listener: super::listener(look), points, sentinels: true }
 }
 
 fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant, look: Look) -> Result<Analysis, Failure> {

@@ -104,6 +104,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE")]
     pub(super) journal: Option<PathBuf>,
 
+    /// Take the answers of an external model from a CSV file with a column for every dimension and output
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "journal")]
+    pub(super) points: Option<PathBuf>,
+
     /// Exit with 1 when a characteristic misses its target_yield, or its yield is unknown
     #[arg(long)]
     pub(super) check: bool,

@@ -47,6 +47,8 @@ pub(super) enum Failure {
     Journal(#[from] JournalError),
     #[error("{}; there are {known}", number.map_or("--model N says which of several models".to_owned(), |number| format!("there is no model {number} in the journal")))]
     UnknownJournalModel { number: Option<i64>, known: String },
+    #[error("{path}: {reason}", path = path.display())]
+    Points { path: PathBuf, reason: String },
     #[error("the table cannot be written: {reason}")]
     Table { reason: String },
     #[error("--check has nothing to check: no characteristic asked for has a target_yield")]

@@ -13,6 +13,7 @@ mod output;
 mod pairs;
 mod pearson;
 mod plan;
+mod points;
 mod probe;
 mod progress;
 mod study;

@@ -59,7 +59,8 @@ struct StepReport {
 
 pub(super) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
     // Answers from a journal would prove nothing, and sentinels would hide what is looked for.
-    let externals = Externals { journal: JournalPlace::Nowhere, listener: super::listener(look), sentinels: false };
+    let externals =
+        Externals { journal: JournalPlace::Nowhere, listener: super::listener(look), points: None, sentinels: false };
     let study = study::read(&asked.study, externals)?;
     let destination = Destination::open(&asked.output)?;
     interrupt::listen();

@@ -58,6 +58,11 @@ impl Known {
         (!value.is_nan()).then_some(value)
     }
 
+    /// Every known value of a characteristic.
+    pub fn values(&self, characteristic: usize) -> impl Iterator<Item = f64> {
+        self.values[characteristic].iter().copied().filter(|value| !value.is_nan())
+    }
+
     /// Why a characteristic has no value at a point.
     pub fn error(&self, point: &Point, characteristic: usize) -> Option<&EvaluationError> {
         self.errors.get(&(*self.row.get(point)?, characteristic as u32))

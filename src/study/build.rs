@@ -223,8 +223,13 @@ fn compose(
         .collect();
     let constants: Vec<(String, f64)> =
         file.constants.0.iter().map(|(name, value)| (name.get_ref().clone(), *value.get_ref())).collect();
-    let model = model.map(|model| -> (Arc<dyn AssemblyFunction>, Vec<assembly::Source>) {
-        match model {
+    let nowhere = |found: StudyFault| Fault { span: None, key: String::new(), fault: Box::new(found) };
+    let program = matches!(model, Some(ModelOf::Program(_)));
+    if source.externals.points.is_some() && !program {
+        return Err(nowhere(StudyFault::NothingExternal));
+    }
+    let function = |model: &ModelOf| -> Result<(Arc<dyn AssemblyFunction>, Vec<assembly::Source>), Fault> {
+        Ok(match model {
             ModelOf::BuiltIn(model) => (Arc::new(model.function()), sources(model, dimensions, &constants)),
             ModelOf::Program(program) => {
                 let used =
@@ -238,10 +243,11 @@ fn compose(
                 };
                 let offered = asked_of_program(&inputs, &constants, formulas, &outputs);
                 let all = (0..dimensions.len()).map(assembly::Source::Dimension).collect();
-                (process(program, &inputs, greeting, offered, source), all)
+                (process(program, &inputs, greeting, offered, source).map_err(nowhere)?, all)
             }
-        }
-    });
+        })
+    };
+    let model = model.map(function).transpose()?;
     let parts = Parts {
         inputs,
         constants,

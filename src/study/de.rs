@@ -93,6 +93,7 @@ fn words(expected: &dyn de::Expected) -> String {
         "f64" => "a number".to_owned(),
         "u64" => "a whole number, 0 or above,".to_owned(),
         "a string" => "a text in quotes".to_owned(),
+        "a sequence" => "a list such as [\"a\", \"b\"]".to_owned(),
         "a tuple of size 2" => "a pair of names".to_owned(),
         _ => match text.strip_prefix("an array of length ") {
             Some(length) => format!("a list of {length} numbers"),

@@ -216,6 +216,15 @@ pub enum StudyFault {
         /// Where it was looked for.
         path: std::path::PathBuf,
     },
+    /// Answers evaluated elsewhere do not say for which value of a dimension.
+    #[error("the points that were evaluated elsewhere have no column `{dimension}`")]
+    MissingColumn {
+        /// The dimension.
+        dimension: String,
+    },
+    /// Answers evaluated elsewhere, for a study that asks nobody.
+    #[error("points that were evaluated elsewhere are the answers of a [model] command, and the study has none")]
+    NothingExternal,
     /// There is nothing to evaluate.
     #[error("the study has no {what}")]
     Nothing {

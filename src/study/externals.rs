@@ -1,7 +1,9 @@
 //! What a study file does not say of external programs: where their answers are kept, who hears them.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use crate::assembly::Table;
 use crate::assembly::process::Listener;
 
 /// How the external programs of a study are treated.
@@ -11,13 +13,15 @@ pub struct Externals {
     pub journal: JournalPlace,
     /// Who hears every line that they write to stderr.
     pub listener: Option<Listener>,
+    /// Answers that were evaluated elsewhere: nothing is started then.
+    pub points: Option<Arc<Table>>,
     /// Whether they are asked again and again for the nominal point, to see whether they still answer as they did.
     pub sentinels: bool,
 }
 
 impl Default for Externals {
     fn default() -> Self {
-        Self { journal: JournalPlace::Nowhere, listener: None, sentinels: true }
+        Self { journal: JournalPlace::Nowhere, listener: None, points: None, sentinels: true }
     }
 }
 

@@ -10,7 +10,7 @@ use super::error::{Fault, StudyFault, fault};
 use super::file::ModelEntry;
 use super::source::Source;
 use crate::assembly::process::{Greeting, Process, Settings};
-use crate::assembly::{AssemblyFunction, Input, Output, Signature};
+use crate::assembly::{AssemblyFunction, Given, Input, Output, Signature};
 use crate::models::{self, Model};
 use crate::names::nearest;
 
@@ -133,15 +133,19 @@ pub(super) fn process(
     greeting: Greeting,
     outputs: Vec<(String, Option<String>)>,
     source: &Source,
-) -> Arc<dyn AssemblyFunction> {
+) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
     let outputs = outputs.into_iter().map(|(name, unit)| Output { name, unit, depends_on: None }).collect();
     let signature = Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() };
+    if let Some(table) = &source.externals.points {
+        let given = Given::new(signature, Arc::clone(table));
+        return Ok(Arc::new(given.map_err(|dimension| StudyFault::MissingColumn { dimension })?));
+    }
     let process = Process::new(signature, greeting, program.settings.clone());
     #[cfg(feature = "journal")]
     if let Some(path) = source.externals.journal.path(&source.name) {
-        return Arc::new(crate::journal::Journaled::new(process, path, program.files.clone()));
+        return Ok(Arc::new(crate::journal::Journaled::new(process, path, program.files.clone())));
     }
     #[cfg(not(feature = "journal"))]
     let _ = (source, &program.files);
-    Arc::new(process)
+    Ok(Arc::new(process))
 }

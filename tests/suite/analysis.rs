@@ -145,3 +145,14 @@ fn impossible_dimensions_and_limits_are_refused() {
     assert!(SpecLimits::new(Some(f64::NAN), None).is_err());
     assert!(Characteristic::new("y").with_target_yield(1.0).is_err());
 }
+
+/// A minimum distance ends at contact: the model answers 0 where parts overlap.
+#[test]
+fn a_distance_that_ends_at_contact_is_found_out() {
+    let gap = |least: f64| {
+        let clipped = Closure::scalar("gap", move |x| (x[0] - x[1]).max(least));
+        analyze(&Problem::new(normals(&[10.0, 9.95], &[0.3, 0.1]), clipped).unwrap(), &Method::Full.into()).unwrap()
+    };
+    let atoms = |least: f64| gap(least).warnings.iter().filter(|warning| warning.code() == "atom").count();
+    assert_eq!((atoms(0.0), atoms(f64::NEG_INFINITY)), (1, 0));
+}

@@ -307,3 +307,53 @@ fn the_journal_can_be_read() {
     study.run(&[]);
     assert_eq!(study.evaluations(), 12);
 }
+
+/// Points evaluated elsewhere: written, answered by somebody, and read; nothing is started, and what does not match is named.
+#[test]
+fn points_may_be_evaluated_elsewhere() {
+    let study = Slow::new(3, 0.0, 1, 1);
+    let sensitol = |arguments: &[&str]| {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+        command.arg(arguments[0]).arg(study.path("study.toml")).args(&arguments[1..]).output().unwrap()
+    };
+    let points = study.path("points.csv").display().to_string();
+    assert!(sensitol(&["plan", "--write-points", &points]).status.success());
+    let answered = study.path("answers.csv").display().to_string();
+    let write = |rows: usize, digits: usize, more: &str| {
+        let text = std::fs::read_to_string(&points).unwrap();
+        let mut lines = text.lines();
+        let mut table = format!("{},y\n", lines.next().unwrap());
+        for line in lines.take(rows) {
+            let x: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            let y = x[0] + 2.0 * x[1] + 3.0 * x[2] + 0.01 * x[0] * x[1];
+            let cells: Vec<String> = x.iter().map(|x| format!("{x:.digits$}")).collect();
+            table += &format!("{},{y}\n", cells.join(","));
+        }
+        std::fs::write(&answered, table + more).unwrap();
+    };
+    write(99, 17, "");
+    let all = sensitol(&["analyze", "--json", "--points", &answered]);
+    assert_eq!((field(&all, "evaluations"), field(&all, "reused"), study.evaluations()), (0, 13, 0));
+    assert_eq!(result(&all)["characteristics"], result(&study.run(&[]))["characteristics"]);
+    // Fifteen digits, as a spreadsheet keeps them, and a point of somebody else.
+    write(99, 14, "9,9,9,1\n");
+    let rounded = sensitol(&["analyze", "--points", &answered]);
+    let error = String::from_utf8_lossy(&rounded.stderr).into_owned();
+    assert!(rounded.status.success() && error.contains("unmatched-points") && error.contains("lines 15"), "{error}");
+    // Some are missing.
+    write(9, 17, "");
+    let few = sensitol(&["analyze", "--points", &answered]);
+    let error = String::from_utf8_lossy(&few.stderr).into_owned();
+    assert!(error.contains("4 points have no answer") && error.contains("no answer is given"), "{error}");
+    // Tables that are none.
+    let refused = |table: &str| {
+        std::fs::write(&answered, table).unwrap();
+        let output = sensitol(&["analyze", "--points", &answered]);
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(refused("x0,x1,y\n1,2,3\n").contains("no column `x2`"));
+    assert!(refused("x0,x1,x2,x0\n1,2,3,4\n").contains("column `x0` stands twice"));
+    assert!(refused("x0,x1,x2,y\n1,2,3,many\n").contains("line 2, column `y`: `many` is no finite number"));
+    assert!(refused("x0,x1,x2,y\n1,2\n").contains("answers.csv"));
+}

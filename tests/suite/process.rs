@@ -38,7 +38,8 @@ fn at(model: &Process, a: &[f64]) -> Responses {
 fn right_but(a: &[f64], out: &Responses, wrong: &[usize]) {
     for (row, &a) in a.iter().enumerate() {
         if !wrong.contains(&row) {
-            assert_eq!((out.value(row, 0), out.value(row, 1)), (Some(a + 2.0), Some(2.0 * a)), "row {row}");
+            let found = (out.value(row, 0), out.value(row, 1));
+            assert_eq!(found, (Some(a + 2.0), Some(2.0 * a)), "row {row}: {:?}", out.error(row, 0));
         }
     }
 }
@@ -324,11 +325,62 @@ fn no_orphan_is_left() {
     }
 }
 
-/// Ten thousand points through one child that may have many under way, and none is lost or mixed up.
+/// Megabytes that a process holds.
+#[cfg(target_os = "linux")]
+fn resident(pid: &str) -> f64 {
+    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
+    let kilobytes = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap_or_default();
+    kilobytes.trim().trim_end_matches(" kB").parse::<f64>().unwrap_or(f64::NAN) / 1024.0
+}
+
+/// A hundred thousand points through one child that may have many under way: none is lost or mixed up, and neither side grows.
 #[test]
+#[cfg(target_os = "linux")]
 fn many_points_through_one_child() {
+    let model = model(settings("echo", &["one-child-for-many-points", "64"]));
     let a: Vec<f64> = (100..10_100).map(f64::from).collect();
-    right_but(&a, &at(&model(settings("echo", &["64"])), &a), &[]);
+    right_but(&a, &at(&model, &a), &[]);
+    let child = alive("one-child-for-many-points");
+    let pid = child[0].split(' ').next().unwrap();
+    let before = [resident("self"), resident(pid)];
+    for _ in 0..9 {
+        right_but(&a, &at(&model, &a), &[]);
+    }
+    // Other tests run beside this one in the same process: what grows with the points would be hundreds of bytes for each.
+    let after = [resident("self"), resident(pid)];
+    assert!(after[0] - before[0] < 64.0 && after[1] - before[1] < 8.0, "{before:?} {after:?}");
+}
+
+/// `kill -9` of the children, whenever it comes: every point is answered all the same.
+#[test]
+#[cfg(target_os = "linux")]
+fn killed_children_lose_nothing() {
+    let settings = Settings { workers: 2, retries: 3, ..settings("slow", &["0.01", "killed-children"]) };
+    let model = model(settings);
+    // A model whose very first start fails is no model.
+    model.prepare(&[0, 1]).unwrap();
+    let a: Vec<f64> = (0..200).map(f64::from).collect();
+    let done = AtomicUsize::new(0);
+    let out = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            for round in 0..10 {
+                std::thread::sleep(Duration::from_millis(40 + 17 * round));
+                if done.load(Ordering::Relaxed) > 0 {
+                    break;
+                }
+                if let Some(victim) = alive("killed-children").first() {
+                    let pid = victim.split(' ').next().unwrap();
+                    let _ = Command::new("kill").args(["-9", pid]).status();
+                }
+            }
+        });
+        let out = at(&model, &a);
+        done.store(1, Ordering::Relaxed);
+        out
+    });
+    right_but(&a, &out, &[]);
+    // A child had one point under way: that is what a kill costs.
+    assert!(out.extra() > 0 && out.extra() <= 10, "{}", out.extra());
 }
 
 fn python(script: &Path) -> Settings {

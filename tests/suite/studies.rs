@@ -165,6 +165,15 @@ fn models_at_fault() {
         "[model]\nbuiltin = \"engine-balance\"\n[dimensions]\nR = {}\n[characteristics]\nG = {}\n",
         "[model]\nbuiltin = \"engine-balance\"\n[dimensions]\nR = {}\n[characteristics]\nF = { formula = \"F/1000\" }\n",
         "[model]\nbuiltin = \"engine-balance\"\n[dimensions]\nR = {}\n[characteristics]\nk = { formula = \"FF/1000\" }\n",
+        "[model]\ncommand = []\n[dimensions]\na = { nominal = 1 }\n[characteristics]\ng = {}\n",
+        "[model]\ncommand = \"python3 gap.py\"\n[dimensions]\na = { nominal = 1 }\n[characteristics]\ng = {}\n",
+        "[model]\nbuiltin = \"engine-balance\"\ncommand = [\"a\"]\n[dimensions]\nR = {}\n[characteristics]\nF = {}\n",
+        "[model]\nbuiltin = \"engine-balance\"\nworkers = 2\n[dimensions]\nR = {}\n[characteristics]\nF = {}\n",
+        "[model]\ncommand = [\"a\"]\nworkers = 0\n[dimensions]\na = { nominal = 1 }\n[characteristics]\ng = {}\n",
+        "[model]\ncommand = [\"a\"]\ntimeout_s = -1\n[dimensions]\na = { nominal = 1 }\n[characteristics]\ng = {}\n",
+        "[model]\ncommand = [\"a\"]\ntime_out_s = 1\n[dimensions]\na = { nominal = 1 }\n[characteristics]\ng = {}\n",
+        "[model]\ncommand = [\"a\"]\nfiles = [\"nowhere.txt\"]\n[dimensions]\na = { nominal = 1 }\n[characteristics]\ng = {}\n",
+        "[model]\ncommand = [\"a\"]\n[dimensions]\na = { tolerance = 1 }\n[characteristics]\ng = {}\n",
     ];
     insta::assert_snapshot!(faults(&texts));
 }

@@ -190,7 +190,7 @@ impl Pool {
                 // What goes wrong is heard of as an event or at the next turn.
                 if let Err(error) = self.start(index) {
                     self.failed_start(index);
-                    if self.failed_starts >= STARTS {
+                    if self.is_hopeless() {
                         batch.give_up(&error);
                     }
                 }
@@ -365,9 +365,14 @@ impl Pool {
 
     /// A child that could not be started after others could is tried again, a few times.
     fn lost_start(&mut self, index: usize, error: ProcessError) -> Result<(), ProcessError> {
-        let hopeless = self.adapter.is_none() || self.failed_starts + 1 >= STARTS;
         self.failed_start(index);
-        if hopeless { Err(error) } else { Ok(()) }
+        if self.is_hopeless() { Err(error) } else { Ok(()) }
+    }
+
+    /// Whether there is no child, and none to be had: the first start failed, or too many in a row did.
+    fn is_hopeless(&self) -> bool {
+        let alone = !self.slots.iter().any(|slot| matches!(slot.state, State::Ready(_)));
+        self.adapter.is_none() || (alone && self.failed_starts >= STARTS)
     }
 
     fn failed_start(&mut self, index: usize) {
@@ -417,6 +422,7 @@ impl Pool {
         let (_, row) = worker.under_way.remove(position).expect("it was found there");
         worker.since = Instant::now();
         slot.failures = 0;
+        self.failed_starts = 0;
         let values = values(&line, expected);
         if row == SENTINEL {
             return self.checked(index, values, batch);

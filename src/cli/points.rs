@@ -1,0 +1,40 @@
+//! `--points`: answers that were evaluated elsewhere, as CSV.
+
+use std::path::Path;
+
+use super::failure::Failure;
+use crate::assembly::Table;
+
+/// Reads a table with a header. Empty cells are unknown; everything else is a finite number.
+pub(super) fn read(path: &Path) -> Result<Table, Failure> {
+    let failed = |reason: String| Failure::Points { path: path.to_owned(), reason };
+    let mut reader = csv::Reader::from_path(path).map_err(|error| failed(error.to_string()))?;
+    let columns: Vec<String> = reader
+        .headers()
+        .map_err(|error| failed(error.to_string()))?
+        .iter()
+        .map(|name| name.trim().to_owned())
+        .collect();
+    if let Some(twice) = columns.iter().enumerate().find(|(index, name)| columns[..*index].contains(name)) {
+        return Err(failed(format!("column `{}` stands twice", twice.1)));
+    }
+    let mut rows = Vec::new();
+    for (index, record) in reader.records().enumerate() {
+        let record = record.map_err(|error| failed(error.to_string()))?;
+        let cell = |(column, text): (usize, &str)| match text.trim() {
+            "" => Ok(None),
+            // A column of remarks is nobody's business here.
+            text => match text.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(Some(value)),
+                _ if columns[column].ends_with(" error") => Ok(None),
+                _ => Err(failed(format!(
+                    "line {}, column `{}`: `{text}` is no finite number",
+                    index + 2,
+                    columns[column]
+                ))),
+            },
+        };
+        rows.push(record.iter().enumerate().map(cell).collect::<Result<Vec<_>, _>>()?);
+    }
+    Ok(Table::new(columns, rows))
+}
