@@ -11,6 +11,7 @@
 //! A point that fails is tried again `retries` times, in a fresh child and alone, so that a point that crashes children is
 //! found out and takes no other with it. A child that fails is started again, after a pause that doubles every time.
 
+mod batch;
 mod child;
 mod error;
 mod pool;

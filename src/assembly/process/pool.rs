@@ -1,15 +1,16 @@
 //! Children side by side, and the points under way in each.
 
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use super::Settings;
+use super::batch::Batch;
 use super::child::{Child, Event, What};
 use super::error::{ProcessError, ProcessFault, Quoted, StderrTail};
 use super::protocol::{Adapter, Hello, Line, VERSION, request};
 use super::sentinel::{Reference, SENTINEL, interval, values};
-use crate::assembly::{Points, Progress, Responses, Run};
+use crate::assembly::{Points, Responses, Run};
 
 /// How often a stop is looked for.
 const TICK: Duration = Duration::from_millis(50);
@@ -69,23 +70,6 @@ struct Worker {
     troubled: bool,
 }
 
-/// What is left to do of a batch.
-struct Batch<'a> {
-    points: &'a Points,
-    out: &'a mut Responses,
-    waiting: VecDeque<usize>,
-    /// Rows under way in a child that crashed with several: each is tried again alone, to see which one it was.
-    suspects: VecDeque<usize>,
-    /// Failures of every row that had one.
-    failures: HashMap<usize, u32>,
-    left: usize,
-    /// Rows that are evaluated again because the child that answered them is not trusted: once.
-    again: HashSet<usize>,
-    /// Rows that are final and not yet told of.
-    done: Vec<usize>,
-    sent: usize,
-}
-
 impl Pool {
     pub(super) fn new(settings: Settings, hello: Hello) -> Self {
         let slots = (0..settings.workers.max(1)).map(|_| Slot::default()).collect();
@@ -120,17 +104,7 @@ impl Pool {
     /// Evaluates every row of `points`; what a stop leaves undone stays open, but what is under way is waited for.
     pub(super) fn evaluate(&mut self, points: &Points, run: &Run<'_>, out: &mut Responses) {
         let rows = points.rows();
-        let mut batch = Some(Batch {
-            points,
-            out,
-            waiting: (0..rows).collect(),
-            suspects: VecDeque::new(),
-            failures: HashMap::new(),
-            left: rows,
-            again: HashSet::new(),
-            done: Vec::new(),
-            sent: 0,
-        });
+        let mut batch = Some(Batch::new(points, out));
         loop {
             let stopping = run.stopped();
             if run.abandoned() {
@@ -512,91 +486,6 @@ impl Pool {
             }
         }
         self.pause(index);
-    }
-}
-
-impl Batch<'_> {
-    /// Whether a row is evaluated with nothing else under way in its child.
-    fn goes_alone(&self, row: usize) -> bool {
-        self.failures.contains_key(&row) || self.again.contains(&row)
-    }
-
-    /// Notes a failure of a row, and how many there are now.
-    fn charged(&mut self, row: usize) -> u32 {
-        let failures = self.failures.entry(row).or_insert(0);
-        *failures += 1;
-        *failures
-    }
-
-    /// Tries a row again, or gives it up when it has failed too often.
-    fn charge(&mut self, row: usize, error: &ProcessError, retries: u32) {
-        if self.charged(row) <= retries {
-            self.suspects.push_back(row);
-        } else {
-            self.fail(row, error);
-        }
-    }
-
-    fn fail(&mut self, row: usize, error: &ProcessError) {
-        for output in 0..self.out.outputs() {
-            self.out.fail(row, output, Box::new(error.clone()).into());
-        }
-        self.finish(row);
-    }
-
-    /// Evaluates rows again whose answers are in doubt; once.
-    fn distrust(&mut self, rows: &[usize]) {
-        for &row in rows {
-            if self.again.insert(row) {
-                self.waiting.push_back(row);
-                self.left += 1;
-            }
-        }
-    }
-
-    fn finish(&mut self, row: usize) {
-        self.left -= 1;
-        self.done.push(row);
-    }
-
-    /// What the model said: values, and for what has none the reason.
-    fn settle(&mut self, row: usize, line: Line, names: &[String]) {
-        let no_value = |message: String| {
-            Box::new(ProcessError { fault: ProcessFault::NoValue { message }, stderr: StderrTail::default() }).into()
-        };
-        for (output, name) in names.iter().enumerate() {
-            let value = line.y.as_ref().and_then(|values| values[output]);
-            match (value, &line.error) {
-                (Some(value), None) => self.out.set(row, output, value),
-                (_, Some(message)) => self.out.fail(row, output, no_value(message.clone())),
-                (None, None) => {
-                    let message = line.errors.get(name).cloned();
-                    self.out.fail(row, output, no_value(message.unwrap_or_else(|| "the model returned null".into())));
-                }
-            }
-        }
-        self.finish(row);
-    }
-
-    /// No child can be had any more: everything left fails with this.
-    fn give_up(&mut self, error: &ProcessError) {
-        for row in 0..self.out.rows() {
-            if (0..self.out.outputs()).any(|output| self.out.is_open(row, output)) {
-                self.fail(row, error);
-            }
-        }
-        self.waiting.clear();
-        self.suspects.clear();
-    }
-
-    fn tell(&mut self, run: &Run<'_>) {
-        if !self.done.is_empty() {
-            let failed = |&&row: &&usize| (0..self.out.outputs()).any(|output| self.out.value(row, output).is_none());
-            let failed = self.done.iter().filter(failed).count();
-            run.progressed(Progress { points: self.done.len(), failed, reused: 0 });
-            run.finished(&self.done, self.out);
-            self.done.clear();
-        }
     }
 }
 

@@ -1,0 +1,124 @@
+//! What is left to do of a batch of points, and what came of them.
+
+use std::collections::{HashMap, HashSet, VecDeque};
+
+use super::error::{ProcessError, ProcessFault, StderrTail};
+use super::protocol::Line;
+use crate::assembly::{Points, Progress, Responses, Run};
+
+/// What is left to do of a batch.
+pub(super) struct Batch<'a> {
+    pub(super) points: &'a Points,
+    pub(super) out: &'a mut Responses,
+    pub(super) waiting: VecDeque<usize>,
+    /// Rows under way in a child that crashed with several: each is tried again alone, to see which one it was.
+    pub(super) suspects: VecDeque<usize>,
+    /// Failures of every row that had one.
+    pub(super) failures: HashMap<usize, u32>,
+    pub(super) left: usize,
+    /// Rows that are evaluated again because the child that answered them is not trusted: once.
+    pub(super) again: HashSet<usize>,
+    /// Rows that are final and not yet told of.
+    pub(super) done: Vec<usize>,
+    pub(super) sent: usize,
+}
+
+impl<'a> Batch<'a> {
+    /// Every row of `points` is waiting.
+    pub(super) fn new(points: &'a Points, out: &'a mut Responses) -> Self {
+        Self {
+            points,
+            out,
+            waiting: (0..points.rows()).collect(),
+            suspects: VecDeque::new(),
+            failures: HashMap::new(),
+            left: points.rows(),
+            again: HashSet::new(),
+            done: Vec::new(),
+            sent: 0,
+        }
+    }
+
+    /// Whether a row is evaluated with nothing else under way in its child.
+    pub(super) fn goes_alone(&self, row: usize) -> bool {
+        self.failures.contains_key(&row) || self.again.contains(&row)
+    }
+
+    /// Notes a failure of a row, and how many there are now.
+    pub(super) fn charged(&mut self, row: usize) -> u32 {
+        let failures = self.failures.entry(row).or_insert(0);
+        *failures += 1;
+        *failures
+    }
+
+    /// Tries a row again, or gives it up when it has failed too often.
+    pub(super) fn charge(&mut self, row: usize, error: &ProcessError, retries: u32) {
+        if self.charged(row) <= retries {
+            self.suspects.push_back(row);
+        } else {
+            self.fail(row, error);
+        }
+    }
+
+    pub(super) fn fail(&mut self, row: usize, error: &ProcessError) {
+        for output in 0..self.out.outputs() {
+            self.out.fail(row, output, Box::new(error.clone()).into());
+        }
+        self.finish(row);
+    }
+
+    /// Evaluates rows again whose answers are in doubt; once.
+    pub(super) fn distrust(&mut self, rows: &[usize]) {
+        for &row in rows {
+            if self.again.insert(row) {
+                self.waiting.push_back(row);
+                self.left += 1;
+            }
+        }
+    }
+
+    pub(super) fn finish(&mut self, row: usize) {
+        self.left -= 1;
+        self.done.push(row);
+    }
+
+    /// What the model said: values, and for what has none the reason.
+    pub(super) fn settle(&mut self, row: usize, line: Line, names: &[String]) {
+        let no_value = |message: String| {
+            Box::new(ProcessError { fault: ProcessFault::NoValue { message }, stderr: StderrTail::default() }).into()
+        };
+        for (output, name) in names.iter().enumerate() {
+            let value = line.y.as_ref().and_then(|values| values[output]);
+            match (value, &line.error) {
+                (Some(value), None) => self.out.set(row, output, value),
+                (_, Some(message)) => self.out.fail(row, output, no_value(message.clone())),
+                (None, None) => {
+                    let message = line.errors.get(name).cloned();
+                    self.out.fail(row, output, no_value(message.unwrap_or_else(|| "the model returned null".into())));
+                }
+            }
+        }
+        self.finish(row);
+    }
+
+    /// No child can be had any more: everything left fails with this.
+    pub(super) fn give_up(&mut self, error: &ProcessError) {
+        for row in 0..self.out.rows() {
+            if (0..self.out.outputs()).any(|output| self.out.is_open(row, output)) {
+                self.fail(row, error);
+            }
+        }
+        self.waiting.clear();
+        self.suspects.clear();
+    }
+
+    pub(super) fn tell(&mut self, run: &Run<'_>) {
+        if !self.done.is_empty() {
+            let failed = |&&row: &&usize| (0..self.out.outputs()).any(|output| self.out.value(row, output).is_none());
+            let failed = self.done.iter().filter(failed).count();
+            run.progressed(Progress { points: self.done.len(), failed, reused: 0 });
+            run.finished(&self.done, self.out);
+            self.done.clear();
+        }
+    }
+}
