@@ -95,7 +95,8 @@ pub struct Contributions {
 /// Moments of `constant + sum_j term_j + sum_{j<k} A_jk u_j u_k`, with the contributions of the terms.
 ///
 /// Shapes: `terms` has length N, `interactions` is N by N. Accuracy: 1e-12 relative against exact rationals, at any
-/// scale of the coefficients.
+/// scale of the coefficients. Where terms cancel, so that sigma is a part q of the largest of them, the input's moments do
+/// not say more of the kurtosis than `q^-4` roundings: line and parabola of an input that has only two values do that.
 ///
 /// ```
 /// use sensitol::distribution::StandardMoments;
