@@ -112,6 +112,8 @@ for line in sys.stdin:
             say('{"id": %d, "y": [NaN, 1.0]}' % id)
         elif mode == "wrong-length":
             answer["y"] = [1.0, 2.0, 3.0]
+        elif mode == "wrong-gradients":
+            answer["dy"] = [[1.0, 1.0]]
         elif mode == "no-answer":
             answer = {"id": id}
         elif mode == "wrong-id":

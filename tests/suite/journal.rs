@@ -357,3 +357,30 @@ fn points_may_be_evaluated_elsewhere() {
     assert!(refused("x0,x1,x2,y\n1,2,3,many\n").contains("line 2, column `y`: `many` is no finite number"));
     assert!(refused("x0,x1,x2,y\n1,2\n").contains("answers.csv"));
 }
+
+/// A study that is moved with its program and its journal is the same study: paths start from its folder.
+#[test]
+fn a_study_may_be_moved() {
+    let folder = tempfile::tempdir().unwrap();
+    let (here, there) = (folder.path().join("here"), folder.path().join("there"));
+    std::fs::create_dir(&here).unwrap();
+    let text = std::fs::read_to_string(repository("adapters/PROTOCOL.md")).unwrap();
+    let start = text.find("```python\n").unwrap() + 10;
+    std::fs::write(here.join("gap.py"), &text[start..start + text[start..].find("```").unwrap()]).unwrap();
+    let study = "[model]\ncommand = [\"python3\", \"gap.py\"]\n[dimensions]\na = { nominal = 3, tolerance = 0.3 }\n\
+                 b = { nominal = 2, tolerance = 0.3 }\n[characteristics]\ngap = {}\n";
+    std::fs::write(here.join("study.toml"), study).unwrap();
+    let run = |folder: &Path| {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+        command.arg("analyze").arg(folder.join("study.toml")).args(["--json", "--method", "full"]).output().unwrap()
+    };
+    assert_eq!(field(&run(&here), "reused"), 0);
+    std::fs::rename(&here, &there).unwrap();
+    let moved = run(&there);
+    assert_eq!((field(&moved, "evaluations"), field(&moved, "reused")), (0, 7));
+    // Another program is another model.
+    let script = there.join("gap.py");
+    let changed = std::fs::read_to_string(&script).unwrap().replace(" - ", " + ");
+    std::fs::write(&script, changed).unwrap();
+    assert_eq!(field(&run(&there), "reused"), 0);
+}

@@ -1,7 +1,8 @@
 //! External programs: what they do right, and every way in which they go wrong. The children are `tests/children`.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -140,7 +141,7 @@ fn models_that_cannot_start() {
 #[test]
 fn a_point_that_goes_wrong_takes_no_other_with_it() {
     type Is = fn(&ProcessFault) -> bool;
-    let cases: [(&str, Is); 7] = [
+    let cases: [(&str, Is); 8] = [
         ("crash", |fault| matches!(fault, ProcessFault::Crashed { exit: Exit::Code(139) })),
         ("garbage", |fault| matches!(fault, ProcessFault::Garbage { line, .. } if line.0.contains("recompute failed"))),
         ("nan-text", |fault| matches!(fault, ProcessFault::Garbage { line, .. } if line.0.contains("NaN"))),
@@ -149,6 +150,7 @@ fn a_point_that_goes_wrong_takes_no_other_with_it() {
             |fault| matches!(fault, ProcessFault::Garbage { reason, .. } if reason.contains("neither y nor error")),
         ),
         ("wrong-length", |fault| *fault == ProcessFault::WrongLength { expected: 2, found: 3 }),
+        ("wrong-gradients", |fault| *fault == ProcessFault::WrongGradients { rows: 2, columns: 2 }),
         ("wrong-id", |fault| matches!(fault, ProcessFault::UnknownPoint { .. })),
         ("huge-line", |fault| matches!(fault, ProcessFault::Oversized { .. })),
     ];
@@ -161,7 +163,7 @@ fn a_point_that_goes_wrong_takes_no_other_with_it() {
             assert!(is(&fault), "{mode}: {fault:?}");
         }
         // One try more, and it is counted; a whole line with the wrong number of values is an answer like any other.
-        assert_eq!(out.extra(), if mode == "wrong-length" { 0 } else { 1 }, "{mode}");
+        assert_eq!(out.extra(), if ["wrong-length", "wrong-gradients"].contains(&mode) { 0 } else { 1 }, "{mode}");
         // The model goes on.
         right_but(&POINTS[..2], &at(&model, &POINTS[..2]), &[]);
     }
@@ -520,4 +522,39 @@ fn the_schema_describes_the_lines() {
         };
         assert_eq!(kinds.values().filter(fits).count(), 1, "{line:?}");
     }
+}
+
+/// Derivatives of the SDK are what the protocol wants: asked over the wire, without the engine.
+#[test]
+fn the_sdk_sends_gradients() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = folder.path().join("model.py");
+    let sdk = repository("adapters/python").display().to_string();
+    let source = format!(
+        r#"
+import sys
+sys.path.insert(0, {sdk:?})
+from sensitol_adapter import adapter
+
+@adapter(gradients=True)
+def model(a, b, c=1.0):
+    return {{"sum": a + b, "product": a * b}}, {{"sum": {{"a": 1, "b": 1}}, "product": {{"b": a, "a": b}}}}
+
+model.serve()
+"#
+    );
+    std::fs::write(&script, source).unwrap();
+    let mut child = Command::new("python3").arg(&script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let hello = r#"{"sensitol":1,"dimensions":["b","c","a"],"units":[null,null,null],"nominal":[1,1,1],"constants":{},"characteristics":["product","sum"],"optional":[]}"#;
+    let mut stdin = child.stdin.take().unwrap();
+    let request = r#"{"id":7,"x":[3,9,2]}"#;
+    writeln!(stdin, "{hello}\n{request}").unwrap();
+    drop(stdin);
+    let output = String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap();
+    let lines: Vec<serde_json::Value> = output.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(lines[0]["gradients"], true);
+    let expected = serde_json::json!({"id": 7, "y": [6.0, 5.0], "dy": [[2.0, 0.0, 3.0], [1.0, 0.0, 1.0]]});
+    assert_eq!(lines[1], expected);
+    // And the engine takes the answers as any others.
+    right_but(&POINTS, &at(&model(python(&script)), &POINTS), &[]);
 }

@@ -40,17 +40,22 @@ class Adapter:
     outputs         the characteristics it offers, so that a misspelt one is refused at once; by default the function's
                     name when it returns a number
     window          points that may be sent ahead; more than 1 hides the time between processes
+    gradients       the function returns a pair: values, and derivatives as a dict from dimension to number, or for several
+                    characteristics a dict of such dicts; a dimension that is left out has derivative 0
     batch           the function takes a list for every parameter and returns a list (or a dict of lists)
     setup           called once, before the model is ready
     """
 
-    def __init__(self, function, *, name=None, version=None, outputs=None, window=64, batch=False, names=None, setup=None):
+    def __init__(self, function, *, name=None, version=None, outputs=None, window=64, batch=False, gradients=False, names=None, setup=None):
         self.function = function
         self.name = name or function.__name__
         self.version = version
         self.outputs = list(outputs) if outputs is not None else None
         self.window = window
         self.batch = batch
+        self.gradients = gradients
+        if batch and gradients:
+            raise ValueError("gradients are given point by point: not in a batch")
         self.setup = setup
         self._names = dict(names or {})
         parameters = inspect.signature(function).parameters.values()
@@ -80,6 +85,8 @@ class Adapter:
                 _write(answers, [{"error": _words(error)}])
                 return
             ready = {"ready": True, "name": self.name, "window": self.window}
+            if self.gradients:
+                ready["gradients"] = True
             if self.version is not None:
                 ready["version"] = str(self.version)
             _write(answers, [ready])
@@ -103,6 +110,7 @@ class _Session:
         unknown = [name for name in [*dimensions, *constants] if name not in known and name not in optional]
         if unknown and not adapter._any:
             raise ValueError(f"no dimension or constant `{unknown[0]}`; there are {', '.join(known)}")
+        self.dimensions = dimensions
         given = {*dimensions, *constants}
         missing = [
             name for name, parameter in known.items() if name not in given and parameter.default is inspect.Parameter.empty
@@ -128,9 +136,29 @@ class _Session:
         values = {name: x[index] for name, index in self.columns}
         try:
             result = self.adapter.function(**values, **self.constants)
-            return self._values(request["id"], result)
+            if not self.adapter.gradients:
+                return self._values(request["id"], result)
+            values, derivatives = result
+            answer = self._values(request["id"], values)
+            answer["dy"] = self._gradients(derivatives)
+            return answer
         except Exception as error:
             return self._failed(request["id"], error)
+
+    def _gradients(self, derivatives):
+        if len(self.characteristics) == 1 and self.characteristics[0] not in derivatives:
+            derivatives = {self.characteristics[0]: derivatives}
+        back = {parameter: dimension for parameter, dimension in self.adapter._names.items()}
+        rows = []
+        for characteristic in self.characteristics:
+            by_name = {back.get(name, name): float(value) for name, value in derivatives[characteristic].items()}
+            unknown = by_name.keys() - set(self.dimensions)
+            if unknown:
+                raise ValueError(f"a derivative by `{sorted(unknown)[0]}`, which is no dimension")
+            rows.append([by_name.get(name, 0.0) for name in self.dimensions])
+        if not all(math.isfinite(value) for row in rows for value in row):
+            raise ValueError("a derivative is not finite")
+        return rows
 
     def _together(self, requests):
         columns = {name: [request["x"][index] for request in requests] for name, index in self.columns}

@@ -93,6 +93,14 @@ pub enum ProcessFault {
         /// How many values came.
         found: usize,
     },
+    /// It answered with derivatives of another shape.
+    #[error("the model answered with derivatives that are not {rows} rows of {columns}")]
+    WrongGradients {
+        /// A row for each characteristic.
+        rows: usize,
+        /// A number for each dimension.
+        columns: usize,
+    },
     /// It answered a point that nobody asked for.
     #[error("the model answered point {id}, which was not under way")]
     UnknownPoint {

@@ -379,15 +379,13 @@ impl Pool {
             return self.fail(index, fault, batch);
         };
         let expected = self.hello.characteristics.len();
-        let found = line.y.as_ref().map(Vec::len);
-        if let Some(found) = found.filter(|&found| found != expected) {
+        if let Some(fault) = line.misshapen(expected, self.hello.dimensions.len()) {
             // Only this point: the line was whole, and the others may be right.
-            worker.under_way.remove(position).map(|(_, row)| {
+            if let Some((_, row)) = worker.under_way.remove(position) {
                 worker.since = Instant::now();
-                let error =
-                    ProcessError { fault: ProcessFault::WrongLength { expected, found }, stderr: worker.child.tail() };
-                batch.as_mut().map(|batch| batch.fail(row, &error))
-            });
+                let error = ProcessError { fault, stderr: worker.child.tail() };
+                batch.iter_mut().for_each(|batch| batch.fail(row, &error));
+            }
             return;
         }
         if line.y.is_none() && line.error.is_none() {

@@ -33,6 +33,8 @@ pub(super) struct Line {
     pub(super) window: Option<usize>,
     pub(super) id: Option<u64>,
     pub(super) y: Option<Vec<Option<f64>>>,
+    /// Derivatives: a row for each characteristic.
+    pub(super) dy: Option<Vec<Vec<f64>>>,
     #[serde(default)]
     pub(super) errors: BTreeMap<String, String>,
     pub(super) error: Option<String>,
@@ -52,6 +54,17 @@ impl Line {
             line.quoted = Some(Quoted::of(text));
         }
         Ok(line)
+    }
+
+    /// What is wrong with the shape of an answer.
+    pub(super) fn misshapen(&self, rows: usize, columns: usize) -> Option<ProcessFault> {
+        let found = self.y.as_ref().map_or(rows, Vec::len);
+        if found != rows {
+            return Some(ProcessFault::WrongLength { expected: rows, found });
+        }
+        let fits = |dy: &Vec<Vec<f64>>| dy.len() == rows && dy.iter().all(|row| row.len() == columns);
+        let misshapen = self.dy.as_ref().is_some_and(|dy| !fits(dy));
+        misshapen.then_some(ProcessFault::WrongGradients { rows, columns })
     }
 
     /// As something that should have been an answer.
