@@ -86,6 +86,10 @@ for line in sys.stdin:
         answer["y"][0] += len(waiting)
     if mode == "always-flips":
         waiting.append(id)
+    if mode == "misshapen-later":
+        flipped = flipped or a == 13
+        if flipped and request["x"] == hello["nominal"]:
+            answer["y"] = []
     if mode == "poisoned-by-errors":
         flipped = flipped or a == 13
         if a == 13:
@@ -96,6 +100,9 @@ for line in sys.stdin:
         if mode == "crash" or mode == "crash-in-window":
             sys.stderr.write("Segmentation fault in sketch solver\n")
             os._exit(139)
+        elif mode == "crash-once-and-for-all":
+            os.remove(__file__)
+            os._exit(1)
         elif mode == "crash-once":
             if once():
                 os.kill(os.getpid(), 9)

@@ -283,6 +283,11 @@ fn children_that_flip_are_found_out() {
     right_but(&a, &out, &[2]);
     assert_eq!(fault(&out, 2, 0), ProcessFault::NoValue { message: "does not assemble".into() });
     assert_eq!((out.doubts().len(), out.doubts()[0].output.as_str()), (2, "product"));
+    // One whose answer to the nominal point has another shape: as bad as another value.
+    let a = [1.0, 2.0, 13.0, 4.0];
+    let out = at(&model(guarded("misshapen-later", &[])), &a);
+    right_but(&a, &out, &[]);
+    let a = [1.0, 2.0, 13.0, 4.0, 5.0];
     // A model that never answers alike ends all the same, and says so.
     let out = at(&model(guarded("always-flips", &[])), &a);
     assert!(!out.doubts().is_empty());
@@ -351,6 +356,24 @@ fn many_points_through_one_child() {
     // Other tests run beside this one in the same process: what grows with the points would be hundreds of bytes for each.
     let after = [resident("self"), resident(pid)];
     assert!(after[0] - before[0] < 64.0 && after[1] - before[1] < 8.0, "{before:?} {after:?}");
+}
+
+/// A program that is there once and gone when it is to be started again: what is left fails, and what was answered stays.
+#[test]
+fn a_program_that_is_gone_ends_the_batch() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = folder.path().join("gone.py");
+    std::fs::copy(repository("tests/children/child.py"), &script).unwrap();
+    let argv = ["python3", "gone.py", "crash-once-and-for-all"];
+    let model = model(Settings { folder: folder.path().to_owned(), ..Settings::new(argv) });
+    let a = [1.0, 2.0, 13.0, 4.0];
+    let out = at(&model, &a);
+    right_but(&a, &out, &[2, 3]);
+    assert!(
+        (2..4).all(|row| matches!(fault(&out, row, 0), ProcessFault::EndedAtStart { .. })),
+        "{:?}",
+        out.error(3, 0)
+    );
 }
 
 /// `kill -9` of the children, whenever it comes: every point is answered all the same.

@@ -108,8 +108,10 @@ impl<'a> Batch<'a> {
                 self.fail(row, error);
             }
         }
+        // What was to be evaluated again keeps its first answer.
         self.waiting.clear();
         self.suspects.clear();
+        self.left = 0;
     }
 
     pub(super) fn tell(&mut self, run: &Run<'_>) {

@@ -45,6 +45,8 @@ pub(super) struct Child {
     process: Box<dyn ChildWrapper>,
     /// To the thread that writes; None once its stdin is closed.
     requests: Option<Sender<Vec<u8>>>,
+    /// Since when it could know that nothing more will come.
+    closed: Option<Instant>,
     stderr: Arc<Mutex<VecDeque<String>>>,
     readers: Vec<JoinHandle<()>>,
 }
@@ -90,7 +92,7 @@ impl Child {
         let stderr = Arc::new(Mutex::new(VecDeque::new()));
         let (pipe, tail) = (process.stderr().take().expect("stderr is a pipe"), Arc::clone(&stderr));
         let err = std::thread::spawn(move || listen(pipe, &tail, listener.as_ref()));
-        Ok(Self { number, process, requests: Some(requests), stderr, readers: vec![out, err] })
+        Ok(Self { number, process, requests: Some(requests), closed: None, stderr, readers: vec![out, err] })
     }
 
     /// Sends lines; those that cannot be written come back as the child's end.
@@ -103,6 +105,7 @@ impl Child {
     /// Tells the child that nothing more will come.
     pub(super) fn close(&mut self) {
         self.requests = None;
+        self.closed.get_or_insert_with(Instant::now);
     }
 
     /// Ends the child and all that it started, at once.
@@ -113,7 +116,7 @@ impl Child {
     /// Ends the child and all that it started; it may take `grace` to end by itself first.
     fn end(&mut self, grace: Duration) -> (Exit, StderrTail) {
         self.close();
-        let begun = Instant::now();
+        let begun = self.closed.unwrap_or_else(Instant::now);
         let mut status = self.process.try_wait().ok().flatten();
         while status.is_none() && begun.elapsed() < grace {
             std::thread::sleep(Duration::from_millis(2));

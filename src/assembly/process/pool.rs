@@ -115,13 +115,14 @@ impl Pool {
             if checked || (stopping && !self.busy()) {
                 break;
             }
-            if !stopping {
-                self.dispatch(work);
-            }
-            let turned = self.turn(&mut batch);
+            let dispatched = if stopping { Ok(()) } else { self.dispatch(work) };
+            let turned = dispatched.and_then(|()| self.turn(&mut batch));
             let work = batch.as_mut().expect("a batch");
             if let Err(error) = turned {
+                // No child can be had any more.
                 work.give_up(&error);
+                work.tell(run);
+                break;
             }
             work.tell(run);
         }
@@ -144,7 +145,7 @@ impl Pool {
     }
 
     /// Starts children where there is work for them, and gives every ready one as much as it may have.
-    fn dispatch(&mut self, batch: &mut Batch<'_>) {
+    fn dispatch(&mut self, batch: &mut Batch<'_>) -> Result<(), ProcessError> {
         let now = Instant::now();
         let mut wanted = batch.waiting.len() + batch.suspects.len();
         for index in 0..self.slots.len() {
@@ -160,16 +161,12 @@ impl Pool {
             };
             // One child for each window of points: no more than there is work for.
             wanted = wanted.saturating_sub(self.adapter.as_ref().map_or(1, |adapter| adapter.window));
-            if start {
-                // What goes wrong is heard of as an event or at the next turn.
-                if let Err(error) = self.start(index) {
-                    self.failed_start(index);
-                    if self.is_hopeless() {
-                        batch.give_up(&error);
-                    }
-                }
+            // What goes wrong later is heard of as an event.
+            if start && let Err(error) = self.start(index) {
+                self.lost_start(index, error)?;
             }
         }
+        Ok(())
     }
 
     fn give(&mut self, index: usize, batch: &mut Batch<'_>) {
@@ -339,7 +336,8 @@ impl Pool {
 
     /// A child that could not be started after others could is tried again, a few times.
     fn lost_start(&mut self, index: usize, error: ProcessError) -> Result<(), ProcessError> {
-        self.failed_start(index);
+        self.failed_starts += 1;
+        self.pause(index);
         if self.is_hopeless() { Err(error) } else { Ok(()) }
     }
 
@@ -347,11 +345,6 @@ impl Pool {
     fn is_hopeless(&self) -> bool {
         let alone = !self.slots.iter().any(|slot| matches!(slot.state, State::Ready(_)));
         self.adapter.is_none() || (alone && self.failed_starts >= STARTS)
-    }
-
-    fn failed_start(&mut self, index: usize) {
-        self.failed_starts += 1;
-        self.pause(index);
     }
 
     /// Leaves a place empty for a while that grows with every failure.
@@ -381,6 +374,9 @@ impl Pool {
         let expected = self.hello.characteristics.len();
         if let Some(fault) = line.misshapen(expected, self.hello.dimensions.len()) {
             // Only this point: the line was whole, and the others may be right.
+            if worker.under_way[position].1 == SENTINEL {
+                return self.fail(index, fault, batch);
+            }
             if let Some((_, row)) = worker.under_way.remove(position) {
                 worker.since = Instant::now();
                 let error = ProcessError { fault, stderr: worker.child.tail() };
@@ -402,15 +398,18 @@ impl Pool {
         self.reference.learn(&values);
         if let Some(batch) = batch {
             let nominal = |(column, x): (usize, &f64)| batch.points.column(column)[row] == *x;
-            if self.hello.nominal.iter().enumerate().all(nominal) {
+            let is_nominal = self.hello.nominal.iter().enumerate().all(nominal);
+            let troubled = values.contains(&None);
+            if is_nominal {
                 // The study's own evaluation of the nominal point is the first sentinel.
                 let doubts = self.reference.check(values, &self.hello.characteristics, worker.unchecked.len());
                 batch.out.doubt(doubts);
-            } else if self.settings.sentinels {
-                worker.unchecked.push(row);
-                worker.troubled |= values.contains(&None);
             }
             let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
+            if self.settings.sentinels && !is_nominal && !again {
+                worker.unchecked.push(row);
+                worker.troubled |= troubled;
+            }
             if again {
                 batch.suspects.push_back(row);
             } else {
