@@ -107,6 +107,8 @@ pub enum Warning {
         times: usize,
         /// Points that were evaluated again for it.
         points: usize,
+        /// The first few of them, in words.
+        suspects: Vec<String>,
     },
     /// No distribution has the moments.
     InfeasibleMoments {
@@ -257,7 +259,7 @@ impl Warning {
                  its variance; use --method second-order",
                 100.0 * variance
             ),
-            Self::History { output, expected, found, flip, times, points } => {
+            Self::History { output, expected, found, flip, times, points, suspects } => {
                 let value = |value: &Option<f64>| value.map_or("no value".to_owned(), |value| value.to_string());
                 let cause = match flip {
                     true => "the model seems to have settled in another solution: reset it before every point",
@@ -266,9 +268,10 @@ impl Warning {
                 let times = if *times == 1 { "once".to_owned() } else { format!("{times} times") };
                 format!(
                     "`{output}` at the nominal dimensions was {} at first and {} later ({times}): {cause}; {points} points were \
-                     evaluated again by a fresh process",
+                     evaluated again by a fresh process{}",
                     value(expected),
-                    value(found)
+                    value(found),
+                    if suspects.is_empty() { String::new() } else { format!(", among them {}", suspects.join("; ")) }
                 )
             }
             Self::InfeasibleMoments { characteristic, reason } => format!(

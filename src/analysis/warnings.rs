@@ -17,6 +17,8 @@ const CURVED: f64 = 0.05;
 
 /// A change of the nominal value by more than this part of what a characteristic varies by is another solution of the model.
 const FLIP: f64 = 0.01;
+/// Points in doubt that are named.
+const SUSPECTS: usize = 3;
 /// Points at which a characteristic that is not 0 at the means may be exactly 0 by chance.
 const ATOM: usize = 2;
 /// A kurtosis that exceeds the least possible by no more than this part is worth one too.
@@ -36,7 +38,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         };
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
-    warnings.extend(history(outcome));
+    warnings.extend(history(problem, outcome));
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
         warnings.extend(lost(problem, outcome, c));
@@ -51,7 +53,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
 }
 
 /// External models that do not answer as they did: one warning for each output.
-fn history(outcome: &Outcome) -> Vec<Warning> {
+fn history(problem: &Problem, outcome: &Outcome) -> Vec<Warning> {
     let doubts = &outcome.evaluated.doubts;
     let first = |index: &usize| !doubts[..*index].iter().any(|earlier| earlier.output == doubts[*index].output);
     let warning = |index: usize| {
@@ -64,10 +66,21 @@ fn history(outcome: &Outcome) -> Vec<Warning> {
             found: doubt.found,
             flip: doubt.expected.zip(doubt.found).is_some_and(|(a, b)| far(a, b)),
             times: same().count(),
-            points: same().map(|doubt| doubt.points).sum(),
+            points: same().map(|doubt| doubt.suspects.len()).sum(),
+            suspects: same()
+                .flat_map(|doubt| &doubt.suspects)
+                .take(SUSPECTS)
+                .map(|point| words(problem, point))
+                .collect(),
         }
     };
     (0..doubts.len()).filter(first).map(warning).collect()
+}
+
+/// A point by the dimensions that are not at their nominal value.
+fn words(problem: &Problem, point: &[f64]) -> String {
+    let moved = problem.dimensions().iter().zip(point).filter(|(dimension, x)| dimension.nominal() != **x);
+    moved.map(|(dimension, x)| format!("{} = {x}", dimension.name())).collect::<Vec<_>>().join(", ")
 }
 
 /// Dimensions that vary and on which no characteristic can depend.

@@ -1,6 +1,6 @@
 //! Analysis: what is unknown stays unknown, and doubtful results carry their warning.
 
-use sensitol::{Characteristic, Closure, Dimension, Method, Problem, ProblemError, SpecLimits, analyze};
+use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, ProblemError, SpecLimits, analyze};
 
 use super::support::{close, normals, relative, standard};
 
@@ -155,4 +155,21 @@ fn a_distance_that_ends_at_contact_is_found_out() {
     };
     let atoms = |least: f64| gap(least).warnings.iter().filter(|warning| warning.code() == "atom").count();
     assert_eq!((atoms(0.0), atoms(f64::NEG_INFINITY)), (1, 0));
+}
+
+/// A program that settles in a mirrored assembly: the warning names what changed, and points in doubt.
+#[test]
+fn a_program_that_flips_is_warned_of() {
+    let script = super::support::repository("tests/children/child.py").display().to_string();
+    let study = format!(
+        "[model]\ncommand = [\"python3\", {script:?}, \"flips\"]\n[dimensions]\na = {{ nominal = 1, sigma = 1 }}\n\
+         b = {{ nominal = 2, tolerance = 0.3 }}\n[characteristics]\nsum = {{}}\n"
+    );
+    let study = sensitol::Study::from_toml(&study, "flip.toml").unwrap();
+    // Twelve sigma off: a = 13, where it flips.
+    let options = Options { step: Some(12.0), ..Method::SecondOrder.into() };
+    let analysis = analyze(&study.problem, &options).unwrap();
+    let flip = analysis.warnings.iter().find(|warning| warning.code() == "branch-flip");
+    let message = flip.unwrap_or_else(|| panic!("{:?}", analysis.warnings)).message();
+    assert!(message.contains("`sum` at the nominal dimensions was") && message.contains("among them a ="), "{message}");
 }

@@ -44,6 +44,11 @@ impl<'a> Batch<'a> {
         self.failures.contains_key(&row) || self.again.contains(&row)
     }
 
+    /// The points of rows.
+    pub(super) fn coordinates(&self, rows: &[usize]) -> Vec<Vec<f64>> {
+        rows.iter().map(|&row| self.points.row(row)).collect()
+    }
+
     /// Notes a failure of a row, and how many there are now.
     pub(super) fn charged(&mut self, row: usize) -> u32 {
         let failures = self.failures.entry(row).or_insert(0);

@@ -402,7 +402,8 @@ impl Pool {
             let troubled = values.contains(&None);
             if is_nominal {
                 // The study's own evaluation of the nominal point is the first sentinel.
-                let doubts = self.reference.check(values, &self.hello.characteristics, worker.unchecked.len());
+                let doubts =
+                    self.reference.check(values, &self.hello.characteristics, &batch.coordinates(&worker.unchecked));
                 batch.out.doubt(doubts);
             }
             let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
@@ -423,7 +424,8 @@ impl Pool {
         let State::Ready(worker) = &mut self.slots[index].state else { return };
         worker.troubled = false;
         let rows = std::mem::take(&mut worker.unchecked);
-        let doubts = self.reference.check(found, &self.hello.characteristics, rows.len());
+        let suspects = batch.as_ref().map(|batch| batch.coordinates(&rows)).unwrap_or_default();
+        let doubts = self.reference.check(found, &self.hello.characteristics, &suspects);
         if doubts.is_empty() {
             return;
         }

@@ -23,8 +23,8 @@ pub struct Doubt {
     pub found: Option<f64>,
     /// How far the output has been seen to vary.
     pub spread: f64,
-    /// Points that the child had answered since it was last right; they are evaluated again.
-    pub points: usize,
+    /// The points that the child had answered since it was last right; they are evaluated again.
+    pub suspects: Vec<Vec<f64>>,
 }
 
 /// What is known of the nominal point, and of how far answers vary.
@@ -59,7 +59,7 @@ impl Reference {
     }
 
     /// The first answer to the nominal point is what later ones are held against: whether this one is like it.
-    pub(super) fn check(&mut self, found: Vec<Option<f64>>, names: &[String], points: usize) -> Vec<Doubt> {
+    pub(super) fn check(&mut self, found: Vec<Option<f64>>, names: &[String], suspects: &[Vec<f64>]) -> Vec<Doubt> {
         let Some(nominal) = &self.nominal else {
             self.nominal = Some(found);
             return Vec::new();
@@ -71,7 +71,13 @@ impl Reference {
                 (None, None) => true,
                 _ => false,
             };
-            (!same).then(|| Doubt { output: names[output].clone(), expected, found, spread, points })
+            (!same).then(|| Doubt {
+                output: names[output].clone(),
+                expected,
+                found,
+                spread,
+                suspects: suspects.to_vec(),
+            })
         };
         nominal.iter().zip(found).enumerate().filter_map(doubt).collect()
     }
