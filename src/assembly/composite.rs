@@ -219,7 +219,8 @@ impl AssemblyFunction for Composite {
             };
             for (column, origin) in origins.iter().enumerate() {
                 if let Origin::Model(output) = *origin {
-                    (rows.clone().enumerate()).for_each(|(r, row)| copy(&answers, row, answer(output), out, r, column));
+                    (rows.clone().enumerate())
+                        .for_each(|(r, row)| out.pass_on(r, column, &answers, row, answer(output)));
                 }
             }
             self.formulas.evaluate(&formulas, rows.len(), variable, |position, row, value| {
@@ -232,7 +233,7 @@ impl AssemblyFunction for Composite {
                 let missing =
                     uses[position].iter().find(|&&output| answers.value(rows.start + row, answer(output)).is_none());
                 match missing {
-                    Some(&output) => copy(&answers, rows.start + row, answer(output), out, row, column),
+                    Some(&output) => out.pass_on(row, column, &answers, rows.start + row, answer(output)),
                     None => {
                         let explained = self.formulas.explain(formulas[position], |index| variable(index)[row]);
                         let error =
@@ -245,14 +246,5 @@ impl AssemblyFunction for Composite {
         out.spent(answers.extra() + answers.count_reused() as i64);
         out.reused(answers.count_reused());
         out.doubt(answers.doubts().iter().cloned());
-    }
-}
-
-/// Passes on what the model answered: a value, an error, or nothing yet.
-fn copy(from: &Responses, row: usize, column: usize, to: &mut Responses, to_row: usize, to_column: usize) {
-    if let Some(value) = from.value(row, column) {
-        to.set(to_row, to_column, value);
-    } else if let Some(error) = from.error(row, column) {
-        to.fail(to_row, to_column, error.clone());
     }
 }

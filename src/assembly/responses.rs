@@ -129,6 +129,20 @@ impl Responses {
         &self.values[output * self.rows..(output + 1) * self.rows]
     }
 
+    /// Answers one entry as another one was: by its value, its error, or not at all.
+    pub fn pass_on(&mut self, row: usize, output: usize, from: &Responses, from_row: usize, from_output: usize) {
+        if let Some(value) = from.value(from_row, from_output) {
+            self.set(row, output, value);
+        } else if let Some(error) = from.error(from_row, from_output) {
+            self.fail(row, output, error.clone());
+        }
+    }
+
+    /// How many of these rows have an output without a value.
+    pub fn failed_among(&self, rows: &[usize]) -> usize {
+        rows.iter().filter(|&&row| (0..self.outputs).any(|output| self.value(row, output).is_none())).count()
+    }
+
     /// Every error with its row and output, in order.
     pub fn errors(&self) -> impl Iterator<Item = (usize, usize, &EvaluationError)> {
         self.errors.iter().map(|(&(row, output), error)| (row, output, error))

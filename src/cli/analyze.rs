@@ -91,8 +91,9 @@ fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant, look: Look) -> Re
     interrupt::listen();
     let limit = asked.time.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
     let stop = || interrupt::stopped() || limit.is_some_and(|limit| begun.elapsed() >= limit);
-    let plan = study.options.method.procedure().plan(&study.problem, &study.options)?;
-    let bar = study.problem.function().signature().costly.then(|| Bar::new(plan.cost().0, look.quiet));
+    let costly = study.problem.function().signature().costly;
+    let plan = costly.then(|| study.options.method.procedure().plan(&study.problem, &study.options)).transpose()?;
+    let bar = plan.map(|plan| Bar::new(plan.cost().0, look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
     let analysis = || analyze_within(&study.problem, &study.options, &run);

@@ -124,9 +124,7 @@ impl AssemblyFunction for Journaled {
             }
         }
         out.reused(known.len());
-        let failed = |&&row: &&usize| (0..names.len()).any(|output| out.value(row, output).is_none());
-        let failed = known.iter().filter(failed).count();
-        run.progressed(Progress { points: known.len(), failed, reused: known.len() });
+        run.progressed(Progress { points: known.len(), failed: out.failed_among(&known), reused: known.len() });
         run.finished(&known, out);
         if missing.is_empty() {
             return;
@@ -146,7 +144,9 @@ impl AssemblyFunction for Journaled {
             }
             let mut out = told.lock().unwrap_or_else(PoisonError::into_inner);
             for &row in finished {
-                pass_on(answers, row, &mut out, missing[row]);
+                for output in 0..answers.outputs() {
+                    out.pass_on(missing[row], output, answers, row, output);
+                }
             }
             let rows: Vec<usize> = finished.iter().map(|&row| missing[row]).collect();
             run.finished(&rows, &out);
@@ -190,14 +190,4 @@ fn worth_keeping(points: &Points, answers: &Responses, row: usize, names: &[&str
         Some(Kept { point: points.row(row), output: (*name).to_owned(), answer })
     };
     names.iter().enumerate().filter_map(kept).collect()
-}
-
-fn pass_on(from: &Responses, row: usize, to: &mut Responses, to_row: usize) {
-    for output in 0..from.outputs() {
-        match (from.value(row, output), from.error(row, output)) {
-            (Some(value), _) => to.set(to_row, output, value),
-            (None, Some(error)) => to.fail(to_row, output, error.clone()),
-            (None, None) => {}
-        }
-    }
 }

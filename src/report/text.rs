@@ -39,7 +39,7 @@ fn summary(report: &Report) -> String {
         (plural(report.evaluations, "evaluation"), plural(report.varying, "varying dimension"));
     let reused = match report.reused {
         0 => String::new(),
-        reused => format!(", {reused} known from the journal"),
+        reused => format!(", {reused} known already"),
     };
     format!("{}: {evaluations}{reused}, {varying}{failed}", report.method)
 }

@@ -342,6 +342,8 @@ fn points_may_be_evaluated_elsewhere() {
     assert!(rounded.status.success() && error.contains("unmatched-points") && error.contains("lines 15"), "{error}");
     // Some are missing.
     write(9, 17, "");
+    let counted = sensitol(&["analyze", "--json", "--points", &answered]);
+    assert_eq!((field(&counted, "evaluations"), field(&counted, "reused")), (0, 9));
     let few = sensitol(&["analyze", "--points", &answered]);
     let error = String::from_utf8_lossy(&few.stderr).into_owned();
     assert!(error.contains("4 points have no answer") && error.contains("no answer is given"), "{error}");

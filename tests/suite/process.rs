@@ -234,6 +234,13 @@ fn children_that_say_nothing() {
     assert!((0..2).all(|row| matches!(fault(&out, row, 0), ProcessFault::Crashed { .. })));
 }
 
+/// A deadline that no clock can hold is one that never comes.
+#[test]
+fn deadlines_may_be_far_away() {
+    let far = Settings { timeout: Duration::MAX, start_timeout: Duration::MAX, ..settings("good", &[]) };
+    right_but(&POINTS, &at(&model(far), &POINTS), &[]);
+}
+
 /// One of several points under way crashes the child, or hangs: the others are answered all the same.
 #[test]
 fn the_culprit_in_a_window_is_found() {

@@ -121,8 +121,7 @@ impl<'a> Batch<'a> {
 
     pub(super) fn tell(&mut self, run: &Run<'_>) {
         if !self.done.is_empty() {
-            let failed = |&&row: &&usize| (0..self.out.outputs()).any(|output| self.out.value(row, output).is_none());
-            let failed = self.done.iter().filter(failed).count();
+            let failed = self.out.failed_among(&self.done);
             run.progressed(Progress { points: self.done.len(), failed, reused: 0 });
             run.finished(&self.done, self.out);
             self.done.clear();

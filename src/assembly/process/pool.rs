@@ -17,6 +17,8 @@ const TICK: Duration = Duration::from_millis(50);
 /// The first pause before a child that failed is started again; it doubles with every failure in a row.
 const PAUSE: Duration = Duration::from_millis(50);
 const LONGEST_PAUSE: Duration = Duration::from_secs(5);
+/// The longest deadline, some thirty years: a later moment may be more than the clock can hold.
+const FOREVER: Duration = Duration::from_secs(1_000_000_000);
 /// Starts in a row that may fail before no more are tried.
 const STARTS: u32 = 4;
 
@@ -71,7 +73,9 @@ struct Worker {
 }
 
 impl Pool {
-    pub(super) fn new(settings: Settings, hello: Hello) -> Self {
+    pub(super) fn new(mut settings: Settings, hello: Hello) -> Self {
+        settings.timeout = settings.timeout.min(FOREVER);
+        settings.start_timeout = settings.start_timeout.min(FOREVER);
         let slots = (0..settings.workers.max(1)).map(|_| Slot::default()).collect();
         Self {
             settings,
