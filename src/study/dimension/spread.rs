@@ -1,13 +1,14 @@
-//! From one line of `[dimensions]` to a dimension: tolerance and distribution in their several forms.
+//! How a dimension spreads: the kinds of distribution, and what each makes of band, sigma and shift.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use serde_spanned::Spanned;
 
-use super::error::{Fault, StudyFault, fault};
-use super::file::{DimensionEntry, ToleranceEntry};
-use crate::dimension::{Dimension, DimensionError, DimensionFault};
+use super::super::error::{Fault, StudyFault, fault};
+use super::super::file::DimensionEntry;
+use super::conflict;
+use crate::dimension::DimensionFault;
 use crate::distribution::{CentralMoments, Distribution, DistributionError, Normal, Uniform};
 use crate::names::nearest;
 
@@ -18,70 +19,16 @@ const AGREE: f64 = 1e-9;
 /// The kinds of distribution.
 const KINDS: [&str; 2] = ["normal", "uniform"];
 
-/// The dimension of this line, or what is wrong at which key below the dimension's; `model` is the value that the model gives it by itself.
-pub(super) fn dimension(name: &str, entry: &Spanned<DimensionEntry>, model: Option<f64>) -> Result<Dimension, Fault> {
-    let (line, entry) = (entry.span(), entry.get_ref());
-    let nominal = nominal(entry, model, &line)?;
-    let tolerance = tolerance(entry, nominal)?;
-    let distribution = match kind(entry)? {
-        Kind::Moments => moments(entry, nominal)?,
-        Kind::Normal => normal(entry, nominal, tolerance)?,
-        Kind::Uniform => uniform(entry, nominal, tolerance)?,
-    };
-    let whole = |error: DimensionError| fault(line, "", error.fault);
-    let mut dimension = match distribution {
-        None => Dimension::fixed(name, nominal),
-        Some(distribution) => Dimension::distributed(name, nominal, tolerance, distribution),
-    }
-    .map_err(whole)?;
-    if let Some(unit) = &entry.unit {
-        dimension = dimension.with_unit(unit);
-    }
-    if let Some(step) = &entry.step {
-        let at_step = |error: DimensionError| fault(step.span(), "step", error.fault);
-        dimension = dimension.with_step(*step.get_ref()).map_err(at_step)?;
-    }
-    Ok(dimension)
-}
-
-fn nominal(entry: &DimensionEntry, model: Option<f64>, line: &Range<usize>) -> Result<f64, Fault> {
-    let middle = entry.limits.as_ref().map(|limits| 0.5 * (limits.get_ref()[0] + limits.get_ref()[1]));
-    let given = entry.nominal.as_ref().map(|nominal| *nominal.get_ref());
-    given.or(model).or(middle).ok_or_else(|| {
-        let instead = "write the value on the drawing, such as nominal = 10.0".to_owned();
-        fault(line.clone(), "", StudyFault::MissingKey { key: "nominal".into(), instead })
-    })
-}
-
-/// Deviations from the nominal; None where there is no band or one of width 0.
-fn tolerance(entry: &DimensionEntry, nominal: f64) -> Result<Option<[f64; 2]>, Fault> {
-    let (span, key, deviations) = match (&entry.tolerance, &entry.limits) {
-        (None, None) => return Ok(None),
-        (Some(_), Some(limits)) => {
-            let same = conflict("tolerance", "limits", "say the same thing: leave one out");
-            return Err(fault(limits.span(), "limits", same));
-        }
-        (None, Some(limits)) => (limits.span(), "limits", limits.get_ref().map(|limit| limit - nominal)),
-        (Some(tolerance), None) => {
-            let deviations = match *tolerance.get_ref() {
-                ToleranceEntry::Half(half) if half < 0.0 => {
-                    let negative = DimensionFault::NegativeTolerance { value: half };
-                    return Err(fault(tolerance.span(), "tolerance", negative));
-                }
-                ToleranceEntry::Half(half) => [-half, half],
-                ToleranceEntry::Deviations(deviations) => deviations,
-            };
-            (tolerance.span(), "tolerance", deviations)
-        }
-    };
-    match deviations {
-        [0.0, 0.0] => Ok(None),
-        [lower, upper] if lower < upper => Ok(Some(deviations)),
-        [lower, upper] if key == "tolerance" => Err(fault(span, key, StudyFault::Swapped { lower, upper })),
-        _ => {
-            let [lower, upper] = *entry.limits.as_ref().expect("the band came from limits").get_ref();
-            Err(fault(span, key, StudyFault::Swapped { lower, upper }))
-        }
+/// The distribution of this line; None when it does not vary.
+pub(super) fn distribution(
+    entry: &DimensionEntry,
+    nominal: f64,
+    tolerance: Option<[f64; 2]>,
+) -> Result<Option<Arc<dyn Distribution>>, Fault> {
+    match kind(entry)? {
+        Kind::Moments => moments(entry, nominal),
+        Kind::Normal => normal(entry, nominal, tolerance),
+        Kind::Uniform => uniform(entry, nominal, tolerance),
     }
 }
 
@@ -248,10 +195,6 @@ fn needs_band(key: &'static str) -> StudyFault {
         key: "tolerance".into(),
         instead: format!("`{key}` needs a tolerance or limits beside it"),
     }
-}
-
-fn conflict(a: &'static str, b: &'static str, why: &str) -> StudyFault {
-    StudyFault::Conflict { a, b, why: why.to_owned() }
 }
 
 fn agree(a: f64, b: f64) -> bool {
