@@ -21,10 +21,13 @@ impl Law {
     /// # Errors
     /// When no distribution has them.
     pub fn fit(moments: &Moments) -> Result<Self, PearsonError> {
-        if moments.sigma() == 0.0 && moments.mean().is_finite() {
-            return Ok(Self::Point { at: moments.mean() });
-        }
-        Ok(Self::Pearson(Box::new(Pearson::fit(moments)?)))
+        let (Some(skewness), Some(excess)) = (moments.skewness(), moments.excess()) else {
+            return match moments.mean() {
+                mean if mean.is_finite() => Ok(Self::Point { at: mean }),
+                _ => Err(PearsonError::NotFinite),
+            };
+        };
+        Ok(Self::Pearson(Box::new(Pearson::with_excess(moments.mean(), moments.sigma(), skewness, excess)?)))
     }
 
     /// The normal law with their mean and sigma, beside which the fit is shown.

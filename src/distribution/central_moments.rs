@@ -1,6 +1,6 @@
 //! A distribution of which only moments are known.
 
-use super::{Distribution, DistributionError, Jacobi, StandardMoments, finite, positive};
+use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoments, finite, positive};
 
 /// Known by its mean and its central moments 2 to 8 alone, as a quality system exports them.
 ///
@@ -68,5 +68,9 @@ impl Distribution for CentralMoments {
 
     fn jacobi(&self, order: usize) -> Jacobi {
         self.jacobi.truncated(order)
+    }
+
+    fn probability(&self) -> Option<&dyn Probability> {
+        None
     }
 }

@@ -5,16 +5,19 @@
 //!
 //! # A new distribution
 //! One new file with a type that implements [`Distribution`], one line in the list below, one arm where study files
-//! name distributions (`study/distribution.rs`), and one row in `tests/distributions.rs`.
+//! name distributions (`study/dimension/spread.rs`), and one row in `tests/suite/distributions.rs`.
 
 mod central_moments;
 mod normal;
+mod probability;
 mod rule;
 mod standard_moments;
+pub(crate) mod standard_normal;
 mod uniform;
 
 pub use central_moments::CentralMoments;
 pub use normal::Normal;
+pub use probability::Probability;
 pub use rule::{Jacobi, Rule};
 pub use standard_moments::StandardMoments;
 pub use uniform::Uniform;
@@ -44,6 +47,9 @@ pub trait Distribution: Debug + Send + Sync {
     /// The recurrence coefficients of the orthogonal polynomials of `u = (x - mean)/sigma` up to `order`, or as far
     /// as they are known: a distribution known by eight moments ends at order 4, one with `m` atoms at order `m`.
     fn jacobi(&self, order: usize) -> Jacobi;
+
+    /// Density, probabilities, quantiles and samples; None where only moments are known.
+    fn probability(&self) -> Option<&dyn Probability>;
 }
 
 /// What is wrong with a distribution's parameters.

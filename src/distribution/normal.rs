@@ -1,6 +1,9 @@
 //! The normal distribution.
 
-use super::{Distribution, DistributionError, Jacobi, StandardMoments, finite, positive};
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoments, finite, positive, standard_normal};
 
 /// Normal distribution of given mean and sigma.
 ///
@@ -47,5 +50,41 @@ impl Distribution for Normal {
     /// Hermite polynomials: `He[n+1] = u He[n] - n He[n-1]`.
     fn jacobi(&self, order: usize) -> Jacobi {
         Jacobi::new(vec![0.0; order], (1..=order).map(|n| n as f64).collect())
+    }
+
+    fn probability(&self) -> Option<&dyn Probability> {
+        Some(self)
+    }
+}
+
+impl Normal {
+    fn z(&self, x: f64) -> f64 {
+        (x - self.mean) / self.sigma
+    }
+}
+
+impl Probability for Normal {
+    fn density(&self, x: f64) -> Option<f64> {
+        Some(standard_normal::density(self.z(x)) / self.sigma)
+    }
+
+    fn cdf(&self, x: f64) -> f64 {
+        standard_normal::cdf(self.z(x))
+    }
+
+    fn sf(&self, x: f64) -> f64 {
+        standard_normal::sf(self.z(x))
+    }
+
+    fn quantile(&self, p: f64) -> f64 {
+        self.mean + self.sigma * standard_normal::quantile(p)
+    }
+
+    fn upper_quantile(&self, p: f64) -> f64 {
+        self.mean + self.sigma * standard_normal::upper_quantile(p)
+    }
+
+    fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
+        out.iter_mut().for_each(|value| *value = self.mean + self.sigma * rng.sample::<f64, _>(StandardNormal));
     }
 }

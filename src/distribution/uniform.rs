@@ -1,6 +1,6 @@
 //! The uniform distribution.
 
-use super::{Distribution, DistributionError, Jacobi, StandardMoments, finite, positive};
+use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoments, finite, positive, probability};
 
 /// Uniform distribution between two limits.
 ///
@@ -71,5 +71,31 @@ impl Distribution for Uniform {
     fn jacobi(&self, order: usize) -> Jacobi {
         let beta = (1..=order).map(|n| (n * n) as f64 * 3.0 / (4 * n * n - 1) as f64).collect();
         Jacobi::new(vec![0.0; order], beta)
+    }
+
+    fn probability(&self) -> Option<&dyn Probability> {
+        Some(self)
+    }
+}
+
+impl Probability for Uniform {
+    fn density(&self, x: f64) -> Option<f64> {
+        Some(if (x - self.mean).abs() <= self.half { 0.5 / self.half } else { 0.0 })
+    }
+
+    fn cdf(&self, x: f64) -> f64 {
+        probability::clamped(0.5 * ((x - self.mean) / self.half + 1.0))
+    }
+
+    fn sf(&self, x: f64) -> f64 {
+        probability::clamped(0.5 * (1.0 - (x - self.mean) / self.half))
+    }
+
+    fn quantile(&self, p: f64) -> f64 {
+        self.mean + self.half * (2.0 * probability::checked(p) - 1.0)
+    }
+
+    fn upper_quantile(&self, p: f64) -> f64 {
+        self.mean + self.half * (1.0 - 2.0 * probability::checked(p))
     }
 }

@@ -30,7 +30,6 @@ pub use shape::PearsonType;
 
 use rand::RngExt;
 
-use crate::moments::Moments;
 use standard::Standard;
 
 /// A member of the Pearson system.
@@ -71,15 +70,12 @@ impl Pearson {
         Self::build(mean, sigma, skewness, [kurtosis, 0.0])
     }
 
-    /// With these moments; their excess keeps all its digits.
+    /// With these moments, of which the kurtosis is given by its excess over 3: that keeps all its digits.
     ///
     /// # Errors
-    /// As [`new`](Self::new); moments of a characteristic that does not vary have sigma 0.
-    pub fn fit(moments: &Moments) -> Result<Self, PearsonError> {
-        let (Some(skewness), Some(excess)) = (moments.skewness(), moments.excess()) else {
-            return Err(PearsonError::Sigma { sigma: moments.sigma() });
-        };
-        Self::build(moments.mean(), moments.sigma(), skewness, [3.0, excess])
+    /// As [`new`](Self::new).
+    pub fn with_excess(mean: f64, sigma: f64, skewness: f64, excess: f64) -> Result<Self, PearsonError> {
+        Self::build(mean, sigma, skewness, [3.0, excess])
     }
 
     /// The normal distribution.

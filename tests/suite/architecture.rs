@@ -17,13 +17,13 @@ const LAYERS: &[&[&str]] = &[
     &["plan"],
     &["surrogate"],
     &["capability"],
-    &["pearson"],
     &["moments"],
     &["models", "journal"],
     &["assembly"],
     &["warning"],
     &["dimension", "characteristic"],
     &["distribution"],
+    &["pearson"],
     &["names"],
 ];
 
