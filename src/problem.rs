@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::assembly::AssemblyFunction;
 use crate::characteristic::Characteristic;
+use crate::correlation::{Correlation, CorrelationError, Pair};
 use crate::dimension::Dimension;
 use crate::names::nearest;
 
@@ -11,6 +12,7 @@ use crate::names::nearest;
 #[derive(Clone)]
 pub struct Problem {
     dimensions: Vec<Dimension>,
+    correlation: Option<Correlation>,
     characteristics: Vec<Characteristic>,
     /// For every characteristic, the output of the function that it is.
     outputs: Vec<usize>,
@@ -61,7 +63,10 @@ impl std::fmt::Debug for Problem {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         // The function is a black box here too.
         let mut parts = f.debug_struct("Problem");
-        parts.field("dimensions", &self.dimensions).field("characteristics", &self.characteristics);
+        parts
+            .field("dimensions", &self.dimensions)
+            .field("correlation", &self.correlation)
+            .field("characteristics", &self.characteristics);
         parts.finish_non_exhaustive()
     }
 }
@@ -93,8 +98,20 @@ impl Problem {
         };
         let characteristics: Vec<Characteristic> = signature.outputs.iter().map(characteristic).collect();
         let outputs = (0..characteristics.len()).collect();
-        let problem = Self { dimensions, characteristics, outputs, function: Arc::new(function) };
+        let problem = Self { dimensions, correlation: None, characteristics, outputs, function: Arc::new(function) };
         problem.checked()
+    }
+
+    /// With dimensions that vary together; without pairs, all independent.
+    ///
+    /// # Errors
+    /// When these dimensions cannot be correlated so: see [`Correlation::new`].
+    pub fn correlated(mut self, pairs: &[Pair]) -> Result<Self, CorrelationError> {
+        self.correlation = match pairs {
+            [] => None,
+            pairs => Some(Correlation::new(&self.dimensions, pairs)?),
+        };
+        Ok(self)
     }
 
     /// With these characteristics instead: outputs of the function by name, with limits and targets.
@@ -143,6 +160,11 @@ impl Problem {
     /// The dimensions, in order.
     pub fn dimensions(&self) -> &[Dimension] {
         &self.dimensions
+    }
+
+    /// How the dimensions vary together; None when all are independent.
+    pub fn correlation(&self) -> Option<&Correlation> {
+        self.correlation.as_ref()
     }
 
     /// The characteristics asked for, in order.

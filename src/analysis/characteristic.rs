@@ -3,7 +3,7 @@
 use crate::capability::{Capability, Law};
 use crate::characteristic::Characteristic;
 use crate::method::{Order, Outcome};
-use crate::moments::{Contributions, Moments};
+use crate::moments::{Contributions, Moments, Sampled};
 use crate::pearson::PearsonError;
 use crate::problem::Problem;
 
@@ -16,6 +16,8 @@ pub struct CharacteristicAnalysis {
     pub nominal: Option<f64>,
     /// Its first four moments.
     pub moments: Option<Moments>,
+    /// What sampling the surrogate of correlated inputs leaves uncertain of them; None where they are exact.
+    pub sampled: Option<Sampled>,
     /// The distribution that has these moments, or why none has.
     pub law: Option<Result<Law, PearsonError>>,
     /// How that keeps the limits.
@@ -25,7 +27,8 @@ pub struct CharacteristicAnalysis {
     /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
     /// band that hurts.
     pub worst_case: Option<[f64; 2]>,
-    /// `sqrt(sum of (slope x half band)^2)`; three sigma where a dimension has no band.
+    /// `sqrt(t'R t)` with `t` = slope x half band (three sigma where a dimension has no band) and the correlation `R`:
+    /// without correlation the root of the sum of squares.
     pub rss: Option<f64>,
     /// For every dimension of the problem, in order.
     pub sensitivities: Vec<Sensitivity>,
@@ -67,6 +70,8 @@ pub struct Interaction {
     pub rounding: Option<f64>,
     /// Share of the variance.
     pub share: Option<f64>,
+    /// How far it moves the mean: not at all unless the two are correlated.
+    pub mean_shift: Option<f64>,
 }
 
 impl CharacteristicAnalysis {
@@ -84,7 +89,7 @@ impl CharacteristicAnalysis {
     pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> Self {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;
-        let contributions = fitted.surrogate.as_ref().and_then(|surrogate| surrogate.contributions(plan.shapes()));
+        let contributions = fitted.surrogate.as_ref().and_then(|surrogate| surrogate.contributions(plan.inputs()));
         let sensitivities: Vec<Sensitivity> = (0..problem.dimensions().len())
             .map(|d| sensitivity(problem, outcome, c, d, contributions.as_ref()))
             .collect();
@@ -97,6 +102,7 @@ impl CharacteristicAnalysis {
             && plan.varying().iter().all(|&d| fitted.parts[d].is_some_and(|part| part.degree() >= 2));
         let characteristic = problem.characteristics()[c].clone();
         let moments = contributions.as_ref().map(|contributions| contributions.moments);
+        let sampled = contributions.as_ref().and_then(|contributions| contributions.sampled);
         let law = moments.map(|moments| Law::fit(&moments));
         let capability = |law: &Law| {
             moments.map(|moments| Capability::of(law, moments.mean(), moments.sigma(), characteristic.limits()))
@@ -106,6 +112,7 @@ impl CharacteristicAnalysis {
         Self {
             nominal: fitted.nominal,
             moments,
+            sampled,
             capability: law.as_ref().and_then(|law| capability(law.as_ref().ok()?)),
             normal,
             law,
@@ -170,8 +177,9 @@ fn interactions(
     let examined = outcome.pairs.iter().zip(&outcome.fitted[c].mixed).filter(|((j, k), _)| plan.joint(c, *j, *k));
     let mut interactions: Vec<Interaction> = examined
         .map(|(&(j, k), mixed)| {
+            let share = |value: f64| contributions.map(|contributions| contributions.share(j, k, value));
             let [j, k] = [j, k].map(|position| plan.varying()[position]);
-            let share = |value: f64| contributions.map(|contributions| (value * contributions.per_sigma).powi(2));
+            let together = problem.correlation().map_or(0.0, |correlation| correlation.of(j, k));
             Interaction {
                 dimensions: [j, k].map(|d| problem.dimensions()[d].name().to_owned()),
                 mixed: mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale),
@@ -179,6 +187,7 @@ fn interactions(
                     4.0 * f64::EPSILON * centre.abs() / plan.axis(j).nearest_step() / plan.axis(k).nearest_step()
                 }),
                 share: mixed.and_then(|mixed| share(mixed.value)),
+                mean_shift: mixed.map(|mixed| mixed.value * together),
             }
         })
         .collect();
@@ -196,13 +205,23 @@ fn extremes(
 ) -> (Option<[f64; 2]>, Option<f64>) {
     let slopes: Option<Vec<(f64, usize)>> = varying.iter().map(|&d| Some((sensitivities[d].first?, d))).collect();
     let Some(slopes) = slopes else { return (None, None) };
-    let (mut down, mut up, mut rss) = (0.0, 0.0, 0.0f64);
-    for (slope, d) in slopes {
+    let (mut down, mut up) = (0.0, 0.0);
+    for &(slope, d) in &slopes {
         let dimension = &problem.dimensions()[d];
         let [a, b] = dimension.reach().map(|deviation| slope * deviation);
         down += a.min(b);
         up += a.max(b);
-        rss = rss.hypot(slope * dimension.half_band());
     }
-    (nominal.map(|nominal| [nominal + down, nominal + up]), Some(rss))
+    (nominal.map(|nominal| [nominal + down, nominal + up]), Some(rss(problem, &slopes)))
+}
+
+fn rss(problem: &Problem, slopes: &[(f64, usize)]) -> f64 {
+    let reach = |&(slope, d): &(f64, usize)| slope * problem.dimensions()[d].half_band();
+    let alone = slopes.iter().map(reach).fold(0.0, f64::hypot);
+    let Some(correlation) = problem.correlation().filter(|_| alone > 0.0) else { return alone };
+    let member = |&&(_, d): &&(f64, usize)| correlation.members().binary_search(&d).is_ok();
+    let members: Vec<(f64, usize)> = slopes.iter().filter(member).map(|at| (reach(at) / alone, at.1)).collect();
+    let pairs = members.iter().enumerate().flat_map(|(i, a)| members[i + 1..].iter().map(move |b| (a, b)));
+    let together: f64 = pairs.map(|(a, b)| 2.0 * a.0 * b.0 * correlation.of(a.1, b.1)).sum();
+    alone * (1.0 + together).max(0.0).sqrt()
 }

@@ -192,7 +192,7 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
     if outcome.order == Order::First {
         let plan = &outcome.plan;
         let parts = plan.varying().iter().map(|&d| outcome.fitted[c].parts[d]).collect();
-        let curved = Surrogate { parts, ..surrogate.clone() }.contributions(plan.shapes());
+        let curved = Surrogate { parts, ..surrogate.clone() }.contributions(plan.inputs());
         if let Some(curved) = curved.map(|contributions| contributions.moments) {
             let mean_shift = (curved.mean() - moments.mean()) / sigma;
             let variance = curved.variance() / moments.variance() - 1.0;

@@ -20,6 +20,9 @@ pub struct Normal {
 }
 
 impl Normal {
+    /// Its name in study files.
+    pub const NAME: &'static str = "normal";
+
     /// `sigma` must be above 0.
     pub fn new(mean: f64, sigma: f64) -> Result<Self, DistributionError> {
         Ok(Self { mean: finite("mean", mean)?, sigma: positive("sigma", sigma)? })
@@ -28,7 +31,7 @@ impl Normal {
 
 impl Distribution for Normal {
     fn name(&self) -> &'static str {
-        "normal"
+        Self::NAME
     }
 
     fn mean(&self) -> f64 {

@@ -97,7 +97,7 @@ impl Procedure for Ladder {
         }
         let (spread, pairs, stencil) = self.differences(problem, options)?;
         let layout = Layout { spread, pairs, stencil, step: options.step, fixed_too: options.all_sensitivities };
-        Ok(DifferencePlan::new(problem.dimensions(), problem.dependence(), layout))
+        Ok(DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout))
     }
 
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {

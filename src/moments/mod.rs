@@ -23,6 +23,8 @@ mod sum;
 pub use interactions::Interactions;
 pub use part::{Part, Term};
 
+use std::collections::BTreeMap;
+
 use crate::distribution::StandardMoments;
 use assemble::Assembly;
 
@@ -90,6 +92,38 @@ pub struct Contributions {
     pub mean_shift: Vec<f64>,
     /// By what a coefficient is multiplied to make its square a share of the variance; 0 where sigma is 0.
     pub per_sigma: f64,
+    /// For every product `j < k` its share, where inputs are correlated and it is not the square of its coefficient.
+    pub products: Option<BTreeMap<(usize, usize), f64>>,
+    /// What sampling leaves uncertain; None where everything is exact.
+    pub sampled: Option<Sampled>,
+}
+
+/// Standard errors of moments that were sampled, from a surrogate and not from the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampled {
+    /// Points.
+    pub samples: usize,
+    /// Standard error of sigma.
+    pub sigma: f64,
+    /// Standard error of the skewness.
+    pub skewness: f64,
+    /// Standard error of the kurtosis.
+    pub kurtosis: f64,
+}
+
+impl Contributions {
+    /// The share of a product of two inputs with this coefficient.
+    pub fn share(&self, j: usize, k: usize, coefficient: f64) -> f64 {
+        match &self.products {
+            None => (coefficient * self.per_sigma).powi(2),
+            Some(products) => products.get(&(j.min(k), j.max(k))).copied().unwrap_or(0.0),
+        }
+    }
+
+    /// The same about another mean.
+    pub(crate) fn about(self, mean: f64) -> Self {
+        Self { moments: Moments { mean, ..self.moments }, ..self }
+    }
 }
 
 /// Moments of `constant + sum_j term_j + sum_{j<k} A_jk u_j u_k`, with the contributions of the terms.
@@ -116,7 +150,15 @@ pub fn contributions(constant: f64, terms: &[Term<'_>], interactions: &Interacti
     if largest == 0.0 {
         let none = vec![0.0; terms.len()];
         let moments = Moments::constant(mean);
-        return Contributions { moments, linear: none.clone(), curvature: none, mean_shift, per_sigma: 0.0 };
+        return Contributions {
+            moments,
+            linear: none.clone(),
+            curvature: none,
+            mean_shift,
+            per_sigma: 0.0,
+            products: None,
+            sampled: None,
+        };
     }
     // Divided by the largest coefficient first and by sigma then: no square leaves the range of a double.
     let variances = terms.iter().map(|term| term.variance(1.0 / largest));
@@ -130,6 +172,8 @@ pub fn contributions(constant: f64, terms: &[Term<'_>], interactions: &Interacti
         curvature: parts.iter().map(|part| part.curved).collect(),
         mean_shift,
         per_sigma,
+        products: None,
+        sampled: None,
     }
 }
 

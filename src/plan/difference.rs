@@ -8,8 +8,9 @@ use super::nodes::Spread;
 use super::pairs::{PairChoice, Side, Stencil, strongest};
 use super::point::{At, Point};
 use super::stage::{Purpose, Stage};
+use crate::correlation::Correlation;
 use crate::dimension::Dimension;
-use crate::surrogate::{InputShape, Univariate, shapes};
+use crate::surrogate::{InputShape, Inputs, Univariate};
 
 /// What a difference plan evaluates.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +35,7 @@ pub struct DifferencePlan {
     nominal: Point,
     varying: Vec<usize>,
     fixed: Vec<usize>,
-    shapes: Vec<InputShape>,
+    inputs: Inputs,
     /// For every characteristic, whether it can depend on each dimension.
     depends: Vec<Vec<bool>>,
 }
@@ -48,7 +49,12 @@ struct PairNodes {
 
 impl DifferencePlan {
     /// For these dimensions, of which every characteristic can depend on those flagged in its row of `depends`.
-    pub fn new(dimensions: &[Dimension], depends: Vec<Vec<bool>>, layout: Layout) -> Self {
+    pub fn new(
+        dimensions: &[Dimension],
+        correlation: Option<&Correlation>,
+        depends: Vec<Vec<bool>>,
+        layout: Layout,
+    ) -> Self {
         let matters = |d: usize| depends.iter().any(|row| row[d]);
         let of_sigma = |varies: bool| {
             (0..dimensions.len()).filter(move |&d| matters(d) && (dimensions[d].sigma() > 0.0) == varies)
@@ -65,8 +71,8 @@ impl DifferencePlan {
             }
         }
         let distributions = varying.iter().filter_map(|&d| dimensions[d].distribution());
-        let shapes = shapes(distributions);
-        Self { nominal: Point::of(&nominal), layout, axes, varying, fixed, shapes, depends }
+        let inputs = Inputs::new(distributions, correlation.and_then(|correlation| correlation.among(&varying)));
+        Self { nominal: Point::of(&nominal), layout, axes, varying, fixed, inputs, depends }
     }
 
     /// What it evaluates.
@@ -79,9 +85,9 @@ impl DifferencePlan {
         &self.varying
     }
 
-    /// The shapes of their distributions.
-    pub fn shapes(&self) -> &[InputShape] {
-        &self.shapes
+    /// Their distributions, as far as moments need them, and how they vary together.
+    pub fn inputs(&self) -> &Inputs {
+        &self.inputs
     }
 
     /// One dimension's nodes.
@@ -239,7 +245,7 @@ impl DifferencePlan {
         let variance = |(part, shape): (&Option<Univariate>, &InputShape)| {
             part.map_or(0.0, |part| part.term(shape).variance(1.0 / largest))
         };
-        let variances: Vec<f64> = parts.iter().zip(&self.shapes).map(variance).collect();
+        let variances: Vec<f64> = parts.iter().zip(self.inputs.shapes()).map(variance).collect();
         let total: f64 = variances.iter().sum();
         variances.into_iter().map(|variance| variance / total).collect()
     }

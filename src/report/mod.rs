@@ -52,6 +52,8 @@ pub struct Report {
     pub seed: Option<u64>,
     /// The dimensions, in the study's order.
     pub dimensions: Vec<DimensionReport>,
+    /// The dimensions that vary together.
+    pub correlation: Vec<CorrelationReport>,
     /// What was asked.
     pub characteristics: Vec<CharacteristicReport>,
     /// Where an assumption fails.
@@ -77,6 +79,28 @@ pub struct DimensionReport {
     pub sigma: f64,
 }
 
+/// Two dimensions that vary together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CorrelationReport {
+    /// The two.
+    pub between: [String; 2],
+    /// Their coefficient of correlation.
+    pub value: f64,
+}
+
+/// Standard errors of moments that were sampled from the surrogate of correlated inputs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SurrogateSamplingReport {
+    /// Points, none of them evaluated by the model.
+    pub samples: usize,
+    /// Standard error of sigma.
+    pub sigma: f64,
+    /// Standard error of the skewness.
+    pub skewness: f64,
+    /// Standard error of the kurtosis.
+    pub kurtosis: f64,
+}
+
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CharacteristicReport {
@@ -94,6 +118,8 @@ pub struct CharacteristicReport {
     pub skewness: Option<f64>,
     /// Fourth standardised moment, 3 for a normal.
     pub kurtosis: Option<f64>,
+    /// What sampling left uncertain of these; null where they are exact for the surrogate.
+    pub surrogate_sampling: Option<SurrogateSamplingReport>,
     /// How far the results may be off; not estimated yet.
     pub error_estimate: Option<()>,
     /// Intervals that no assembly leaves.
@@ -195,6 +221,8 @@ pub struct InteractionReport {
     pub rounding: Option<f64>,
     /// Share of the variance.
     pub share: Option<f64>,
+    /// How far it moves the mean: 0 unless the two are correlated.
+    pub mean_shift: Option<f64>,
 }
 
 /// A warning.
@@ -242,10 +270,23 @@ impl Report {
             wall_s: about.wall_s,
             seed: about.seed,
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
+            correlation: correlation(problem),
             characteristics: analysis.characteristics.iter().map(CharacteristicReport::of).collect(),
             warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
         }
     }
+}
+
+/// Every pair that is not 0.
+fn correlation(problem: &Problem) -> Vec<CorrelationReport> {
+    let Some(correlation) = problem.correlation() else { return Vec::new() };
+    let name = |&d: &usize| problem.dimensions()[d].name().to_owned();
+    let members = correlation.members();
+    let pairs = members.iter().enumerate().flat_map(|(i, a)| members[i + 1..].iter().map(move |b| (a, b)));
+    pairs
+        .map(|(a, b)| CorrelationReport { between: [name(a), name(b)], value: correlation.of(*a, *b) })
+        .filter(|pair| pair.value != 0.0)
+        .collect()
 }
 
 impl DimensionReport {
@@ -278,6 +319,12 @@ impl CharacteristicReport {
             sigma: moments.map(|moments| moments.sigma()),
             skewness: moments.and_then(|moments| moments.skewness()),
             kurtosis: moments.and_then(|moments| moments.kurtosis()),
+            surrogate_sampling: analysis.sampled.map(|sampled| SurrogateSamplingReport {
+                samples: sampled.samples,
+                sigma: sampled.sigma,
+                skewness: sampled.skewness,
+                kurtosis: sampled.kurtosis,
+            }),
             error_estimate: None,
             worst_case: WorstCaseReport { linear: analysis.worst_case, extremes: None, proven: None },
             rss: analysis.rss,
@@ -298,6 +345,7 @@ impl CharacteristicReport {
                     mixed: interaction.mixed,
                     rounding: interaction.rounding,
                     share: interaction.share,
+                    mean_shift: interaction.mean_shift,
                 })
                 .collect(),
             possible_interactions: analysis.possible_interactions,

@@ -72,6 +72,7 @@ fn one(page: &mut Page, report: &Report, one: &CharacteristicReport) {
     distribution(page, one);
     page.line("");
     contributions(page, report, one);
+    correlation(page, report, one);
     interactions(page, one);
 }
 
@@ -96,6 +97,15 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
         table.row([name, value, other, text].map(str::to_owned));
     }
     page.print(&table);
+    if let Some(sampled) = &one.surrogate_sampling {
+        page.line(&format!(
+            "  sampled from the surrogate, {} points: standard error of sigma {}, skewness {}, kurtosis {}",
+            sampled.samples,
+            significant(sampled.sigma, 2),
+            significant(sampled.skewness, 2),
+            significant(sampled.kurtosis, 2)
+        ));
+    }
 }
 
 fn contributions(page: &mut Page, report: &Report, one: &CharacteristicReport) {
@@ -132,6 +142,24 @@ fn contributions(page: &mut Page, report: &Report, one: &CharacteristicReport) {
         let together: f64 = rest.iter().filter_map(|(row, _)| share(row)).sum();
         page.line(&format!("  and {} more with {} % together; -v shows all", rest.len(), percent(together)));
     }
+}
+
+/// The pairs that vary together, of dimensions that matter here.
+fn correlation(page: &mut Page, report: &Report, one: &CharacteristicReport) {
+    let matters = |name: &String| one.sensitivities.iter().any(|row| row.dimension == *name && row.first != Some(0.0));
+    let pairs: Vec<String> = (report.correlation.iter())
+        .filter(|pair| pair.between.iter().all(matters))
+        .map(|pair| format!("{} × {} {}", short(&pair.between[0]), short(&pair.between[1]), plain(pair.value)))
+        .collect();
+    if pairs.is_empty() {
+        return;
+    }
+    let most = if page.style().detail == Detail::Full { pairs.len() } else { INTERACTIONS };
+    let more = if pairs.len() > most { format!(" and {} more", pairs.len() - most) } else { String::new() };
+    let shown = pairs[..pairs.len().min(most)].join(", ");
+    page.line(&format!(
+        "  correlated: {shown}{more}; shares are covariances with the whole, the worst case ignores it"
+    ));
 }
 
 /// A derivative to six digits; what rounding alone can make is 0 as far as anybody knows.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_spanned::Spanned;
 
+use super::correlation::correlated;
 use super::dimension::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
@@ -48,6 +49,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
+    let problem = correlated(problem, &file.correlation.0)?;
     let options = super::options::options(&file.analysis, &problem)?;
     Ok(Built { problem, options, warnings })
 }

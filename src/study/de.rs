@@ -30,7 +30,7 @@ impl Error {
     }
 
     pub(super) fn into_fault(self) -> Fault {
-        Fault { span: self.span, key: self.path.join("."), fault: self.fault }
+        Fault { span: self.span, key: self.path.join(".").replace(".[", "["), fault: self.fault }
     }
 
     fn within(mut self, key: &str) -> Self {

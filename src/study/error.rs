@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::assembly::formula::FormulaFault;
 use crate::characteristic::LimitsError;
+use crate::correlation::Refusal;
 use crate::dimension::DimensionFault;
 use crate::method::MethodError;
 use crate::problem::ProblemError;
@@ -231,6 +232,9 @@ pub enum StudyFault {
         /// `dimension` or `characteristic`.
         what: &'static str,
     },
+    /// Dimensions cannot vary together like this.
+    #[error(transparent)]
+    Correlation(Refusal),
     /// The analysis options do not fit the study.
     #[error(transparent)]
     Method(#[from] MethodError),

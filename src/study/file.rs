@@ -20,6 +20,8 @@ pub(super) struct StudyFile {
     pub(super) formulas: Entries<String>,
     #[serde(default)]
     pub(super) characteristics: Entries<CharacteristicEntry>,
+    #[serde(default)]
+    pub(super) correlation: Correlations,
     pub(super) model: Option<Spanned<ModelEntry>>,
     #[serde(default)]
     pub(super) analysis: AnalysisEntry,
@@ -68,6 +70,18 @@ pub(super) struct CharacteristicEntry {
     pub(super) lower: Option<Spanned<f64>>,
     pub(super) upper: Option<Spanned<f64>>,
     pub(super) target_yield: Option<Spanned<f64>>,
+}
+
+/// Every `[[correlation]]`, in the order of the file.
+#[derive(Debug, Default)]
+pub(super) struct Correlations(pub(super) Vec<Spanned<CorrelationEntry>>);
+
+/// One `[[correlation]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table such as { between = [\"a\", \"b\"], value = 0.4 }")]
+pub(super) struct CorrelationEntry {
+    pub(super) between: Spanned<(String, String)>,
+    pub(super) value: Spanned<f64>,
 }
 
 /// `[model]`.
@@ -186,6 +200,24 @@ impl<'de> Deserialize<'de> for DistributionEntry {
             }
         }
         deserializer.deserialize_any(Distribution)
+    }
+}
+
+impl<'de> Deserialize<'de> for Correlations {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct List;
+        impl<'de> Visitor<'de> for List {
+            type Value = Correlations;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a list, each pair of dimensions below its own [[correlation]],")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
+                Vec::deserialize(value::SeqAccessDeserializer::new(seq)).map(Correlations)
+            }
+        }
+        deserializer.deserialize_any(List)
     }
 }
 

@@ -4,6 +4,7 @@
 //! what to write instead; the first one found is reported.
 
 mod build;
+mod correlation;
 mod de;
 mod dimension;
 mod error;

@@ -4,11 +4,15 @@
 //! y ~ centre + sum_j g_j(u_j) + sum_{j<k} A_jk u_j u_k          u_j = (x_j - mean_j)/sigma_j,  g_j(0) = 0
 //! ```
 //!
-//! It is filled by difference plans; its moments are exact for any independent inputs.
+//! It is filled by difference plans; its moments are exact for any independent inputs, and for correlated normal ones.
 
+mod correlated;
+mod inputs;
+mod sampled;
 mod shape;
 mod univariate;
 
+pub use inputs::Inputs;
 pub use shape::{InputShape, shapes};
 pub use univariate::Univariate;
 
@@ -26,12 +30,18 @@ pub struct Surrogate {
 }
 
 impl Surrogate {
-    /// Moments and contributions, exact for inputs of these shapes; None when a part is unknown.
+    /// Moments and contributions; None when a part is unknown.
     ///
-    /// Shapes: `shapes` has length N, in the order of the parts.
-    pub fn contributions(&self, shapes: &[InputShape]) -> Option<Contributions> {
+    /// Exact where the inputs are independent, and where those that are not are normal and their parts parabolas;
+    /// sampled from the surrogate otherwise, with standard errors ([`Contributions::sampled`]).
+    ///
+    /// Shapes: `inputs` has length N, in the order of the parts.
+    pub fn contributions(&self, inputs: &Inputs) -> Option<Contributions> {
+        if let Some(correlation) = inputs.correlation() {
+            return correlated::correlated(self, inputs, correlation);
+        }
         let terms: Option<Vec<Term<'_>>> =
-            self.parts.iter().zip(shapes).map(|(part, shape)| Some(part.as_ref()?.term(shape))).collect();
+            self.parts.iter().zip(inputs.shapes()).map(|(part, shape)| Some(part.as_ref()?.term(shape))).collect();
         Some(contributions(self.centre, &terms?, &self.interactions))
     }
 }

@@ -79,6 +79,12 @@ impl Univariate {
         (self.degree >= 2).then_some(2.0 * self.coefficients[1])
     }
 
+    /// Coefficients of `u` and `u^2` where there are no others.
+    pub(super) fn parabola(&self) -> Option<[f64; 2]> {
+        let [linear, curvature, third, fourth] = self.coefficients;
+        (third == 0.0 && fourth == 0.0).then_some([linear, curvature])
+    }
+
     /// The largest coefficient, to scale by.
     pub fn largest(&self) -> f64 {
         self.coefficients.iter().fold(0.0, |largest, coefficient| largest.max(coefficient.abs()))
@@ -87,8 +93,7 @@ impl Univariate {
     /// The part as a term of the moments: a parabola by the input's moments, anything higher by its rule.
     pub fn term<'a>(&self, shape: &'a InputShape) -> Term<'a> {
         let moments = &shape.moments;
-        let [linear, curvature, third, fourth] = self.coefficients;
-        if third == 0.0 && fourth == 0.0 {
+        if let Some([linear, curvature]) = self.parabola() {
             return Term::Quadratic { linear, curvature, moments };
         }
         let values = shape.rule.nodes.iter().map(|&u| self.value(u)).collect();

@@ -21,6 +21,7 @@ const LAYERS: &[&[&str]] = &[
     &["models", "journal"],
     &["assembly"],
     &["warning"],
+    &["correlation"],
     &["dimension", "characteristic"],
     &["distribution"],
     &["pearson"],

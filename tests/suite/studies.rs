@@ -23,7 +23,7 @@ fn fault(text: &str) -> String {
     format!("{place} [{spanned}] {}: {}{help}", error.key, error.fault)
 }
 
-fn faults(texts: &[&str]) -> String {
+pub fn faults(texts: &[&str]) -> String {
     texts.iter().map(|text| fault(text)).collect::<Vec<_>>().join("\n")
 }
 

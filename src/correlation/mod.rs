@@ -1,0 +1,213 @@
+//! Inputs that vary together.
+//!
+//! Correlated normal inputs are what they seem: jointly normal with the given matrix. For others the joint law is
+//! Nataf's (Liu and Der Kiureghian 1986): each input is its own quantile function of a normal variable,
+//! `u_j = T_j(z_j) = (F_j^-1(Phi(z_j)) - mean_j)/sd_j`, and the normal variables are correlated so that the inputs are as
+//! asked. With the Hermite coefficients `c_jn = E[T_j(z) He_n(z)]/sqrt(n!)` that is Mehler's series (1866)
+//!
+//! ```text
+//! rho_jk = sum_{n>=1} c_jn c_kn r_jk^n        rho: of the inputs,  r: of the normal variables
+//! ```
+//!
+//! which is solved for `r_jk` pair by pair. What the marginals allow lies between its values at -1 and 1.
+
+mod error;
+mod matrix;
+mod transform;
+
+pub use error::{CorrelationError, Refusal};
+pub use transform::Transform;
+
+use std::sync::Arc;
+
+use faer::Mat;
+
+use crate::dimension::Dimension;
+
+/// Two dimensions and their coefficient of correlation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pair {
+    /// The dimensions.
+    pub between: [String; 2],
+    /// Pearson's coefficient, from -1 to 1.
+    pub value: f64,
+}
+
+/// How some of the dimensions vary together; the others are independent of them and of each other.
+///
+/// ```
+/// use sensitol::correlation::{Correlation, Pair};
+/// use sensitol::Dimension;
+/// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::uniform("b", 5.0, 0.1)?];
+/// let pair = Pair { between: ["a".into(), "b".into()], value: 0.4 };
+/// let correlation = Correlation::new(&dimensions, &[pair])?;
+/// assert_eq!(correlation.of(0, 1), 0.4);
+/// // Of the normal variables behind them a little more is asked: rho sqrt(pi/3).
+/// let behind = correlation.normal()[(0, 1)];
+/// assert!((behind - 0.4 * (std::f64::consts::PI / 3.0).sqrt()).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Correlation {
+    /// The correlated inputs, ascending: M of them.
+    members: Vec<usize>,
+    /// Of the inputs, M by M.
+    target: Mat<f64>,
+    /// Of the normal variables behind them.
+    normal: Mat<f64>,
+    transforms: Vec<Arc<Transform>>,
+}
+
+impl Correlation {
+    /// Of these dimensions by these pairs; a pair that is not named is uncorrelated.
+    ///
+    /// # Errors
+    /// When a pair names what is no dimension or does not vary, stands twice, or asks for what its distributions do not
+    /// allow; and when no distribution has all of it together: the matrix must not have a negative eigenvalue.
+    pub fn new(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Self, CorrelationError> {
+        let pairs = resolved(dimensions, pairs)?;
+        let mut members: Vec<usize> = pairs.iter().flat_map(|&(ends, _)| ends).collect();
+        members.sort_unstable();
+        members.dedup();
+        let place = |d: usize| members.binary_search(&d).expect("an end of a pair is a member");
+        let mut target = Mat::identity(members.len(), members.len());
+        for &([a, b], value) in &pairs {
+            target[(place(a), place(b))] = value;
+            target[(place(b), place(a))] = value;
+        }
+        let names = || members.iter().map(|&d| dimensions[d].name().to_owned()).collect::<Vec<_>>();
+        if let Some(nearest) = matrix::nearest_if_indefinite(&target) {
+            return Err(CorrelationError::indefinite(|nearest| Refusal::NoSuchMatrix { nearest }, &names(), &nearest));
+        }
+        let transforms = transforms(dimensions, &members);
+        let mut normal = Mat::identity(members.len(), members.len());
+        for (index, &([a, b], value)) in pairs.iter().enumerate() {
+            let (j, k) = (place(a), place(b));
+            let behind = transforms[j].behind(&transforms[k], value).map_err(|range| CorrelationError {
+                pair: Some(index),
+                refusal: Refusal::Unreachable {
+                    between: [a, b].map(|d| dimensions[d].name().to_owned()),
+                    value,
+                    range,
+                },
+            })?;
+            normal[(j, k)] = behind;
+            normal[(k, j)] = behind;
+        }
+        if let Some(nearest) = matrix::nearest_if_indefinite(&normal) {
+            // The nearest of the normal variables, as the inputs see it.
+            let m = members.len();
+            let seen = Mat::from_fn(m, m, |j, k| match j == k {
+                true => 1.0,
+                false => transforms[j].seen(&transforms[k], nearest[(j, k)]),
+            });
+            return Err(CorrelationError::indefinite(
+                |nearest| Refusal::NotForTheseDistributions { nearest },
+                &names(),
+                &seen,
+            ));
+        }
+        Ok(Self { members, target, normal, transforms })
+    }
+
+    /// The dimensions that are correlated with some other, ascending.
+    pub fn members(&self) -> &[usize] {
+        &self.members
+    }
+
+    /// The correlation of the members, M by M.
+    pub fn matrix(&self) -> &Mat<f64> {
+        &self.target
+    }
+
+    /// The correlation of the normal variables behind the members, M by M.
+    pub fn normal(&self) -> &Mat<f64> {
+        &self.normal
+    }
+
+    /// The members as functions of the normal variables behind them.
+    pub fn transforms(&self) -> &[Arc<Transform>] {
+        &self.transforms
+    }
+
+    /// The correlation of two dimensions.
+    pub fn of(&self, a: usize, b: usize) -> f64 {
+        match (self.members.binary_search(&a), self.members.binary_search(&b)) {
+            _ if a == b => 1.0,
+            (Ok(j), Ok(k)) => self.target[(j, k)],
+            _ => 0.0,
+        }
+    }
+
+    /// Whether the members are jointly normal.
+    pub fn is_normal(&self) -> bool {
+        self.transforms.iter().all(|transform| transform.is_normal())
+    }
+
+    /// `L` with `L L' = normal()`, M by M: Cholesky's factor, or one from the eigenvalues where the matrix is singular.
+    pub fn factor(&self) -> Mat<f64> {
+        matrix::factor(&self.normal)
+    }
+
+    /// The same among these dimensions only, counted by their positions here; None where no two of them are correlated.
+    pub fn among(&self, dimensions: &[usize]) -> Option<Self> {
+        let kept: Vec<(usize, usize)> = (dimensions.iter().enumerate())
+            .filter_map(|(position, d)| Some((position, self.members.binary_search(d).ok()?)))
+            .filter(|&(_, j)| {
+                (0..self.members.len())
+                    .any(|k| k != j && self.normal[(j, k)] != 0.0 && dimensions.contains(&self.members[k]))
+            })
+            .collect();
+        if kept.is_empty() {
+            return None;
+        }
+        let part = |of: &Mat<f64>| Mat::from_fn(kept.len(), kept.len(), |j, k| of[(kept[j].1, kept[k].1)]);
+        Some(Self {
+            members: kept.iter().map(|&(position, _)| position).collect(),
+            target: part(&self.target),
+            normal: part(&self.normal),
+            transforms: kept.iter().map(|&(_, j)| Arc::clone(&self.transforms[j])).collect(),
+        })
+    }
+}
+
+/// Names become indices; each pair once, each end something that varies.
+fn resolved(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Vec<([usize; 2], f64)>, CorrelationError> {
+    let mut found: Vec<([usize; 2], f64)> = Vec::with_capacity(pairs.len());
+    for (index, pair) in pairs.iter().enumerate() {
+        let refused = |refusal| CorrelationError { pair: Some(index), refusal };
+        let mut ends = [0; 2];
+        for (end, name) in ends.iter_mut().zip(&pair.between) {
+            let position = dimensions.iter().position(|dimension| dimension.name() == name);
+            let Some(position) = position else { return Err(refused(Refusal::unknown(name, dimensions))) };
+            let name = || name.clone();
+            match dimensions[position].distribution() {
+                None => return Err(refused(Refusal::DoesNotVary { name: name() })),
+                Some(law) if law.probability().is_none() => {
+                    return Err(refused(Refusal::MomentsOnly { name: name() }));
+                }
+                Some(_) => *end = position,
+            }
+        }
+        if ends[0] == ends[1] {
+            return Err(refused(Refusal::WithItself { name: pair.between[0].clone() }));
+        }
+        if !(-1.0..=1.0).contains(&pair.value) {
+            return Err(refused(Refusal::NoCoefficient { value: pair.value }));
+        }
+        ends.sort_unstable();
+        if found.iter().any(|&(other, _)| other == ends) {
+            return Err(refused(Refusal::Twice { between: pair.between.clone() }));
+        }
+        found.push((ends, pair.value));
+    }
+    Ok(found)
+}
+
+fn transforms(dimensions: &[Dimension], members: &[usize]) -> Vec<Arc<Transform>> {
+    let transform = |&d: &usize| {
+        let distribution = dimensions[d].distribution().expect("a member varies");
+        Arc::new(Transform::of(distribution).expect("a member is known whole"))
+    };
+    members.iter().map(transform).collect()
+}
