@@ -13,8 +13,8 @@ use crate::moments::{Contributions, Moments, Sampled};
 const BLOCKS: u64 = 64;
 /// Operations that a sample takes at most, about; it is never smaller than some thousand points.
 const EFFORT: usize = 1 << 26;
-const FEWEST: usize = 1 << 12;
-const MOST: usize = 1 << 18;
+const FEWEST: usize = 1 << 13;
+const MOST: usize = 1 << 19;
 
 /// A sum over the sample for every quantity that is estimated.
 #[derive(Clone)]
@@ -47,9 +47,9 @@ struct Sampler<'a> {
 /// Moments and contributions, sampled about those of the parabolas.
 pub(super) fn contributions(parabolas: &Parabolas<'_>, exact: &Contributions, mean: f64) -> Contributions {
     let sampler = Sampler::new(parabolas, exact, mean);
-    let units = (EFFORT / (sampler.own.len() + sampler.pairs.len())).clamp(FEWEST, MOST) / BLOCKS as usize;
-    let blocks: Vec<Sums> = (0..BLOCKS).into_par_iter().map(|block| sampler.block(block, units)).collect();
-    let samples = 2 * units * BLOCKS as usize;
+    let draws = (EFFORT / (sampler.own.len() + sampler.pairs.len())).clamp(FEWEST, MOST) / BLOCKS as usize;
+    let blocks: Vec<Sums> = (0..BLOCKS).into_par_iter().map(|block| sampler.block(block, draws)).collect();
+    let samples = draws * BLOCKS as usize;
     let all = blocks.iter().fold(sampler.nothing(), |sum, block| sum.with(block, 1.0));
     let of_parabolas = central(exact, sampler.scale);
     let linear = sampler.linear_variance();
@@ -139,26 +139,24 @@ impl<'a> Sampler<'a> {
         Sums { differences: [0.0; 6], lines: vec![0.0; n], rests: vec![0.0; n], products: vec![0.0; self.pairs.len()] }
     }
 
-    /// `units` draws and their mirror images.
-    fn block(&self, block: u64, units: usize) -> Sums {
+    /// So many draws of its own. (Mirror images of them would help odd moments and double the error of even ones.)
+    fn block(&self, block: u64, draws: usize) -> Sums {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(block);
         let mut sums = self.nothing();
         let (n, m) = (self.own.len(), self.parabolas.slopes.len());
         let (mut independent, mut z, mut u, mut rests) = (vec![0.0; m], vec![0.0; m], vec![0.0; n], vec![0.0; n]);
-        for _ in 0..units {
+        for _ in 0..draws {
             independent.iter_mut().for_each(|w| *w = rng.sample(StandardNormal));
             for (j, value) in u.iter_mut().enumerate().filter(|(j, _)| self.parabolas.member[*j].is_none()) {
                 *value = node(&self.parabolas.shape(j).rule, rng.random());
             }
-            for sign in [1.0, -1.0] {
-                for (a, z) in z.iter_mut().enumerate() {
-                    *z = sign * independent.iter().enumerate().map(|(w, own)| self.factor[(a, w)] * own).sum::<f64>();
-                }
-                for (a, &position) in self.parabolas.correlation.members().iter().enumerate() {
-                    u[position] = self.parabolas.correlation.transforms()[a].value(z[a]);
-                }
-                self.add(&z, &u, &mut rests, &mut sums);
+            for (a, z) in z.iter_mut().enumerate() {
+                *z = independent.iter().enumerate().map(|(w, own)| self.factor[(a, w)] * own).sum();
             }
+            for (a, &position) in self.parabolas.correlation.members().iter().enumerate() {
+                u[position] = self.parabolas.correlation.transforms()[a].value(z[a]);
+            }
+            self.add(&z, &u, &mut rests, &mut sums);
         }
         sums
     }
