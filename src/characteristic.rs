@@ -119,6 +119,11 @@ impl SpecLimits {
         self.upper
     }
 
+    /// Whether there is any limit.
+    pub fn exist(&self) -> bool {
+        self.lower.is_some() || self.upper.is_some()
+    }
+
     /// Whether a value keeps the limits; a limit itself is kept.
     pub fn contains(&self, value: f64) -> bool {
         self.lower.is_none_or(|lower| lower <= value) && self.upper.is_none_or(|upper| value <= upper)

@@ -3,11 +3,13 @@
 use crate::assembly::CompositeError;
 use crate::assembly::formula::FormulaError;
 use crate::characteristic::LimitsError;
+use crate::correlation::CorrelationError;
 use crate::dimension::DimensionError;
 use crate::distribution::DistributionError;
 use crate::method::MethodError;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
+use crate::simulation::SimulationError;
 use crate::study::StudyError;
 
 /// Any error of the library.
@@ -32,12 +34,18 @@ pub enum Error {
     /// Dimensions, function and characteristics do not fit together.
     #[error(transparent)]
     Problem(#[from] ProblemError),
+    /// Dimensions cannot vary together so.
+    #[error(transparent)]
+    Correlation(#[from] CorrelationError),
     /// A study file is wrong.
     #[error(transparent)]
     Study(#[from] StudyError),
     /// No distribution has the moments.
     #[error(transparent)]
     Pearson(#[from] PearsonError),
+    /// The problem cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
     /// A method does not fit the problem.
     #[error(transparent)]
     Method(#[from] MethodError),

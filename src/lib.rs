@@ -22,6 +22,8 @@ pub mod plan;
 pub mod probe;
 pub mod problem;
 pub mod report;
+pub mod sampling;
+pub mod simulation;
 pub mod study;
 pub mod surrogate;
 pub mod warning;

@@ -29,6 +29,17 @@ pub enum Warning {
         /// Why it has no value there.
         error: String,
     },
+    /// The model failed at some points of a sample.
+    FailedSamples {
+        /// The characteristic that has no value there.
+        characteristic: String,
+        /// At how many points.
+        failed: u64,
+        /// Of how many.
+        samples: u64,
+        /// Why, of the first.
+        error: String,
+    },
     /// A derivative could not be had.
     LostDerivative {
         /// The characteristic.
@@ -151,7 +162,7 @@ impl Warning {
         match self {
             Self::UnusedDimension { .. } => "unused-dimension",
             Self::UnusedName { .. } => "unused-name",
-            Self::FailedPoints { .. } => "failed-points",
+            Self::FailedPoints { .. } | Self::FailedSamples { .. } => "failed-points",
             Self::LostDerivative { .. } => "lost-derivative",
             Self::DomainEdge { .. } => "domain-edge",
             Self::SupportEdge { .. } => "support-edge",
@@ -172,6 +183,7 @@ impl Warning {
     pub fn characteristic(&self) -> Option<&str> {
         match self {
             Self::FailedPoints { characteristic, .. }
+            | Self::FailedSamples { characteristic, .. }
             | Self::LostDerivative { characteristic, .. }
             | Self::DomainEdge { characteristic, .. }
             | Self::NoReaction { characteristic }
@@ -206,6 +218,10 @@ impl Warning {
             Self::FailedPoints { characteristic, failed, points, point, error } => {
                 format!("`{characteristic}` has no value at {failed} of {points} points; first at {point}: {error}")
             }
+            Self::FailedSamples { characteristic, failed, samples, error } => format!(
+                "`{characteristic}` has no value at {failed} of {samples} points, and everything said of it is about the \
+                 others; the first: {error}"
+            ),
             Self::LostDerivative { characteristic, dimensions, loss } => {
                 let to = dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
                 match loss {

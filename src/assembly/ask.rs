@@ -64,6 +64,11 @@ impl Points {
         &self.values[dimension * self.rows..(dimension + 1) * self.rows]
     }
 
+    /// All values of one dimension, to be changed.
+    pub fn column_mut(&mut self, dimension: usize) -> &mut [f64] {
+        &mut self.values[dimension * self.rows..(dimension + 1) * self.rows]
+    }
+
     /// One point.
     pub fn row(&self, row: usize) -> Vec<f64> {
         (0..self.dimensions).map(|dimension| self.column(dimension)[row]).collect()

@@ -12,9 +12,8 @@ use super::progress::Bar;
 use super::study;
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::{Progress, Run, Table};
-use crate::method::MethodError;
 use crate::report::{About, Report, text};
-use crate::study::{Externals, JournalPlace, Study};
+use crate::study::{Externals, Study};
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
@@ -79,12 +78,12 @@ fn unmatched(given: &Table, look: Look) {
 
 /// Where the answers of an external model are kept, and who hears it.
 fn externals(asked: &AnalyzeArgs, look: Look, points: Option<Arc<Table>>) -> Externals {
-    let journal = match &asked.journal {
-        None => JournalPlace::BesideStudy,
-        Some(path) if path.as_os_str() == "none" => JournalPlace::Nowhere,
-        Some(path) => JournalPlace::At(path.clone()),
-    };
-    Externals { journal, listener: super::listener(look), points, sentinels: true }
+    Externals {
+        journal: super::journal_place(asked.journal.as_deref()),
+        listener: super::listener(look),
+        points,
+        sentinels: true,
+    }
 }
 
 fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant, look: Look) -> Result<Analysis, Failure> {
@@ -97,15 +96,9 @@ fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant, look: Look) -> Re
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
     let analysis = || analyze_within(&study.problem, &study.options, &run);
-    let result: Result<Analysis, MethodError> = match asked.threads {
-        None => analysis(),
-        Some(threads) => {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
-            pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(analysis)
-        }
-    };
+    let result = super::on_threads(asked.threads, analysis);
     if let Some(bar) = bar {
         bar.clear();
     }
-    Ok(result?)
+    Ok(result??)
 }

@@ -32,6 +32,9 @@ pub(super) enum Command {
     /// Moments, sensitivities and contributions of every characteristic
     #[command(after_help = "Example: sensitol analyze examples/engine-balance/study.toml --method full")]
     Analyze(AnalyzeArgs),
+    /// Monte Carlo: the model itself at random or quasi-random points, with standard errors
+    #[command(after_help = "Example: sensitol simulate examples/engine-balance/study.toml --samples 1000000")]
+    Simulate(SimulateArgs),
     /// What would be evaluated, how often, and why; evaluates nothing
     #[command(after_help = "Example: sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
     Plan(PlanArgs),
@@ -115,6 +118,55 @@ pub(super) struct AnalyzeArgs {
     /// Seed of random numbers, for the methods that draw some; kept in the report
     #[arg(long, value_name = "N")]
     pub(super) seed: Option<u64>,
+
+    /// Threads that evaluate formulas and built-in models [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) threads: Option<u16>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SimulateArgs {
+    /// The study, a .toml or .json file
+    pub(super) study: PathBuf,
+
+    /// Ask for this characteristic only (repeatable)
+    #[arg(long = "kc", value_name = "NAME")]
+    pub(super) characteristics: Vec<String>,
+
+    /// Points [default: 100000, or as many as --until takes]; Sobol' takes 16 times a power of two, at least as many
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
+    pub(super) samples: Option<u64>,
+
+    /// How points are drawn: random, or sobol for scrambled Sobol' points
+    #[arg(long, value_name = "SAMPLER", default_value = "random")]
+    pub(super) sampler: SamplerArg,
+
+    /// Go on until the standard error of every sigma is below this part of it
+    #[arg(long, value_name = "R", value_parser = positive)]
+    pub(super) until: Option<f64>,
+
+    /// Go on until half the 95 % interval of every yield is below this
+    #[arg(long, value_name = "R", value_parser = positive)]
+    pub(super) until_yield: Option<f64>,
+
+    /// Seed of the sample [default: that of the study, or 1]
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+
+    /// Stop after S seconds and report what is known
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(super) time: Option<f64>,
+
+    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
+    #[arg(long, value_name = "FILE")]
+    pub(super) journal: Option<PathBuf>,
+
+    /// Exit with 1 unless the sample shows that every target_yield is met
+    #[arg(long)]
+    pub(super) check: bool,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -291,6 +343,15 @@ impl ValueEnum for MethodArg {
         let help = format!("{} ({})", procedure.about(), procedure.count());
         Some(clap::builder::PossibleValue::new(procedure.name()).help(help))
     }
+}
+
+/// The samplers as values of an option.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum SamplerArg {
+    /// Independent random points
+    Random,
+    /// Sobol' points, scrambled anew in each of 16 replicates
+    Sobol,
 }
 
 /// The stencils as values of an option.

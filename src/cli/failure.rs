@@ -9,6 +9,7 @@ use crate::journal::JournalError;
 use crate::method::MethodError;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
+use crate::simulation::SimulationError;
 use crate::study::StudyError;
 
 /// The exit codes.
@@ -41,6 +42,8 @@ pub(super) enum Failure {
     Problem(#[from] ProblemError),
     #[error(transparent)]
     Method(#[from] MethodError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
     #[error(transparent)]
     Pearson(#[from] PearsonError),
     #[error(transparent)]

@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::assembly::Progress;
+use crate::simulation::Pace;
 
 /// How far the evaluations are. Invisible where stderr is no terminal.
 pub(super) struct Bar {
@@ -32,6 +33,30 @@ impl Bar {
         let part = |count: usize, what: &str| if count == 0 { String::new() } else { format!(", {count} {what}") };
         self.bar.set_message(part(so_far.failed, "failed") + &part(so_far.reused, "known"));
         self.bar.set_position(so_far.points as u64);
+    }
+
+    pub(super) fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// How far a simulation is. Invisible where stderr is no terminal.
+pub(super) struct Samples {
+    bar: ProgressBar,
+}
+
+impl Samples {
+    pub(super) fn new(quiet: bool) -> Self {
+        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(Some(1), target);
+        let style = ProgressStyle::with_template("{bar:30} {pos}/{len} points, {per_sec}, {eta} left");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self { bar }
+    }
+
+    pub(super) fn show(&self, pace: &Pace) {
+        self.bar.set_length(pace.expected as u64);
+        self.bar.set_position(pace.samples);
     }
 
     pub(super) fn clear(&self) {

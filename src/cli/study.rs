@@ -1,11 +1,20 @@
 //! A study as the command line changes it.
 
-use super::args::{SensitivitiesArg, StencilArg, StudyArgs};
+use super::args::{SensitivitiesArg, SimulateArgs, StencilArg, StudyArgs};
 use super::failure::Failure;
 use super::pairs;
 use crate::method::Method;
 use crate::plan::Stencil;
 use crate::study::{Externals, Study};
+
+/// Reads the study to simulate it.
+pub(super) fn read_sampled(asked: &SimulateArgs, externals: Externals) -> Result<Study, Failure> {
+    let mut study = Study::read_with(&asked.study, externals)?;
+    if !asked.characteristics.is_empty() {
+        study.problem = study.problem.only(&asked.characteristics)?;
+    }
+    Ok(study)
+}
 
 /// Reads the study; what the command line says wins over its `[analysis]`.
 pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Failure> {

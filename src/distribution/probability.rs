@@ -19,7 +19,7 @@ use rand::{Rng, RngExt};
 /// assert!((law.upper_quantile(1e-9) - 25.0 - 0.059_978_070_150_076_87).abs() < 1e-14);
 /// # Ok::<(), sensitol::distribution::DistributionError>(())
 /// ```
-pub trait Probability {
+pub trait Probability: Send + Sync {
     /// Density per unit of `x`; None where there is none, as for measured values, which are atoms.
     fn density(&self, x: f64) -> Option<f64>;
 

@@ -1,6 +1,5 @@
 //! The fitted distribution, as reports show it.
 
-use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use crate::capability::{Law, TAIL};
@@ -9,14 +8,17 @@ use crate::pearson::Pearson;
 /// The probabilities whose quantiles every report has, by their names; the upper ones by what lies above, for `1 - p` would
 /// lose digits.
 const PROBABILITIES: [(&str, Tail); 7] = [
-    ("0.00135", Tail::Below(TAIL)),
-    ("0.01", Tail::Below(0.01)),
-    ("0.05", Tail::Below(0.05)),
-    ("0.5", Tail::Below(0.5)),
-    ("0.95", Tail::Above(0.05)),
-    ("0.99", Tail::Above(0.01)),
-    ("0.99865", Tail::Above(TAIL)),
+    (NAMES[0], Tail::Below(TAIL)),
+    (NAMES[1], Tail::Below(0.01)),
+    (NAMES[2], Tail::Below(0.05)),
+    (NAMES[3], Tail::Below(0.5)),
+    (NAMES[4], Tail::Above(0.05)),
+    (NAMES[5], Tail::Above(0.01)),
+    (NAMES[6], Tail::Above(TAIL)),
 ];
+
+/// Their names.
+pub(super) const NAMES: [&str; 7] = ["0.00135", "0.01", "0.05", "0.5", "0.95", "0.99", "0.99865"];
 
 #[derive(Clone, Copy)]
 enum Tail {
@@ -51,11 +53,17 @@ pub struct Quantiles(pub Vec<(&'static str, f64)>);
 
 impl Serialize for Quantiles {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, value) in &self.0 {
-            map.serialize_entry(name, value)?;
-        }
-        map.end()
+        serializer.collect_map(self.0.iter().copied())
+    }
+}
+
+/// Quantiles of which some may be unknown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OptionalQuantiles(pub Vec<(&'static str, Option<f64>)>);
+
+impl Serialize for OptionalQuantiles {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().copied())
     }
 }
 

@@ -85,7 +85,7 @@ fn limits(page: &mut Page, one: &CharacteristicReport) {
         index("Cp", one.cp),
         index("Cpk", one.cpk),
         index("by percentiles Cp", one.cp_percentile),
-        index("Cpk", one.cpk_percentile),
+        index(if one.cp_percentile.is_some() { "Cpk" } else { "by percentiles Cpk" }, one.cpk_percentile),
         index("sigma level", one.sigma_level),
     ];
     let indices: Vec<String> = indices.into_iter().flatten().collect();

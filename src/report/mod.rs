@@ -4,12 +4,16 @@ mod distribution;
 mod limits;
 pub(crate) mod number;
 mod page;
+mod simulation;
+mod simulation_text;
 mod sketch;
 mod text;
 
-pub use distribution::{DistributionReport, Quantiles};
+pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
 pub use limits::law_text;
 pub use page::{Detail, Style};
+pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
+pub use simulation_text::simulation_text;
 pub use text::text;
 
 use serde::Serialize;

@@ -1,0 +1,120 @@
+//! `sensitol simulate`.
+
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use super::args::{SamplerArg, SimulateArgs};
+use super::failure::{Exit, Failure};
+use super::output::{Destination, Look, json};
+use super::progress::Samples;
+use super::{interrupt, on_threads, study};
+use crate::assembly::Run;
+use crate::report::{About, SimulationReport, simulation_text};
+use crate::sampling::Sampler;
+use crate::simulation::{Pace, SimulationOptions, simulate_within};
+use crate::study::{Externals, Study};
+
+/// Points unless the user says otherwise; where accuracy is wanted, as many as that takes.
+const SAMPLES: u64 = 100_000;
+/// A seed for who does not care.
+const SEED: u64 = 1;
+/// A simulation that will take longer than this tells so.
+const LONG: Duration = Duration::from_secs(60);
+
+pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
+    let study = study::read_sampled(asked, externals(asked, look))?;
+    if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
+        return Err(Failure::NothingToCheck);
+    }
+    let destination = Destination::open(&asked.output)?;
+    let wanted = asked.until.is_some() || asked.until_yield.is_some();
+    let options = SimulationOptions {
+        samples: asked.samples.unwrap_or(if wanted { 1 << 52 } else { SAMPLES }),
+        sampler: match asked.sampler {
+            SamplerArg::Random => Sampler::Random,
+            SamplerArg::Sobol => Sampler::Sobol,
+        },
+        seed: asked.seed.or(study.seed).unwrap_or(SEED),
+        until: asked.until,
+        until_yield: asked.until_yield,
+    };
+    let begun = Instant::now();
+    let simulation = simulate(&study, asked, &options, begun, look)?;
+    let about = About {
+        title: study.title.clone(),
+        sha256: study.sha256.clone(),
+        seed: Some(options.seed),
+        wall_s: begun.elapsed().as_secs_f64(),
+        warnings: study.warnings.clone(),
+    };
+    let report = SimulationReport::of(&study.problem, &simulation, about);
+    let written =
+        destination.write(&if asked.output.json { json(&report) } else { simulation_text(&report, look.style()) });
+    for warning in &report.warnings {
+        look.warn(warning.code, &warning.message);
+    }
+    let after = format!("after {} points", simulation.samples);
+    if interrupt::stopped() {
+        look.warn("stopped", &format!("interrupted {after}"));
+        written?;
+        return Ok(Exit::Interrupted);
+    }
+    if simulation.stopped {
+        look.warn("stopped", &format!("stopped by --time {after}"));
+    }
+    if simulation.reached == Some(false) {
+        look.warn("under-resolved", &format!("{after} the standard errors are larger than wanted"));
+    }
+    written?;
+    if simulation.characteristics.iter().any(|one| one.samples == 0) {
+        return Ok(Exit::NoResult);
+    }
+    let missed = report.characteristics.iter().any(|one| one.target_yield.is_some() && one.met != Some(true));
+    Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
+}
+
+fn externals(asked: &SimulateArgs, look: Look) -> Externals {
+    Externals {
+        journal: super::journal_place(asked.journal.as_deref()),
+        listener: super::listener(look),
+        points: None,
+        sentinels: true,
+    }
+}
+
+fn simulate(
+    study: &Study,
+    asked: &SimulateArgs,
+    options: &SimulationOptions,
+    begun: Instant,
+    look: Look,
+) -> Result<crate::simulation::Simulation, Failure> {
+    interrupt::listen();
+    let limit = asked.time.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+    let stop = || interrupt::stopped() || limit.is_some_and(|limit| begun.elapsed() >= limit);
+    let bar = Samples::new(look.quiet);
+    let told = Mutex::new(false);
+    let pace = |pace: Pace| {
+        bar.show(&pace);
+        // Who waits for years should know after a second.
+        let Ok(mut told) = told.lock() else { return };
+        let rest = Duration::try_from_secs_f64(pace.expected_s()).unwrap_or(Duration::MAX);
+        if !*told && limit.is_none() && pace.elapsed > Duration::from_secs(1) && rest > LONG {
+            *told = true;
+            look.warn("long", &format!("this will take about {}; --time S ends it before", span(pace.expected_s())));
+        }
+    };
+    let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
+    let result = on_threads(asked.threads, || simulate_within(&study.problem, options, &run, &pace));
+    bar.clear();
+    Ok(result??)
+}
+
+/// A time in the unit that people would use.
+fn span(seconds: f64) -> String {
+    const UNITS: [(f64, &str); 4] =
+        [(365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];
+    let (size, name) = UNITS.into_iter().find(|(size, _)| seconds >= 2.0 * size).unwrap_or((1.0, "seconds"));
+    let value = seconds / size;
+    if value < 1e4 { format!("{value:.0} {name}") } else { format!("{value:.0e} {name}") }
+}

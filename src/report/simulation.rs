@@ -1,0 +1,233 @@
+//! The report of a simulation: the names of an analysis, each number with its standard error.
+
+use serde::Serialize;
+
+use super::distribution::{NAMES, OptionalQuantiles};
+use super::{About, CorrelationReport, DimensionReport, SCHEMA, WarningReport, correlation};
+use crate::problem::Problem;
+use crate::sampling::{Estimate, Sampler};
+use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation};
+use crate::warning::Warning;
+
+/// The report of a simulation, as `--json` prints it. What is unknown is null, never 0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SimulationReport {
+    /// The version of this shape.
+    pub schema: u32,
+    /// The version of the program.
+    pub sensitol: &'static str,
+    /// The study's title.
+    pub title: Option<String>,
+    /// SHA-256 of the study file.
+    pub study_sha256: String,
+    /// The command that made the report.
+    pub command: &'static str,
+    /// `monte-carlo` or `quasi-monte-carlo`.
+    pub method: &'static str,
+    /// `random` or `sobol`.
+    pub sampler: &'static str,
+    /// Points that were answered.
+    pub samples: u64,
+    /// Every point sent to the model.
+    pub evaluations: u64,
+    /// Answers taken from an earlier run.
+    pub reused: u64,
+    /// Points that lost at least one asked characteristic.
+    pub failed: u64,
+    /// Whether it ended before all points were drawn, or what was wanted was reached.
+    pub stopped: bool,
+    /// Whether the wanted standard errors were reached; null where none were wanted.
+    pub reached: Option<bool>,
+    /// Seconds from the first evaluation to the finished result.
+    pub wall_s: f64,
+    /// The seed.
+    pub seed: u64,
+    /// The dimensions, in the study's order.
+    pub dimensions: Vec<DimensionReport>,
+    /// The dimensions that vary together.
+    pub correlation: Vec<CorrelationReport>,
+    /// What was asked.
+    pub characteristics: Vec<SimulatedReport>,
+    /// Where an assumption fails.
+    pub warnings: Vec<WarningReport>,
+}
+
+/// One characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SimulatedReport {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// Points at which it has a value.
+    pub samples: u64,
+    /// Points at which it has none.
+    pub failed: u64,
+    /// First moment.
+    pub mean: Option<f64>,
+    /// Standard deviation.
+    pub sigma: Option<f64>,
+    /// Third standardised moment.
+    pub skewness: Option<f64>,
+    /// Fourth standardised moment, 3 for a normal.
+    pub kurtosis: Option<f64>,
+    /// How uncertain the sample leaves all this.
+    pub standard_error: StandardErrors,
+    /// The sample's own distribution.
+    pub distribution: EmpiricalReport,
+    /// The least and the greatest value seen.
+    pub range: Option<[f64; 2]>,
+    /// Lower limit.
+    pub lower: Option<f64>,
+    /// Upper limit.
+    pub upper: Option<f64>,
+    /// The share of assemblies that must keep the limits.
+    pub target_yield: Option<f64>,
+    /// Whether the interval of the yield lies above that (true), below (false), or around it (null).
+    pub met: Option<bool>,
+    /// The share that does, among the points that have a value.
+    #[serde(rename = "yield")]
+    pub yield_: Option<f64>,
+    /// If all points without a value are rejected, and if none is; null where every point has one.
+    pub yield_bounds: Option<[f64; 2]>,
+    /// Assemblies below the lower limit, per million.
+    pub ppm_below: Option<f64>,
+    /// Assemblies above the upper limit, per million.
+    pub ppm_above: Option<f64>,
+    /// Width of the limits by six sigma.
+    pub cp: Option<f64>,
+    /// Distance of the nearer limit by three sigma.
+    pub cpk: Option<f64>,
+    /// The sample in intervals.
+    pub histogram: Option<HistogramReport>,
+}
+
+/// Standard errors, and the 95 % interval of the yield.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StandardErrors {
+    /// Of the mean.
+    pub mean: Option<f64>,
+    /// Of sigma.
+    pub sigma: Option<f64>,
+    /// Of the skewness.
+    pub skewness: Option<f64>,
+    /// Of the kurtosis.
+    pub kurtosis: Option<f64>,
+    /// 95 % interval.
+    #[serde(rename = "yield")]
+    pub yield_: Option<[f64; 2]>,
+    /// Of the quantiles.
+    pub quantiles: OptionalQuantiles,
+}
+
+/// A distribution that is known by a sample.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EmpiricalReport {
+    /// Always `empirical`.
+    pub family: &'static str,
+    /// Quantiles.
+    pub quantiles: OptionalQuantiles,
+}
+
+/// A sample in intervals.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HistogramReport {
+    /// One more than there are intervals, ascending.
+    pub edges: Vec<f64>,
+    /// How many values in each.
+    pub counts: Vec<u64>,
+}
+
+impl SimulationReport {
+    /// The report of a simulation.
+    pub fn of(problem: &Problem, simulation: &Simulation, about: About) -> Self {
+        let (method, sampler) = match simulation.sampler {
+            Sampler::Random => ("monte-carlo", "random"),
+            Sampler::Sobol => ("quasi-monte-carlo", "sobol"),
+        };
+        let found: Vec<Warning> = simulation.characteristics.iter().filter_map(failed).collect();
+        Self {
+            schema: SCHEMA,
+            sensitol: env!("CARGO_PKG_VERSION"),
+            title: about.title,
+            study_sha256: about.sha256,
+            command: "simulate",
+            method,
+            sampler,
+            samples: simulation.samples,
+            evaluations: simulation.evaluations,
+            reused: simulation.reused,
+            failed: simulation.failed,
+            stopped: simulation.stopped,
+            reached: simulation.reached,
+            wall_s: about.wall_s,
+            seed: simulation.seed,
+            dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
+            correlation: correlation(problem),
+            characteristics: simulation.characteristics.iter().map(SimulatedReport::of).collect(),
+            warnings: about.warnings.iter().chain(&found).map(WarningReport::of).collect(),
+        }
+    }
+}
+
+fn failed(one: &SimulatedCharacteristic) -> Option<Warning> {
+    Some(Warning::FailedSamples {
+        characteristic: one.characteristic.name().to_owned(),
+        failed: one.failed,
+        samples: one.samples + one.failed,
+        error: one.error.as_ref()?.to_string(),
+    })
+}
+
+impl SimulatedReport {
+    fn of(one: &SimulatedCharacteristic) -> Self {
+        let value = |estimate: Option<Estimate>| estimate.map(|estimate| estimate.value);
+        let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
+        let quantiles = |of: &dyn Fn(Option<Estimate>) -> Option<f64>| {
+            OptionalQuantiles(NAMES.into_iter().zip(one.quantiles.map(of)).collect())
+        };
+        let limits = one.characteristic.limits();
+        let (lower, upper) = (limits.lower(), limits.upper());
+        let (mean, sigma) = (value(one.mean), value(one.sigma).filter(|&sigma| sigma > 0.0));
+        let target_yield = one.characteristic.target_yield();
+        let index = |distance: Option<f64>| Some(distance? / 3.0 / sigma?);
+        let sides =
+            [lower.zip(mean).map(|(lower, mean)| mean - lower), upper.zip(mean).map(|(upper, mean)| upper - mean)];
+        Self {
+            name: one.characteristic.name().to_owned(),
+            unit: one.characteristic.unit().map(str::to_owned),
+            samples: one.samples,
+            failed: one.failed,
+            mean,
+            sigma: value(one.sigma),
+            skewness: value(one.skewness),
+            kurtosis: value(one.kurtosis),
+            standard_error: StandardErrors {
+                mean: error(one.mean),
+                sigma: error(one.sigma),
+                skewness: error(one.skewness),
+                kurtosis: error(one.kurtosis),
+                yield_: one.yield_.map(|share| share.interval),
+                quantiles: quantiles(&error),
+            },
+            distribution: EmpiricalReport { family: "empirical", quantiles: quantiles(&value) },
+            range: one.range,
+            lower,
+            upper,
+            target_yield,
+            met: target_yield.zip(one.yield_).and_then(|(target, share)| {
+                let [low, high] = share.interval;
+                // What has no value may be rejected.
+                let least = low.min(share.bounds[0]);
+                if least >= target { Some(true) } else { (high < target).then_some(false) }
+            }),
+            yield_: one.yield_.map(|share| share.value),
+            yield_bounds: one.yield_.filter(|_| one.failed > 0).map(|share| share.bounds),
+            ppm_below: one.below.map(|share| 1e6 * share),
+            ppm_above: one.above.map(|share| 1e6 * share),
+            cp: index(lower.zip(upper).map(|(lower, upper)| 0.5 * (upper - lower))),
+            cpk: index(sides.into_iter().flatten().reduce(f64::min)),
+            histogram: one.histogram.clone().map(|Histogram { edges, counts }| HistogramReport { edges, counts }),
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Blocks of points of the inputs' joint distribution.
+
+use faer::Mat;
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::sobol::{SOBOL_DIMENSIONS, Sobol, mixed, scrambled};
+use crate::assembly::Points;
+use crate::correlation::Correlation;
+use crate::dimension::Dimension;
+use crate::distribution::{Probability, standard_normal};
+
+/// How points are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Sampler {
+    /// Independent random points.
+    Random,
+    /// Sobol's points, scrambled anew in every replicate.
+    Sobol,
+}
+
+/// Why a problem cannot be sampled.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SamplingError {
+    /// A dimension whose distribution is unknown.
+    #[error(
+        "dimension `{dimension}` is known by its moments only, which cannot be sampled: give it a distribution, or use a \
+         derivative method"
+    )]
+    MomentsOnly {
+        /// The dimension.
+        dimension: String,
+    },
+    /// More dimensions than there are direction numbers for.
+    #[error("{dimensions} dimensions vary, and there are Sobol' points for {SOBOL_DIMENSIONS}: use random ones")]
+    TooManyDimensions {
+        /// How many vary.
+        dimensions: usize,
+    },
+}
+
+/// A range of points: which replicate, the first, how many.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Portion {
+    /// Random points have one replicate; Sobol's as many as have been scrambled apart.
+    pub replicate: u64,
+    /// A multiple of the portion's size, or of the next power of two above it.
+    pub first: u64,
+    /// How many points.
+    pub rows: usize,
+}
+
+/// The source of points: every portion can be had at any time, by itself, and is always the same.
+///
+/// Every dimension has its own stream, so that what is not asked changes nothing, and every portion its own seed, so that
+/// nothing depends on the number of threads.
+pub struct Draws<'a> {
+    dimensions: &'a [Dimension],
+    varying: Vec<(usize, &'a dyn Probability)>,
+    correlated: Option<Correlated<'a>>,
+    sobol: Option<Sobol>,
+    seed: u64,
+}
+
+/// The correlated dimensions: their places among the varying ones, and the factor of their normal variables.
+struct Correlated<'a> {
+    correlation: &'a Correlation,
+    places: Vec<usize>,
+    factor: Mat<f64>,
+}
+
+impl<'a> Draws<'a> {
+    /// From these dimensions.
+    ///
+    /// # Errors
+    /// When a dimension is known by moments only, or too many vary for Sobol's points.
+    pub fn new(
+        dimensions: &'a [Dimension],
+        correlation: Option<&'a Correlation>,
+        sampler: Sampler,
+        seed: u64,
+    ) -> Result<Self, SamplingError> {
+        let mut varying = Vec::new();
+        for (d, dimension) in dimensions.iter().enumerate() {
+            if let Some(distribution) = dimension.distribution() {
+                let unknown = || SamplingError::MomentsOnly { dimension: dimension.name().to_owned() };
+                varying.push((d, distribution.probability().ok_or_else(unknown)?));
+            }
+        }
+        let sobol = match sampler {
+            Sampler::Random => None,
+            Sampler::Sobol => {
+                let too_many = SamplingError::TooManyDimensions { dimensions: varying.len() };
+                Some(Sobol::new(varying.len()).ok_or(too_many)?)
+            }
+        };
+        let correlated = correlation.map(|correlation| Correlated {
+            places: (correlation.members().iter())
+                .map(|d| varying.iter().position(|(other, _)| other == d).expect("a correlated dimension varies"))
+                .collect(),
+            factor: correlation.factor(),
+            correlation,
+        });
+        Ok(Self { dimensions, varying, correlated, sobol, seed })
+    }
+
+    /// The points of a portion; dimensions that do not vary have their nominal value.
+    pub fn points(&self, portion: Portion) -> Points {
+        let nominal: Vec<f64> = self.dimensions.iter().map(Dimension::nominal).collect();
+        let mut points = Points::repeated(&nominal, portion.rows);
+        let mut digits = vec![0; if self.sobol.is_some() { portion.rows } else { 0 }];
+        for (place, &(d, law)) in self.varying.iter().enumerate() {
+            if !self.is_correlated(place) {
+                self.own(place, law, portion, &mut digits, points.column_mut(d));
+            }
+        }
+        if let Some(correlated) = &self.correlated {
+            self.together(correlated, portion, &mut digits, &mut points);
+        }
+        points
+    }
+
+    fn is_correlated(&self, place: usize) -> bool {
+        self.correlated.as_ref().is_some_and(|correlated| correlated.places.contains(&place))
+    }
+
+    /// A key that belongs to the seed, the portion's stream and the dimension.
+    fn key(&self, stream: u64, place: usize) -> u64 {
+        mixed(mixed(mixed(self.seed).wrapping_add(stream)).wrapping_add(place as u64))
+    }
+
+    fn generator(&self, portion: Portion, place: usize) -> Xoshiro256PlusPlus {
+        Xoshiro256PlusPlus::seed_from_u64(self.key(mixed(portion.replicate) ^ portion.first, place))
+    }
+
+    fn own(&self, place: usize, law: &dyn Probability, portion: Portion, digits: &mut [u64], out: &mut [f64]) {
+        let Some(sobol) = &self.sobol else { return law.fill(&mut self.generator(portion, place), out) };
+        sobol.digits(place, portion.first, digits);
+        let key = self.key(portion.replicate, place);
+        for (value, &digits) in out.iter_mut().zip(digits.iter()) {
+            let (p, upper) = tail(scrambled(digits, key));
+            *value = if upper { law.upper_quantile(p) } else { law.quantile(p) };
+        }
+    }
+
+    /// Normal variables, made to vary together, and the inputs that they stand for.
+    fn together(&self, correlated: &Correlated<'_>, portion: Portion, digits: &mut [u64], points: &mut Points) {
+        let normals: Vec<Vec<f64>> = (correlated.places.iter())
+            .map(|&place| match &self.sobol {
+                None => {
+                    let generator = &mut self.generator(portion, place);
+                    (0..portion.rows).map(|_| generator.sample(StandardNormal)).collect()
+                }
+                Some(sobol) => {
+                    sobol.digits(place, portion.first, digits);
+                    let key = self.key(portion.replicate, place);
+                    let normal = |&digits: &u64| {
+                        let (p, upper) = tail(scrambled(digits, key));
+                        if upper { standard_normal::upper_quantile(p) } else { standard_normal::quantile(p) }
+                    };
+                    digits.iter().map(normal).collect()
+                }
+            })
+            .collect();
+        for (j, (&place, transform)) in correlated.places.iter().zip(correlated.correlation.transforms()).enumerate() {
+            let (d, law) = self.varying[place];
+            let (mean, sigma) = (self.dimensions[d].mean(), self.dimensions[d].sigma());
+            let column = points.column_mut(d);
+            column.fill(0.0);
+            for (k, normals) in normals.iter().enumerate() {
+                let factor = correlated.factor[(j, k)];
+                if factor != 0.0 {
+                    column.iter_mut().zip(normals).for_each(|(z, normal)| *z += factor * normal);
+                }
+            }
+            for value in column {
+                let z = *value;
+                *value = match (transform.is_normal(), z < 0.0) {
+                    (true, _) => mean + sigma * z,
+                    (false, true) => law.quantile(standard_normal::cdf(z)),
+                    (false, false) => law.upper_quantile(standard_normal::sf(z)),
+                };
+            }
+        }
+    }
+}
+
+/// The probability that these digits stand for, the middle of its cell, counted from the nearer end.
+fn tail(digits: u64) -> (f64, bool) {
+    let upper = digits >> 63 == 1;
+    let digits = if upper { !digits } else { digits };
+    (((digits >> 12) as f64 + 0.5) / (1u64 << 52) as f64, upper)
+}

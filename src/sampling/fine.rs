@@ -1,0 +1,100 @@
+//! Counts in fine bins: quantiles of any number of values in flat memory.
+
+/// The bins: equal on the scale of `asinh(u)`, `u` in units of a spread about a middle, so that they are fine in the
+/// centre, wider far out, and reach as far as anything goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    middle: f64,
+    spread: f64,
+}
+
+/// How many values lie in each bin. Whole numbers, so that the order of the values does not matter to the last bit.
+#[derive(Debug, Clone)]
+pub struct Fine {
+    scale: Scale,
+    counts: Vec<u64>,
+    total: u64,
+}
+
+/// Width of a bin on the scale of `asinh(u)`; a quantile is interpolated within it, which errs by its square.
+const WIDTH: f64 = 1e-3;
+/// Bins on either side: to `asinh` of a million spreads; what is farther out counts in the last one.
+const SIDE: usize = 14_600;
+
+impl Scale {
+    /// About a middle with a spread, as a first look at the values gave them; where nothing is spread, 1 stands for it.
+    pub fn about(middle: f64, spread: f64) -> Self {
+        Self { middle, spread: if spread > 0.0 && spread.is_finite() { spread } else { 1.0 } }
+    }
+
+    /// The bin of a value.
+    pub fn bin(&self, value: f64) -> u32 {
+        let place = ((value - self.middle) / self.spread).asinh() / WIDTH + SIDE as f64;
+        place.clamp(0.0, (2 * SIDE - 1) as f64) as u32
+    }
+
+    /// The lower end of a bin, or a place within one.
+    fn edge(&self, place: f64) -> f64 {
+        self.middle + self.spread * ((place - SIDE as f64) * WIDTH).sinh()
+    }
+}
+
+impl Fine {
+    /// Nothing yet.
+    pub fn new(scale: Scale) -> Self {
+        Self { scale, counts: vec![0; 2 * SIDE], total: 0 }
+    }
+
+    /// Counts a value in its bin.
+    pub fn count(&mut self, bin: u32) {
+        self.counts[bin as usize] += 1;
+        self.total += 1;
+    }
+
+    /// Takes in the counts of another on the same scale.
+    pub fn merge(&mut self, other: &Self) {
+        assert_eq!(self.scale, other.scale, "bins of one scale");
+        self.counts.iter_mut().zip(&other.counts).for_each(|(count, more)| *count += more);
+        self.total += other.total;
+    }
+
+    /// How many values.
+    pub fn total(&self) -> u64 {
+        self.total
+    }
+
+    /// The value below which `rank` of the values lie, interpolated within its bin; None where there are not as many.
+    pub fn at_rank(&self, rank: f64) -> Option<f64> {
+        if self.total == 0 || !(0.0..=self.total as f64).contains(&rank) {
+            return None;
+        }
+        let mut below = 0.0;
+        for (bin, &count) in self.counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
+            let count = count as f64;
+            if below + count >= rank {
+                return Some(self.scale.edge(bin as f64 + (rank - below) / count));
+            }
+            below += count;
+        }
+        None
+    }
+
+    /// About `bins` equal intervals from `low` to `high`, and how many values lie in each; the first and the last one reach
+    /// to the ends given. Their inner edges are those of the fine bins, so that every value is counted where it is.
+    pub fn histogram(&self, [least, greatest]: [f64; 2], [low, high]: [f64; 2], bins: usize) -> (Vec<f64>, Vec<u64>) {
+        let (mut edges, mut counts) = (vec![least], Vec::new());
+        let mut from = 0;
+        for i in 1..bins {
+            let to = self.scale.bin(low + (high - low) * i as f64 / bins as f64) as usize;
+            let edge = self.scale.edge(to as f64);
+            if to > from && edge > edges[edges.len() - 1] && edge < greatest {
+                counts.push(self.counts[from..to].iter().sum());
+                edges.push(edge);
+                from = to;
+            }
+        }
+        counts.push(self.counts[from..].iter().sum());
+        edges.push(greatest);
+        (edges, counts)
+    }
+}

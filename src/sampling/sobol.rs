@@ -1,0 +1,120 @@
+//! Sobol's sequence with nested uniform scrambling.
+
+use std::sync::LazyLock;
+
+/// Primitive polynomials and initial direction numbers of Joe and Kuo (2008).
+const JOE_KUO: &str = include_str!("joe_kuo.txt");
+/// Binary digits of a coordinate: the index of a point has as many.
+const DIGITS: u32 = 52;
+/// Digits that are scrambled one by one; below them all at once, which makes no difference before the 2^40th point.
+const NESTED: u32 = 40;
+
+/// The direction numbers of one dimension, digits from the top of the word down.
+type Directions = [u64; DIGITS as usize];
+
+/// A sequence of points in the unit cube, any 2^m of them spread more evenly than random ones.
+///
+/// Point `i` has the coordinates `v_1 i_1 xor v_2 i_2 xor ...` with the binary digits of `i` and the direction numbers of
+/// Joe and Kuo (2008), whose two-dimensional projections are good. Owen's nested uniform scrambling (1995) makes every
+/// point uniform and keeps the balance: each digit is flipped or not by a random bit that belongs to the digits before it.
+///
+/// ```
+/// use sensitol::sampling::Sobol;
+/// let plain = Sobol::new(3).expect("there are direction numbers for three dimensions");
+/// let mut column = [0.0; 4];
+/// plain.column(1, 0, None, &mut column);
+/// assert_eq!(column, [0.0, 0.5, 0.75, 0.25]);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Sobol {
+    directions: Vec<Directions>,
+}
+
+/// The dimensions that there are direction numbers for.
+pub const SOBOL_DIMENSIONS: usize = 2048;
+
+static LINES: LazyLock<Vec<&str>> = LazyLock::new(|| JOE_KUO.lines().filter(|line| !line.starts_with('#')).collect());
+
+impl Sobol {
+    /// In so many dimensions; None beyond [`SOBOL_DIMENSIONS`].
+    pub fn new(dimensions: usize) -> Option<Self> {
+        (dimensions <= SOBOL_DIMENSIONS).then(|| Self { directions: (0..dimensions).map(directions).collect() })
+    }
+
+    /// Coordinates of the points `first ..` of one dimension, from 0 to below 1; with a key scrambled.
+    ///
+    /// # Panics
+    /// When `first` is no multiple of the least power of two that holds the points.
+    pub fn column(&self, dimension: usize, first: u64, key: Option<u64>, out: &mut [f64]) {
+        let mut digits = vec![0; out.len()];
+        self.digits(dimension, first, &mut digits);
+        for (value, digits) in out.iter_mut().zip(digits) {
+            let digits = key.map_or(digits, |key| scrambled(digits, key));
+            *value = (digits >> (64 - DIGITS)) as f64 / (1u64 << DIGITS) as f64;
+        }
+    }
+
+    /// The same as words, digits from the top down, not scrambled.
+    pub(crate) fn digits(&self, dimension: usize, first: u64, out: &mut [u64]) {
+        let directions = &self.directions[dimension];
+        let block = out.len().next_power_of_two() as u64;
+        assert_eq!(first % block, 0, "a block starts at a multiple of its size");
+        let Some(start) = out.first_mut() else { return };
+        *start = (0..DIGITS).filter(|digit| first >> digit & 1 == 1).fold(0, |x, digit| x ^ directions[digit as usize]);
+        // Twice as many points with every digit: those before, and their images.
+        let mut known = 1;
+        for direction in directions {
+            if known >= out.len() {
+                break;
+            }
+            for i in known..out.len().min(2 * known) {
+                out[i] = out[i - known] ^ direction;
+            }
+            known *= 2;
+        }
+    }
+}
+
+/// Direction numbers by the recurrence of the dimension's polynomial (Bratley and Fox 1988).
+fn directions(dimension: usize) -> Directions {
+    let mut v = [0; DIGITS as usize];
+    let place = |digit: usize, m: u64| m << (63 - digit);
+    let Some(line) = dimension.checked_sub(1).map(|line| LINES[line]) else {
+        // Van der Corput's sequence.
+        v.iter_mut().enumerate().for_each(|(digit, v)| *v = place(digit, 1));
+        return v;
+    };
+    let mut numbers = line.split(' ').map(|number| number.parse::<u64>().expect("a number of the table"));
+    let (degree, polynomial) = (numbers.next().expect("a degree") as usize, numbers.next().expect("a polynomial"));
+    for digit in 0..DIGITS as usize {
+        v[digit] = match digit < degree {
+            true => place(digit, numbers.next().expect("as many numbers as the degree")),
+            false => {
+                let middle = (1..degree).filter(|k| polynomial >> (degree - 1 - k) & 1 == 1);
+                middle.fold(v[digit - degree] ^ v[digit - degree] >> degree, |x, k| x ^ v[digit - k])
+            }
+        };
+    }
+    v
+}
+
+/// Scrambles digits by a key of their dimension: digit by digit, each by a bit that belongs to those above it.
+pub(crate) fn scrambled(digits: u64, key: u64) -> u64 {
+    let mut flips = 0;
+    for depth in 0..NESTED {
+        // The digits above this one, with a mark below them that tells how many they are.
+        let above = if depth == 0 { 0 } else { digits >> (64 - depth) << (64 - depth) };
+        let mark = 1 << (63 - depth);
+        flips |= mixed(above ^ mark ^ key) >> depth & mark;
+    }
+    let above = digits >> (64 - NESTED) << (64 - NESTED);
+    digits ^ flips ^ mixed(above ^ 1 ^ key) >> NESTED
+}
+
+/// A bijection of words that leaves no pattern: the finaliser of SplitMix64 (Steele, Lea and Flood 2014, after Stafford).
+pub(crate) fn mixed(word: u64) -> u64 {
+    let word = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let word = (word ^ word >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let word = (word ^ word >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    word ^ word >> 31
+}

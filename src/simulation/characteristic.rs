@@ -1,0 +1,180 @@
+//! What a simulation knows of one characteristic.
+
+use super::tally::{Count, Replicate};
+use crate::assembly::EvaluationError;
+use crate::capability::TAIL;
+use crate::characteristic::{Characteristic, SpecLimits};
+use crate::sampling::{Estimate, Fine, Summary, of_moments, wilson};
+
+/// Estimates for one characteristic, each with its standard error. What is unknown is None.
+#[derive(Debug, Clone)]
+pub struct SimulatedCharacteristic {
+    /// The characteristic, with its limits.
+    pub characteristic: Characteristic,
+    /// Points at which it has a value.
+    pub samples: u64,
+    /// Points at which it has none.
+    pub failed: u64,
+    /// Why not, of the first of them.
+    pub error: Option<EvaluationError>,
+    /// First moment.
+    pub mean: Option<Estimate>,
+    /// Standard deviation.
+    pub sigma: Option<Estimate>,
+    /// Third standardised moment; None where nothing varies.
+    pub skewness: Option<Estimate>,
+    /// Fourth standardised moment, 3 for a normal; None where nothing varies.
+    pub kurtosis: Option<Estimate>,
+    /// Quantiles of the probabilities [`QUANTILES`].
+    pub quantiles: [Option<Estimate>; 7],
+    /// The share of assemblies within the limits; None without any limit.
+    pub yield_: Option<YieldEstimate>,
+    /// Share below the lower limit.
+    pub below: Option<f64>,
+    /// Share above the upper limit.
+    pub above: Option<f64>,
+    /// The least and the greatest value seen.
+    pub range: Option<[f64; 2]>,
+    /// The sample, counted in some tens of intervals.
+    pub histogram: Option<Histogram>,
+}
+
+/// The share of assemblies that keep the limits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct YieldEstimate {
+    /// Among the points that have a value.
+    pub value: f64,
+    /// 95 % interval of that.
+    pub interval: [f64; 2],
+    /// If every point without a value is rejected, and if none is.
+    pub bounds: [f64; 2],
+}
+
+/// How many values lie in which interval.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Histogram {
+    /// One more than there are intervals, ascending.
+    pub edges: Vec<f64>,
+    /// How many values in each.
+    pub counts: Vec<u64>,
+}
+
+/// The probabilities whose quantiles are estimated.
+pub const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
+
+/// Fewer values than this beyond a quantile say nothing of its standard error.
+const BEYOND: f64 = 5.0;
+/// Rejected assemblies in every replicate, on average, from which their differences are an interval of the yield.
+const REJECTED: u64 = 5;
+/// The 97.5 % quantile of Student's distribution with 15 degrees of freedom: for 16 replicates.
+const STUDENT: f64 = 2.131_449_545_559_323;
+/// Intervals of the histogram between the outer quantiles.
+const BINS: usize = 40;
+
+impl SimulatedCharacteristic {
+    pub(super) fn of(characteristic: &Characteristic, count: &Count, answered: u64) -> Self {
+        let mut all = Summary::default();
+        count.replicates.iter().for_each(|replicate| all.merge(&replicate.summary));
+        let fine = pooled(&count.replicates);
+        let [mean, sigma, skewness, kurtosis] = moments(&all, &count.replicates);
+        let known = all.count();
+        let share = |side: usize| {
+            let outside: u64 = count.replicates.iter().map(|replicate| replicate.outside[side]).sum();
+            (known > 0).then(|| outside as f64 / known as f64)
+        };
+        let limits = characteristic.limits();
+        let quantiles = fine.as_ref().map_or([None; 7], |fine| QUANTILES.map(|p| quantile(p, fine, &count.replicates)));
+        let [low, high] = [quantiles[0], quantiles[6]].map(|quantile| quantile.map(|quantile| quantile.value));
+        let range = (known > 0).then(|| all.range());
+        Self {
+            characteristic: characteristic.clone(),
+            samples: known,
+            failed: count.failed,
+            error: count.error.clone(),
+            mean,
+            sigma,
+            skewness,
+            kurtosis,
+            yield_: yield_of(&limits, &count.replicates, known, answered),
+            below: limits.lower().and_then(|_| share(0)),
+            above: limits.upper().and_then(|_| share(1)),
+            histogram: range.zip(fine).zip(low.zip(high)).map(|((range, fine), (low, high))| {
+                let (edges, counts) = fine.histogram(range, [low, high], BINS);
+                Histogram { edges, counts }
+            }),
+            range,
+            quantiles,
+        }
+    }
+}
+
+fn pooled(replicates: &[Replicate]) -> Option<Fine> {
+    let mut fines = replicates.iter().filter_map(|replicate| replicate.fine.as_ref());
+    let mut all = fines.next()?.clone();
+    fines.for_each(|fine| all.merge(fine));
+    Some(all)
+}
+
+/// Of all points together; the standard errors of the sample where it is random, of the replicates where there are such.
+fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
+    let mut estimates = of_moments(all);
+    if replicates.len() > 1 {
+        let each: Vec<[Option<Estimate>; 4]> =
+            replicates.iter().map(|replicate| of_moments(&replicate.summary)).collect();
+        for (moment, estimate) in estimates.iter_mut().enumerate() {
+            if let Some(estimate) = estimate {
+                let values = each.iter().map(|of| of[moment].map(|estimate| estimate.value));
+                estimate.standard_error = of_replicates(values);
+            }
+        }
+    }
+    estimates
+}
+
+/// The standard error of the mean of independent replicates; None where one has no value.
+fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    let values: Vec<f64> = values.collect::<Option<_>>()?;
+    let summary = Summary::of(&values);
+    (values.len() > 1).then(|| summary.sigma() / (values.len() as f64).sqrt())
+}
+
+/// A quantile; its standard error is half the distance of the quantiles one standard deviation of the binomial count below
+/// and above it, or that of the replicates.
+fn quantile(p: f64, fine: &Fine, replicates: &[Replicate]) -> Option<Estimate> {
+    let n = fine.total() as f64;
+    let value = fine.at_rank(p * n)?;
+    let beyond = p.min(1.0 - p) * n / replicates.len() as f64;
+    let standard_error = match replicates.len() {
+        _ if beyond < BEYOND => None,
+        1 => {
+            let ranks = (p * (1.0 - p) * n).sqrt();
+            let at = |rank: f64| fine.at_rank(rank);
+            at(p * n + ranks).zip(at(p * n - ranks)).map(|(high, low)| 0.5 * (high - low))
+        }
+        _ => of_replicates(replicates.iter().map(|replicate| {
+            let fine = replicate.fine.as_ref()?;
+            fine.at_rank(p * fine.total() as f64)
+        })),
+    };
+    Some(Estimate { value, standard_error })
+}
+
+fn yield_of(limits: &SpecLimits, replicates: &[Replicate], known: u64, answered: u64) -> Option<YieldEstimate> {
+    if !limits.exist() || known == 0 {
+        return None;
+    }
+    let rejected = |replicate: &Replicate| replicate.outside.iter().sum::<u64>();
+    let outside: u64 = replicates.iter().map(rejected).sum();
+    let within = known - outside;
+    let value = within as f64 / known as f64;
+    let few = outside.min(within) < REJECTED * replicates.len() as u64;
+    let interval = match of_replicates(replicates.iter().map(|replicate| {
+        let n = replicate.summary.count();
+        (n > 0).then(|| 1.0 - rejected(replicate) as f64 / n as f64)
+    })) {
+        Some(error) if !few && error > 0.0 => [(value - STUDENT * error).max(0.0), (value + STUDENT * error).min(1.0)],
+        _ => wilson(within as f64, known as f64),
+    };
+    let bounds = [within, within + (answered - known)].map(|most| most as f64 / answered as f64);
+    Some(YieldEstimate { value, interval, bounds })
+}

@@ -1,0 +1,243 @@
+//! Monte Carlo: the assembly function itself on points of the inputs' distribution, with standard errors.
+
+mod characteristic;
+mod tally;
+
+pub use characteristic::{Histogram, QUANTILES, SimulatedCharacteristic, YieldEstimate};
+
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use crate::assembly::{Ask, EvaluationError, Responses, Run};
+use crate::problem::Problem;
+use crate::sampling::{Draws, Portion, Sampler, SamplingError};
+use tally::{Block, Lens, Tally};
+
+/// How a problem is simulated.
+///
+/// ```
+/// use sensitol::simulation::SimulationOptions;
+/// let options = SimulationOptions { samples: 10_000, ..SimulationOptions::default() };
+/// assert_eq!(options.seed, 1);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulationOptions {
+    /// Points, at most; Sobol's are rounded up to the next power of two in each replicate.
+    pub samples: u64,
+    /// How they are drawn.
+    pub sampler: Sampler,
+    /// Another seed is another sample.
+    pub seed: u64,
+    /// Ends when the standard error of every sigma is below this part of it.
+    pub until: Option<f64>,
+    /// Ends when half the interval of every yield is below this.
+    pub until_yield: Option<f64>,
+}
+
+impl Default for SimulationOptions {
+    fn default() -> Self {
+        Self { samples: 100_000, sampler: Sampler::Random, seed: 1, until: None, until_yield: None }
+    }
+}
+
+/// Replicates of Sobol's points, each scrambled by itself: what they differ by is the standard error.
+pub const REPLICATES: u64 = 16;
+/// Points that a task evaluates together.
+const ROWS: usize = 1024;
+/// Tasks between two looks at the clock and at what is wanted.
+const TASKS: usize = 64;
+/// Points of a costly model between two looks.
+const COSTLY: usize = 4096;
+
+/// What a simulation found out.
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    /// How points were drawn.
+    pub sampler: Sampler,
+    /// The seed.
+    pub seed: u64,
+    /// Points that were answered.
+    pub samples: u64,
+    /// Points sent to the model, those tried again included.
+    pub evaluations: u64,
+    /// Points whose answers were known from an earlier run.
+    pub reused: u64,
+    /// Points that lost at least one characteristic.
+    pub failed: u64,
+    /// Whether it was stopped before all points were drawn or what was wanted was reached.
+    pub stopped: bool,
+    /// Whether what was wanted was reached; None where nothing was.
+    pub reached: Option<bool>,
+    /// Time within the model, of all threads together.
+    pub in_model: Duration,
+    /// What is known of every characteristic, in the problem's order.
+    pub characteristics: Vec<SimulatedCharacteristic>,
+}
+
+/// How far a simulation is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// Points answered.
+    pub samples: u64,
+    /// Points that it will take: all of them, or what the standard errors so far say that the wanted one takes.
+    pub expected: f64,
+    /// Time so far.
+    pub elapsed: Duration,
+}
+
+impl Pace {
+    /// What it will take in all, at the speed so far, in seconds.
+    pub fn expected_s(&self) -> f64 {
+        self.elapsed.as_secs_f64() * self.expected / self.samples.max(1) as f64
+    }
+}
+
+/// Simulates a problem.
+///
+/// Evaluations: as many as samples. Memory: flat in the number of samples, about a megabyte for each characteristic (four
+/// for Sobol's points). The numbers are the same for any number of threads.
+///
+/// # Errors
+/// When a dimension cannot be sampled, or the model cannot be used at all; nothing is evaluated then.
+///
+/// ```
+/// use sensitol::simulation::{SimulationOptions, simulate};
+/// use sensitol::{Closure, Dimension, Problem};
+/// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::uniform("b", 5.0, 0.3)?];
+/// let gap = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?;
+/// let found = simulate(&gap, &SimulationOptions::default())?;
+/// let sigma = found.characteristics[0].sigma.unwrap();
+/// let exact = (0.1f64.powi(2) + 0.3f64.powi(2) / 3.0).sqrt();
+/// assert!((sigma.value - exact).abs() < 4.0 * sigma.standard_error.unwrap());
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+pub fn simulate(problem: &Problem, options: &SimulationOptions) -> Result<Simulation, SimulationError> {
+    simulate_within(problem, options, &Run::to_the_end(), &|_| {})
+}
+
+/// Why a problem cannot be simulated.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// It cannot be sampled.
+    #[error(transparent)]
+    Sampling(#[from] SamplingError),
+    /// The model cannot be used at all.
+    #[error("{error}")]
+    Model {
+        /// Why not.
+        error: EvaluationError,
+    },
+    /// No or too many points.
+    #[error("a simulation takes 2 to {most} points, not {samples}")]
+    Samples {
+        /// The number asked for.
+        samples: u64,
+        /// The greatest.
+        most: u64,
+    },
+    /// What is wanted is no positive number.
+    #[error("what is wanted of a standard error is a number above 0, not {value}")]
+    Wanted {
+        /// The value.
+        value: f64,
+    },
+}
+
+/// Counts are exact in a double up to here.
+const MOST: u64 = 1 << 52;
+
+/// [`simulate`], telling of its pace and stopping when told to.
+pub fn simulate_within(
+    problem: &Problem,
+    options: &SimulationOptions,
+    run: &Run<'_>,
+    pace: &dyn Fn(Pace),
+) -> Result<Simulation, SimulationError> {
+    if !(2..=MOST).contains(&options.samples) {
+        return Err(SimulationError::Samples { samples: options.samples, most: MOST });
+    }
+    if let Some(value) = [options.until, options.until_yield].into_iter().flatten().find(|wanted| !(*wanted > 0.0)) {
+        return Err(SimulationError::Wanted { value });
+    }
+    let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
+    problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
+    let begun = Instant::now();
+    let mut tally = Tally::new(problem, options.sampler);
+    let mut portions = Portions::new(options, problem.function().signature().costly);
+    let (mut reached, mut expected) = (None, portions.total as f64);
+    while !run.stopped() && !tally.stopped {
+        let batch = portions.next_batch();
+        if batch.is_empty() {
+            break;
+        }
+        let one = |portion: &Portion| block(problem, &draws, *portion, run, tally.lenses());
+        let blocks: Vec<Block> = match portions.costly {
+            true => batch.iter().map(one).collect(),
+            false => batch.par_iter().map(one).collect(),
+        };
+        tally.add(&batch, blocks);
+        if let Some(ratio) = tally.shortfall(options) {
+            // Standard errors shrink with the root of the sample.
+            expected = expected.min(tally.samples() as f64 * (ratio * ratio).max(1.0));
+            reached = Some(ratio <= 1.0);
+        }
+        pace(Pace { samples: tally.samples(), expected, elapsed: begun.elapsed() });
+        if reached == Some(true) {
+            break;
+        }
+    }
+    let stopped = tally.stopped || reached != Some(true) && !portions.done();
+    Ok(tally.finish(options, stopped, reached))
+}
+
+/// Evaluates one portion.
+fn block(problem: &Problem, draws: &Draws<'_>, portion: Portion, run: &Run<'_>, lenses: &[Lens]) -> Block {
+    let points = draws.points(portion);
+    let mut out = Responses::open(portion.rows, problem.outputs().len());
+    let begun = Instant::now();
+    problem.function().evaluate(&Ask::values(&points, problem.outputs()), run, &mut out);
+    Block::of(&out, begun.elapsed(), lenses)
+}
+
+/// The portions of a sample, a batch at a time, every replicate as far as the others.
+struct Portions {
+    replicates: u64,
+    rows: u64,
+    /// Points in all.
+    total: u64,
+    /// Of a replicate.
+    each: u64,
+    done: u64,
+    costly: bool,
+}
+
+impl Portions {
+    fn new(options: &SimulationOptions, costly: bool) -> Self {
+        let (replicates, each) = match options.sampler {
+            Sampler::Random => (1, options.samples),
+            Sampler::Sobol => (REPLICATES, options.samples.div_ceil(REPLICATES).next_power_of_two()),
+        };
+        let rows = if costly && replicates == 1 { COSTLY } else { ROWS } as u64;
+        Self { replicates, rows: rows.min(each), total: replicates * each, each, done: 0, costly }
+    }
+
+    fn done(&self) -> bool {
+        self.done >= self.each
+    }
+
+    fn next_batch(&mut self) -> Vec<Portion> {
+        let tasks = if self.costly { 1 } else { TASKS as u64 / self.replicates };
+        let mut batch = Vec::new();
+        for _ in 0..tasks {
+            if self.done() {
+                break;
+            }
+            let rows = self.rows.min(self.each - self.done) as usize;
+            batch.extend((0..self.replicates).map(|replicate| Portion { replicate, first: self.done, rows }));
+            self.done += rows as u64;
+        }
+        batch
+    }
+}

@@ -1,0 +1,220 @@
+//! What comes in, counted: the same whatever the order in which threads finish.
+
+use std::time::Duration;
+
+use super::characteristic::SimulatedCharacteristic;
+use super::{REPLICATES, Simulation, SimulationOptions};
+use crate::assembly::{EvaluationError, Responses};
+use crate::characteristic::SpecLimits;
+use crate::problem::Problem;
+use crate::sampling::{Fine, Portion, Sampler, Scale, Summary};
+
+/// What a portion is looked at with.
+#[derive(Clone, Copy)]
+pub(super) struct Lens {
+    pub(super) limits: SpecLimits,
+    /// Known after the first batch.
+    pub(super) scale: Option<Scale>,
+}
+
+/// The answers of one portion.
+pub(super) struct Block {
+    columns: Vec<Column>,
+    answered: u64,
+    extra: i64,
+    reused: u64,
+    failed: u64,
+    complete: bool,
+    took: Duration,
+}
+
+/// The answers of one portion for one characteristic.
+struct Column {
+    summary: Summary,
+    outside: [u64; 2],
+    values: Values,
+    failed: u64,
+    error: Option<EvaluationError>,
+}
+
+/// As they are before a scale is known, in bins then.
+enum Values {
+    Plain(Vec<f64>),
+    Binned(Vec<u32>),
+}
+
+impl Block {
+    pub(super) fn of(out: &Responses, took: Duration, lenses: &[Lens]) -> Self {
+        let open = |row: usize| (0..out.outputs()).all(|output| out.is_open(row, output));
+        let answered = (0..out.rows()).filter(|&row| !open(row)).count();
+        let mut lost: Vec<usize> = out.errors().map(|(row, ..)| row).collect();
+        lost.dedup();
+        Self {
+            columns: lenses.iter().enumerate().map(|(output, lens)| Column::of(out, output, lens)).collect(),
+            answered: answered as u64,
+            extra: out.extra(),
+            reused: out.count_reused() as u64,
+            failed: lost.len() as u64,
+            complete: answered == out.rows(),
+            took,
+        }
+    }
+}
+
+impl Column {
+    fn of(out: &Responses, output: usize, lens: &Lens) -> Self {
+        let values: Vec<f64> = out.column(output).iter().copied().filter(|value| !value.is_nan()).collect();
+        let count = |beyond: &dyn Fn(f64) -> bool| values.iter().filter(|&&value| beyond(value)).count() as u64;
+        let mut errors = out.errors().filter(|&(_, of, _)| of == output).map(|(_, _, error)| error);
+        let error = errors.next().cloned();
+        Self {
+            summary: Summary::of(&values),
+            // A value on a limit keeps it.
+            outside: [
+                lens.limits.lower().map_or(0, |lower| count(&|value| value < lower)),
+                lens.limits.upper().map_or(0, |upper| count(&|value| value > upper)),
+            ],
+            failed: u64::from(error.is_some()) + errors.count() as u64,
+            error,
+            values: match lens.scale {
+                None => Values::Plain(values),
+                Some(scale) => Values::Binned(values.into_iter().map(|value| scale.bin(value)).collect()),
+            },
+        }
+    }
+}
+
+/// One replicate of one characteristic.
+#[derive(Clone)]
+pub(super) struct Replicate {
+    pub(super) summary: Summary,
+    pub(super) outside: [u64; 2],
+    pub(super) fine: Option<Fine>,
+}
+
+/// All of one characteristic.
+pub(super) struct Count {
+    pub(super) replicates: Vec<Replicate>,
+    pub(super) failed: u64,
+    pub(super) error: Option<EvaluationError>,
+}
+
+pub(super) struct Tally<'a> {
+    problem: &'a Problem,
+    lenses: Vec<Lens>,
+    counts: Vec<Count>,
+    answered: u64,
+    extra: i64,
+    reused: u64,
+    failed: u64,
+    in_model: Duration,
+    pub(super) stopped: bool,
+}
+
+impl<'a> Tally<'a> {
+    pub(super) fn new(problem: &'a Problem, sampler: Sampler) -> Self {
+        let replicates = match sampler {
+            Sampler::Random => 1,
+            Sampler::Sobol => REPLICATES as usize,
+        };
+        let nothing = Replicate { summary: Summary::default(), outside: [0, 0], fine: None };
+        let count = || Count { replicates: vec![nothing.clone(); replicates], failed: 0, error: None };
+        let characteristics = problem.characteristics();
+        Self {
+            problem,
+            lenses: characteristics.iter().map(|one| Lens { limits: one.limits(), scale: None }).collect(),
+            counts: characteristics.iter().map(|_| count()).collect(),
+            answered: 0,
+            extra: 0,
+            reused: 0,
+            failed: 0,
+            in_model: Duration::ZERO,
+            stopped: false,
+        }
+    }
+
+    pub(super) fn lenses(&self) -> &[Lens] {
+        &self.lenses
+    }
+
+    pub(super) fn samples(&self) -> u64 {
+        self.answered
+    }
+
+    /// Takes in the blocks of these portions, in their order.
+    pub(super) fn add(&mut self, portions: &[Portion], blocks: Vec<Block>) {
+        if self.lenses.iter().any(|lens| lens.scale.is_none()) {
+            self.look(&blocks);
+        }
+        for (portion, block) in portions.iter().zip(blocks) {
+            self.answered += block.answered;
+            self.extra += block.extra;
+            self.reused += block.reused;
+            self.failed += block.failed;
+            self.in_model += block.took;
+            self.stopped |= !block.complete;
+            for ((count, lens), column) in self.counts.iter_mut().zip(&self.lenses).zip(block.columns) {
+                count.failed += column.failed;
+                count.error = count.error.take().or(column.error);
+                let replicate = &mut count.replicates[portion.replicate as usize];
+                replicate.summary.merge(&column.summary);
+                replicate.outside[0] += column.outside[0];
+                replicate.outside[1] += column.outside[1];
+                let Some(scale) = lens.scale else { continue };
+                let fine = replicate.fine.get_or_insert_with(|| Fine::new(scale));
+                match column.values {
+                    Values::Plain(values) => values.into_iter().for_each(|value| fine.count(scale.bin(value))),
+                    Values::Binned(bins) => bins.into_iter().for_each(|bin| fine.count(bin)),
+                }
+            }
+        }
+    }
+
+    /// The first values of a characteristic give its scale.
+    fn look(&mut self, blocks: &[Block]) {
+        for (c, lens) in self.lenses.iter_mut().enumerate().filter(|(_, lens)| lens.scale.is_none()) {
+            let mut first = Summary::default();
+            blocks.iter().for_each(|block| first.merge(&block.columns[c].summary));
+            if first.count() > 0 {
+                lens.scale = Some(Scale::about(first.mean(), first.sigma()));
+            }
+        }
+    }
+
+    /// The worst ratio of an uncertainty to what is wanted of it; None where nothing is wanted, or nothing known yet.
+    pub(super) fn shortfall(&self, options: &SimulationOptions) -> Option<f64> {
+        if options.until.is_none() && options.until_yield.is_none() {
+            return None;
+        }
+        let ratio = |(c, count): (usize, &Count)| {
+            let found = SimulatedCharacteristic::of(&self.problem.characteristics()[c], count, self.answered);
+            let sigma = options.until.map(|wanted| {
+                let known = found.sigma.and_then(|sigma| Some((sigma.value, sigma.standard_error?)));
+                known.map_or(f64::INFINITY, |(value, error)| if error == 0.0 { 0.0 } else { error / value / wanted })
+            });
+            let shares = options.until_yield.filter(|_| found.characteristic.limits().exist()).map(|wanted| {
+                found.yield_.map_or(f64::INFINITY, |share| 0.5 * (share.interval[1] - share.interval[0]) / wanted)
+            });
+            sigma.into_iter().chain(shares).fold(0.0, f64::max)
+        };
+        Some(self.counts.iter().enumerate().map(ratio).fold(0.0, f64::max))
+    }
+
+    pub(super) fn finish(self, options: &SimulationOptions, stopped: bool, reached: Option<bool>) -> Simulation {
+        let characteristics = self.problem.characteristics().iter().zip(&self.counts);
+        Simulation {
+            sampler: options.sampler,
+            seed: options.seed,
+            samples: self.answered,
+            evaluations: self.answered.saturating_add_signed(self.extra),
+            reused: self.reused,
+            failed: self.failed,
+            stopped,
+            reached,
+            in_model: self.in_model,
+            characteristics: characteristics
+                .map(|(characteristic, count)| SimulatedCharacteristic::of(characteristic, count, self.answered))
+                .collect(),
+        }
+    }
+}
