@@ -16,5 +16,7 @@ mod plans;
 mod probe;
 mod process;
 mod published;
+mod sampling;
+mod simulation;
 mod studies;
 mod support;

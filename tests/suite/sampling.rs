@@ -1,0 +1,231 @@
+//! Sampling: Sobol's points, sums that merge, bins, and points that are the same for anybody who asks.
+
+use proptest::prelude::*;
+use sensitol::correlation::{Correlation, Pair};
+use sensitol::sampling::{
+    Draws, Fine, Portion, SOBOL_DIMENSIONS, Sampler, SamplingError, Scale, Sobol, Summary, wilson,
+};
+use sensitol::{Dimension, distribution::CentralMoments};
+
+use super::support::{close, normals, relative};
+
+fn column(sobol: &Sobol, dimension: usize, key: Option<u64>, points: usize) -> Vec<f64> {
+    let mut column = vec![0.0; points];
+    sobol.column(dimension, 0, key, &mut column);
+    column
+}
+
+/// Points of scipy 1.x, `qmc.Sobol(2048, scramble=False, bits=52)`, whose i-th point is ours at `i xor i/2` (Gray's code).
+#[test]
+fn sobol_points_are_those_of_joe_and_kuo() {
+    let sobol = Sobol::new(SOBOL_DIMENSIONS).unwrap();
+    let dimensions = [0, 1, 2, 9, 99, 1110, 2047];
+    let published = [
+        (1, [0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5]),
+        (3, [0.75, 0.25, 0.25, 0.75, 0.75, 0.75, 0.75]),
+        (2, [0.25, 0.75, 0.75, 0.25, 0.25, 0.25, 0.25]),
+        (653, [0.6923828125, 0.9365234375, 0.1630859375, 0.3232421875, 0.5107421875, 0.5849609375, 0.2060546875]),
+        (540, [0.2197265625, 0.0966796875, 0.5185546875, 0.0693359375, 0.1865234375, 0.3701171875, 0.8974609375]),
+    ];
+    for (&dimension, place) in dimensions.iter().zip(0..) {
+        let column = column(&sobol, dimension, None, 1024);
+        for (point, coordinates) in &published {
+            assert_eq!(column[*point], coordinates[place], "point {point}, dimension {dimension}");
+        }
+    }
+    assert!(Sobol::new(SOBOL_DIMENSIONS + 1).is_none());
+}
+
+/// Any block of points can be had by itself.
+#[test]
+fn sobol_blocks_are_parts_of_the_whole() {
+    let sobol = Sobol::new(5).unwrap();
+    for key in [None, Some(7)] {
+        let whole = column(&sobol, 4, key, 4096);
+        let mut part = vec![0.0; 256];
+        sobol.column(4, 1024, key, &mut part);
+        assert_eq!(part, whole[1024..1280]);
+        let mut odd = vec![0.0; 200];
+        sobol.column(4, 512, key, &mut odd);
+        assert_eq!(odd, whole[512..712]);
+    }
+}
+
+/// Every elementary interval of volume `2^(t-m)` holds `2^t` of `2^m` points: t = 0 in two dimensions, 1 in three. Owen's
+/// scrambling keeps that.
+#[test]
+fn points_are_balanced_scrambled_or_not() {
+    let sobol = Sobol::new(3).unwrap();
+    let m = 8u32;
+    for seed in [None, Some(1u64), Some(99)] {
+        let columns: Vec<Vec<f64>> = (0..3)
+            .map(|d| column(&sobol, d, seed.map(|seed| seed.wrapping_mul(0x9e37_79b9) + d as u64), 1 << m))
+            .collect();
+        for (dimensions, t) in [(2, 0), (3, 1)] {
+            let depth = m - t;
+            for a in 0..=depth {
+                for b in 0..=depth - a {
+                    let c = depth - a - b;
+                    if dimensions == 2 && c > 0 {
+                        continue;
+                    }
+                    let mut counts = vec![0; 1 << depth];
+                    for point in 0..1 << m {
+                        let cell = |d: usize, digits: u32| (columns[d][point] * f64::from(1 << digits)) as usize;
+                        counts[(cell(0, a) << b | cell(1, b)) << c | cell(2, c)] += 1;
+                    }
+                    assert!(counts.iter().all(|&count| count == 1 << t), "{dimensions} dimensions, {a} {b} {c}");
+                }
+            }
+        }
+    }
+}
+
+/// Scrambled coordinates are uniform over many keys, digit by digit, and digits of one point are independent.
+#[test]
+fn scrambling_is_uniform() {
+    let sobol = Sobol::new(1).unwrap();
+    let keys = 20_000;
+    let (mut mean, mut product) = (0.0, 0.0);
+    let mut first = [0.0; 2];
+    for key in 0..keys {
+        sobol.column(0, 0, Some(key), &mut first);
+        mean += first[0];
+        product += (first[0] - 0.5) * (first[1] - 0.5);
+    }
+    let n = keys as f64;
+    // Four standard errors: sqrt(1/12/n). The second point lies in the other half: E[product] = -1/16.
+    close(mean / n, 0.5, 4.0 * (1.0 / 12.0 / n).sqrt(), 1.0);
+    close(product / n, -1.0 / 16.0, 4.0 * 0.05 / n.sqrt(), 1.0);
+}
+
+proptest! {
+    /// Merged in any parts, a sample is itself.
+    #[test]
+    fn summaries_merge(values in prop::collection::vec(-1.0..1.0f64, 3..200), cuts in prop::collection::vec(0.0..1.0f64, 0..5)) {
+        // Far from 0: sums about the origin would have lost everything.
+        let values: Vec<f64> = values.iter().map(|value| 1e6 + value).collect();
+        let mut ends: Vec<usize> = cuts.iter().map(|cut| (cut * values.len() as f64) as usize).collect();
+        ends.sort_unstable();
+        ends.push(values.len());
+        let (mut merged, mut from) = (Summary::default(), 0);
+        for to in ends {
+            merged.merge(&Summary::of(&values[from..to]));
+            from = to;
+        }
+        let whole = Summary::of(&values);
+        prop_assert_eq!(merged.count(), whole.count());
+        prop_assert_eq!(merged.range(), whole.range());
+        close(merged.mean(), whole.mean(), 1e-15, 0.0);
+        for order in 2..=8 {
+            // A mean of 1e6 has an ulp of 1e-10, by which every deviation may be off.
+            close(merged.moment(order), whole.moment(order), 1e-8, 1.0);
+        }
+    }
+
+    /// Quantiles out of bins are those of the sorted sample, to the square of a bin's width.
+    #[test]
+    fn bins_know_quantiles(values in prop::collection::vec(-3.0..3.0f64, 100..500), p in 0.01..0.99f64) {
+        let scale = Scale::about(0.5, 2.0);
+        let mut fine = Fine::new(scale);
+        values.iter().for_each(|&value| fine.count(scale.bin(value)));
+        let mut sorted = values.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let rank = (p * values.len() as f64).ceil();
+        let found = fine.at_rank(rank).unwrap();
+        // At a whole rank the value is the upper end of what lies in its bin: a bin is 1e-3 of the spread, wider far out.
+        close(found, sorted[rank as usize - 1], 1e-3 * 2.0 * 2.0, 1.0);
+    }
+}
+
+#[test]
+fn a_histogram_counts_everything_once() {
+    let scale = Scale::about(0.0, 1.0);
+    let mut fine = Fine::new(scale);
+    let values: Vec<f64> = (0..1000).map(|i| (f64::from(i) / 250.0 - 2.0).powi(3)).collect();
+    values.iter().for_each(|&value| fine.count(scale.bin(value)));
+    let (edges, counts) = fine.histogram([-8.0, values[999]], [-6.0, 6.0], 20);
+    assert_eq!(edges.len(), counts.len() + 1);
+    assert!(edges.windows(2).all(|pair| pair[0] < pair[1]));
+    for (pair, &count) in edges.windows(2).zip(&counts) {
+        let last = pair[1] == values[999];
+        let inside = |value: &&f64| pair[0] <= **value && (**value < pair[1] || last);
+        assert_eq!(values.iter().filter(inside).count() as u64, count, "{pair:?}");
+    }
+}
+
+/// 8 of 10 and 0 of 50, as scipy's `binomtest(...).proportion_ci(method='wilson')` has them.
+#[test]
+fn intervals_of_shares_are_wilson_s() {
+    let [low, high] = wilson(8.0, 10.0);
+    close(low, 0.490_162_471_536_641_8, 1e-14, 1.0);
+    close(high, 0.943_317_848_545_624_8, 1e-14, 1.0);
+    let [low, high] = wilson(0.0, 50.0);
+    assert_eq!(low, 0.0);
+    close(high, 0.071_347_599_133_358_72, 1e-14, 1.0);
+}
+
+fn portion(first: u64, rows: usize) -> Portion {
+    Portion { replicate: 0, first, rows }
+}
+
+/// A dimension's values do not change with what else there is, nor with the portions that others ask for.
+#[test]
+fn points_are_the_same_for_anybody() {
+    let three = normals(&[1.0, 2.0, 3.0], &[0.1, 0.2, 0.3]);
+    for sampler in [Sampler::Random, Sampler::Sobol] {
+        let draws = Draws::new(&three, None, sampler, 5).unwrap();
+        let two = Draws::new(&three[..2], None, sampler, 5).unwrap();
+        let (all, fewer) = (draws.points(portion(1024, 1024)), two.points(portion(1024, 512)));
+        assert_eq!(all.column(1)[..512], *fewer.column(1));
+        assert_ne!(all.column(0), draws.points(portion(0, 1024)).column(0));
+        assert_ne!(all.column(0), Draws::new(&three, None, sampler, 6).unwrap().points(portion(1024, 1024)).column(0));
+    }
+    // Value stability: what seed 5 gives today it gives for good.
+    let first = Draws::new(&three, None, Sampler::Random, 5).unwrap().points(portion(0, 3));
+    insta::assert_debug_snapshot!([first.row(0), first.row(1), first.row(2)]);
+    let first = Draws::new(&three, None, Sampler::Sobol, 5).unwrap().points(portion(0, 3));
+    insta::assert_debug_snapshot!([first.row(0), first.row(1), first.row(2)]);
+}
+
+/// Correlated inputs have their distributions and their correlation, random or not.
+#[test]
+fn correlated_points_are_as_asked() {
+    let dimensions = [
+        Dimension::normal("a", 10.0, 0.3).unwrap(),
+        Dimension::fixed("still", 4.0).unwrap(),
+        Dimension::uniform("b", 5.0, 0.1).unwrap(),
+        Dimension::uniform("c", 5.0, 0.1).unwrap(),
+    ];
+    let pair = |a: &str, b: &str, value| Pair { between: [a.into(), b.into()], value };
+    let correlation = Correlation::new(&dimensions, &[pair("a", "b", 0.6), pair("c", "b", -0.5)]).unwrap();
+    for sampler in [Sampler::Random, Sampler::Sobol] {
+        let draws = Draws::new(&dimensions, Some(&correlation), sampler, 1).unwrap();
+        let points = draws.points(portion(0, 1 << 16));
+        assert!(points.column(1).iter().all(|&value| value == 4.0));
+        let of = |j: usize, k: usize| {
+            let (a, b) = (Summary::of(points.column(j)), Summary::of(points.column(k)));
+            let product = points.column(j).iter().zip(points.column(k)).map(|(x, y)| (x - a.mean()) * (y - b.mean()));
+            product.sum::<f64>() / points.rows() as f64 / a.sigma() / b.sigma()
+        };
+        // Four standard errors of a correlation: (1 - r^2)/sqrt n.
+        for (j, k, value) in [(0, 2, 0.6), (2, 3, -0.5), (0, 3, 0.0)] {
+            close(of(j, k), value, 4.0 / 256.0, 1.0);
+        }
+        let uniform = Summary::of(points.column(2));
+        relative(uniform.sigma(), 0.1 / 3f64.sqrt(), 0.01);
+        assert!(uniform.range()[0] >= 4.9 && uniform.range()[1] <= 5.1);
+    }
+}
+
+#[test]
+fn what_cannot_be_sampled_is_refused() {
+    let moments = CentralMoments::new(0.0, [1.0, 0.0, 3.0, 0.0, 15.0, 0.0, 105.0]).unwrap();
+    let known = [Dimension::distributed("wear", 0.0, None, std::sync::Arc::new(moments)).unwrap()];
+    let error = Draws::new(&known, None, Sampler::Random, 1).err().unwrap();
+    assert_eq!(error, SamplingError::MomentsOnly { dimension: "wear".into() });
+    let many = normals(&vec![0.0; SOBOL_DIMENSIONS + 1], &vec![1.0; SOBOL_DIMENSIONS + 1]);
+    assert!(Draws::new(&many, None, Sampler::Random, 1).is_ok());
+    let error = Draws::new(&many, None, Sampler::Sobol, 1).err().unwrap();
+    assert_eq!(error, SamplingError::TooManyDimensions { dimensions: SOBOL_DIMENSIONS + 1 });
+}
