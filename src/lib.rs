@@ -6,6 +6,7 @@ pub mod capability;
 pub mod characteristic;
 #[cfg(feature = "cli")]
 pub mod cli;
+pub mod compare;
 pub mod correlation;
 pub mod dimension;
 pub mod distribution;

@@ -35,6 +35,9 @@ pub(super) enum Command {
     /// Monte Carlo: the model itself at random or quasi-random points, with standard errors
     #[command(after_help = "Example: sensitol simulate examples/engine-balance/study.toml --samples 1000000")]
     Simulate(SimulateArgs),
+    /// The trade of speed for accuracy: every method that fits, against a reference
+    #[command(after_help = "Example: sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
+    Compare(CompareArgs),
     /// What would be evaluated, how often, and why; evaluates nothing
     #[command(after_help = "Example: sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
     Plan(PlanArgs),
@@ -171,6 +174,51 @@ pub(super) struct SimulateArgs {
     /// Threads that evaluate formulas and built-in models [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) threads: Option<u16>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompareArgs {
+    /// The study, a .toml or .json file
+    pub(super) study: PathBuf,
+
+    /// Ask for this characteristic only (repeatable)
+    #[arg(long = "kc", value_name = "NAME")]
+    pub(super) characteristics: Vec<String>,
+
+    /// Most evaluations of one method
+    #[arg(long, value_name = "N")]
+    pub(super) budget: Option<usize>,
+
+    /// Points of the reference [default: 1048576, or 2000 of an external model]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
+    pub(super) samples: Option<u64>,
+
+    /// Seed of the samples [default: that of the study, or 1]
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+
+    /// Stop after S seconds and report what is known
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(super) time: Option<f64>,
+
+    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
+    #[arg(long, value_name = "FILE")]
+    pub(super) journal: Option<PathBuf>,
+
+    /// Threads that evaluate formulas and built-in models [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) threads: Option<u16>,
+
+    /// Write the table to a CSV file too
+    #[arg(long, value_name = "FILE.csv", help_heading = OUTPUT)]
+    pub(super) csv: Option<PathBuf>,
+
+    /// Draw evaluations against error
+    #[arg(long, value_name = "FILE.svg", help_heading = OUTPUT)]
+    pub(super) svg: Option<PathBuf>,
 
     #[command(flatten)]
     pub(super) output: OutputArgs,

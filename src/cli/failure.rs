@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
+use crate::compare::CompareError;
 use crate::journal::JournalError;
 use crate::method::MethodError;
 use crate::pearson::PearsonError;
@@ -44,6 +45,8 @@ pub(super) enum Failure {
     Method(#[from] MethodError),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    Compare(#[from] CompareError),
     #[error(transparent)]
     Pearson(#[from] PearsonError),
     #[error(transparent)]

@@ -5,6 +5,7 @@
 mod analyze;
 mod args;
 mod check;
+mod compare;
 mod failure;
 mod interrupt;
 mod journal;
@@ -67,6 +68,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = match &arguments.command {
         Command::Analyze(asked) => analyze::run(asked, style),
         Command::Simulate(asked) => simulate::run(asked, style),
+        Command::Compare(asked) => compare::run(asked, style),
         Command::Plan(asked) => plan::run(asked, style),
         Command::Check(asked) => check::run(asked, style),
         Command::Models(asked) => models::run(asked, style),

@@ -22,7 +22,7 @@ const SEED: u64 = 1;
 const LONG: Duration = Duration::from_secs(60);
 
 pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
-    let study = study::read_sampled(asked, externals(asked, look))?;
+    let study = study::read_only(&asked.study, &asked.characteristics, externals(asked, look))?;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }

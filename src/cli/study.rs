@@ -1,27 +1,26 @@
 //! A study as the command line changes it.
 
-use super::args::{SensitivitiesArg, SimulateArgs, StencilArg, StudyArgs};
+use std::path::Path;
+
+use super::args::{SensitivitiesArg, StencilArg, StudyArgs};
 use super::failure::Failure;
 use super::pairs;
 use crate::method::Method;
 use crate::plan::Stencil;
 use crate::study::{Externals, Study};
 
-/// Reads the study to simulate it.
-pub(super) fn read_sampled(asked: &SimulateArgs, externals: Externals) -> Result<Study, Failure> {
-    let mut study = Study::read_with(&asked.study, externals)?;
-    if !asked.characteristics.is_empty() {
-        study.problem = study.problem.only(&asked.characteristics)?;
+/// Reads the study, asking for these characteristics only, where any is named.
+pub(super) fn read_only(path: &Path, characteristics: &[String], externals: Externals) -> Result<Study, Failure> {
+    let mut study = Study::read_with(path, externals)?;
+    if !characteristics.is_empty() {
+        study.problem = study.problem.only(characteristics)?;
     }
     Ok(study)
 }
 
 /// Reads the study; what the command line says wins over its `[analysis]`.
 pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Failure> {
-    let mut study = Study::read_with(&asked.study, externals)?;
-    if !asked.characteristics.is_empty() {
-        study.problem = study.problem.only(&asked.characteristics)?;
-    }
+    let mut study = read_only(&asked.study, &asked.characteristics, externals)?;
     let options = &mut study.options;
     if let Some(method) = asked.method {
         options.method = method.0;

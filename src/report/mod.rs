@@ -1,5 +1,8 @@
 //! Reports: a versioned value with serde, and its text for people.
 
+mod compare;
+mod compare_svg;
+mod compare_text;
 mod distribution;
 mod limits;
 pub(crate) mod number;
@@ -9,6 +12,9 @@ mod simulation_text;
 mod sketch;
 mod text;
 
+pub use compare::{CompareReport, ComparedReport, ErrorReport, FiguresReport, MethodReport, NotRunReport};
+pub use compare_svg::compare_svg;
+pub use compare_text::{compare_csv, compare_text};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
 pub use limits::law_text;
 pub use page::{Detail, Style};

@@ -141,10 +141,7 @@ pub struct HistogramReport {
 impl SimulationReport {
     /// The report of a simulation.
     pub fn of(problem: &Problem, simulation: &Simulation, about: About) -> Self {
-        let (method, sampler) = match simulation.sampler {
-            Sampler::Random => ("monte-carlo", "random"),
-            Sampler::Sobol => ("quasi-monte-carlo", "sobol"),
-        };
+        let (method, sampler) = names(simulation.sampler);
         let found: Vec<Warning> = simulation.characteristics.iter().filter_map(failed).collect();
         Self {
             schema: SCHEMA,
@@ -170,6 +167,14 @@ impl SimulationReport {
     }
 }
 
+/// A sampler as a method and as itself.
+pub(super) fn names(sampler: Sampler) -> (&'static str, &'static str) {
+    match sampler {
+        Sampler::Random => ("monte-carlo", "random"),
+        Sampler::Sobol => ("quasi-monte-carlo", "sobol"),
+    }
+}
+
 fn failed(one: &SimulatedCharacteristic) -> Option<Warning> {
     Some(Warning::FailedSamples {
         characteristic: one.characteristic.name().to_owned(),
@@ -180,7 +185,7 @@ fn failed(one: &SimulatedCharacteristic) -> Option<Warning> {
 }
 
 impl SimulatedReport {
-    fn of(one: &SimulatedCharacteristic) -> Self {
+    pub(super) fn of(one: &SimulatedCharacteristic) -> Self {
         let value = |estimate: Option<Estimate>| estimate.map(|estimate| estimate.value);
         let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
         let quantiles = |of: &dyn Fn(Option<Estimate>) -> Option<f64>| {

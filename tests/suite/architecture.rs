@@ -10,6 +10,7 @@ const LAYERS: &[&[&str]] = &[
     &["cli"],
     &["error"],
     &["study", "report"],
+    &["compare"],
     &["analysis", "probe", "simulation"],
     &["method"],
     &["evaluation"],

@@ -1,0 +1,389 @@
+//! The trade of speed for accuracy, measured: every method on one problem, against a reference that states its own error.
+
+use std::time::{Duration, Instant};
+
+use crate::analysis::{Analysis, analyze_within};
+use crate::assembly::Run;
+use crate::method::{self, Method, Options};
+use crate::problem::Problem;
+use crate::sampling::{Estimate, Sampler};
+use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_within};
+
+/// What may be spent.
+///
+/// ```
+/// use sensitol::compare::CompareOptions;
+/// assert_eq!(CompareOptions::default().budget, None);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompareOptions {
+    /// Most evaluations of one method, the reference excepted.
+    pub budget: Option<usize>,
+    /// Points of the reference.
+    pub reference: Option<u64>,
+    /// The seed of the methods that draw points; the reference has another.
+    pub seed: u64,
+}
+
+impl Default for CompareOptions {
+    fn default() -> Self {
+        Self { budget: None, reference: None, seed: 1 }
+    }
+}
+
+/// Points of the reference of a cheap model: quasi-random, so that its own error is below what methods differ by.
+const REFERENCE: u64 = 1 << 20;
+/// Points of the reference of a costly model.
+const COSTLY_REFERENCE: u64 = 2000;
+/// Points of the Monte Carlo methods that stand beside the others, as far as the reference reaches.
+const SAMPLES: [u64; 4] = [100, 1000, 10_000, 100_000];
+/// Points of the quasi-random ones: 16 replicates of a power of two.
+const QUASI: [u64; 3] = [256, 4096, 65_536];
+/// An error is told from the reference's own when it is larger than so many of its standard errors.
+const RESOLVED: f64 = 2.0;
+
+/// A method as it was run: a derivative method, or so many points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Contender {
+    /// A method of the registry.
+    Method(Method),
+    /// Random points.
+    MonteCarlo(u64),
+    /// Sobol's points.
+    QuasiMonteCarlo(u64),
+}
+
+impl Contender {
+    /// Its name.
+    pub fn name(self) -> String {
+        match self {
+            Self::Method(method) => method.name().to_owned(),
+            Self::MonteCarlo(samples) => format!("monte-carlo {samples}"),
+            Self::QuasiMonteCarlo(samples) => format!("sobol {samples}"),
+        }
+    }
+}
+
+/// What a method says of one characteristic. What is unknown is None.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Figures {
+    /// First moment.
+    pub mean: Option<f64>,
+    /// Standard deviation.
+    pub sigma: Option<f64>,
+    /// Third standardised moment.
+    pub skewness: Option<f64>,
+    /// Fourth standardised moment.
+    pub kurtosis: Option<f64>,
+    /// Share within the limits.
+    pub yield_: Option<f64>,
+}
+
+/// How far a method is off the reference: the mean in sigmas, sigma relative, the others as they are.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Errors {
+    /// How far.
+    pub off: Figures,
+    /// The reference's own standard error, in the same units: what is not larger than twice this is not resolved.
+    pub reference: Figures,
+}
+
+impl Errors {
+    /// Root of the sum of squares of the errors of mean and sigma: how far off the bulk is, in sigmas; None where one of
+    /// them is unknown.
+    pub fn overall(&self) -> Option<f64> {
+        Some(self.off.mean?.hypot(self.off.sigma?))
+    }
+
+    /// What of that the reference itself may be off.
+    pub fn floor(&self) -> f64 {
+        RESOLVED * self.reference.mean.unwrap_or(0.0).hypot(self.reference.sigma.unwrap_or(0.0))
+    }
+
+    /// Whether the reference tells the overall error from none.
+    pub fn resolved(&self) -> bool {
+        self.overall().is_some_and(|overall| overall > self.floor())
+    }
+}
+
+/// One method, as it was run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ran {
+    /// Which.
+    pub contender: Contender,
+    /// Points that it takes.
+    pub evaluations: u64,
+    /// Those of them that were known already, from another method or an earlier run.
+    pub reused: u64,
+    /// Time within the model; of points that were known, what others took on average.
+    pub evaluation: Duration,
+    /// Seconds besides.
+    pub engine: Duration,
+    /// What it says of every characteristic.
+    pub figures: Vec<Figures>,
+    /// How far that is off.
+    pub errors: Vec<Errors>,
+    /// For every characteristic, whether no other method has a smaller error for as many evaluations or fewer.
+    pub pareto: Vec<bool>,
+}
+
+/// One method that was not run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NotRun {
+    /// Which.
+    pub contender: Contender,
+    /// What it would have taken.
+    pub evaluations: Option<u64>,
+    /// Seconds that the model would have taken, at the speed of those that ran.
+    pub projected_s: Option<f64>,
+    /// Why not.
+    pub reason: String,
+}
+
+/// What a comparison found out.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    /// What all are measured by.
+    pub reference: Simulation,
+    /// The methods that ran, fewest evaluations first.
+    pub ran: Vec<Ran>,
+    /// Those that did not.
+    pub not_run: Vec<NotRun>,
+    /// Whether it was stopped.
+    pub stopped: bool,
+}
+
+/// Why a problem cannot be compared.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// There is no reference.
+    #[error(transparent)]
+    Reference(#[from] SimulationError),
+}
+
+/// Runs every method that the budget allows, and a reference.
+///
+/// Evaluations: those of the methods, and of the reference a million for a cheap model and two thousand for a costly one,
+/// unless the options say otherwise.
+///
+/// # Errors
+/// When the problem cannot be simulated. A method that does not fit is no error: it is named with the reason.
+///
+/// ```
+/// use sensitol::compare::{CompareOptions, compare};
+/// use sensitol::{Closure, Dimension, Problem};
+/// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::normal("b", 5.0, 0.6)?];
+/// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
+/// let found = compare(&area, &CompareOptions { reference: Some(10_000), ..CompareOptions::default() })?;
+/// let rss = found.ran.iter().find(|ran| ran.contender.name() == "rss").expect("rss fits everything");
+/// assert_eq!(rss.evaluations, 5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn compare(problem: &Problem, options: &CompareOptions) -> Result<Comparison, CompareError> {
+    compare_within(problem, options, &Run::to_the_end())
+}
+
+/// [`compare`], stopping when told to.
+pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Result<Comparison, CompareError> {
+    let costly = problem.function().signature().costly;
+    let samples = options.reference.unwrap_or(if costly { COSTLY_REFERENCE } else { REFERENCE });
+    let mut comparison = Comparer { problem, options, run, ran: Vec::new(), not_run: Vec::new() };
+    // The cheap ones first: should time run out, the most is known.
+    for procedure in method::ALL.iter().filter(|procedure| procedure.method() != Method::Auto) {
+        comparison.method(procedure.method());
+    }
+    let drawn = SAMPLES.map(Contender::MonteCarlo).into_iter().chain(QUASI.map(Contender::QuasiMonteCarlo));
+    for contender in drawn {
+        comparison.sampled(contender, samples);
+    }
+    let reference = simulate_within(
+        problem,
+        // Another stream than those that are compared with it.
+        &SimulationOptions {
+            samples,
+            sampler: sampler(problem, costly),
+            seed: !options.seed,
+            ..SimulationOptions::default()
+        },
+        run,
+        &|_| {},
+    )?;
+    Ok(comparison.judged(reference))
+}
+
+/// Quasi-random points where there are any, and none has been paid for already.
+fn sampler(problem: &Problem, costly: bool) -> Sampler {
+    let varying = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count();
+    if costly || varying > crate::sampling::SOBOL_DIMENSIONS { Sampler::Random } else { Sampler::Sobol }
+}
+
+struct Comparer<'a> {
+    problem: &'a Problem,
+    options: &'a CompareOptions,
+    run: &'a Run<'a>,
+    ran: Vec<Ran>,
+    not_run: Vec<NotRun>,
+}
+
+impl Comparer<'_> {
+    fn refuse(&mut self, contender: Contender, evaluations: Option<u64>, reason: impl Into<String>) {
+        self.not_run.push(NotRun { contender, evaluations, projected_s: None, reason: reason.into() });
+    }
+
+    fn method(&mut self, method: Method) {
+        let contender = Contender::Method(method);
+        let options = Options { budget: self.options.budget, ..Options::from(method) };
+        let cost = method.procedure().plan(self.problem, &options).map(|plan| plan.cost().0 as u64).ok();
+        if self.run.stopped() {
+            return self.refuse(contender, cost, "stopped before");
+        }
+        let begun = Instant::now();
+        match analyze_within(self.problem, &options, self.run) {
+            Ok(analysis) if analysis.stopped => self.refuse(contender, cost, "stopped before it was done"),
+            Ok(analysis) => self.ran.push(of_analysis(contender, &analysis, begun.elapsed())),
+            Err(error) => self.refuse(contender, cost, error.to_string()),
+        }
+    }
+
+    fn sampled(&mut self, contender: Contender, reference: u64) {
+        let (samples, sampler) = match contender {
+            Contender::MonteCarlo(samples) => (samples, Sampler::Random),
+            Contender::QuasiMonteCarlo(samples) => (samples, Sampler::Sobol),
+            Contender::Method(_) => return,
+        };
+        // A sample as long as the reference would be measured by its equal.
+        if samples >= reference {
+            return self.refuse(contender, Some(samples), "longer than the reference");
+        }
+        if self.options.budget.is_some_and(|budget| samples > budget as u64) {
+            return self.refuse(contender, Some(samples), "more than the budget");
+        }
+        if self.run.stopped() {
+            return self.refuse(contender, Some(samples), "stopped before");
+        }
+        let options = SimulationOptions { samples, sampler, seed: self.options.seed, ..SimulationOptions::default() };
+        let begun = Instant::now();
+        match simulate_within(self.problem, &options, self.run, &|_| {}) {
+            Ok(found) if found.stopped => self.refuse(contender, Some(samples), "stopped before it was done"),
+            Ok(found) => self.ran.push(of_simulation(contender, &found, begun.elapsed())),
+            Err(error) => self.refuse(contender, Some(samples), error.to_string()),
+        }
+    }
+
+    fn judged(mut self, reference: Simulation) -> Comparison {
+        for ran in &mut self.ran {
+            ran.errors =
+                ran.figures.iter().zip(&reference.characteristics).map(|(found, of)| errors(found, of)).collect();
+        }
+        self.ran.sort_by_key(|ran| ran.evaluations);
+        let fronts: Vec<Vec<bool>> = (0..reference.characteristics.len()).map(|c| front(&self.ran, c)).collect();
+        for (index, ran) in self.ran.iter_mut().enumerate() {
+            ran.pareto = fronts.iter().map(|front| front[index]).collect();
+        }
+        let own = |ran: &Ran| (ran.evaluation, ran.evaluations - ran.reused);
+        let (spent, points) = self
+            .ran
+            .iter()
+            .map(own)
+            .fold((reference.in_model, reference.evaluations), |(time, points), (more, count)| {
+                (time + more, points + count)
+            });
+        let each = spent.as_secs_f64() / points.max(1) as f64;
+        for ran in self.ran.iter_mut().filter(|ran| ran.reused > 0) {
+            ran.evaluation += Duration::try_from_secs_f64(each * ran.reused as f64).unwrap_or_default();
+        }
+        for one in &mut self.not_run {
+            one.projected_s = one.evaluations.map(|count| each * count as f64);
+        }
+        let stopped = reference.stopped || self.run.stopped();
+        Comparison { reference, ran: self.ran, not_run: self.not_run, stopped }
+    }
+}
+
+fn of_analysis(contender: Contender, analysis: &Analysis, took: Duration) -> Ran {
+    let figures = analysis.characteristics.iter().map(|one| Figures {
+        mean: one.moments.map(|moments| moments.mean()),
+        sigma: one.moments.map(|moments| moments.sigma()),
+        skewness: one.moments.and_then(|moments| moments.skewness()),
+        kurtosis: one.moments.and_then(|moments| moments.kurtosis()),
+        yield_: one.capability.and_then(|capability| capability.yield_()),
+    });
+    Ran {
+        contender,
+        evaluations: (analysis.evaluations + analysis.reused) as u64,
+        reused: analysis.reused as u64,
+        evaluation: analysis.in_model,
+        engine: took.saturating_sub(analysis.in_model),
+        figures: figures.collect(),
+        errors: Vec::new(),
+        pareto: Vec::new(),
+    }
+}
+
+fn of_simulation(contender: Contender, found: &Simulation, took: Duration) -> Ran {
+    Ran {
+        contender,
+        evaluations: found.evaluations + found.reused,
+        reused: found.reused,
+        evaluation: found.in_model,
+        engine: took.saturating_sub(found.in_model),
+        figures: found.characteristics.iter().map(figures).collect(),
+        errors: Vec::new(),
+        pareto: Vec::new(),
+    }
+}
+
+fn figures(one: &SimulatedCharacteristic) -> Figures {
+    let value = |estimate: Option<Estimate>| estimate.map(|estimate| estimate.value);
+    Figures {
+        mean: value(one.mean),
+        sigma: value(one.sigma),
+        skewness: value(one.skewness),
+        kurtosis: value(one.kurtosis),
+        yield_: one.yield_.map(|share| share.value),
+    }
+}
+
+fn errors(found: &Figures, reference: &SimulatedCharacteristic) -> Errors {
+    let of = figures(reference);
+    let unit = of.sigma.filter(|&sigma| sigma > 0.0);
+    let off = |a: Option<f64>, b: Option<f64>, unit: Option<f64>| Some((a? - b?).abs() / unit?);
+    let own = |estimate: Option<Estimate>, unit: Option<f64>| Some(estimate?.standard_error? / unit?);
+    Errors {
+        off: Figures {
+            mean: off(found.mean, of.mean, unit),
+            sigma: off(found.sigma, of.sigma, unit),
+            skewness: off(found.skewness, of.skewness, Some(1.0)),
+            kurtosis: off(found.kurtosis, of.kurtosis, Some(1.0)),
+            yield_: off(found.yield_, of.yield_, Some(1.0)),
+        },
+        reference: Figures {
+            mean: own(reference.mean, unit),
+            sigma: own(reference.sigma, unit),
+            skewness: own(reference.skewness, Some(1.0)),
+            kurtosis: own(reference.kurtosis, Some(1.0)),
+            // The 95 % interval has about two standard errors on either side.
+            yield_: reference.yield_.map(|share| 0.25 * (share.interval[1] - share.interval[0])),
+        },
+    }
+}
+
+/// Which methods are not dominated on a characteristic. Errors that the reference does not resolve are equal: the cheapest
+/// of these methods is on the front, and what costs more is not.
+fn front(ran: &[Ran], c: usize) -> Vec<bool> {
+    let error = |ran: &Ran| ran.errors[c].overall().map(|overall| overall.max(ran.errors[c].floor()));
+    let mut best = f64::INFINITY;
+    let mut front = vec![false; ran.len()];
+    for at in 0..ran.len() {
+        // Of as many evaluations only the smallest error counts.
+        let equals = ran.iter().filter(|other| other.evaluations == ran[at].evaluations);
+        let least = equals.filter_map(error).fold(f64::INFINITY, f64::min);
+        let own = error(&ran[at]).unwrap_or(f64::INFINITY);
+        front[at] = own == least && own < best;
+        if ran.get(at + 1).is_none_or(|next| next.evaluations > ran[at].evaluations) {
+            best = best.min(least);
+        }
+    }
+    front
+}

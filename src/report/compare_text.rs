@@ -1,0 +1,121 @@
+//! The report of a comparison for people.
+
+use super::compare::{CompareReport, ComparedReport, MethodReport};
+use super::number::significant;
+use super::page::{Grid, Page, Style, clean, short};
+
+/// In place of what is unknown.
+const UNKNOWN: &str = "-";
+
+/// A comparison as text: a table for every characteristic, fewest evaluations first.
+pub fn compare_text(report: &CompareReport, style: Style) -> String {
+    let mut page = Page::new(style);
+    if let Some(title) = &report.title {
+        page.line(&clean(title));
+    }
+    page.line(&format!("reference: {} with {} points", report.reference_method, report.reference_samples));
+    for one in &report.characteristics {
+        page.line("");
+        compared(&mut page, one);
+    }
+    if !report.not_run.is_empty() {
+        page.line("");
+        for one in &report.not_run {
+            let cost = one
+                .evaluations
+                .map_or(String::new(), |count| format!(" ({count} evaluations{})", time(one.projected_s)));
+            page.line(&format!("not run: {}{cost}: {}", one.method, one.reason));
+        }
+    }
+    page.finish()
+}
+
+fn time(seconds: Option<f64>) -> String {
+    seconds.map_or(String::new(), |seconds| format!(", {} s", significant(seconds, 2)))
+}
+
+fn compared(page: &mut Page, one: &ComparedReport) {
+    let unit = one.reference.unit.as_deref().map(|unit| format!(" [{}]", clean(unit))).unwrap_or_default();
+    page.line(&format!("{}{unit}: how far off the reference, and which no other beats", short(&one.name)));
+    let header = ["", "points", "model s", "engine s", "mean/sigma", "sigma %", "skew", "kurtosis", "yield %", ""];
+    let mut table = Grid::new(header, "<>>>>>>>><");
+    let mark = if page.style().unicode { "●" } else { "*" };
+    for method in &one.methods {
+        let off = &method.error_vs_reference;
+        let own = &off.reference_standard_error;
+        let error = |off: Option<f64>, own: Option<f64>, factor: f64| error(off, own, factor);
+        table.row([
+            method.method.clone(),
+            method.evaluations.to_string(),
+            significant(method.evaluation_s, 2),
+            significant(method.engine_s, 2),
+            error(off.off.mean, own.mean, 1.0),
+            error(off.off.sigma, own.sigma, 100.0),
+            error(off.off.skewness, own.skewness, 1.0),
+            error(off.off.kurtosis, own.kurtosis, 1.0),
+            error(off.off.yield_, own.yield_, 100.0),
+            if method.pareto { mark.to_owned() } else { String::new() },
+        ]);
+    }
+    page.print(&table);
+    if one.methods.iter().any(|method| !method.error_vs_reference.resolved) {
+        page.line("  <: the reference is itself no surer than this, and does not tell the difference");
+    }
+}
+
+/// An error with two digits; below two standard errors of the reference, these.
+fn error(off: Option<f64>, own: Option<f64>, factor: f64) -> String {
+    match (off, own) {
+        (None, _) => UNKNOWN.to_owned(),
+        (Some(off), Some(own)) if off <= 2.0 * own => format!("<{}", brief(2.0 * own * factor)),
+        (Some(off), _) => brief(off * factor),
+    }
+}
+
+fn brief(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e4).contains(&value) { significant(value, 2) } else { format!("{value:.0e}") }
+}
+
+/// What a comparison says, as one table: a row for every characteristic and method.
+pub fn compare_csv(report: &CompareReport) -> String {
+    let mut text = String::from(
+        "characteristic,method,evaluations,evaluation_s,engine_s,mean,sigma,skewness,kurtosis,yield,\
+         mean_off_sigmas,sigma_off_relative,skewness_off,kurtosis_off,yield_off,overall,resolved,pareto\n",
+    );
+    for one in &report.characteristics {
+        for method in &one.methods {
+            text += &row(&one.name, method);
+        }
+    }
+    text
+}
+
+fn row(characteristic: &str, method: &MethodReport) -> String {
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+    let quoted = |text: &str| match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    };
+    let (found, off) = (&method.figures, &method.error_vs_reference);
+    let cells = [
+        quoted(characteristic),
+        quoted(&method.method),
+        method.evaluations.to_string(),
+        method.evaluation_s.to_string(),
+        method.engine_s.to_string(),
+        number(found.mean),
+        number(found.sigma),
+        number(found.skewness),
+        number(found.kurtosis),
+        number(found.yield_),
+        number(off.off.mean),
+        number(off.off.sigma),
+        number(off.off.skewness),
+        number(off.off.kurtosis),
+        number(off.off.yield_),
+        number(off.overall),
+        off.resolved.to_string(),
+        method.pareto.to_string(),
+    ];
+    cells.join(",") + "\n"
+}
