@@ -1,6 +1,7 @@
 //! The central-difference plan: the centre, nodes on the axes, and corners for mixed derivatives.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use super::axis::Axis;
 use super::known::Known;
@@ -65,7 +66,13 @@ impl DifferencePlan {
             }
         }
         let distributions = varying.iter().filter_map(|&d| dimensions[d].distribution());
-        let shapes = shapes(distributions);
+        let mut shapes = shapes(distributions);
+        for (shape, &d) in shapes.iter_mut().zip(&varying) {
+            // Values where they were evaluated, not where a polynomial through them leads.
+            if let Some(rule) = axes[d].tail.as_ref().and_then(|tail| tail.rule.as_ref()) {
+                shape.rule = Arc::new(rule.clone());
+            }
+        }
         Self { nominal: Point::of(&nominal), layout, axes, varying, fixed, shapes, depends }
     }
 
