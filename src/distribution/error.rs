@@ -48,7 +48,9 @@ pub enum DistributionError {
     },
     /// A tail so long, or a spread so small, that doubles cannot describe it.
     #[error(
-        "sigma {sigma} must be {least:e} to {largest:e} times as large as the distance {distance} of the mean from the origin"
+        "sigma {sigma} is {:.3e} times the distance {distance} of the mean from the origin: \
+         {least:e} to {largest} times can be computed",
+        sigma / distance
     )]
     SigmaToMean {
         /// Sigma as given.

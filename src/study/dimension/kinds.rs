@@ -303,7 +303,7 @@ pub(super) fn placed(
         DistributionError::OutOfRange { parameter, .. } => of_table(parameter),
         DistributionError::NotAboveOrigin { .. } => of_table("origin").or(whole),
         DistributionError::SigmaToMean { .. } => sigma.or(whole),
-        _ => sigma,
+        _ => sigma.or(whole),
     };
     let (span, key) = blamed.unwrap_or((0..0, String::new()));
     Err(fault(span, key, DimensionFault::from(error)))
