@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::distribution::{Distribution, DistributionError, Normal, Uniform, finite};
+use crate::distribution::{Distribution, DistributionError, Normal, Uniform, finite, positive};
 
 /// Without a tolerance band, three sigma on either side take its place in RSS and worst case.
 const SIGMAS_OF_AN_UNBOUNDED_DIMENSION: f64 = 3.0;
@@ -134,6 +134,35 @@ impl Dimension {
         }
         self.step = Some(step);
         Ok(self)
+    }
+
+    /// The same dimension with `factor` times the tolerance; None where it does not vary, or its distribution does not
+    /// scale with the tolerance ([`Distribution::scaled`] says which do and how).
+    ///
+    /// The band's deviations from the nominal scale, and with them the middle of an asymmetric band.
+    ///
+    /// # Errors
+    /// When the factor is not a number above 0, or the distribution cannot have such a sigma.
+    ///
+    /// ```
+    /// use sensitol::Dimension;
+    /// let b = Dimension::normal_between("b", 30.0, [-0.1, 0.3])?;
+    /// let half = b.scaled(0.5).expect("a normal dimension scales")?;
+    /// assert_eq!(half.tolerance(), Some([-0.05, 0.15]));
+    /// assert!((half.mean() - 30.05).abs() < 1e-14 && (half.sigma() - 0.1 / 3.0).abs() < 1e-15);
+    /// # Ok::<(), sensitol::DimensionError>(())
+    /// ```
+    pub fn scaled(&self, factor: f64) -> Option<Result<Self, DimensionError>> {
+        let distribution = self.distribution()?;
+        let middle = self.tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
+        // One that does not scale does not at any factor.
+        let scaled = distribution.scaled(factor, (factor - 1.0) * middle)?;
+        let scaled = positive("factor", factor).and(scaled).map_err(DimensionFault::from);
+        let tolerance = self.tolerance.map(|band| band.map(|deviation| factor * deviation));
+        Some(match scaled.and_then(|scaled| check(self.nominal, tolerance, Ok(Some(scaled)))) {
+            Ok(distribution) => Ok(Self { tolerance, distribution, ..self.clone() }),
+            Err(fault) => Err(DimensionError { name: self.name.clone(), fault }),
+        })
     }
 
     /// Its name.

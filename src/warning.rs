@@ -69,6 +69,19 @@ pub enum Warning {
         /// Where it is.
         to: f64,
     },
+    /// A characteristic is curved along a dimension whose distribution reaches far beyond the nodes.
+    LongTail {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension.
+        dimension: String,
+        /// The farthest node, in sigmas off the mean.
+        farthest: f64,
+        /// How far values count in the fourth moment, in sigmas.
+        reach: f64,
+        /// The share of the variance that the curvature makes.
+        share: f64,
+    },
     /// The characteristic is the same at every point.
     NoReaction {
         /// The characteristic.
@@ -166,6 +179,7 @@ impl Warning {
             Self::LostDerivative { .. } => "lost-derivative",
             Self::DomainEdge { .. } => "domain-edge",
             Self::SupportEdge { .. } => "support-edge",
+            Self::LongTail { .. } => "long-tail",
             Self::NoReaction { .. } => "no-reaction",
             Self::Atom { .. } => "atom",
             Self::Noise { .. } => "noise",
@@ -186,6 +200,7 @@ impl Warning {
             | Self::FailedSamples { characteristic, .. }
             | Self::LostDerivative { characteristic, .. }
             | Self::DomainEdge { characteristic, .. }
+            | Self::LongTail { characteristic, .. }
             | Self::NoReaction { characteristic }
             | Self::Atom { characteristic, .. }
             | Self::Noise { characteristic, .. }
@@ -202,6 +217,7 @@ impl Warning {
         match self {
             Self::UnusedDimension { dimension }
             | Self::DomainEdge { dimension, .. }
+            | Self::LongTail { dimension, .. }
             | Self::SupportEdge { dimension, .. } => Some(dimension),
             Self::LostDerivative { dimensions, .. } => dimensions.first().map(String::as_str),
             _ => None,
@@ -253,7 +269,13 @@ impl Warning {
             ),
             Self::SupportEdge { dimension, from, to } => format!(
                 "the node of `{dimension}` at {from:+.3} sigma lies outside its distribution and was moved to \
-                 {to:+.3}: its fourth moment is matched less exactly"
+                 {to:+.3}, its partner with it: its fourth moment is matched less exactly"
+            ),
+            Self::LongTail { characteristic, dimension, farthest, reach, share } => format!(
+                "`{characteristic}` is curved along `{dimension}` ({:.1} % of its variance), whose tail counts up to \
+                 {reach:.0} sigma, while the model was evaluated up to {farthest:.1}: skewness, kurtosis and yield rest on what \
+                 it does beyond; compare --method second-order with six-n",
+                100.0 * share
             ),
             Self::NoReaction { characteristic } => format!(
                 "`{characteristic}` is the same at every point: check that the model uses the dimensions at all"

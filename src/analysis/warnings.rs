@@ -21,6 +21,8 @@ const FLIP: f64 = 0.01;
 const SUSPECTS: usize = 3;
 /// Points at which a characteristic that is not 0 at the means may be exactly 0 by chance.
 const ATOM: usize = 2;
+/// Along a dimension with a long tail, curvature of this share of the variance is worth one.
+const LONG_TAIL: f64 = 1e-3;
 /// A kurtosis that exceeds the least possible by no more than this part is worth one too.
 const MARGIN: f64 = 0.1;
 
@@ -43,6 +45,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         warnings.extend(failed_points(problem, outcome, c));
         warnings.extend(lost(problem, outcome, c));
         warnings.extend(atom(problem, outcome, c));
+        warnings.extend(long_tails(problem, outcome, analysis));
         warnings.extend(doubtful(outcome, c, analysis));
     }
     let possible = outcome.plan.possible_pairs();
@@ -164,6 +167,22 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
         }
     }
     warnings
+}
+
+/// Curvature along dimensions whose tails reach far beyond what was evaluated.
+fn long_tails(problem: &Problem, outcome: &Outcome, analysis: &CharacteristicAnalysis) -> Vec<Warning> {
+    let warning = |&d: &usize| {
+        let tail = outcome.plan.axis(d).tail.as_ref()?;
+        let share = analysis.sensitivities[d].curvature_share.filter(|&share| share > LONG_TAIL)?;
+        Some(Warning::LongTail {
+            characteristic: analysis.characteristic.name().to_owned(),
+            dimension: problem.dimensions()[d].name().to_owned(),
+            farthest: tail.farthest,
+            reach: tail.reach,
+            share,
+        })
+    };
+    outcome.plan.varying().iter().filter_map(warning).collect()
 }
 
 /// A minimum distance saturates at 0: several points at which a characteristic is exactly 0, and others at which it is not.

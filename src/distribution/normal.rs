@@ -1,9 +1,13 @@
 //! The normal distribution.
 
+use std::sync::Arc;
+
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoments, finite, positive, standard_normal};
+use super::{
+    Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, finite, positive, standard_normal,
+};
 
 /// Normal distribution of given mean and sigma.
 ///
@@ -53,6 +57,10 @@ impl Distribution for Normal {
     /// Hermite polynomials: `He[n+1] = u He[n] - n He[n-1]`.
     fn jacobi(&self, order: usize) -> Jacobi {
         Jacobi::new(vec![0.0; order], (1..=order).map(|n| n as f64).collect())
+    }
+
+    fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
+        Some(Self::new(self.mean + moved, self.sigma * factor).map(|scaled| Arc::new(scaled) as _))
     }
 
     fn probability(&self) -> Option<&dyn Probability> {

@@ -45,7 +45,7 @@ pub trait Probability: Send + Sync {
 }
 
 /// A random probability of at most one half and the end that it is counted from, so that both tails are as fine.
-fn random_tail(rng: &mut dyn Rng) -> (f64, bool) {
+pub(super) fn random_tail(rng: &mut dyn Rng) -> (f64, bool) {
     (0.5 * rng.sample::<f64, _>(rand_distr::Open01), rng.random())
 }
 

@@ -70,6 +70,17 @@ impl Jacobi {
         Self { alpha: self.alpha[..order].to_vec(), beta: self.beta[..order].to_vec() }
     }
 
+    /// The same with every alpha 0, which the recurrence of a symmetric distribution has but for rounding.
+    pub(super) fn symmetric(mut self) -> Self {
+        self.alpha.fill(0.0);
+        self
+    }
+
+    /// Whether it describes its distribution whole: one of as many atoms as its order.
+    pub(super) fn is_whole(&self) -> bool {
+        self.beta.last() == Some(&0.0)
+    }
+
     /// The Gauss rule with as many nodes as the order: exact for polynomials up to degree `2 order - 1`.
     pub fn gauss(&self) -> Rule {
         Rule::of_matrix(&self.alpha, &self.beta[..self.order() - 1])
@@ -133,6 +144,15 @@ impl Rule {
             .expect("the eigenvalues of a small symmetric matrix of finite numbers");
         let mut nodes: Vec<f64> = (0..n).map(|i| eigen.S()[i]).collect();
         let mut weights: Vec<f64> = (0..n).map(|i| eigen.U()[(0, i)].powi(2)).collect();
+        // The eigenvalues are good beside the largest of them, the weights beside 1; a far node of a long tail needs
+        // its own digits, because high powers of it count.
+        for i in 0..n {
+            let left = if i > 0 { nodes[i] - nodes[i - 1] } else { f64::INFINITY };
+            let right = if i + 1 < n { nodes[i + 1] - nodes[i] } else { f64::INFINITY };
+            if let Some((node, weight)) = polished(nodes[i], 1e-3 * left.min(right), diagonal, squared_off_diagonal) {
+                (nodes[i], weights[i]) = (node, weight);
+            }
+        }
         if diagonal.iter().all(|&alpha| alpha == 0.0) {
             // A symmetric distribution has a symmetric rule, to the last bit: odd moments of it then are exactly 0.
             for i in 0..n.div_ceil(2) {
@@ -145,4 +165,28 @@ impl Rule {
         weights.iter_mut().for_each(|weight| *weight /= total);
         Self { nodes, weights }
     }
+}
+
+/// A node after one step of Newton's method towards the root of the last orthogonal polynomial, and its weight: one over the
+/// sum of the squares of the orthonormal polynomials below it (Christoffel), in which nothing cancels. None where the step
+/// is longer than `within`, or a double does not hold the result.
+fn polished(node: f64, within: f64, alpha: &[f64], beta: &[f64]) -> Option<(f64, f64)> {
+    let at = |u: f64| {
+        let ([mut before, mut p], [mut slope_before, mut slope]) = ([0.0, 1.0], [0.0, 0.0]);
+        let mut sum = 1.0;
+        for n in 0..alpha.len() {
+            let root = if n == 0 { 0.0 } else { beta[n - 1].sqrt() };
+            // The last polynomial has no norm of its own; nor has its root.
+            let norm = beta.get(n).map_or(1.0, |beta| beta.sqrt());
+            let next = ((u - alpha[n]) * p - root * before) / norm;
+            let next_slope = (p + (u - alpha[n]) * slope - root * slope_before) / norm;
+            (before, p, slope_before, slope) = (p, next, slope, next_slope);
+            sum += if n + 1 < alpha.len() { p * p } else { 0.0 };
+        }
+        (p / slope, 1.0 / sum)
+    };
+    let (step, _) = at(node);
+    let node = node - step;
+    let weight = at(node).1;
+    (step.abs() <= within && node.is_finite() && weight.is_finite() && weight > 0.0).then_some((node, weight))
 }

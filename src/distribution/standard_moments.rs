@@ -75,6 +75,53 @@ impl StandardMoments {
         }
     }
 
+    /// From moments `m3, m5 ..= m8` and the excess kurtosis, where that is known better than by `m4 - 3`.
+    pub(super) fn with_excess(skewness: f64, excess: f64, [m5, m6, m7, m8]: [f64; 4]) -> Self {
+        Self { excess, ..Self::from_standard([skewness, 3.0 + excess, m5, m6, m7, m8]) }
+    }
+
+    /// From standardised cumulants `k3 ..= k8`: nothing is subtracted, so that a nearly normal distribution keeps the
+    /// digits of what tells it from the normal one.
+    ///
+    /// ```
+    /// use sensitol::distribution::StandardMoments;
+    /// // Exponential: k_n = (n - 1)!
+    /// let m = StandardMoments::from_cumulants([2.0, 6.0, 24.0, 120.0, 720.0, 5040.0]);
+    /// assert_eq!((m.kurtosis(), m.m5, m.m8), (9.0, 44.0, 14833.0));
+    /// ```
+    pub fn from_cumulants([k3, k4, k5, k6, k7, k8]: [f64; 6]) -> Self {
+        Self {
+            skewness: k3,
+            excess: k4,
+            m5: k5 + 10.0 * k3,
+            m6: k6 + 15.0 * k4 + 10.0 * k3 * k3 + 15.0,
+            m7: k7 + 21.0 * k5 + 35.0 * k3 * k4 + 105.0 * k3,
+            m8: k8 + 28.0 * k6 + 56.0 * k3 * k5 + 35.0 * k4 * k4 + 210.0 * k4 + 280.0 * k3 * k3 + 105.0,
+            h6: k6 + 12.0 * k4 + 8.0 * k3 * k3 + 8.0,
+            h7: k7 + 18.0 * k5 + 32.0 * k3 * k4 + 72.0 * k3,
+            h8: k8 + 24.0 * k6 + 56.0 * k3 * k5 + 32.0 * k4 * k4 + 144.0 * k4 + 240.0 * k3 * k3 + 48.0,
+        }
+    }
+
+    /// Of a law with Pearson's equation `(1 + c1 u + c2 u^2) p' = -(c1 + (1 + 3 c2) u) p` and `c2 <= 0`: beta and gamma.
+    ///
+    /// `m[n+1] = n (m[n-1] + c1 m[n]) / (1 - (n-1) c2)`, all of one sign; the excess is `3 (c1 m3 + 2 c2)/(1 - 2 c2)`.
+    pub(super) fn of_pearson(c1: f64, c2: f64) -> Self {
+        let mut m = [1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        for n in 2..8 {
+            let order = n as f64;
+            m[n + 1] = order * (m[n - 1] + c1 * m[n]) / (1.0 - (order - 1.0) * c2);
+        }
+        let excess = 3.0 * (c1 * m[3] + 2.0 * c2) / (1.0 - 2.0 * c2);
+        Self::with_excess(m[3], excess, [m[5], m[6], m[7], m[8]])
+    }
+
+    /// Whether every one of them is a finite number.
+    pub(super) fn are_finite(&self) -> bool {
+        let of_fourth_powers = [self.h6, self.h7, self.h8];
+        self.raw().iter().chain(&of_fourth_powers).all(|moment| moment.is_finite())
+    }
+
     /// Fourth moment: the kurtosis, 3 for a normal.
     pub fn kurtosis(&self) -> f64 {
         3.0 + self.excess

@@ -32,6 +32,17 @@ pub(crate) fn upper_quantile(p: f64) -> f64 {
     -quantile(p)
 }
 
+/// Mills' ratio, the probability above `z` by the density there, of a `z` that is not negative: nothing underflows.
+pub(crate) fn mills(z: f64) -> f64 {
+    if z < 4.0 {
+        return (0.5 * PI).sqrt() * libm::erfc(z * FRAC_1_SQRT_2) * libm::exp(0.5 * z * z);
+    }
+    // Laplace's continued fraction z + 1/(z + 2/(z + ...)), from where it has converged.
+    let terms = (60.0 + 800.0 / (z * z)) as u32;
+    let fraction = (1..=terms).rev().fold(z, |below, n| z + f64::from(n) / below);
+    1.0 / fraction
+}
+
 fn lower_tail(p: f64) -> f64 {
     if !(0.0..=1.0).contains(&p) {
         return f64::NAN;

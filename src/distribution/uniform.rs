@@ -1,6 +1,11 @@
 //! The uniform distribution.
 
-use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoments, finite, positive, probability};
+use std::sync::Arc;
+
+use super::{
+    Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, finite, interval, positive,
+    probability,
+};
 
 /// Uniform distribution between two limits.
 ///
@@ -20,13 +25,8 @@ pub struct Uniform {
 impl Uniform {
     /// `lower` must be below `upper`.
     pub fn new(lower: f64, upper: f64) -> Result<Self, DistributionError> {
-        finite("the lower limit", lower)?;
-        finite("the upper limit", upper)?;
-        if lower >= upper {
-            return Err(DistributionError::EmptyInterval { lower, upper });
-        }
-        let half = 0.5 * upper - 0.5 * lower;
-        Self::about(lower + half, half)
+        let [middle, half] = interval(lower, upper)?;
+        Self::about(middle, half)
     }
 
     /// From `mean - half` to `mean + half`; `half` must be above 0.
@@ -71,6 +71,10 @@ impl Distribution for Uniform {
     fn jacobi(&self, order: usize) -> Jacobi {
         let beta = (1..=order).map(|n| (n * n) as f64 * 3.0 / (4 * n * n - 1) as f64).collect();
         Jacobi::new(vec![0.0; order], beta)
+    }
+
+    fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
+        Some(Self::about(self.mean + moved, self.half * factor).map(|scaled| Arc::new(scaled) as _))
     }
 
     fn probability(&self) -> Option<&dyn Probability> {

@@ -168,7 +168,7 @@ const RECIPROCALS: [f64; TERMS] = {
 };
 
 /// Positive nodes and weights of the Gauss-Legendre rule with 16 points (Abramowitz and Stegun 1964, table 25.4).
-const LEGENDRE: [(f64, f64); 8] = [
+pub(crate) const LEGENDRE: [(f64, f64); 8] = [
     (0.09501250983763744, 0.1894506104550685),
     (0.2816035507792589, 0.18260341504492358),
     (0.45801677765722737, 0.16915651939500254),

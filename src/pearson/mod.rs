@@ -25,6 +25,7 @@ mod shape;
 mod side;
 mod standard;
 
+pub(crate) use equation::LEGENDRE;
 pub use error::{PearsonError, TwoPoint};
 pub use shape::PearsonType;
 

@@ -1,6 +1,6 @@
 //! One dimension's nodes as numbers that a model can be given.
 
-use super::nodes::{Moved, Nodes, Spread};
+use super::nodes::{Moved, Nodes, Spread, Tail};
 use crate::dimension::Dimension;
 
 /// A place on an axis: the value, and how many sigmas it really lies off the mean.
@@ -25,6 +25,8 @@ pub struct Axis {
     pub slots: Vec<Vec<u32>>,
     /// Nodes that would have lain outside the support.
     pub moved: Vec<Moved>,
+    /// A tail that is too long for the nodes.
+    pub tail: Option<Tail>,
 }
 
 /// What replaces a node at which the model failed: half its distance, then a quarter.
@@ -46,6 +48,7 @@ impl Axis {
             nodes: Vec::new(),
             slots: Vec::new(),
             moved: nodes.moved,
+            tail: nodes.tail,
         };
         for u in nodes.u {
             axis.open_slot(u);
@@ -57,7 +60,8 @@ impl Axis {
     pub(super) fn fixed(dimension: &Dimension) -> Self {
         let nominal = dimension.nominal();
         let scale = SENSITIVITY_STEP * nominal.abs().max(1.0);
-        let mut axis = Self { mean: nominal, scale, nodes: Vec::new(), slots: Vec::new(), moved: Vec::new() };
+        let mut axis =
+            Self { mean: nominal, scale, nodes: Vec::new(), slots: Vec::new(), moved: Vec::new(), tail: None };
         axis.open_slot(-1.0);
         axis.open_slot(1.0);
         axis
@@ -66,7 +70,7 @@ impl Axis {
     /// A dimension that stays where it is.
     pub(super) fn still(dimension: &Dimension) -> Self {
         let mean = dimension.mean();
-        Self { mean, scale: 0.0, nodes: Vec::new(), slots: Vec::new(), moved: Vec::new() }
+        Self { mean, scale: 0.0, nodes: Vec::new(), slots: Vec::new(), moved: Vec::new(), tail: None }
     }
 
     /// The distance of the nearest node from the mean, in the dimension's unit.

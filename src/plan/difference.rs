@@ -1,6 +1,7 @@
 //! The central-difference plan: the centre, nodes on the axes, and corners for mixed derivatives.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use super::axis::Axis;
 use super::known::Known;
@@ -10,7 +11,7 @@ use super::point::{At, Point};
 use super::stage::{Purpose, Stage};
 use crate::correlation::Correlation;
 use crate::dimension::Dimension;
-use crate::surrogate::{InputShape, Inputs, Univariate};
+use crate::surrogate::{InputShape, Inputs, Univariate, shapes};
 
 /// What a difference plan evaluates.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +72,14 @@ impl DifferencePlan {
             }
         }
         let distributions = varying.iter().filter_map(|&d| dimensions[d].distribution());
-        let inputs = Inputs::new(distributions, correlation.and_then(|correlation| correlation.among(&varying)));
+        let mut shapes = shapes(distributions);
+        for (shape, &d) in shapes.iter_mut().zip(&varying) {
+            // Values where they were evaluated, not where a polynomial through them leads.
+            if let Some(rule) = axes[d].tail.as_ref().and_then(|tail| tail.rule.as_ref()) {
+                shape.rule = Arc::new(rule.clone());
+            }
+        }
+        let inputs = Inputs::new(shapes, correlation.and_then(|correlation| correlation.among(&varying)));
         Self { nominal: Point::of(&nominal), layout, axes, varying, fixed, inputs, depends }
     }
 

@@ -28,17 +28,18 @@ pub(super) struct StudyFile {
 }
 
 /// Named entries in the order of the file, every name and entry with its place.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Entries<T>(pub(super) Vec<(Spanned<String>, Spanned<T>)>);
 
 /// One line of `[dimensions]`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table such as { nominal = 10.0, tolerance = 0.3 }")]
 pub(super) struct DimensionEntry {
     pub(super) nominal: Option<Spanned<f64>>,
     pub(super) tolerance: Option<Spanned<ToleranceEntry>>,
     pub(super) limits: Option<Spanned<[f64; 2]>>,
     pub(super) unit: Option<String>,
+    #[serde(default, deserialize_with = "distribution")]
     pub(super) distribution: Option<Spanned<DistributionEntry>>,
     pub(super) sigma: Option<Spanned<f64>>,
     pub(super) sigmas: Option<Spanned<f64>>,
@@ -48,6 +49,23 @@ pub(super) struct DimensionEntry {
     pub(super) step: Option<Spanned<f64>>,
 }
 
+impl PartEntry {
+    /// Its line, as if it were a dimension of its own.
+    pub(super) fn as_dimension(&self) -> DimensionEntry {
+        DimensionEntry {
+            nominal: self.nominal.clone(),
+            tolerance: self.tolerance.clone(),
+            limits: self.limits.clone(),
+            distribution: self.distribution.clone(),
+            sigma: self.sigma.clone(),
+            sigmas: self.sigmas.clone(),
+            cp: self.cp.clone(),
+            shift: self.shift.clone(),
+            ..DimensionEntry::default()
+        }
+    }
+}
+
 /// `0.3` or `[-0.1, 0.3]`.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum ToleranceEntry {
@@ -55,10 +73,33 @@ pub(super) enum ToleranceEntry {
     Deviations([f64; 2]),
 }
 
-/// `"uniform"` or `{ kind = "uniform" }`.
-#[derive(Debug)]
+/// `"uniform"` or `{ kind = "beta", alpha = 2, beta = 5 }`: the parameters of all kinds.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct DistributionEntry {
     pub(super) kind: String,
+    pub(super) mode: Option<Spanned<f64>>,
+    pub(super) top: Option<Spanned<f64>>,
+    pub(super) alpha: Option<Spanned<f64>>,
+    pub(super) beta: Option<Spanned<f64>>,
+    pub(super) origin: Option<Spanned<f64>>,
+    pub(super) parts: Option<Spanned<Entries<PartEntry>>>,
+}
+
+/// A part of a mixture: a weight, and what of a dimension is its own.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table such as { weight = 0.6, shift = 0.02, sigma = 0.01 }")]
+pub(super) struct PartEntry {
+    pub(super) weight: Spanned<f64>,
+    pub(super) nominal: Option<Spanned<f64>>,
+    pub(super) tolerance: Option<Spanned<ToleranceEntry>>,
+    pub(super) limits: Option<Spanned<[f64; 2]>>,
+    #[serde(default, deserialize_with = "distribution")]
+    pub(super) distribution: Option<Spanned<DistributionEntry>>,
+    pub(super) sigma: Option<Spanned<f64>>,
+    pub(super) sigmas: Option<Spanned<f64>>,
+    pub(super) cp: Option<Spanned<f64>>,
+    pub(super) shift: Option<Spanned<f64>>,
 }
 
 /// One line of `[characteristics]`.
@@ -175,28 +216,32 @@ impl<'de> Deserialize<'de> for ToleranceEntry {
     }
 }
 
-impl<'de> Deserialize<'de> for DistributionEntry {
+/// A text names the kind alone; a table may have parameters. To be used with `deserialize_with`.
+pub(super) fn distribution<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Spanned<DistributionEntry>>, D::Error> {
+    Option::<Spanned<WordOrTable>>::deserialize(deserializer)
+        .map(|entry| entry.map(|entry| Spanned::new(entry.span(), entry.into_inner().0)))
+}
+
+struct WordOrTable(DistributionEntry);
+
+impl<'de> Deserialize<'de> for WordOrTable {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Table {
-            kind: String,
-        }
         struct Distribution;
         impl<'de> Visitor<'de> for Distribution {
-            type Value = DistributionEntry;
+            type Value = WordOrTable;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a distribution such as \"uniform\", or { kind = \"uniform\" },")
             }
 
             fn visit_str<E>(self, kind: &str) -> Result<Self::Value, E> {
-                Ok(DistributionEntry { kind: kind.to_owned() })
+                Ok(WordOrTable(DistributionEntry { kind: kind.to_owned(), ..Default::default() }))
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
-                let Table { kind } = Table::deserialize(value::MapAccessDeserializer::new(map))?;
-                Ok(DistributionEntry { kind })
+                DistributionEntry::deserialize(value::MapAccessDeserializer::new(map)).map(WordOrTable)
             }
         }
         deserializer.deserialize_any(Distribution)

@@ -2,6 +2,39 @@
 //!
 //! One set of types describes both formats. Everything that is wrong is a [`StudyError`] with file, line, column, key and
 //! what to write instead; the first one found is reported.
+//!
+//! # Distributions
+//! `distribution = "uniform"`, or a table with parameters, such as `{ kind = "beta", alpha = 2, beta = 5 }`:
+//!
+//! | kind | mean and sigma | parameters |
+//! |---|---|---|
+//! | `normal` | the band's middle plus `shift`; `sigma`, or half the band by `sigmas` (3) or `cp` (1) | |
+//! | `truncated-normal` | the same before the cut at the band; both follow | |
+//! | `uniform` | follow from the band | |
+//! | `triangular` | follow from the band | `mode`: a value within the band, its middle by default |
+//! | `trapezoidal` | follow from the band | `top`: the share of the band over which it is flat |
+//! | `beta` | follow from the band | `alpha`, `beta`: the exponents at the lower and the upper end |
+//! | `lognormal`, `gamma`, `weibull` | nominal plus `shift`; `sigma`, or half the band by `sigmas` or `cp` | `origin`: where it begins, 0 by default |
+//! | `exponential`, `rayleigh` | nominal plus `shift`; sigma follows from mean and origin | `origin` |
+//! | `mixture` | follow from the parts | `parts`: tables by name |
+//!
+//! A part of a mixture has a `weight` (relative to the others') and `nominal`, `tolerance` or `limits`, `sigma`, `sigmas`, `cp`,
+//! `shift` and `distribution` as a dimension has; nominal and band are the dimension's where the part gives none:
+//!
+//! ```
+//! use sensitol::Study;
+//! let study = Study::from_toml(
+//!     r#"
+//!     [dimensions]
+//!     bore = { nominal = 25, tolerance = 0.03, distribution = { kind = "mixture", parts = { north = { weight = 3 }, south = { weight = 1, shift = 0.02 } } } }
+//!     [characteristics]
+//!     radius = { formula = "bore/2" }
+//!     "#,
+//!     "bore.toml",
+//! )?;
+//! assert!((study.problem.dimensions()[0].mean() - 25.005).abs() < 1e-12);
+//! # Ok::<(), sensitol::StudyError>(())
+//! ```
 
 mod build;
 mod correlation;

@@ -1,8 +1,7 @@
 //! What moments need to know of all inputs together.
 
-use super::shape::{InputShape, shapes};
+use super::shape::InputShape;
 use crate::correlation::Correlation;
-use crate::distribution::Distribution;
 
 /// The shapes of the inputs, and how they vary together.
 #[derive(Debug, Clone)]
@@ -12,12 +11,9 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Of these distributions, of which `correlation` tells by their positions here.
-    pub fn new<'a>(
-        distributions: impl IntoIterator<Item = &'a dyn Distribution>,
-        correlation: Option<Correlation>,
-    ) -> Self {
-        Self { shapes: shapes(distributions), correlation }
+    /// Of these shapes; `correlation` tells of them by their positions here.
+    pub fn new(shapes: Vec<InputShape>, correlation: Option<Correlation>) -> Self {
+        Self { shapes, correlation }
     }
 
     /// Of independent inputs.

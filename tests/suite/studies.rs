@@ -9,7 +9,7 @@ fn parse(text: &str) -> Result<Study, StudyError> {
 }
 
 /// A study of one dimension `a`, written as this line.
-fn dimension(line: &str) -> Result<Dimension, StudyError> {
+pub fn dimension(line: &str) -> Result<Dimension, StudyError> {
     let text = format!("[dimensions]\na = {line}\n[characteristics]\ny = {{ formula = \"a\" }}\n");
     parse(&text).map(|study| study.problem.dimensions()[0].clone())
 }
@@ -63,6 +63,127 @@ fn tolerances_become_distributions() {
     }
     let full = dimension("{ nominal = 10.0, tolerance = 0.3, unit = \"mm\", step = 0.5 }").unwrap();
     assert_eq!((full.unit(), full.step(), full.tolerance()), (Some("mm"), Some(0.5), Some([-0.3, 0.3])));
+}
+
+/// Mean, sigma and half band of every kind, by hand.
+#[test]
+fn every_kind_of_distribution_is_written() {
+    let figures = |line: &str| {
+        let dimension = dimension(line).unwrap();
+        (dimension.distribution().unwrap().name(), dimension.mean(), dimension.sigma(), dimension.half_band())
+    };
+    let root = f64::sqrt;
+    let pi = std::f64::consts::PI;
+    for (line, name, (mean, sigma, half)) in [
+        // 1 - 6 density(3)/P(|z| < 3) by mpmath.
+        (
+            "tolerance = 0.3, distribution = \"truncated-normal\"",
+            "truncated-normal",
+            (10.0, 0.1 * root(0.973_336_924_662_541_5), 0.3),
+        ),
+        ("limits = [9.7, 10.3], sigmas = 3, distribution = \"triangular\"", "", (0.0, 0.0, 0.0)),
+        ("tolerance = 0.3, distribution = \"triangular\"", "triangular", (10.0, 0.3 / root(6.0), 0.3)),
+        (
+            "tolerance = [0, 0.6], distribution = { kind = \"triangular\", mode = 10 }",
+            "triangular",
+            (10.2, 0.6 / root(18.0), 0.3),
+        ),
+        (
+            "tolerance = 0.3, distribution = { kind = \"trapezoidal\", top = 0.5 }",
+            "trapezoidal",
+            (10.0, 0.3 * root(0.625 / 3.0), 0.3),
+        ),
+        (
+            "limits = [9.3, 10], distribution = { kind = \"beta\", alpha = 2, beta = 5 }",
+            "beta",
+            (9.5, 0.7 * root(10.0 / 49.0 / 8.0), 0.35),
+        ),
+        ("sigma = 2, shift = 1, distribution = \"lognormal\"", "lognormal", (11.0, 2.0, 6.0)),
+        ("tolerance = [-1, 5], distribution = { kind = \"gamma\", origin = 4 }", "gamma", (10.0, 1.0, 3.0)),
+        ("tolerance = 3, sigmas = 2, distribution = { kind = \"weibull\", origin = 4 }", "weibull", (10.0, 1.5, 3.0)),
+        ("distribution = { kind = \"exponential\" }", "exponential", (10.0, 10.0, 30.0)),
+        (
+            "sigma = 8, shift = 2, tolerance = 5, distribution = { kind = \"exponential\", origin = 4 }",
+            "exponential",
+            (12.0, 8.0, 5.0),
+        ),
+        (
+            "distribution = { kind = \"rayleigh\", origin = 9 }",
+            "rayleigh",
+            (10.0, root(4.0 / pi - 1.0), 3.0 * root(4.0 / pi - 1.0)),
+        ),
+        (
+            "tolerance = 0.3, distribution = { kind = \"mixture\", parts = { a = { weight = 3 }, b = { weight = 1, shift = 0.4 } } }",
+            "mixture",
+            (10.1, root(0.01 + 0.16 * 3.0 / 16.0), 0.3),
+        ),
+        (
+            "distribution = { kind = \"mixture\", parts = { a = { weight = 1, limits = [9, 10], distribution = \"uniform\" }, b = { weight = 1, nominal = 10.5, sigma = 0.5 } } }",
+            "mixture",
+            (10.0, root(0.5 * (1.0 / 12.0 + 0.25) + 0.25), 3.0 * root(0.5 * (1.0 / 12.0 + 0.25) + 0.25)),
+        ),
+    ] {
+        let line = format!("{{ nominal = 10, {line} }}");
+        if name.is_empty() {
+            assert!(dimension(&line).is_err());
+            continue;
+        }
+        let found = figures(&line);
+        assert_eq!(found.0, name, "{line}");
+        close(found.1, mean, 1e-14, 1.0);
+        close(found.2, sigma, 1e-12, 0.0);
+        close(found.3, half, 1e-12, 0.0);
+    }
+    // A tolerance that is set to 0 for once makes any dimension fixed.
+    for kind in ["normal", "triangular", "gamma", "exponential"] {
+        let line = format!("{{ nominal = 10, tolerance = 0, distribution = \"{kind}\" }}");
+        assert!(dimension(&line).unwrap().distribution().is_none(), "{kind}");
+    }
+}
+
+#[test]
+fn distributions_at_fault() {
+    let line = |line: &str| {
+        format!("[dimensions]\na = {{ nominal = 1, {line} }}\n[characteristics]\ny = {{ formula = \"a\" }}\n")
+    };
+    let lines = [
+        "tolerance = 0.1, distribution = { kind = \"triangular\", top = 0.5 }",
+        "tolerance = 0.1, distribution = { kind = \"triangular\", mode = 2 }",
+        "tolerance = 0.1, distribution = { kind = \"triangular\", mod = 1 }",
+        "tolerance = 0.1, distribution = { kind = \"trapezoidal\" }",
+        "tolerance = 0.1, distribution = { kind = \"trapezoidal\", top = 1.5 }",
+        "tolerance = 0.1, distribution = \"beta\"",
+        "tolerance = 0.1, distribution = { kind = \"beta\", alpha = 2 }",
+        "tolerance = 0.1, distribution = { kind = \"beta\", alpha = 2, beta = 0 }",
+        "tolerance = 0.1, sigma = 0.1, distribution = { kind = \"beta\", alpha = 2, beta = 2 }",
+        "distribution = { kind = \"beta\", alpha = 2, beta = 2 }",
+        "tolerance = 0.1, shift = 0.01, distribution = \"triangular\"",
+        "tolerance = 0.1, cp = 1, distribution = \"triangular\"",
+        "tolerance = 0.1, shift = 10, distribution = \"truncated-normal\"",
+        "tolerance = 0.1, sigma = 0.05, distribution = \"truncated-normal\"",
+        "tolerance = 0.1, distribution = { kind = \"normal\", origin = 0 }",
+        "distribution = \"gamma\"",
+        "sigma = 0.1, distribution = { kind = \"gamma\", origin = 2 }",
+        "sigma = 100, distribution = \"gamma\"",
+        "sigma = -1, distribution = \"weibull\"",
+        "tolerance = 0.1, sigmas = 3, sigma = 0.1, distribution = \"lognormal\"",
+        "sigma = 0.5, distribution = \"exponential\"",
+        "tolerance = 0.1, sigmas = 3, distribution = \"rayleigh\"",
+        "distribution = { kind = \"exponential\", origin = 1 }",
+        "tolerance = 0.1, distribution = \"exponentail\"",
+        "tolerance = 0.1, distribution = \"mixture\"",
+        "tolerance = 0.1, distribution = { kind = \"mixture\", parts = {} }",
+        "tolerance = 0.1, distribution = { kind = \"mixture\", parts = { a = {} } }",
+        "tolerance = 0.1, distribution = { kind = \"mixture\", parts = { a = { weight = 0 } } }",
+        "tolerance = 0.1, distribution = { kind = \"mixture\", parts = { a = { weight = 1, unit = \"mm\" } } }",
+        "tolerance = 0.1, distribution = { kind = \"mixture\", parts = { a = { weight = 1, distribution = \"beta\" } } }",
+        "distribution = { kind = \"mixture\", parts = { a = { weight = 1 } } }",
+        "tolerance = 0.1, shift = 1, distribution = { kind = \"mixture\", parts = { a = { weight = 1 } } }",
+        "tolerance = 0.1, sigma = 1, distribution = { kind = \"mixture\", parts = { a = { weight = 1 } } }",
+        "tolerance = 0.1, distribution = { kind = \"mixture\", parts = [1] }",
+    ]
+    .map(line);
+    insta::assert_snapshot!(faults(&lines.iter().map(String::as_str).collect::<Vec<_>>()));
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! From one line of `[dimensions]` to a dimension: tolerance and distribution in their several forms.
 
+mod kinds;
+mod mixture;
 mod spread;
 mod tolerance;
 
@@ -16,7 +18,7 @@ pub(super) fn dimension(name: &str, entry: &Spanned<DimensionEntry>, model: Opti
     let (line, entry) = (entry.span(), entry.get_ref());
     let nominal = nominal(entry, model, &line)?;
     let tolerance = tolerance::tolerance(entry, nominal)?;
-    let distribution = spread::distribution(entry, nominal, tolerance)?;
+    let distribution = kinds::distribution(entry, nominal, tolerance)?;
     let whole = |error: DimensionError| fault(line, "", error.fault);
     let mut dimension = match distribution {
         None => Dimension::fixed(name, nominal),

@@ -1,0 +1,132 @@
+//! What can be wrong with a distribution, and the checks that every one of them uses.
+
+/// What is wrong with a distribution's parameters.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DistributionError {
+    /// A parameter is NaN or infinite.
+    #[error("{parameter} must be a finite number, not {value}")]
+    NotFinite {
+        /// Name of the parameter.
+        parameter: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// A spread that must be above 0 is not.
+    #[error("{parameter} must be above 0, not {value}")]
+    NotPositive {
+        /// Name of the parameter.
+        parameter: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// The upper end of an interval is not above its lower end.
+    #[error("the lower end {lower} must be below the upper end {upper}")]
+    EmptyInterval {
+        /// Lower end as given.
+        lower: f64,
+        /// Upper end as given.
+        upper: f64,
+    },
+    /// A parameter outside its range.
+    #[error("{parameter} must be {range}, not {value}")]
+    OutOfRange {
+        /// Name of the parameter.
+        parameter: &'static str,
+        /// The value given.
+        value: f64,
+        /// What it must be.
+        range: &'static str,
+    },
+    /// The mean of a distribution that begins at an origin does not lie above it.
+    #[error("the mean {mean} must lie above the origin {origin}, where the distribution begins")]
+    NotAboveOrigin {
+        /// The mean.
+        mean: f64,
+        /// Where the distribution begins.
+        origin: f64,
+    },
+    /// A tail so long, or a spread so small, that doubles cannot describe it.
+    #[error(
+        "sigma {sigma} is {:.3e} times the distance {distance} of the mean from the origin: \
+         {least:e} to {largest} times can be computed",
+        sigma / distance
+    )]
+    SigmaToMean {
+        /// Sigma as given.
+        sigma: f64,
+        /// Distance of the mean from the origin.
+        distance: f64,
+        /// The least ratio.
+        least: f64,
+        /// The largest ratio.
+        largest: f64,
+    },
+    /// The parameters are possible, but what follows from them is beyond doubles.
+    #[error("this distribution cannot be computed: {reason}")]
+    NoLaw {
+        /// Why not.
+        reason: String,
+    },
+    /// A mixture of nothing.
+    #[error("a mixture needs at least one part")]
+    NoParts,
+    /// A part of a mixture with a weight that is none.
+    #[error("the weight of part `{part}` must be a number above 0, not {weight}")]
+    BadWeight {
+        /// The part.
+        part: String,
+        /// Its weight as given.
+        weight: f64,
+    },
+    /// A part of a mixture that is known by moments alone.
+    #[error("part `{part}` is known by moments alone: a mixture needs whole distributions")]
+    NotWhole {
+        /// The part.
+        part: String,
+    },
+    /// No distribution has these moments.
+    #[error(
+        "no distribution has these central moments: the moment matrix up to m{moment} is not positive \
+         (its pivot is {pivot:.3e} after scaling by sigma)"
+    )]
+    ImpossibleMoments {
+        /// The highest moment of the first leading matrix that fails: 4, 6 or 8.
+        moment: usize,
+        /// The negative pivot, of standardised moments.
+        pivot: f64,
+    },
+}
+
+pub(crate) fn finite(parameter: &'static str, value: f64) -> Result<f64, DistributionError> {
+    if value.is_finite() { Ok(value) } else { Err(DistributionError::NotFinite { parameter, value }) }
+}
+
+pub(crate) fn positive(parameter: &'static str, value: f64) -> Result<f64, DistributionError> {
+    if finite(parameter, value)? > 0.0 { Ok(value) } else { Err(DistributionError::NotPositive { parameter, value }) }
+}
+
+/// Middle and half width of an interval.
+pub(crate) fn interval(lower: f64, upper: f64) -> Result<[f64; 2], DistributionError> {
+    finite("the lower limit", lower)?;
+    finite("the upper limit", upper)?;
+    if lower >= upper {
+        return Err(DistributionError::EmptyInterval { lower, upper });
+    }
+    let half = 0.5 * upper - 0.5 * lower;
+    Ok([lower + half, half])
+}
+
+/// A value between two others; `range` is what it must be, in words.
+pub(crate) fn between(
+    parameter: &'static str,
+    value: f64,
+    [least, largest]: [f64; 2],
+    range: &'static str,
+) -> Result<f64, DistributionError> {
+    if (least..=largest).contains(&finite(parameter, value)?) {
+        Ok(value)
+    } else {
+        Err(DistributionError::OutOfRange { parameter, value, range })
+    }
+}

@@ -1,0 +1,244 @@
+//! A mixture of distributions: two machines, two suppliers.
+
+use std::sync::Arc;
+
+use rand::{Rng, RngExt};
+
+use super::discretised::{Discretised, ORDER};
+use super::inverse::root;
+use super::probability::{checked, clamped};
+use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments};
+
+/// Values that come from one of several sources, each with its own distribution and its share.
+///
+/// ```
+/// use std::sync::Arc;
+/// use sensitol::distribution::{Distribution, Mixture, Normal, Part};
+/// let part = |name: &str, weight: f64, mean: f64| -> Result<Part, sensitol::distribution::DistributionError> {
+///     Ok(Part { name: name.into(), weight, distribution: Arc::new(Normal::new(mean, 0.1)?) })
+/// };
+/// let bore = Mixture::new(vec![part("machine 1", 3.0, 10.0)?, part("machine 2", 1.0, 10.4)?])?;
+/// assert!((bore.mean() - 10.1).abs() < 1e-14);
+/// assert!((bore.sigma().powi(2) - (0.01 + 0.75 * 0.25 * 0.16)).abs() < 1e-14);
+/// # Ok::<(), sensitol::distribution::DistributionError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Mixture {
+    /// Weights sum to 1.
+    parts: Vec<Part>,
+    mean: f64,
+    sigma: f64,
+    moments: StandardMoments,
+    /// As far as the parts' own recurrences go.
+    jacobi: Jacobi,
+}
+
+/// One source of a mixture.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// What people call it.
+    pub name: String,
+    /// Its share, relative to those of the others.
+    pub weight: f64,
+    /// How it varies.
+    pub distribution: Arc<dyn Distribution>,
+}
+
+/// Part of sigma below which two bounds of a quantile are one.
+const SAME: f64 = 1e-15;
+
+impl Mixture {
+    /// Of at least one part; weights must be above 0 and need not sum to 1.
+    pub fn new(mut parts: Vec<Part>) -> Result<Self, DistributionError> {
+        if parts.is_empty() {
+            return Err(DistributionError::NoParts);
+        }
+        for part in &parts {
+            if !(part.weight > 0.0 && part.weight.is_finite()) {
+                return Err(DistributionError::BadWeight { part: part.name.clone(), weight: part.weight });
+            }
+            if part.distribution.probability().is_none() {
+                return Err(DistributionError::NotWhole { part: part.name.clone() });
+            }
+        }
+        let total: f64 = parts.iter().map(|part| part.weight).sum();
+        parts.iter_mut().for_each(|part| part.weight /= total);
+        let first = parts[0].distribution.mean();
+        let mean = first + weighted(&parts, |part| part.mean() - first);
+        let sigma = weighted(&parts, |part| (part.mean() - mean).powi(2) + part.sigma().powi(2)).sqrt();
+        let moments = standard_moments(&parts, mean, sigma);
+        if !(mean.is_finite() && sigma.is_finite() && moments.are_finite()) {
+            return Err(DistributionError::NoLaw { reason: "its moments are beyond the range of a double".into() });
+        }
+        let jacobi = jacobi(&parts, mean, sigma);
+        Ok(Self { parts, mean, sigma, moments, jacobi })
+    }
+
+    /// Its parts, with weights that sum to 1.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    fn law(part: &Part) -> &dyn Probability {
+        part.distribution.probability().expect("checked when the mixture was made")
+    }
+
+    fn sum(&self, f: impl Fn(&dyn Probability) -> f64) -> f64 {
+        self.parts.iter().map(|part| part.weight * f(Self::law(part))).sum()
+    }
+
+    /// Where the tail has this probability: between the least and the greatest of the parts' own quantiles.
+    fn inverse(&self, p: f64, upper: bool) -> f64 {
+        if checked(p).is_nan() {
+            return f64::NAN;
+        }
+        let quantiles = self.parts.iter().map(|part| {
+            let law = Self::law(part);
+            if upper { law.upper_quantile(p) } else { law.quantile(p) }
+        });
+        let (low, high) =
+            quantiles.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        if p == 0.0 || p == 1.0 {
+            return if upper == (p == 0.0) { high } else { low };
+        }
+        if high - low <= SAME * self.sigma {
+            return low;
+        }
+        // Counted from the mean, whose rounding then does not end the search too early.
+        let off = |u: f64| {
+            let x = self.mean + u;
+            let tail = self.sum(|law| if upper { law.sf(x) } else { law.cdf(x) });
+            let slope = self.sum(|law| law.density(x).unwrap_or(f64::NAN)) / tail;
+            let error = libm::log(tail / p);
+            if upper { (-error, slope) } else { (error, slope) }
+        };
+        self.mean + root([low - self.mean, high - self.mean], 0.5 * (low + high) - self.mean, off)
+    }
+}
+
+fn weighted(parts: &[Part], f: impl Fn(&dyn Distribution) -> f64) -> f64 {
+    parts.iter().map(|part| part.weight * f(part.distribution.as_ref())).sum()
+}
+
+/// Moments about the common mean by the binomial theorem. In the excess the parts' own normal fourth moments cancel against 3 by
+/// algebra: with `d` a part's offset and `1 + r` its variance, in common sigmas, it is
+/// `sum weight (excess (1+r)^2 + 4 skewness (1+r)^(3/2) d + 6 r d^2 + d^4 + 3 r^2)`, because `sum weight (r + d^2) = 0`.
+fn standard_moments(parts: &[Part], mean: f64, sigma: f64) -> StandardMoments {
+    let shape = |part: &dyn Distribution| ((part.mean() - mean) / sigma, part.sigma() / sigma, part.standard_moments());
+    let moment = |order: usize| {
+        weighted(parts, |part| {
+            let (d, s, own) = shape(part);
+            let mut choose = 1.0;
+            let mut sum = 0.0;
+            for (k, own) in own.raw().iter().enumerate().take(order + 1) {
+                sum += choose * own * s.powi(k as i32) * d.powi((order - k) as i32);
+                choose *= (order - k) as f64 / (k + 1) as f64;
+            }
+            sum
+        })
+    };
+    let excess = weighted(parts, |part| {
+        let (d, s, own) = shape(part);
+        let r = (s - 1.0) * (s + 1.0);
+        let s2 = s * s;
+        own.excess * s2 * s2 + 4.0 * own.skewness * s2 * s * d + 6.0 * r * d * d + d.powi(4) + 3.0 * r * r
+    });
+    StandardMoments::with_excess(moment(3), excess, [5, 6, 7, 8].map(moment))
+}
+
+/// From the parts' Gauss rules of one order more, which integrate all polynomials that the recurrence needs.
+fn jacobi(parts: &[Part], mean: f64, sigma: f64) -> Jacobi {
+    let own: Vec<Jacobi> = parts.iter().map(|part| part.distribution.jacobi(ORDER)).collect();
+    let known = own.iter().filter(|jacobi| !jacobi.is_whole()).map(|jacobi| jacobi.order() - 1).min();
+    let order = known.unwrap_or(ORDER - 1);
+    let mut points = Discretised::default();
+    for (part, own) in parts.iter().zip(own) {
+        let rule = if own.is_whole() { own.gauss() } else { own.truncated(order + 1).gauss() };
+        let (d, s) = ((part.distribution.mean() - mean) / sigma, part.distribution.sigma() / sigma);
+        for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
+            points.push(d + s * node, part.weight * weight);
+        }
+    }
+    points.standardise();
+    points.jacobi(order)
+}
+
+impl Distribution for Mixture {
+    fn name(&self) -> &'static str {
+        "mixture"
+    }
+
+    fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    fn sigma(&self) -> f64 {
+        self.sigma
+    }
+
+    fn standard_moments(&self) -> StandardMoments {
+        self.moments
+    }
+
+    fn support(&self) -> [f64; 2] {
+        let ends = self.parts.iter().map(|part| part.distribution.support());
+        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [lower, upper]| [low.min(lower), high.max(upper)])
+    }
+
+    /// One order less than the least that a part knows, 15 at most.
+    fn jacobi(&self, order: usize) -> Jacobi {
+        self.jacobi.truncated(order)
+    }
+
+    /// Every part scales as it would by itself; None where one does not. Distances between parts that are shifts stay.
+    fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
+        let mut parts = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            match part.distribution.scaled(factor, moved)? {
+                Ok(distribution) => parts.push(Part { distribution, ..part.clone() }),
+                Err(error) => return Some(Err(error)),
+            }
+        }
+        Some(Self::new(parts).map(|scaled| Arc::new(scaled) as _))
+    }
+
+    fn probability(&self) -> Option<&dyn Probability> {
+        Some(self)
+    }
+}
+
+impl Probability for Mixture {
+    /// None where a part has none.
+    fn density(&self, x: f64) -> Option<f64> {
+        self.parts.iter().map(|part| Some(part.weight * Self::law(part).density(x)?)).sum()
+    }
+
+    fn cdf(&self, x: f64) -> f64 {
+        clamped(self.sum(|law| law.cdf(x)))
+    }
+
+    fn sf(&self, x: f64) -> f64 {
+        clamped(self.sum(|law| law.sf(x)))
+    }
+
+    fn quantile(&self, p: f64) -> f64 {
+        self.inverse(p, false)
+    }
+
+    fn upper_quantile(&self, p: f64) -> f64 {
+        self.inverse(p, true)
+    }
+
+    /// Each value from a part drawn by weight; a part's own values are drawn as it draws them.
+    fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
+        for value in out {
+            let mut left: f64 = rng.random();
+            let drawn = self.parts.iter().find(|part| {
+                left -= part.weight;
+                left < 0.0
+            });
+            let part = drawn.unwrap_or(&self.parts[self.parts.len() - 1]);
+            Self::law(part).fill(rng, std::slice::from_mut(value));
+        }
+    }
+}

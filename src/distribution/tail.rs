@@ -1,0 +1,29 @@
+//! What the kinds with a tail have in common: they begin at an origin, and their mean lies above it.
+
+use super::{DistributionError, finite, positive};
+
+/// How far the mean lies above the origin.
+pub(super) fn above_origin(origin: f64, mean: f64) -> Result<f64, DistributionError> {
+    finite("origin", origin)?;
+    finite("mean", mean)?;
+    let distance = mean - origin;
+    if distance > 0.0 && distance.is_finite() {
+        Ok(distance)
+    } else {
+        Err(DistributionError::NotAboveOrigin { mean, origin })
+    }
+}
+
+/// The least sigma that is computed, by the distance of the mean from the origin: far below what doubles can resolve.
+const LEAST: f64 = 1e-12;
+
+/// Distance of the mean from the origin, and sigma by that.
+pub(super) fn ratio(origin: f64, mean: f64, sigma: f64, largest: f64) -> Result<[f64; 2], DistributionError> {
+    let distance = above_origin(origin, mean)?;
+    let ratio = positive("sigma", sigma)? / distance;
+    if (LEAST..=largest).contains(&ratio) {
+        Ok([distance, ratio])
+    } else {
+        Err(DistributionError::SigmaToMean { sigma, distance, least: LEAST, largest })
+    }
+}

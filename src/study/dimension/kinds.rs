@@ -1,0 +1,316 @@
+//! The kinds of distribution: their names, what each knows, and what each makes of band, sigma and shift.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use serde_spanned::Spanned;
+
+use super::super::error::{Fault, StudyFault, fault};
+use super::super::file::{DimensionEntry, DistributionEntry};
+use super::conflict;
+use super::mixture::mixture;
+use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, shift, sigma, sigmas};
+use crate::dimension::DimensionFault;
+use crate::distribution::{
+    Beta, CentralMoments, Distribution, DistributionError, Exponential, Gamma, Lognormal, Normal, Rayleigh,
+    Trapezoidal, Triangular, TruncatedNormal, Uniform, Weibull,
+};
+use crate::names::nearest;
+
+/// A kind of distribution by its name in study files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Normal,
+    TruncatedNormal,
+    Uniform,
+    Triangular,
+    Trapezoidal,
+    Beta,
+    Lognormal,
+    Gamma,
+    Weibull,
+    Exponential,
+    Rayleigh,
+    Mixture,
+    /// Told by the key `moments`, not by a name.
+    Moments,
+}
+
+/// Name, the parameters that a kind knows, and what to write instead of others.
+type Known = (&'static str, Kind, &'static [&'static str], &'static str);
+
+const NOTHING: &str = "it has no parameters of its own";
+const ORIGIN: &str = "it knows `origin`";
+const KINDS: [Known; 12] = [
+    ("normal", Kind::Normal, &[], NOTHING),
+    ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
+    ("uniform", Kind::Uniform, &[], NOTHING),
+    ("triangular", Kind::Triangular, &["mode"], "it knows `mode`"),
+    ("trapezoidal", Kind::Trapezoidal, &["top"], "it knows `top`"),
+    ("beta", Kind::Beta, &["alpha", "beta"], "it knows `alpha` and `beta`"),
+    ("lognormal", Kind::Lognormal, &["origin"], ORIGIN),
+    ("gamma", Kind::Gamma, &["origin"], ORIGIN),
+    ("weibull", Kind::Weibull, &["origin"], ORIGIN),
+    ("exponential", Kind::Exponential, &["origin"], ORIGIN),
+    ("rayleigh", Kind::Rayleigh, &["origin"], ORIGIN),
+    ("mixture", Kind::Mixture, &["parts"], "it knows `parts`"),
+];
+
+/// The distribution of this line; None when it does not vary.
+pub(super) fn distribution(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+    match kind(entry)? {
+        Kind::Moments => moments(entry, nominal),
+        Kind::Normal => normal(entry, nominal, tolerance),
+        Kind::Mixture => mixture(entry, nominal, tolerance),
+        over @ (Kind::TruncatedNormal | Kind::Uniform | Kind::Triangular | Kind::Trapezoidal | Kind::Beta) => {
+            over_band(over, entry, nominal, tolerance)
+        }
+        Kind::Lognormal => {
+            with_tail(entry, nominal, tolerance, |o, mean, sigma| shared(Lognormal::new(o, mean, sigma)))
+        }
+        Kind::Gamma => with_tail(entry, nominal, tolerance, |o, mean, sigma| shared(Gamma::new(o, mean, sigma))),
+        Kind::Weibull => with_tail(entry, nominal, tolerance, |o, mean, sigma| shared(Weibull::new(o, mean, sigma))),
+        Kind::Exponential => {
+            of_mean(entry, nominal, "an exponential distribution", |o, mean| shared(Exponential::new(o, mean)))
+        }
+        Kind::Rayleigh => of_mean(entry, nominal, "a rayleigh distribution", |o, mean| shared(Rayleigh::new(o, mean))),
+    }
+}
+
+fn kind(entry: &DimensionEntry) -> Result<Kind, Fault> {
+    if entry.moments.is_some() {
+        let why = || "are two ways of giving a distribution: leave one out".to_owned();
+        let excluded: [(&'static str, Option<Range<usize>>); 4] = [
+            ("distribution", entry.distribution.as_ref().map(Spanned::span)),
+            ("sigma", entry.sigma.as_ref().map(Spanned::span)),
+            ("sigmas", entry.sigmas.as_ref().map(Spanned::span)),
+            ("cp", entry.cp.as_ref().map(Spanned::span)),
+        ];
+        for (key, span) in excluded {
+            if let Some(span) = span {
+                return Err(fault(span, key, StudyFault::Conflict { a: "moments", b: key, why: why() }));
+            }
+        }
+        return Ok(Kind::Moments);
+    }
+    let Some(distribution) = &entry.distribution else { return Ok(Kind::Normal) };
+    let found = distribution.get_ref().kind.as_str();
+    let names = || KINDS.iter().map(|known| known.0);
+    let Some((name, kind, knows, instead)) = KINDS.iter().find(|known| known.0 == found) else {
+        let nearest = nearest(found, names()).map(str::to_owned);
+        let known = names().map(str::to_owned).collect();
+        let unknown = StudyFault::UnknownWord { what: "distribution", found: found.to_owned(), nearest, known };
+        return Err(fault(distribution.span(), "distribution", unknown));
+    };
+    for (key, span) in parameters(distribution.get_ref()) {
+        if let Some(span) = span.filter(|_| !knows.contains(&key)) {
+            let to = format!("the distribution `{name}`");
+            return Err(fault(span, within(key), StudyFault::DoesNotApply { key, to, instead }));
+        }
+    }
+    Ok(*kind)
+}
+
+/// Every parameter that a table may have, and where it stands.
+fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 6] {
+    let span = |parameter: &Option<Spanned<f64>>| parameter.as_ref().map(Spanned::span);
+    [
+        ("mode", span(&entry.mode)),
+        ("top", span(&entry.top)),
+        ("alpha", span(&entry.alpha)),
+        ("beta", span(&entry.beta)),
+        ("origin", span(&entry.origin)),
+        ("parts", entry.parts.as_ref().map(Spanned::span)),
+    ]
+}
+
+fn within(parameter: &str) -> String {
+    format!("distribution.{parameter}")
+}
+
+/// Mean = the band's middle plus `shift`; sigma = half band / `sigmas`, or as given.
+fn normal(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+    let Some(sigma) = sigma(entry, tolerance)? else { return nothing_to_spread(entry) };
+    if sigma == 0.0 && tolerance.is_none() && entry.shift.is_none() {
+        return Ok(None);
+    }
+    let middle = tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
+    placed(entry, shared(Normal::new(nominal + middle + shift(entry), sigma)))
+}
+
+/// The support is the band; mean and sigma follow from the shape.
+fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+    let name = KINDS.iter().find(|known| known.1 == kind).map_or("", |known| known.0);
+    let to = || format!("a {name} distribution");
+    let per_band = sigmas(entry)?;
+    if kind != Kind::TruncatedNormal {
+        if let Some((key, span, _)) = per_band {
+            let instead = "its sigma follows from the band";
+            return Err(fault(span, key, StudyFault::DoesNotApply { key, to: to(), instead }));
+        }
+        if let Some(shift) = &entry.shift {
+            let instead = "move the limits instead";
+            return Err(fault(shift.span(), "shift", StudyFault::DoesNotApply { key: "shift", to: to(), instead }));
+        }
+    }
+    let Some([lower, upper]) = tolerance else {
+        if let Some(sigma) = &entry.sigma {
+            return Err(fault(sigma.span(), "sigma", needs_band("sigma")));
+        }
+        return nothing_to_spread(entry);
+    };
+    let (offset, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
+    let middle = nominal + offset;
+    let distribution = match kind {
+        Kind::TruncatedNormal => {
+            let per_band = per_band.map_or(super::spread::SIGMAS, |(_, _, sigmas)| sigmas);
+            shared(TruncatedNormal::about(middle, half, shift(entry), half / per_band))
+        }
+        Kind::Triangular => shared(Triangular::about(middle, half, lean(entry, nominal, offset, half)?)),
+        Kind::Trapezoidal => shared(Trapezoidal::about(middle, half, parameter(entry, "top", |entry| &entry.top)?)),
+        Kind::Beta => {
+            let alpha = parameter(entry, "alpha", |entry| &entry.alpha)?;
+            shared(Beta::about(middle, half, alpha, parameter(entry, "beta", |entry| &entry.beta)?))
+        }
+        _ => shared(Uniform::about(middle, half)),
+    };
+    let distribution = placed(entry, distribution)?;
+    agreeing(entry, &distribution, "tolerance", &format!("{name} over this band"))?;
+    Ok(distribution)
+}
+
+/// The mode is a value of the dimension, as `limits` are; where it lies in the band, from -1 to 1.
+fn lean(entry: &DimensionEntry, nominal: f64, offset: f64, half: f64) -> Result<f64, Fault> {
+    let Some(mode) = entry.distribution.as_ref().and_then(|entry| entry.get_ref().mode.as_ref()) else {
+        return Ok(0.0);
+    };
+    let lean = ((mode.get_ref() - nominal) - offset) / half;
+    // The rounding of a mode at an end of the band is no fault.
+    if lean.abs() > 1.0 + 1e-9 {
+        let (value, range) = (*mode.get_ref(), "within the tolerance band");
+        let outside = DistributionError::OutOfRange { parameter: "mode", value, range };
+        return Err(fault(mode.span(), within("mode"), DimensionFault::from(outside)));
+    }
+    Ok(lean.clamp(-1.0, 1.0))
+}
+
+/// Mean = nominal plus `shift`, whatever the band; sigma as given or half band / `sigmas`.
+fn with_tail(
+    entry: &DimensionEntry,
+    nominal: f64,
+    tolerance: Option<[f64; 2]>,
+    build: impl Fn(f64, f64, f64) -> Result<Arc<dyn Distribution>, DistributionError>,
+) -> Result<Spread, Fault> {
+    let flat = is_flat(entry);
+    let sigma = match (sigma(entry, tolerance)?, &entry.distribution) {
+        (Some(sigma), _) => sigma,
+        (None, Some(table)) if !flat => {
+            let instead = "give it, or a tolerance of which it is a third: the mean is the nominal".to_owned();
+            return Err(fault(table.span(), "distribution", StudyFault::MissingKey { key: "sigma".into(), instead }));
+        }
+        _ => return nothing_to_spread(entry),
+    };
+    if sigma == 0.0 && flat {
+        return Ok(None);
+    }
+    placed(entry, build(origin(entry), nominal + shift(entry), sigma))
+}
+
+/// Mean = nominal plus `shift`; the distance from the origin fixes sigma.
+fn of_mean(
+    entry: &DimensionEntry,
+    nominal: f64,
+    to: &str,
+    build: impl Fn(f64, f64) -> Result<Arc<dyn Distribution>, DistributionError>,
+) -> Result<Spread, Fault> {
+    if let Some((key, span, _)) = sigmas(entry)? {
+        let instead = "its sigma follows from mean and origin";
+        return Err(fault(span, key, StudyFault::DoesNotApply { key, to: to.to_owned(), instead }));
+    }
+    if is_flat(entry) {
+        // A tolerance of 0 beside a sigma contradicts it; alone it makes the dimension fixed.
+        sigma(entry, None)?;
+        return nothing_to_spread(entry);
+    }
+    let distribution = placed(entry, build(origin(entry), nominal + shift(entry)))?;
+    agreeing(entry, &distribution, "distribution", &format!("{to} with this mean and origin"))?;
+    Ok(distribution)
+}
+
+/// Known by moments: mean = nominal plus `shift`, whatever the band.
+fn moments(entry: &DimensionEntry, nominal: f64) -> Result<Spread, Fault> {
+    let moments = entry.moments.as_ref().expect("the kind was told by them");
+    match CentralMoments::new(nominal + shift(entry), *moments.get_ref()) {
+        Ok(distribution) => Ok(Some(Arc::new(distribution))),
+        Err(error) => Err(fault(moments.span(), "moments", DimensionFault::from(error))),
+    }
+}
+
+fn origin(entry: &DimensionEntry) -> f64 {
+    let table = entry.distribution.as_ref().map(Spanned::get_ref);
+    table.and_then(|table| table.origin.as_ref()).map_or(0.0, |origin| *origin.get_ref())
+}
+
+/// A parameter that must be there.
+fn parameter(
+    entry: &DimensionEntry,
+    key: &'static str,
+    of: impl Fn(&DistributionEntry) -> &Option<Spanned<f64>>,
+) -> Result<f64, Fault> {
+    let distribution = entry.distribution.as_ref().expect("a kind with parameters was named");
+    of(distribution.get_ref()).as_ref().map(|value| *value.get_ref()).ok_or_else(|| {
+        let instead = match key {
+            "top" => "write { kind = \"trapezoidal\", top = 0.5 }: the share of the band over which it is flat",
+            _ => "write { kind = \"beta\", alpha = 2, beta = 5 }",
+        };
+        let missing = StudyFault::MissingKey { key: key.to_owned(), instead: instead.to_owned() };
+        fault(distribution.span(), "distribution", missing)
+    })
+}
+
+/// A sigma beside a distribution that has one of its own must be that.
+pub(super) fn agreeing(entry: &DimensionEntry, spread: &Spread, a: &'static str, what: &str) -> Result<(), Fault> {
+    let (Some(given), Some(distribution)) = (&entry.sigma, spread) else { return Ok(()) };
+    if agree(*given.get_ref(), distribution.sigma()) {
+        return Ok(());
+    }
+    let why = format!("disagree: {what} has sigma {}", distribution.sigma());
+    Err(fault(given.span(), "sigma", conflict(a, "sigma", &why)))
+}
+
+/// The distribution, or its fault at the key that is to blame.
+pub(super) fn placed(
+    entry: &DimensionEntry,
+    distribution: Result<Arc<dyn Distribution>, DistributionError>,
+) -> Result<Spread, Fault> {
+    let error = match distribution {
+        Ok(distribution) => return Ok(Some(distribution)),
+        Err(error) => error,
+    };
+    let table = entry.distribution.as_ref().map(|entry| (entry.span(), parameters(entry.get_ref())));
+    let of_table = |key: &str| {
+        let (_, parameters) = table.as_ref()?;
+        let (key, span) = parameters.iter().find(|(known, _)| *known == key)?;
+        Some((span.clone()?, within(key)))
+    };
+    let of_line = |key: &str, span: Option<Range<usize>>| Some((span?, key.to_owned()));
+    let sigma = of_line("sigma", entry.sigma.as_ref().map(Spanned::span));
+    let whole = table.as_ref().map(|(span, _)| (span.clone(), "distribution".to_owned()));
+    let blamed = match &error {
+        DistributionError::OutOfRange { parameter: "the mean before the cut", .. } => {
+            of_line("shift", entry.shift.as_ref().map(Spanned::span))
+        }
+        DistributionError::OutOfRange { parameter, .. } => of_table(parameter),
+        DistributionError::NotAboveOrigin { .. } => of_table("origin").or(whole),
+        DistributionError::SigmaToMean { .. } => sigma.or(whole),
+        _ => sigma.or(whole),
+    };
+    let (span, key) = blamed.unwrap_or((0..0, String::new()));
+    Err(fault(span, key, DimensionFault::from(error)))
+}
+
+pub(super) fn shared<D: Distribution + 'static>(
+    distribution: Result<D, DistributionError>,
+) -> Result<Arc<dyn Distribution>, DistributionError> {
+    Ok(Arc::new(distribution?))
+}
