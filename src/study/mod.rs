@@ -9,6 +9,7 @@ mod dimension;
 mod error;
 mod externals;
 mod file;
+mod implicit;
 mod model;
 mod options;
 mod source;

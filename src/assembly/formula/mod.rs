@@ -26,6 +26,9 @@ mod scalar;
 mod set;
 
 pub use error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
+pub(crate) use functions::{Binary, Unary};
 pub use jet::Jet;
 pub use parser::{Formula, is_reserved};
+pub(crate) use scalar::Scalar;
+pub(crate) use set::Routine;
 pub use set::{FormulaSet, Meaning};
