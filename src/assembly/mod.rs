@@ -59,7 +59,7 @@ pub trait AssemblyFunction: Send + Sync {
     fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses);
 
     /// Exact derivatives of `outputs` at a point, in the order asked; None for an output of which the function does not
-    /// know them, or that has no value there.
+    /// know them at any point.
     ///
     /// This is no evaluation: a function that would have to evaluate points for it answers None, as it does by default.
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {

@@ -5,6 +5,8 @@ use crate::distribution::Distribution;
 /// How many nodes an axis has beside the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spread {
+    /// None: derivatives come from elsewhere.
+    Bare,
     /// Two: slope and curvature.
     Pair,
     /// Four: up to the fourth derivative.
@@ -45,6 +47,7 @@ impl Nodes {
         let (mean, sigma) = (distribution.mean(), distribution.sigma());
         let support = distribution.support().map(|edge| (edge - mean) / sigma);
         match spread {
+            Spread::Bare => Self { u: Vec::new(), moved: Vec::new() },
             Spread::Pair => Self::pair(distribution, support),
             Spread::Five => Self::five(distribution, support),
         }
@@ -53,6 +56,7 @@ impl Nodes {
     /// At one and, for five points, two times the step on either side.
     pub fn stepped(step: f64, spread: Spread) -> Self {
         let u = match spread {
+            Spread::Bare => Vec::new(),
             Spread::Pair => vec![-step, step],
             Spread::Five => vec![-2.0 * step, -step, step, 2.0 * step],
         };

@@ -8,6 +8,7 @@ mod derivatives;
 mod distributions;
 mod docs;
 mod formulas;
+mod implicit;
 mod journal;
 mod methods;
 mod moments;

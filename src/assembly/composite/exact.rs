@@ -1,12 +1,14 @@
 //! Exact derivatives of what is made of formulas and unknowns alone.
 
+use rayon::prelude::*;
+
 use super::{Composite, Needs, Origin};
 use crate::assembly::formula::Jet;
 use crate::assembly::implicit::Tangent;
 use crate::assembly::{Derivatives, Directions, Run};
 
 impl Composite {
-    /// For every output its derivatives; None for one that depends on the model, or has no value there.
+    /// For every output its derivatives; None for one that depends on the model.
     ///
     /// Cost: for `P` pairs and `N` inputs about ten evaluations of the formulas for each of `N + P` directions, and as many
     /// solutions of linear systems where there are unknowns.
@@ -20,13 +22,21 @@ impl Composite {
         let anchor = if implicit { self.anchor(&Run::to_the_end()).0.and_then(Result::ok) } else { None };
         let tangent = anchor.as_ref().and_then(|anchor| self.assembler.as_ref()?.tangent(anchor, &given));
 
-        let known: Vec<usize> =
-            (0..origins.len()).filter(|&k| explicit(&needs[k]) && (!needs[k].unknowns || tangent.is_some())).collect();
+        let determined = |needs: &Needs| !needs.unknowns || tangent.is_some();
+        let known: Vec<usize> = (0..origins.len()).filter(|&k| explicit(&needs[k]) && determined(&needs[k])).collect();
         let asked: Vec<Origin> = known.iter().map(|&k| origins[k]).collect();
         let along = |u: usize, v: usize| self.jets(&asked, &given, tangent.as_ref(), u, v);
-        let pure: Vec<Vec<Jet>> = directions.inputs.iter().map(|&d| along(d, d)).collect();
-        let mixed: Vec<Vec<Jet>> = directions.pairs.iter().map(|&(j, k)| along(j, k)).collect();
-        let mut derivatives = vec![None; origins.len()];
+        let pure: Vec<Vec<Jet>> = directions.inputs.par_iter().map(|&d| along(d, d)).collect();
+        let mixed: Vec<Vec<Jet>> = directions.pairs.par_iter().map(|&(j, k)| along(j, k)).collect();
+        // Formulas know that there is none where the unknowns have none.
+        let none = |needs: &Needs| {
+            explicit(needs).then(|| Derivatives {
+                first: vec![None; directions.inputs.len()],
+                second: vec![None; directions.inputs.len()],
+                mixed: vec![None; directions.pairs.len()],
+            })
+        };
+        let mut derivatives: Vec<Option<Derivatives>> = needs.iter().map(none).collect();
         for (place, &k) in known.iter().enumerate() {
             let of = |jets: &[Vec<Jet>], part: &dyn Fn(&Jet) -> Option<f64>| {
                 jets.iter().map(|jets| part(&jets[place])).collect::<Vec<_>>()

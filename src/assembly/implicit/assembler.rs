@@ -44,9 +44,9 @@ const SLACK: f64 = 1e-9;
 const SHORTEST: f64 = 1.0 / 65536.0;
 /// Beyond this condition number the unknowns are not determined.
 const SINGULAR: f64 = 1e10;
-/// Above this one a nominal position is worth a warning: a change of the dimensions by a millionth of their size can take
-/// the assembly to where it ends, since that distance is about the square of the inverse.
-const NEARLY_SINGULAR: f64 = 1e3;
+/// Above this one a nominal position is worth a warning: the assembly ends at a distance of about the square of the
+/// inverse, a ten-thousandth of its size, which is what tolerances are.
+const NEARLY_SINGULAR: f64 = 100.0;
 
 impl Assembler {
     /// Of conditions whose formulas stand in `set` from `first` on; `given` counts the variables that are no unknowns.
@@ -257,6 +257,7 @@ impl Assembler {
             start: begun.map(|begun| begun[worst]),
             at,
             bound: bound.map(|(unknown, &value)| (unknown.name().to_owned(), value)),
+            followed,
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::assembly::formula::FormulaFailure;
 #[non_exhaustive]
 pub enum AssemblyFailure {
     /// No state was found that fulfils every condition.
-    #[error("the assembly does not close{}: {worst} is off by {residual:e}{} at {}{}", if *.nominal { " at the nominal dimensions" } else { "" }, begun(.start), state(.at), bounded(.bound))]
+    #[error("the assembly does not close{}: {worst} is off by {residual:e}{} at {}{}", if *.nominal { " at the nominal dimensions" } else { "" }, begun(.start), state(.at), bounded(.bound) + &so_far(.followed))]
     Open {
         /// Whether it is the nominal state, sought from the start values.
         nominal: bool,
@@ -21,6 +21,8 @@ pub enum AssemblyFailure {
         at: Vec<(String, f64)>,
         /// An unknown that stands at its bound there.
         bound: Option<(String, f64)>,
+        /// How far of the way from the nominal dimensions to the point the state could be followed.
+        followed: Option<f64>,
     },
     /// The conditions do not determine the unknowns: a position in which the assembly can move or jam.
     #[error("the assembly is singular{}: nothing holds `{unknown}`, and {worst} is off by {residual:e} at {}{}", if *.nominal { " at the nominal dimensions" } else { "" }, state(.at), so_far(.followed))]
