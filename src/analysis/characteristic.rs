@@ -136,7 +136,10 @@ fn sensitivity(
     let part = outcome.fitted[c].parts[d];
     let axis = plan.axis(d);
     let scale = axis.scale;
-    let exact = outcome.fitted[c].exact.as_ref().and_then(|exact| exact.first[d].zip(exact.second[d]));
+    let exact = outcome.fitted[c].exact.as_ref().and_then(|exact| match plan.depends(c, d) {
+        true => exact.first[d].zip(exact.second[d]),
+        false => Some((0.0, 0.0)),
+    });
     let rounding = outcome.fitted[c].centre.filter(|_| plan.depends(c, d)).and_then(|centre| {
         let slope = |step: f64| f64::EPSILON * centre.abs() / step;
         match exact {

@@ -302,7 +302,7 @@ struct Found {
 impl Found {
     /// Solves the conditions at every row whose variables are all known.
     fn of(
-        assembler: &Assembler,
+        (assembler, set): (&Assembler, &FormulaSet),
         anchor: &Anchor,
         rows: usize,
         given: usize,
@@ -315,7 +315,7 @@ impl Found {
             if assembler.uses().iter().any(|&index| values[index].is_nan()) {
                 continue;
             }
-            match assembler.solve(anchor, &values) {
+            match assembler.solve(set, anchor, &values) {
                 Ok(u) => found.columns.iter_mut().zip(u).for_each(|(column, u)| column[row] = u),
                 Err(failure) => found.errors[row] = Some(Box::new(failure)),
             }
@@ -371,7 +371,9 @@ impl AssemblyFunction for Composite {
             };
             let found = match (&self.assembler, &anchor) {
                 (Some(assembler), Some(Ok(anchor))) => {
-                    Some(Found::of(assembler, anchor, rows.len(), given, |index, row| known(index)[row]))
+                    Some(Found::of((assembler, &self.formulas), anchor, rows.len(), given, |index, row| {
+                        known(index)[row]
+                    }))
                 }
                 _ => None,
             };

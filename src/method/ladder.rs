@@ -10,6 +10,9 @@ use crate::plan::{DifferencePlan, Layout, PairChoice, Point, Spread, Stencil};
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
+/// What the assembly function knows of every characteristic's derivatives.
+type Known = Vec<Option<ExactDerivatives>>;
+
 /// How much of the derivatives a method makes use of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
@@ -159,7 +162,7 @@ impl Ladder {
         options: &Options,
         plan: &DifferencePlan,
         evaluated: &Evaluated,
-    ) -> Result<(Vec<(usize, usize)>, Vec<Option<ExactDerivatives>>), MethodError> {
+    ) -> Result<(Vec<(usize, usize)>, Known), MethodError> {
         if options.derivatives == Some(DerivativeSource::Difference) {
             return Ok((plan.pairs(Some(&evaluated.known)), vec![None; problem.characteristics().len()]));
         }

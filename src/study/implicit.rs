@@ -70,9 +70,9 @@ pub(super) fn placed(file: &StudyFile, error: ConditionsError) -> Fault {
         ConditionsError::WithoutUnknown { name, .. } => equations().find(|(_, found)| found.get_ref() == name),
         ConditionsError::Undetermined { name } => unknowns().find(|(_, found)| found.get_ref() == name),
         ConditionsError::Unbalanced { equations: given, unknowns: wanted } if given.len() < wanted.len() => {
-            unknowns().last()
+            unknowns().next_back()
         }
-        _ => equations().chain(loops()).last(),
+        _ => equations().chain(loops()).next_back(),
     };
     match place {
         Some((section, name)) => fault(name.span(), format!("{section}.{}", name.get_ref()), error),

@@ -229,6 +229,12 @@ fn a_point_without_state_names_what_is_worst() {
     close(value(&problem, &[1.21]).unwrap(), 1.1 + 2.52, 1e-14, 0.0);
     let message = |x: f64| value(&problem, &[x]).unwrap_err().to_string();
     assert!(message(-1.0).contains("equation `square` is off by"), "{}", message(-1.0));
+    let root = study(
+        "[dimensions]\nx = { nominal = 1, tolerance = 0.1 }\n[unknowns]\nu = 1\n[equations]\nroot = \"u - sqrt(x)\"\n\
+         [characteristics]\nu = {}\n",
+    );
+    let error = value(&root.problem, &[-1.0]).unwrap_err().to_string();
+    assert_eq!(error, "`sqrt(x)` in formula `root`: the argument must not be negative, but is -1");
     let bound = message(4.0);
     assert!(bound.contains("equation `sum` is off by") && bound.contains("`v` stands at its bound 3"), "{bound}");
 }

@@ -20,7 +20,8 @@ impl Composite {
         given.resize(self.given(), f64::NAN);
         let implicit = needs.iter().any(|needs| explicit(needs) && needs.unknowns);
         let anchor = if implicit { self.anchor(&Run::to_the_end()).0.and_then(Result::ok) } else { None };
-        let tangent = anchor.as_ref().and_then(|anchor| self.assembler.as_ref()?.tangent(anchor, &given));
+        let tangent =
+            anchor.as_ref().and_then(|anchor| self.assembler.as_ref()?.tangent(&self.formulas, anchor, &given));
 
         let determined = |needs: &Needs| !needs.unknowns || tangent.is_some();
         let known: Vec<usize> = (0..origins.len()).filter(|&k| explicit(&needs[k]) && determined(&needs[k])).collect();

@@ -42,6 +42,8 @@ const EASY: f64 = 0.1;
 const SLACK: f64 = 1e-9;
 /// The shortest step, as a part of the way.
 const SHORTEST: f64 = 1.0 / 65536.0;
+/// The most parts of the way.
+const PARTS: usize = 1000;
 /// Beyond this condition number the unknowns are not determined.
 const SINGULAR: f64 = 1e10;
 /// Above this one a nominal position is worth a warning: the assembly ends at a distance of about the square of the
@@ -100,15 +102,14 @@ impl Assembler {
         }
         let scales = system.scales(&given, &start);
         let search = Search { system, scales: &scales, given: &given };
-        let root = search.from(&start).map_err(|stuck| self.failure(&search, stuck, Some(&begun), None))?;
+        let root = search.from(&start).map_err(|stuck| self.failure(set, &search, stuck, Some(&begun), None))?;
         let scales = system.scales(&given, &root.u);
         let search = Search { system, scales: &scales, given: &given };
         let stuck = || Stuck { u: root.u.clone(), values: system.values(&given, &root.u), singular: true };
-        let singular = || self.failure(&search, stuck(), None, None);
+        let singular = || self.failure(set, &search, stuck(), None, None);
         let linear = search.linear(&root.u).ok_or_else(singular)?;
         let condition = linear.condition();
-        // Written so that NaN counts as singular.
-        if !(condition.number < SINGULAR) {
+        if condition.number.is_nan() || condition.number >= SINGULAR {
             return Err(singular());
         }
         let by = system.derivatives(&given, &root.u, &system.uses);
@@ -132,8 +133,13 @@ impl Assembler {
         })
     }
 
-    /// The unknowns at a point.
-    pub(in crate::assembly) fn solve(&self, anchor: &Anchor, given: &[f64]) -> Result<Vec<f64>, AssemblyFailure> {
+    /// The unknowns at a point; `set` explains a formula that has no value there.
+    pub(in crate::assembly) fn solve(
+        &self,
+        set: &FormulaSet,
+        anchor: &Anchor,
+        given: &[f64],
+    ) -> Result<Vec<f64>, AssemblyFailure> {
         let moves = |&index: &usize| given[index] != anchor.given[index];
         if !self.system.uses.iter().any(moves) {
             return Ok(anchor.u.clone());
@@ -150,7 +156,7 @@ impl Assembler {
         }
         match (self.follow(anchor, given), direct) {
             (Ok(u), _) => Ok(u),
-            (Err(followed), Err(stuck)) => Err(self.failure(&search, stuck, None, Some(followed))),
+            (Err(followed), Err(stuck)) => Err(self.failure(set, &search, stuck, None, Some(followed))),
             (Err(followed), Ok(root)) => {
                 let off = |j: usize| ((root.u[j] - predicted[j]) / anchor.scales.unknowns[j]).abs();
                 let worst = (0..root.u.len()).max_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0);
@@ -184,7 +190,7 @@ impl Assembler {
             anchor.given.iter().zip(given).map(between).collect()
         };
         let (mut done, mut step, mut u) = (0.0, 0.25f64, anchor.u.clone());
-        while done < 1.0 {
+        for _ in 0..PARTS {
             let here = at(done);
             let search = Search { system, scales: &anchor.scales, given: &here };
             let Some(linear) = search.linear(&u) else { return Err(done) };
@@ -213,6 +219,9 @@ impl Assembler {
                             step *= 2.0;
                         }
                         (u, done) = (found, next);
+                        if done == 1.0 {
+                            return Ok(u);
+                        }
                         break;
                     }
                 }
@@ -222,21 +231,26 @@ impl Assembler {
                 }
             }
         }
-        Ok(u)
+        Err(done)
     }
 
     /// What a search that got stuck says; `begun` are the equations at the start values of the nominal state.
     fn failure(
         &self,
+        set: &FormulaSet,
         search: &Search<'_>,
         stuck: Stuck,
         begun: Option<&[f64]>,
         followed: Option<f64>,
     ) -> AssemblyFailure {
         let system = &self.system;
+        if let Some(failure) = system.explain(set, search.given, &stuck.u) {
+            return failure.into();
+        }
         let at = system.named(&stuck.u);
         let nominal = followed.is_none();
-        if stuck.singular {
+        let bound = system.unknowns.iter().zip(&stuck.u).find(|(unknown, value)| unknown.bounds().contains(value));
+        if stuck.singular && bound.is_none() {
             let condition = search.linear(&stuck.u).map(|linear| linear.condition());
             let (unknown, worst) = condition.map_or((0, 0), |condition| (condition.unknown, condition.equation));
             return AssemblyFailure::Singular {
@@ -249,7 +263,6 @@ impl Assembler {
             };
         }
         let worst = search.worst(&stuck.values);
-        let bound = system.unknowns.iter().zip(&stuck.u).find(|(unknown, value)| unknown.bounds().contains(value));
         AssemblyFailure::Open {
             nominal,
             worst: system.equations[worst].clone(),

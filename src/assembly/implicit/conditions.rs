@@ -110,7 +110,7 @@ impl Unknown {
     /// When the start does not lie between them.
     pub fn new(name: impl Into<String>, start: f64, lower: f64, upper: f64) -> Result<Self, ConditionsError> {
         let name = name.into();
-        if !start.is_finite() || !(lower <= start && start <= upper && lower < upper) {
+        if !(start.is_finite() && lower <= start && start <= upper && lower < upper) {
             return Err(ConditionsError::StartOutside { name, start, lower, upper });
         }
         Ok(Self { name, start, lower, upper })

@@ -3,7 +3,7 @@
 use super::assembler::{Anchor, Assembler};
 use super::linear::Linear;
 use super::newton::Search;
-use crate::assembly::formula::Jet;
+use crate::assembly::formula::{FormulaSet, Jet};
 
 /// The unknowns at a point and how they change there.
 pub(in crate::assembly) struct Tangent<'a> {
@@ -16,8 +16,13 @@ pub(in crate::assembly) struct Tangent<'a> {
 
 impl Assembler {
     /// The unknowns at a point, to be differentiated; None where they are not determined there or have a kink.
-    pub(in crate::assembly) fn tangent<'a>(&'a self, anchor: &'a Anchor, given: &'a [f64]) -> Option<Tangent<'a>> {
-        let u = self.solve(anchor, given).ok()?;
+    pub(in crate::assembly) fn tangent<'a>(
+        &'a self,
+        set: &FormulaSet,
+        anchor: &'a Anchor,
+        given: &'a [f64],
+    ) -> Option<Tangent<'a>> {
+        let u = self.solve(set, anchor, given).ok()?;
         let unknowns: Vec<usize> = (given.len()..given.len() + self.len()).collect();
         let exact = self.system.derivatives(given, &u, &unknowns);
         if !(0..self.len()).all(|i| (0..self.len()).all(|j| exact[(i, j)].is_finite())) {
