@@ -61,7 +61,9 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
     }
     // Whether the options fit each other and the study shows at its plan; what is at fault is most likely the pairs.
     options.method.procedure().plan(problem, &options).map_err(|error| {
-        let spans = [entry.pairs.as_ref().map(Spanned::span), entry.stencil.as_ref().map(Spanned::span)];
+        let of_derivatives = entry.derivatives.as_ref().map(Spanned::span);
+        let spans =
+            [entry.pairs.as_ref().map(Spanned::span), entry.stencil.as_ref().map(Spanned::span), of_derivatives];
         let span = spans.into_iter().flatten().next().or(entry.method.as_ref().map(Spanned::span));
         Fault { span, key: "analysis".into(), fault: Box::new(error.into()) }
     })?;

@@ -150,7 +150,11 @@ fn sensitivities_are_exact() {
             close(derivatives.second[d].unwrap(), second, ROUNDING, 1.0);
         }
     }
+    // The study file's word for it.
+    let text = std::fs::read_to_string(repository("examples/stacked-blocks-loops/study.toml")).unwrap();
+    let options = study(&text.replace("method = \"rss\"", "method = \"rss\"\nderivatives = \"exact\"")).options;
     let linear = Options { derivatives: Some(DerivativeSource::Exact), ..Method::Rss.into() };
+    assert_eq!(options, linear);
     let analysis = analyze(&problem, &linear).unwrap();
     assert_eq!((analysis.evaluations, analysis.derivatives), (1, DerivativeSource::Exact));
     let gap = &analysis.characteristics[0];
@@ -408,6 +412,8 @@ fn conditions_at_fault() {
         "[unknowns]\nu = 1\n[equations]\none = \"u - b\"\n",
         "[unknowns]\nu = 1\n[equations]\none = \"u - one\"\n",
         "[unknowns]\nu = 1\n[equations]\none = \"u - a\"\n[formulas]\nf = \"one\"\n",
+        "[analysis]\nderivatives = \"exakt\"\n",
+        "[analysis]\nderivatives = \"exact\"\nstep = 1\n",
     ];
     let head = "[dimensions]\na = { nominal = 1, tolerance = 0.1 }\n[characteristics]\ny = { formula = \"a\" }\n";
     let mut faults: Vec<String> = texts.iter().map(|text| fault(&format!("{head}{text}"))).collect();

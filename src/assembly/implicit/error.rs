@@ -7,7 +7,7 @@ use crate::assembly::formula::FormulaFailure;
 #[non_exhaustive]
 pub enum AssemblyFailure {
     /// No state was found that fulfils every condition.
-    #[error("the assembly does not close{}: {worst} is off by {residual:e}{} at {}{}", if *.nominal { " at the nominal dimensions" } else { "" }, begun(.start), state(.at), bounded(.bound) + &so_far(.followed))]
+    #[error("the assembly does not close{}: {worst} is off by {}{} at {}{}", if *.nominal { " at the nominal dimensions" } else { "" }, short(*.residual), begun(.start), state(.at), bounded(.bound) + &so_far(.followed))]
     Open {
         /// Whether it is the nominal state, sought from the start values.
         nominal: bool,
@@ -25,7 +25,7 @@ pub enum AssemblyFailure {
         followed: Option<f64>,
     },
     /// The conditions do not determine the unknowns: a position in which the assembly can move or jam.
-    #[error("the assembly is singular{}: nothing holds `{unknown}`, and {worst} is off by {residual:e} at {}{}", if *.nominal { " at the nominal dimensions" } else { "" }, state(.at), so_far(.followed))]
+    #[error("the assembly is singular{}: nothing holds `{unknown}`, and {worst} is off by {} at {}{}", if *.nominal { " at the nominal dimensions" } else { "" }, short(*.residual), state(.at), so_far(.followed))]
     Singular {
         /// Whether it is the nominal state.
         nominal: bool,
@@ -41,7 +41,7 @@ pub enum AssemblyFailure {
         followed: Option<f64>,
     },
     /// The only state found is another way of assembling.
-    #[error("the assembly jumps to another branch: `{unknown}` would be {found}, but can be followed from its nominal {nominal} for {:.1} % of the way only", 100.0 * .followed)]
+    #[error("the assembly jumps to another branch: `{unknown}` would be {}, but can be followed from its nominal {} for {:.1} % of the way only", short(*.found), short(*.nominal), 100.0 * .followed)]
     OtherBranch {
         /// The unknown that differs most from what it should be near.
         unknown: String,
@@ -58,7 +58,7 @@ pub enum AssemblyFailure {
 }
 
 fn begun(start: &Option<f64>) -> String {
-    start.map_or(String::new(), |start| format!(" (from {start:e} at the start values)"))
+    start.map_or(String::new(), |start| format!(" (from {} at the start values)", short(start)))
 }
 
 fn state(at: &[(String, f64)]) -> String {
