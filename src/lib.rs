@@ -34,7 +34,7 @@ pub use assembly::{AssemblyFunction, Closure};
 pub use characteristic::{Characteristic, LimitsError, SpecLimits};
 pub use dimension::{Dimension, DimensionError};
 pub use error::Error;
-pub use method::{Method, MethodError, Options};
+pub use method::{DerivativeSource, Method, MethodError, Options};
 pub use moments::Moments;
 pub use problem::{Problem, ProblemError};
 pub use study::{Study, StudyError};

@@ -134,6 +134,13 @@ pub enum Warning {
         /// The first few of them, in words.
         suspects: Vec<String>,
     },
+    /// Near the nominal dimensions the assembly can move or jam.
+    NearSingular {
+        /// The unknown that is held least.
+        unknown: String,
+        /// The condition number of the scaled closure conditions.
+        condition: f64,
+    },
     /// No distribution has the moments.
     InfeasibleMoments {
         /// The characteristic.
@@ -187,6 +194,7 @@ impl Warning {
             Self::RssInvalid { .. } => "rss-invalid",
             Self::History { flip: true, .. } => "branch-flip",
             Self::History { flip: false, .. } => "history",
+            Self::NearSingular { .. } => "near-singular",
             Self::InfeasibleMoments { .. } => "infeasible-moments",
             Self::NearInfeasibleMoments { .. } => "near-infeasible-moments",
             Self::AutoIsSecondOrder => "auto-is-second-order",
@@ -312,6 +320,10 @@ impl Warning {
                     if suspects.is_empty() { String::new() } else { format!(", among them {}", suspects.join("; ")) }
                 )
             }
+            Self::NearSingular { unknown, condition } => format!(
+                "the nominal position is nearly singular: the conditions hardly hold `{unknown}` (condition number \
+                 {condition:.1e}); small deviations move it far, and some assemblies may not close at all"
+            ),
             Self::InfeasibleMoments { characteristic, reason } => format!(
                 "`{characteristic}` has no yield: {reason}. Either it has two values indeed, or a strong interaction was \
                  not examined (try --method full), or the `moments` of a dimension are rounded"

@@ -49,7 +49,10 @@ pub struct Sensitivity {
     pub first: Option<f64>,
     /// Second derivative at the mean.
     pub second: Option<f64>,
-    /// What a rounding error of the characteristic's own size may make of the two derivatives, at the steps taken.
+    /// Whether both are exact rather than differences.
+    pub exact: bool,
+    /// What a rounding error of the characteristic's own size may make of the two derivatives: at the steps taken, over a
+    /// sigma where they are exact.
     pub rounding: Option<[f64; 2]>,
     /// Share of the variance that the best straight line through its own part explains.
     pub linear_share: Option<f64>,
@@ -66,7 +69,9 @@ pub struct Interaction {
     pub dimensions: [String; 2],
     /// Mixed second derivative at the means; None where it was lost.
     pub mixed: Option<f64>,
-    /// What rounding errors of the characteristic's own size may make of it, at the steps taken.
+    /// Whether it is exact rather than a difference.
+    pub exact: bool,
+    /// What rounding errors of the characteristic's own size may make of it.
     pub rounding: Option<f64>,
     /// Share of the variance.
     pub share: Option<f64>,
@@ -138,9 +143,17 @@ fn sensitivity(
     let part = outcome.fitted[c].parts[d];
     let axis = plan.axis(d);
     let scale = axis.scale;
-    let rounding = outcome.fitted[c].centre.filter(|_| !axis.slots.is_empty() && plan.depends(c, d)).map(|centre| {
-        let slope = f64::EPSILON * centre.abs() / axis.nearest_step();
-        [slope, 4.0 * slope / axis.nearest_step()]
+    let exact = outcome.fitted[c].exact.as_ref().and_then(|exact| match plan.depends(c, d) {
+        true => exact.first[d].zip(exact.second[d]),
+        false => Some((0.0, 0.0)),
+    });
+    let rounding = outcome.fitted[c].centre.filter(|_| plan.depends(c, d)).and_then(|centre| {
+        let slope = |step: f64| f64::EPSILON * centre.abs() / step;
+        match exact {
+            Some(_) => Some([slope(scale), slope(scale) / scale]),
+            None if axis.slots.is_empty() => None,
+            None => Some([slope(axis.nearest_step()), 4.0 * slope(axis.nearest_step()) / axis.nearest_step()]),
+        }
     });
     // A characteristic that cannot depend on a dimension has slope 0, evaluated or not.
     let per_unit = |value: f64| if plan.depends(c, d) { value / scale } else { 0.0 };
@@ -157,8 +170,9 @@ fn sensitivity(
     };
     Sensitivity {
         dimension: dimension.name().to_owned(),
-        first: part.map(|part| per_unit(part.slope())),
-        second: part.and_then(|part| part.second()).map(|second| per_unit(per_unit(second))),
+        first: exact.map(|exact| exact.0).or(part.map(|part| per_unit(part.slope()))),
+        second: exact.map(|exact| exact.1).or_else(|| Some(per_unit(per_unit(part?.second()?)))),
+        exact: exact.is_some(),
         rounding,
         linear_share: of(|contributions| &contributions.linear),
         curvature_share: curved(of(|contributions| &contributions.curvature)),
@@ -174,18 +188,21 @@ fn interactions(
     contributions: Option<&Contributions>,
 ) -> Vec<Interaction> {
     let plan = &outcome.plan;
-    let examined = outcome.pairs.iter().zip(&outcome.fitted[c].mixed).filter(|((j, k), _)| plan.joint(c, *j, *k));
+    let fitted = &outcome.fitted[c];
+    let examined =
+        (outcome.pairs.iter().zip(&fitted.mixed).enumerate()).filter(|(_, ((j, k), _))| plan.joint(c, *j, *k));
     let mut interactions: Vec<Interaction> = examined
-        .map(|(&(j, k), mixed)| {
+        .map(|(index, (&(j, k), mixed))| {
             let share = |value: f64| contributions.map(|contributions| contributions.share(j, k, value));
             let [j, k] = [j, k].map(|position| plan.varying()[position]);
             let together = problem.correlation().map_or(0.0, |correlation| correlation.of(j, k));
+            let exact = fitted.exact.as_ref().and_then(|exact| exact.mixed[index]);
+            let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
             Interaction {
                 dimensions: [j, k].map(|d| problem.dimensions()[d].name().to_owned()),
-                mixed: mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale),
-                rounding: outcome.fitted[c].centre.map(|centre| {
-                    4.0 * f64::EPSILON * centre.abs() / plan.axis(j).nearest_step() / plan.axis(k).nearest_step()
-                }),
+                mixed: exact.or(mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale)),
+                exact: exact.is_some(),
+                rounding: fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k)),
                 share: mixed.and_then(|mixed| share(mixed.value)),
                 mean_shift: mixed.map(|mixed| mixed.value * together),
             }

@@ -8,7 +8,7 @@ pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
 use std::time::Duration;
 
 use crate::assembly::Run;
-use crate::method::{Method, MethodError, Options};
+use crate::method::{DerivativeSource, Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -33,6 +33,8 @@ pub struct Analysis {
     pub in_model: Duration,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<CharacteristicAnalysis>,
+    /// Where the derivatives that the moments rest on come from.
+    pub derivatives: DerivativeSource,
     /// Where an assumption fails.
     pub warnings: Vec<Warning>,
 }
@@ -77,6 +79,7 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         stopped: outcome.evaluated.stopped,
         in_model: outcome.evaluated.in_model,
         characteristics,
+        derivatives: if outcome.exact { DerivativeSource::Exact } else { DerivativeSource::Difference },
         warnings,
     })
 }

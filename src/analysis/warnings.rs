@@ -41,6 +41,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
     warnings.extend(history(problem, outcome));
+    warnings.extend(problem.function().warnings(problem.outputs()));
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
         warnings.extend(lost(problem, outcome, c));

@@ -87,13 +87,11 @@ pub struct Ask<'a> {
     pub points: &'a Points,
     /// Indices of the outputs wanted; nothing else need be computed.
     pub outputs: &'a [usize],
-    /// Whether derivatives with respect to every input are wanted too, of a function that has them.
-    pub gradients: bool,
 }
 
 impl<'a> Ask<'a> {
-    /// Values only.
+    /// These outputs at these points.
     pub fn values(points: &'a Points, outputs: &'a [usize]) -> Self {
-        Self { points, outputs, gradients: false }
+        Self { points, outputs }
     }
 }

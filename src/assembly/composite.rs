@@ -1,10 +1,18 @@
-//! The assembly function of a study: a model, formulas, or formulas on top of a model.
+//! The assembly function of a study: a model, formulas, or formulas on top of a model, with values that are found from
+//! closure conditions.
+
+mod exact;
 
 use std::sync::Arc;
 
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
+use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
 use super::process::Adapter;
-use super::{Ask, AssemblyFunction, EvaluationError, Input, Output, Points, Responses, Run, Signature, in_blocks};
+use super::{
+    Ask, AssemblyFunction, Derivatives, Directions, EvaluationError, Input, Output, Points, Responses, Run, Signature,
+    in_blocks,
+};
+use crate::warning::Warning;
 
 /// Where a model's input comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,25 +23,38 @@ pub enum Source {
     Fixed(f64),
 }
 
-/// A formula that a [`Composite`] cannot resolve.
+/// Parts that do not fit together.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("formula `{name}`: {error}")]
-pub struct CompositeError {
-    /// The formula's name.
-    pub name: String,
-    /// What is wrong with it.
-    pub error: FormulaError,
+#[non_exhaustive]
+pub enum CompositeError {
+    /// A formula that cannot be resolved.
+    #[error("formula `{name}`: {error}")]
+    Formula {
+        /// The formula's name.
+        name: String,
+        /// Its place among the formulas, then those of the conditions.
+        index: usize,
+        /// What is wrong with it.
+        error: FormulaError,
+    },
+    /// Conditions that determine no state.
+    #[error(transparent)]
+    Conditions(#[from] ConditionsError),
 }
 
-/// Dimensions in; formulas of dimensions, constants and the outputs of a model out.
+/// Dimensions in; formulas of dimensions, constants, the outputs of a model and the unknowns of closure conditions out.
 ///
 /// Only what the asked outputs need is evaluated: a model is asked only for those of its outputs that a formula or
-/// characteristic in question uses, and a point at which one of them fails costs just the outputs that use it.
+/// characteristic in question uses, conditions are solved only when something asked depends on an unknown, and a point at
+/// which any of that fails costs just the outputs that use it.
 pub struct Composite {
     signature: Signature,
+    /// The named formulas, then those of the conditions.
     formulas: FormulaSet,
+    named: usize,
     model: Option<Inner>,
-    /// For every output, the formula or the model's output that it is.
+    assembler: Option<Assembler>,
+    /// For every output, the formula, the model's output or the unknown that it is.
     outputs: Vec<Origin>,
 }
 
@@ -46,6 +67,16 @@ struct Inner {
 enum Origin {
     Formula(usize),
     Model(usize),
+    Unknown(usize),
+}
+
+/// What an output is made of.
+#[derive(Debug, Clone, Default)]
+struct Needs {
+    dimensions: Vec<usize>,
+    /// Outputs of the model.
+    answers: Vec<usize>,
+    unknowns: bool,
 }
 
 /// What a [`Composite`] is made of.
@@ -59,23 +90,29 @@ pub struct Parts {
     pub model: Option<(Arc<dyn AssemblyFunction>, Vec<Source>)>,
     /// Formulas in any order; each name once.
     pub formulas: Vec<(String, Formula)>,
-    /// Names and units of what can be asked: formulas, or else outputs of the model.
+    /// What holds in the assembled state, and the unknowns that it determines.
+    pub conditions: Option<Conditions>,
+    /// Names and units of what can be asked: formulas, unknowns, or else outputs of the model.
     pub outputs: Vec<(String, Option<String>)>,
 }
 
 impl Composite {
-    /// Resolves the formulas' names: first other formulas, then dimensions, constants and outputs of the model.
+    /// Resolves the formulas' names: first other formulas, then dimensions, constants, unknowns and outputs of the model.
     ///
     /// # Errors
-    /// The first formula that uses an undefined name or needs itself.
+    /// The first formula that uses an undefined name or needs itself; conditions that cannot determine the unknowns.
     ///
     /// # Panics
-    /// When an output is neither a formula nor an output of the model: the caller knows both.
+    /// When an output is neither a formula nor an unknown nor an output of the model: the caller knows them all.
     pub fn new(parts: Parts) -> Result<Self, CompositeError> {
-        let Parts { inputs, constants, model, formulas, outputs } = parts;
+        let Parts { inputs, constants, model, mut formulas, conditions, outputs } = parts;
+        let named = formulas.len();
+        formulas.extend(conditions.iter().flat_map(Conditions::formulas));
         let names: Vec<String> = formulas.iter().map(|(name, _)| name.clone()).collect();
         let model = model.map(|(function, inputs)| Inner { function, inputs });
         let offers = model.as_ref().map_or(&[][..], |model| &model.function.signature().outputs);
+        let given = inputs.len() + offers.len();
+        let unknowns = conditions.as_ref().map_or(&[][..], Conditions::unknowns);
         let dimensions =
             inputs.iter().enumerate().map(|(index, input)| (input.name.as_str(), Meaning::Variable(index)));
         let constants = constants.iter().map(|(name, value)| (name.as_str(), Meaning::Constant(*value)));
@@ -83,24 +120,33 @@ impl Composite {
             .iter()
             .enumerate()
             .map(|(index, output)| (output.name.as_str(), Meaning::Variable(inputs.len() + index)));
-        let formulas = FormulaSet::new(formulas, answers.chain(constants).chain(dimensions))
-            .map_err(|(index, error)| CompositeError { name: names[index].clone(), error })?;
+        let found =
+            (unknowns.iter().enumerate()).map(|(index, unknown)| (unknown.name(), Meaning::Variable(given + index)));
+        let meanings = answers.chain(found).chain(constants).chain(dimensions);
+        let formulas = FormulaSet::with_unnamed(formulas, named, meanings)
+            .map_err(|(index, error)| CompositeError::Formula { name: names[index].clone(), index, error })?;
+        if let Some(conditions) = &conditions {
+            conditions.check(&formulas, named, given)?;
+        }
 
         let mut composite = Self {
+            assembler: conditions.as_ref().map(|conditions| Assembler::new(conditions, &formulas, named, given)),
             signature: Signature {
                 costly: model.as_ref().is_some_and(|model| model.function.signature().costly),
                 inputs,
                 ..Signature::default()
             },
             formulas,
+            named,
             model,
             outputs: Vec::with_capacity(outputs.len()),
         };
         for (name, unit) in outputs {
-            let origin = match names.iter().position(|formula| *formula == name) {
-                Some(formula) => Origin::Formula(formula),
-                None => Origin::Model(composite.offered(&name).expect("an output is a formula or the model's")),
-            };
+            let formula = names[..named].iter().position(|formula| *formula == name).map(Origin::Formula);
+            let unknown = || unknowns.iter().position(|unknown| unknown.name() == name).map(Origin::Unknown);
+            let offered = || composite.offered(&name).map(Origin::Model);
+            let origin = formula.or_else(unknown).or_else(offered);
+            let origin = origin.expect("an output is a formula, an unknown or the model's");
             let depends_on = composite.depends_on(origin);
             composite.outputs.push(origin);
             composite.signature.outputs.push(Output { name, unit, depends_on });
@@ -113,16 +159,26 @@ impl Composite {
         &self.formulas
     }
 
+    /// Which formulas the outputs need, as a flag per formula, and whether they need the unknowns.
+    pub fn used(&self) -> (Vec<bool>, bool) {
+        let unknowns = self.all_needs(&self.outputs).unknowns;
+        let outputs = self.outputs.iter().filter_map(|origin| match origin {
+            Origin::Formula(formula) => Some(*formula),
+            _ => None,
+        });
+        let conditions = if unknowns { self.named..self.formulas.len() } else { 0..0 };
+        let mut used = self.formulas.used(outputs.chain(conditions));
+        used.truncate(self.named);
+        (used, unknowns)
+    }
+
     fn offered(&self, name: &str) -> Option<usize> {
         self.model.as_ref()?.function.signature().output(name)
     }
 
     /// The dimensions that an output can depend on; None when the model does not say.
     fn depends_on(&self, origin: Origin) -> Option<Vec<usize>> {
-        let (mut dimensions, answers) = match origin {
-            Origin::Formula(formula) => self.split(self.formulas.variables(formula)),
-            Origin::Model(output) => (Vec::new(), vec![output]),
-        };
+        let Needs { mut dimensions, answers, .. } = self.needs(origin);
         for answer in answers {
             let model = self.model.as_ref()?;
             let all = || (0..model.inputs.len()).collect();
@@ -138,43 +194,133 @@ impl Composite {
         Some(dimensions)
     }
 
-    /// Variables of the formulas as dimensions and outputs of the model.
-    fn split(&self, variables: Vec<usize>) -> (Vec<usize>, Vec<usize>) {
-        let dimensions = self.signature.inputs.len();
-        let (of_dimensions, of_model): (Vec<_>, Vec<_>) = variables.into_iter().partition(|&index| index < dimensions);
-        (of_dimensions, of_model.into_iter().map(|index| index - dimensions).collect())
+    /// What an output is made of: what stands in it, and for an unknown all that the conditions depend on.
+    fn needs(&self, origin: Origin) -> Needs {
+        let mut needs = match origin {
+            Origin::Formula(formula) => self.split(&self.formulas.variables(formula)),
+            Origin::Model(output) => Needs { answers: vec![output], ..Needs::default() },
+            Origin::Unknown(_) => Needs { unknowns: true, ..Needs::default() },
+        };
+        if let (true, Some(assembler)) = (needs.unknowns, &self.assembler) {
+            let more = self.split(assembler.uses());
+            needs.dimensions.extend(more.dimensions);
+            needs.answers.extend(more.answers);
+        }
+        for part in [&mut needs.dimensions, &mut needs.answers] {
+            part.sort_unstable();
+            part.dedup();
+        }
+        needs
     }
 
-    /// The outputs of the model that `origins` need, ascending.
-    fn needed(&self, origins: &[Origin]) -> Vec<usize> {
-        let mut needed: Vec<usize> = origins
-            .iter()
-            .flat_map(|&origin| match origin {
-                Origin::Formula(formula) => self.split(self.formulas.variables(formula)).1,
-                Origin::Model(output) => vec![output],
-            })
-            .collect();
-        needed.sort_unstable();
-        needed.dedup();
-        needed
+    /// Variables of the formulas as dimensions, outputs of the model, and unknowns.
+    fn split(&self, variables: &[usize]) -> Needs {
+        let (dimensions, given) = (self.signature.inputs.len(), self.given());
+        let of_model = variables.iter().filter(|&&index| (dimensions..given).contains(&index));
+        Needs {
+            dimensions: variables.iter().copied().filter(|&index| index < dimensions).collect(),
+            answers: of_model.map(|index| index - dimensions).collect(),
+            unknowns: variables.iter().any(|&index| index >= given),
+        }
     }
 
-    /// Asks the model for just what `origins` need: its outputs, ascending, and its answers.
-    fn ask_model(&self, ask: &Ask<'_>, run: &Run<'_>, origins: &[Origin]) -> (Vec<usize>, Responses) {
-        let needed = self.needed(origins);
-        let mut answers = Responses::open(ask.points.rows(), needed.len());
+    /// How many variables are no unknowns.
+    fn given(&self) -> usize {
+        self.signature.inputs.len() + self.model.as_ref().map_or(0, |model| model.function.signature().outputs.len())
+    }
+
+    /// What all these outputs together are made of.
+    fn all_needs(&self, origins: &[Origin]) -> Needs {
+        let mut all = Needs::default();
+        for needs in origins.iter().map(|&origin| self.needs(origin)) {
+            all.dimensions.extend(needs.dimensions);
+            all.answers.extend(needs.answers);
+            all.unknowns |= needs.unknowns;
+        }
+        for part in [&mut all.dimensions, &mut all.answers] {
+            part.sort_unstable();
+            part.dedup();
+        }
+        all
+    }
+
+    fn origins(&self, outputs: &[usize]) -> Vec<Origin> {
+        outputs.iter().map(|&output| self.outputs[output]).collect()
+    }
+
+    /// Asks the model for these of its outputs.
+    fn ask_model(&self, points: &Points, run: &Run<'_>, needed: &[usize]) -> Responses {
+        let rows = points.rows();
+        let mut answers = Responses::open(rows, needed.len());
         if let (Some(model), false) = (&self.model, needed.is_empty()) {
-            let rows = ask.points.rows();
             let columns: Vec<Vec<f64>> = (model.inputs.iter())
                 .map(|source| match *source {
-                    Source::Dimension(dimension) => ask.points.column(dimension).to_vec(),
+                    Source::Dimension(dimension) => points.column(dimension).to_vec(),
                     Source::Fixed(value) => vec![value; rows],
                 })
                 .collect();
             let points = Points::from_columns(rows, &columns);
-            model.function.evaluate(&Ask::values(&points, &needed), run, &mut answers);
+            model.function.evaluate(&Ask::values(&points, needed), run, &mut answers);
         }
-        (needed, answers)
+        answers
+    }
+
+    /// The nominal state of the conditions, with what finding it cost; None when it could not be sought now.
+    ///
+    /// Where conditions use outputs of the model, the first call asks it for the nominal point.
+    fn anchor(&self, run: &Run<'_>) -> (Option<Result<Arc<Anchor>, EvaluationError>>, i64) {
+        let Some(assembler) = &self.assembler else { return (None, 0) };
+        let needed = self.split(assembler.uses()).answers;
+        let mut given = assembler.nominal().to_vec();
+        given.resize(self.given(), f64::NAN);
+        let (mut missing, mut spent) = (None, 0);
+        let anchor = assembler.anchor(&self.formulas, || {
+            if !needed.is_empty() {
+                let answers = self.ask_model(&Points::repeated(assembler.nominal(), 1), &run.quiet(), &needed);
+                spent = answers.extra() + i64::from(!answers.is_open(0, 0));
+                for (column, &output) in needed.iter().enumerate() {
+                    let Some(value) = answers.value(0, column) else {
+                        missing = answers.error(0, column).cloned().map(Err);
+                        return None;
+                    };
+                    given[self.signature.inputs.len() + output] = value;
+                }
+            }
+            Some(given)
+        });
+        (anchor.map(|anchor| anchor.map_err(EvaluationError::from)).or(missing), spent)
+    }
+}
+
+/// The unknowns in a block of points.
+struct Found {
+    columns: Vec<Vec<f64>>,
+    /// For every row, why it has none.
+    errors: Vec<Option<Box<AssemblyFailure>>>,
+}
+
+impl Found {
+    /// Solves the conditions at every row whose variables are all known.
+    fn of(
+        (assembler, set): (&Assembler, &FormulaSet),
+        anchor: &Anchor,
+        rows: usize,
+        given: usize,
+        variable: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let mut found = Self { columns: vec![vec![f64::NAN; rows]; assembler.len()], errors: vec![None; rows] };
+        let mut values = vec![f64::NAN; given];
+        for row in 0..rows {
+            assembler.uses().iter().for_each(|&index| values[index] = variable(index, row));
+            if assembler.uses().iter().any(|&index| values[index].is_nan()) {
+                continue;
+            }
+            match assembler.solve(set, anchor, &values) {
+                Ok(u) => found.columns.iter_mut().zip(u).for_each(|(column, u)| column[row] = u),
+                Err(failure) => found.errors[row] = Some(Box::new(failure)),
+            }
+        }
+        found
     }
 }
 
@@ -184,67 +330,114 @@ impl AssemblyFunction for Composite {
     }
 
     fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
-        let origins: Vec<Origin> = outputs.iter().map(|&output| self.outputs[output]).collect();
-        let needed = self.needed(&origins);
+        let needs = self.all_needs(&self.origins(outputs));
+        if let (true, Some(assembler)) = (needs.unknowns, &self.assembler)
+            && self.split(assembler.uses()).answers.is_empty()
+            && let (Some(Err(error)), _) = self.anchor(&Run::to_the_end())
+        {
+            return Err(error);
+        }
         match &self.model {
-            Some(model) if !needed.is_empty() => model.function.prepare(&needed),
+            Some(model) if !needs.answers.is_empty() => model.function.prepare(&needs.answers),
             _ => Ok(None),
         }
     }
 
     fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
-        let origins: Vec<Origin> = ask.outputs.iter().map(|&output| self.outputs[output]).collect();
-        let (needed, answers) = self.ask_model(ask, &run.quiet(), &origins);
+        let origins = self.origins(ask.outputs);
+        let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();
+        let Needs { answers: needed, unknowns, .. } = self.all_needs(&origins);
+        let (anchor, spent) = if unknowns { self.anchor(run) } else { (None, 0) };
+        let answers = self.ask_model(ask.points, &run.quiet(), &needed);
         let answer = |output: usize| needed.binary_search(&output).expect("the model was asked for it");
         // Which formulas fill which columns of `out`.
         let (columns, formulas): (Vec<usize>, Vec<usize>) = (origins.iter().enumerate())
             .filter_map(|(column, origin)| match origin {
                 Origin::Formula(formula) => Some((column, *formula)),
-                Origin::Model(_) => None,
+                Origin::Model(_) | Origin::Unknown(_) => None,
             })
             .unzip();
-        let uses: Vec<Vec<usize>> =
-            formulas.iter().map(|&formula| self.split(self.formulas.variables(formula)).1).collect();
+        let (dimensions, given) = (self.signature.inputs.len(), self.given());
 
         // What the model has answered is not lost to a stop: only the model itself is stopped.
         let run = if needed.is_empty() { *run } else { run.unstopped() };
         in_blocks(ask, &run, out, |points, rows, out| {
-            let variable = |index: usize| -> &[f64] {
-                let dimensions = self.signature.inputs.len();
+            let known = |index: usize| -> &[f64] {
                 let column = match index.checked_sub(dimensions) {
                     None => points.column(index),
                     Some(output) => answers.column(answer(output)),
                 };
                 &column[rows.clone()]
             };
+            let found = match (&self.assembler, &anchor) {
+                (Some(assembler), Some(Ok(anchor))) => {
+                    Some(Found::of((assembler, &self.formulas), anchor, rows.len(), given, |index, row| {
+                        known(index)[row]
+                    }))
+                }
+                _ => None,
+            };
+            let nothing = vec![f64::NAN; rows.len()];
+            let variable = |index: usize| match index.checked_sub(given) {
+                None => known(index),
+                Some(unknown) => found.as_ref().map_or(&nothing[..], |found| &found.columns[unknown]),
+            };
+            // What an output needs and has not got: then it is that error, or still open.
+            let missing = |out: &mut Responses, row: usize, column: usize| -> bool {
+                let lacks = |&&output: &&usize| answers.value(rows.start + row, answer(output)).is_none();
+                if let Some(&output) = needs[column].answers.iter().find(lacks) {
+                    out.pass_on(row, column, &answers, rows.start + row, answer(output));
+                    return true;
+                }
+                if !needs[column].unknowns {
+                    return false;
+                }
+                match (&anchor, &found) {
+                    (Some(Err(error)), _) => out.fail(row, column, error.clone()),
+                    (_, Some(found)) => match &found.errors[row] {
+                        Some(failure) => out.fail(row, column, failure.clone().into()),
+                        None => return false,
+                    },
+                    _ => {}
+                }
+                true
+            };
             for (column, origin) in origins.iter().enumerate() {
-                if let Origin::Model(output) = *origin {
-                    (rows.clone().enumerate())
-                        .for_each(|(r, row)| out.pass_on(r, column, &answers, row, answer(output)));
+                for row in 0..rows.len() {
+                    match *origin {
+                        Origin::Model(output) => out.pass_on(row, column, &answers, rows.start + row, answer(output)),
+                        Origin::Unknown(unknown) if !missing(out, row, column) => {
+                            out.set(row, column, variable(given + unknown)[row]);
+                        }
+                        Origin::Unknown(_) | Origin::Formula(_) => {}
+                    }
                 }
             }
             self.formulas.evaluate(&formulas, rows.len(), variable, |position, row, value| {
                 let column = columns[position];
                 if value.is_finite() {
                     out.set(row, column, value);
-                    return;
-                }
-                // An answer that the formula needed is missing: then it is that answer's error, or still open.
-                let missing =
-                    uses[position].iter().find(|&&output| answers.value(rows.start + row, answer(output)).is_none());
-                match missing {
-                    Some(&output) => out.pass_on(row, column, &answers, rows.start + row, answer(output)),
-                    None => {
-                        let explained = self.formulas.explain(formulas[position], |index| variable(index)[row]);
-                        let error =
-                            explained.map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into());
-                        out.fail(row, column, error);
-                    }
+                } else if !missing(out, row, column) {
+                    let explained = self.formulas.explain(formulas[position], |index| variable(index)[row]);
+                    let error =
+                        explained.map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into());
+                    out.fail(row, column, error);
                 }
             });
         });
-        out.spent(answers.extra() + answers.count_reused() as i64);
+        out.spent(spent + answers.extra() + answers.count_reused() as i64);
         out.reused(answers.count_reused());
         out.doubt(answers.doubts().iter().cloned());
+    }
+
+    fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
+        self.exact(outputs, directions)
+    }
+
+    fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
+        let unknowns = self.all_needs(&self.origins(outputs)).unknowns;
+        let singular = |assembler: &Assembler| assembler.known_anchor()?.nearly_singular(assembler);
+        let found = self.assembler.as_ref().filter(|_| unknowns).and_then(singular);
+        found.map(|(unknown, condition)| Warning::NearSingular { unknown, condition }).into_iter().collect()
     }
 }

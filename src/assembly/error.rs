@@ -15,6 +15,9 @@ pub enum EvaluationError {
     /// A formula has no value there.
     #[error(transparent)]
     Formula(#[from] Box<FormulaFailure>),
+    /// The assembly does not close there, or not on the branch of the nominal state.
+    #[error(transparent)]
+    Assembly(#[from] Box<super::implicit::AssemblyFailure>),
     /// An external program failed.
     #[error(transparent)]
     Process(#[from] Box<super::process::ProcessError>),

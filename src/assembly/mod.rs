@@ -12,9 +12,11 @@ mod ask;
 mod blocks;
 mod closure;
 mod composite;
+mod derivatives;
 mod error;
 pub mod formula;
 mod given;
+pub mod implicit;
 pub mod process;
 mod responses;
 mod run;
@@ -24,11 +26,14 @@ pub use ask::{Ask, Points};
 pub use blocks::in_blocks;
 pub use closure::Closure;
 pub use composite::{Composite, CompositeError, Parts, Source};
+pub use derivatives::{Derivatives, Directions};
 pub use error::EvaluationError;
 pub use given::{Given, Table};
 pub use responses::Responses;
 pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};
+
+use crate::warning::Warning;
 
 /// The black box: object-safe, batch first, told what is asked, with an error per point and output.
 pub trait AssemblyFunction: Send + Sync {
@@ -52,4 +57,19 @@ pub trait AssemblyFunction: Send + Sync {
     /// [`Run::finished`]; between rows [`Run::stopped`] says when to return with the rest unanswered, which is no
     /// error.
     fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses);
+
+    /// Exact derivatives of `outputs` at a point, in the order asked; None for an output of which the function does not
+    /// know them at any point.
+    ///
+    /// This is no evaluation: a function that would have to evaluate points for it answers None, as it does by default.
+    fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
+        let _ = directions;
+        vec![None; outputs.len()]
+    }
+
+    /// What the function itself has to say of its answers for `outputs`, once some are given.
+    fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
+        let _ = outputs;
+        Vec::new()
+    }
 }

@@ -9,8 +9,6 @@ pub struct Signature {
     pub outputs: Vec<Output>,
     /// Whether an evaluation costs so much that answers are worth keeping on disk.
     pub costly: bool,
-    /// Whether derivatives can be asked for.
-    pub gradients: bool,
 }
 
 /// One coordinate of a point.

@@ -95,6 +95,10 @@ pub(super) struct StudyArgs {
     /// Sensitivities of varying dimensions, or of all: two evaluations each for those without tolerance
     #[arg(long, value_name = "WHICH")]
     pub(super) sensitivities: Option<SensitivitiesArg>,
+
+    /// Where derivatives come from [default: exact sensitivities where formulas give them, moments by differences]
+    #[arg(long, value_name = "SOURCE")]
+    pub(super) derivatives: Option<DerivativesArg>,
 }
 
 #[derive(Debug, Args)]
@@ -409,6 +413,15 @@ pub(super) enum StencilArg {
     TwoPoint,
     /// All four corners, beside three-point axes
     FourPoint,
+}
+
+/// The sources of derivatives as values of an option.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum DerivativesArg {
+    /// Exact at the means, for the moments too: one evaluation, and one at the nominal values where they differ
+    Exact,
+    /// Differences, for the sensitivities too
+    Difference,
 }
 
 /// Which sensitivities are wanted, as values of an option.

@@ -8,7 +8,7 @@ use super::args::PlanArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use super::study;
-use crate::plan::{DifferencePlan, Known, Purpose, Stage};
+use crate::plan::{DifferencePlan, Known, Purpose, Spread, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
 
@@ -49,6 +49,9 @@ struct AxisReport {
     values: Vec<f64>,
 }
 
+/// The count of a plan without differences.
+const EXACT: &str = "exact derivatives: the means, and the nominal values where they differ";
+
 pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read(&asked.study, Externals::default())?;
     let destination = Destination::open(&asked.output)?;
@@ -62,7 +65,7 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         command: "plan",
         method: procedure.name(),
         about: procedure.about(),
-        count: procedure.count(),
+        count: if plan.layout().spread == Spread::Bare { EXACT } else { procedure.count() },
         varying: plan.varying().len(),
         evaluations,
         stages: vec![of_stage(&first)],
@@ -115,10 +118,12 @@ fn text(report: &PlanReport) -> String {
         lines.push(format!("stage {}: {} points{chosen}", index + 1, stage.evaluations));
         lines.extend(stage.purposes.iter().map(|purpose| format!("  {:>6}  {}", purpose.points, purpose.purpose)));
     }
-    lines.push("steps in sigma about the mean:".to_owned());
+    if report.dimensions.iter().any(|dimension| !dimension.sigmas.is_empty()) {
+        lines.push("steps in sigma about the mean:".to_owned());
+    }
     // Dimensions of one distribution share their nodes, up to rounding.
     let mut alike: Vec<(String, Vec<&str>)> = Vec::new();
-    for dimension in &report.dimensions {
+    for dimension in report.dimensions.iter().filter(|dimension| !dimension.sigmas.is_empty()) {
         let nodes = dimension.sigmas.iter().map(|u| format!("{u:+.4}")).collect::<Vec<_>>().join("  ");
         match alike.iter_mut().find(|(known, _)| *known == nodes) {
             Some((_, names)) => names.push(&dimension.name),

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::args::{SensitivitiesArg, StencilArg, StudyArgs};
+use super::args::{DerivativesArg, SensitivitiesArg, StencilArg, StudyArgs};
 use super::failure::Failure;
 use super::pairs;
-use crate::method::Method;
+use crate::method::{DerivativeSource, Method};
 use crate::plan::Stencil;
 use crate::study::{Externals, Study};
 
@@ -44,5 +44,15 @@ pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Fai
     options.accuracy = asked.accuracy.or(options.accuracy);
     options.budget = asked.budget.or(options.budget);
     options.step = asked.step.or(options.step);
+    if let Some(derivatives) = asked.derivatives {
+        options.derivatives = Some(match derivatives {
+            DerivativesArg::Exact => DerivativeSource::Exact,
+            DerivativesArg::Difference => DerivativeSource::Difference,
+        });
+        // Steps of the study were chosen for its differences.
+        if derivatives == DerivativesArg::Exact {
+            options.step = asked.step;
+        }
+    }
     Ok(study)
 }

@@ -1,6 +1,7 @@
 //! What the derivative methods share: a difference plan, evaluated and fitted.
 
-use super::{Method, MethodError, Options, Pairs, Procedure};
+use super::exact::{ExactDerivatives, fits, known};
+use super::{DerivativeSource, Method, MethodError, Options, Pairs, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::{Evaluated, evaluate};
 use crate::moments::Interactions;
@@ -8,6 +9,9 @@ use crate::names::nearest;
 use crate::plan::{DifferencePlan, Layout, PairChoice, Point, Spread, Stencil};
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
+
+/// What the assembly function knows of every characteristic's derivatives.
+type Known = Vec<Option<ExactDerivatives>>;
 
 /// How much of the derivatives a method makes use of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,6 +61,8 @@ pub struct Outcome {
     pub fitted: Vec<Fitted>,
     /// The pairs that were examined, as positions among the varying dimensions.
     pub pairs: Vec<(usize, usize)>,
+    /// Whether the moments come from exact derivatives rather than differences.
+    pub exact: bool,
 }
 
 /// What is known of one characteristic.
@@ -66,6 +72,8 @@ pub struct Fitted {
     pub nominal: Option<f64>,
     /// Its value with every dimension at its mean.
     pub centre: Option<f64>,
+    /// The derivatives at the means as the assembly function knows them; None where it does not, or was not asked.
+    pub exact: Option<ExactDerivatives>,
     /// Every dimension's own part, in the problem's order; None where it is unknown or was not asked for.
     pub parts: Vec<Option<Univariate>>,
     /// The mixed derivatives of the pairs examined, in sigma units; None where lost.
@@ -95,7 +103,11 @@ impl Procedure for Ladder {
         if let Some(step) = options.step.filter(|step| !(step.is_finite() && *step > 0.0)) {
             return Err(MethodError::BadStep { step });
         }
+        fits(options.derivatives, "step", options.step.is_some())?;
+        fits(options.derivatives, "stencil", options.stencil.is_some())?;
         let (spread, pairs, stencil) = self.differences(problem, options)?;
+        let exact = options.derivatives == Some(DerivativeSource::Exact);
+        let spread = if exact { Spread::Bare } else { spread };
         let layout = Layout { spread, pairs, stencil, step: options.step, fixed_too: options.all_sensitivities };
         Ok(DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout))
     }
@@ -112,10 +124,15 @@ impl Procedure for Ladder {
             });
         }
         problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
+        let exact = options.derivatives == Some(DerivativeSource::Exact);
+        if exact {
+            known(problem, &plan)?;
+        }
         let evaluated = evaluate(problem, &plan, run);
-        let pairs = plan.pairs(Some(&evaluated.known));
-        let fitted = (0..problem.characteristics().len()).map(|c| self.fit(&plan, &evaluated, c, &pairs)).collect();
-        Ok(Outcome { asked: self.method, method: self.runs, plan, evaluated, order: self.order, fitted, pairs })
+        let (pairs, derivatives) = self.derivatives(problem, options, &plan, &evaluated)?;
+        let fit = |(c, derivatives)| self.fit(&plan, &evaluated, c, &pairs, derivatives, exact);
+        let fitted = derivatives.into_iter().enumerate().map(fit).collect();
+        Ok(Outcome { asked: self.method, method: self.runs, plan, evaluated, order: self.order, fitted, pairs, exact })
     }
 }
 
@@ -138,11 +155,55 @@ impl Ladder {
         }
     }
 
-    fn fit(&self, plan: &DifferencePlan, evaluated: &Evaluated, c: usize, pairs: &[(usize, usize)]) -> Fitted {
+    /// The pairs that are examined, and the exact derivatives of every characteristic as far as they are wanted.
+    fn derivatives(
+        &self,
+        problem: &Problem,
+        options: &Options,
+        plan: &DifferencePlan,
+        evaluated: &Evaluated,
+    ) -> Result<(Vec<(usize, usize)>, Known), MethodError> {
+        if options.derivatives == Some(DerivativeSource::Difference) {
+            return Ok((plan.pairs(Some(&evaluated.known)), vec![None; problem.characteristics().len()]));
+        }
+        let mut all = ExactDerivatives::of(problem, plan);
+        if options.derivatives.is_none() {
+            let pairs = plan.pairs(Some(&evaluated.known));
+            ExactDerivatives::add_pairs(&mut all, problem, plan, &pairs);
+            return Ok((pairs, all));
+        }
+        let pairs = plan.pairs_by(Some(&|c, d| all[c].as_ref()?.part(plan, d)));
+        ExactDerivatives::add_pairs(&mut all, problem, plan, &pairs);
+        for (c, exact) in all.iter().enumerate() {
+            // Without a value at the means there is nothing to differentiate, and the report says so.
+            let valued = evaluated.known.value(&Point::Centre, c).is_some();
+            if let Some(lacking) =
+                exact.as_ref().filter(|_| valued).and_then(|exact| exact.lacking(problem, plan, c, self.order, &pairs))
+            {
+                return Err(lacking);
+            }
+        }
+        Ok((pairs, all))
+    }
+
+    fn fit(
+        &self,
+        plan: &DifferencePlan,
+        evaluated: &Evaluated,
+        c: usize,
+        pairs: &[(usize, usize)],
+        derivatives: Option<ExactDerivatives>,
+        exact: bool,
+    ) -> Fitted {
         let known = &evaluated.known;
         let dimensions = plan.centre().len();
-        let parts: Vec<Option<Univariate>> = (0..dimensions).map(|d| plan.part(known, c, d)).collect();
-        let mixed = plan.mixed(known, c, pairs);
+        let exactly = derivatives.as_ref().filter(|_| exact);
+        let part = |d: usize| match exactly {
+            Some(derivatives) if plan.depends(c, d) => derivatives.part(plan, d),
+            _ => plan.part(known, c, d),
+        };
+        let parts: Vec<Option<Univariate>> = (0..dimensions).map(part).collect();
+        let mixed = exactly.map_or_else(|| plan.mixed(known, c, pairs), |exact| exact.mixed(plan, pairs));
         let used = |&d: &usize| match self.order {
             Order::First => parts[d].map(|part| Univariate::of_coefficients(&[part.slope()])),
             Order::Second => parts[d],
@@ -154,7 +215,7 @@ impl Ladder {
             parts: plan.varying().iter().map(used).collect(),
             interactions: Interactions::of_pairs(plan.varying().len(), products.filter(|&(_, _, value)| value != 0.0)),
         });
-        Fitted { nominal: known.value(plan.nominal(), c), centre, parts, mixed, surrogate }
+        Fitted { nominal: known.value(plan.nominal(), c), centre, exact: derivatives, parts, mixed, surrogate }
     }
 }
 

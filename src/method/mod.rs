@@ -6,6 +6,7 @@
 
 mod auto;
 mod classic;
+mod exact;
 mod full;
 mod ladder;
 mod options;
@@ -14,8 +15,9 @@ mod second_order;
 mod six_n;
 mod worst_case;
 
+pub use exact::ExactDerivatives;
 pub use ladder::{Fitted, Order, Outcome};
-pub use options::{Options, Pairs};
+pub use options::{DerivativeSource, Options, Pairs};
 
 use crate::assembly::{EvaluationError, Run};
 use crate::plan::DifferencePlan;
@@ -131,6 +133,29 @@ pub enum MethodError {
         option: &'static str,
         /// The methods that have it.
         only: &'static str,
+    },
+    /// Exact derivatives of something that is known by its values only.
+    #[error(
+        "`{characteristic}` has no exact derivatives: it depends on a model that is known by its values only; \
+         do without derivatives = exact (--derivatives exact)"
+    )]
+    DerivativesUnknown {
+        /// The characteristic.
+        characteristic: String,
+    },
+    /// A derivative that does not exist at the means.
+    #[error("`{characteristic}` has no derivative by {} at the means: a kink, a jump or the edge of its domain; --derivatives difference steps over it", dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and "))]
+    NoDerivative {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension, or the two of a mixed derivative.
+        dimensions: Vec<String>,
+    },
+    /// An option of differences, where derivatives are exact.
+    #[error("a choice of {option} means nothing with exact derivatives: nothing is evaluated beside the means")]
+    NoDifferences {
+        /// The option.
+        option: &'static str,
     },
     /// A pair names something that is no dimension.
     #[error("pair `{a}:{b}`: there is no dimension `{unknown}`{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]

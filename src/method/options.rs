@@ -26,6 +26,40 @@ pub struct Options {
     pub stencil: Option<Stencil>,
     /// Whether dimensions without tolerance get a sensitivity too, at two evaluations each.
     pub all_sensitivities: bool,
+    /// Where derivatives come from. Unless said otherwise the reported sensitivities are exact where the assembly function
+    /// knows its derivatives, and moments come from differences at nodes that suit each distribution.
+    pub derivatives: Option<DerivativeSource>,
+}
+
+/// Where derivatives come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DerivativeSource {
+    /// Exact at the means, for sensitivities and moments alike: nothing is evaluated beside the means.
+    Exact,
+    /// Differences of evaluated points, for sensitivities and moments alike.
+    Difference,
+}
+
+impl DerivativeSource {
+    /// The names of the sources.
+    pub const NAMES: [&str; 2] = ["exact", "difference"];
+
+    /// Its name in study files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Difference => "difference",
+        }
+    }
+
+    /// The source of this name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        match name {
+            "exact" => Some(Self::Exact),
+            "difference" => Some(Self::Difference),
+            _ => None,
+        }
+    }
 }
 
 /// Which interactions are examined.
@@ -63,6 +97,7 @@ impl Default for Options {
             pairs: None,
             stencil: None,
             all_sensitivities: false,
+            derivatives: None,
         }
     }
 }

@@ -57,13 +57,15 @@ impl Axis {
     }
 
     /// The axis of a dimension that does not vary, for its sensitivity alone.
-    pub(super) fn fixed(dimension: &Dimension) -> Self {
+    pub(super) fn fixed(dimension: &Dimension, spread: Spread) -> Self {
         let nominal = dimension.nominal();
         let scale = SENSITIVITY_STEP * nominal.abs().max(1.0);
         let mut axis =
             Self { mean: nominal, scale, nodes: Vec::new(), slots: Vec::new(), moved: Vec::new(), tail: None };
-        axis.open_slot(-1.0);
-        axis.open_slot(1.0);
+        if spread != Spread::Bare {
+            axis.open_slot(-1.0);
+            axis.open_slot(1.0);
+        }
         axis
     }
 

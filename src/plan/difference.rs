@@ -64,7 +64,7 @@ impl DifferencePlan {
         let fixed: Vec<usize> = if layout.fixed_too { of_sigma(false).collect() } else { Vec::new() };
         let mut axes: Vec<Axis> = dimensions.iter().map(Axis::still).collect();
         varying.iter().for_each(|&d| axes[d] = Axis::varying(&dimensions[d], layout.spread, layout.step));
-        fixed.iter().for_each(|&d| axes[d] = Axis::fixed(&dimensions[d]));
+        fixed.iter().for_each(|&d| axes[d] = Axis::fixed(&dimensions[d], layout.spread));
         let mut nominal = Vec::new();
         for (d, dimension) in dimensions.iter().enumerate() {
             if let Some(node) = axes[d].at_value(dimension.nominal()) {
@@ -133,6 +133,7 @@ impl DifferencePlan {
             _ => false,
         };
         let pairs = self.possible_pairs().min(match &self.layout.pairs {
+            _ if self.layout.spread == Spread::Bare => 0,
             PairChoice::None => 0,
             PairChoice::All => usize::MAX,
             PairChoice::Strongest => self.varying.len(),
@@ -163,7 +164,7 @@ impl DifferencePlan {
         stage.add(self.nominal.clone(), Purpose::Nominal);
         self.add_axes(&mut stage, &self.varying, Purpose::Axis);
         let axes_known = stage.stage.points.is_empty();
-        if axes_known || self.layout.pairs != PairChoice::Strongest {
+        if self.layout.spread != Spread::Bare && (axes_known || self.layout.pairs != PairChoice::Strongest) {
             self.add_pairs(&mut stage);
         }
         self.add_axes(&mut stage, &self.fixed, Purpose::Sensitivity);
@@ -213,16 +214,29 @@ impl DifferencePlan {
         Some(Point::of(&[at(j, of_j)?, at(k, of_k)?]))
     }
 
+    /// The dimensions of which derivatives are wanted: those that vary, and those without tolerance if they were asked for.
+    pub fn moved(&self) -> Vec<usize> {
+        self.varying.iter().chain(&self.fixed).copied().collect()
+    }
+
     /// The pairs examined, as positions `j < k`. The strongest can be told only from what is known of the axes.
     pub fn pairs(&self, known: Option<&Known>) -> Vec<(usize, usize)> {
+        match known {
+            None => self.pairs_by(None),
+            Some(known) => self.pairs_by(Some(&|c, d| self.part(known, c, d))),
+        }
+    }
+
+    /// The same, from the parts of characteristics by dimension wherever they come from.
+    pub fn pairs_by(&self, part: Option<&dyn Fn(usize, usize) -> Option<Univariate>>) -> Vec<(usize, usize)> {
         let n = self.varying.len();
         let all = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k)));
         let mut pairs: Vec<(usize, usize)> = match &self.layout.pairs {
             PairChoice::None => return Vec::new(),
             PairChoice::All => all.filter(|&(j, k)| self.matters(j, k)).collect(),
             PairChoice::Strongest => {
-                let Some(known) = known else { return Vec::new() };
-                let shares: Vec<Vec<f64>> = (0..self.depends.len()).map(|c| self.shares(known, c)).collect();
+                let Some(part) = part else { return Vec::new() };
+                let shares: Vec<Vec<f64>> = (0..self.depends.len()).map(|c| self.shares(part, c)).collect();
                 return strongest(n, &shares, |c, j, k| self.joint(c, j, k));
             }
             PairChoice::Adjacent => (0..n).map(|j| (j, (j + 1) % n)).map(|(j, k)| (j.min(k), j.max(k))).collect(),
@@ -242,10 +256,9 @@ impl DifferencePlan {
     }
 
     /// Univariate variance of every position, as a share of their sum.
-    fn shares(&self, known: &Known, characteristic: usize) -> Vec<f64> {
+    fn shares(&self, part: &dyn Fn(usize, usize) -> Option<Univariate>, characteristic: usize) -> Vec<f64> {
         let scale = |part: Univariate| part.largest();
-        let parts: Vec<Option<Univariate>> =
-            (0..self.varying.len()).map(|j| self.part(known, characteristic, self.varying[j])).collect();
+        let parts: Vec<Option<Univariate>> = self.varying.iter().map(|&d| part(characteristic, d)).collect();
         let largest = parts.iter().flatten().copied().map(scale).fold(0.0, f64::max);
         if largest == 0.0 {
             return vec![0.0; parts.len()];

@@ -5,6 +5,8 @@ use crate::distribution::{Distribution, Rule};
 /// How many nodes an axis has beside the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spread {
+    /// None: derivatives come from elsewhere.
+    Bare,
     /// Two: slope and curvature.
     Pair,
     /// Four: up to the fourth derivative.
@@ -70,6 +72,9 @@ impl Nodes {
     pub fn matched(distribution: &dyn Distribution, spread: Spread) -> Self {
         let (mean, sigma) = (distribution.mean(), distribution.sigma());
         let support = distribution.support().map(|edge| (edge - mean) / sigma);
+        if spread == Spread::Bare {
+            return Self { u: Vec::new(), moved: Vec::new(), tail: None };
+        }
         let five = if spread == Spread::Five { five(distribution, support) } else { None };
         let reach = distribution.jacobi(REACH).gauss().nodes.iter().fold(0.0f64, |reach, u| reach.max(u.abs()));
         let (u, moved, rule, long) = match five {
@@ -86,6 +91,7 @@ impl Nodes {
     /// At one and, for five points, two times the step on either side.
     pub fn stepped(step: f64, spread: Spread) -> Self {
         let u = match spread {
+            Spread::Bare => Vec::new(),
             Spread::Pair => vec![-step, step],
             Spread::Five => vec![-2.0 * step, -step, step, 2.0 * step],
         };

@@ -50,6 +50,8 @@ pub struct Report {
     pub method: &'static str,
     /// Dimensions that vary and matter, N.
     pub varying: usize,
+    /// Where the derivatives that the moments rest on come from: `exact` or `difference`.
+    pub derivatives: &'static str,
     /// Every point sent to the model.
     pub evaluations: usize,
     /// Answers taken from an earlier run.
@@ -210,6 +212,8 @@ pub struct SensitivityReport {
     pub first: Option<f64>,
     /// Second derivative at the mean.
     pub second: Option<f64>,
+    /// Whether both are exact rather than differences.
+    pub exact: bool,
     /// What rounding in the model may make of the two derivatives.
     pub rounding: Option<[f64; 2]>,
     /// Share of the variance along the best straight line.
@@ -227,6 +231,8 @@ pub struct InteractionReport {
     pub dimensions: [String; 2],
     /// Mixed second derivative at the means.
     pub mixed: Option<f64>,
+    /// Whether it is exact rather than a difference.
+    pub exact: bool,
     /// What rounding in the model may make of it.
     pub rounding: Option<f64>,
     /// Share of the variance.
@@ -274,6 +280,7 @@ impl Report {
             command: "analyze",
             method: analysis.method.name(),
             varying: analysis.varying,
+            derivatives: analysis.derivatives.name(),
             evaluations: analysis.evaluations,
             reused: analysis.reused,
             failed: analysis.failed,
@@ -343,6 +350,7 @@ impl CharacteristicReport {
                     dimension: sensitivity.dimension.clone(),
                     first: sensitivity.first,
                     second: sensitivity.second,
+                    exact: sensitivity.exact,
                     rounding: sensitivity.rounding,
                     linear_share: sensitivity.linear_share,
                     curvature_share: sensitivity.curvature_share,
@@ -353,6 +361,7 @@ impl CharacteristicReport {
                 .map(|interaction| InteractionReport {
                     dimensions: interaction.dimensions.clone(),
                     mixed: interaction.mixed,
+                    exact: interaction.exact,
                     rounding: interaction.rounding,
                     share: interaction.share,
                     mean_shift: interaction.mean_shift,

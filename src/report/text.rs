@@ -137,6 +137,9 @@ fn contributions(page: &mut Page, report: &Report, one: &CharacteristicReport) {
         table.row(cells);
     }
     page.print(&table);
+    if let Some(source) = source(report, &rows) {
+        page.line(&format!("  {source}"));
+    }
     let rest = &rows[shown..];
     if !rest.is_empty() {
         let together: f64 = rest.iter().filter_map(|(row, _)| share(row)).sum();
@@ -160,6 +163,23 @@ fn correlation(page: &mut Page, report: &Report, one: &CharacteristicReport) {
     page.line(&format!(
         "  correlated: {shown}{more}; shares are covariances with the whole, the worst case ignores it"
     ));
+}
+
+/// What slopes and curvatures are, unless they are differences as everything else.
+fn source(report: &Report, rows: &[(&SensitivityReport, &DimensionReport)]) -> Option<String> {
+    let differences: Vec<String> =
+        rows.iter().filter(|(row, _)| !row.exact).map(|(row, _)| short(&row.dimension)).collect();
+    if differences.len() == rows.len() {
+        return None;
+    }
+    let but = match differences.len() {
+        0 => String::new(),
+        1..=8 => format!(", but by differences for {}", differences.join(", ")),
+        many => format!(", but by differences for {many} dimensions"),
+    };
+    let rest =
+        if report.derivatives == "exact" { "everything rests on them" } else { "the rest comes from differences" };
+    Some(format!("slopes and curvatures are exact{but}; {rest}"))
 }
 
 /// A derivative to six digits; what rounding alone can make is 0 as far as anybody knows.

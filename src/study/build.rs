@@ -1,6 +1,7 @@
 //! From the file's types to a problem: names, model, formulas, characteristics.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use serde_spanned::Spanned;
@@ -9,11 +10,12 @@ use super::correlation::correlated;
 use super::dimension::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
+use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
 use super::source::Source;
 use crate::assembly::formula::{Formula, FormulaError, is_reserved};
 use crate::assembly::process::Greeting;
-use crate::assembly::{self, AssemblyFunction, Composite, Input, Parts};
+use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
 use crate::dimension::Dimension;
 use crate::method::Options;
@@ -41,11 +43,13 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
             return Err(Fault { span: None, key: String::new(), fault: Box::new(StudyFault::Nothing { what }) });
         }
     }
-    let used = |name: &str| formulas.iter().any(|named| named.formula.names().any(|(used, _)| used == name));
+    let implicit = implicit(file, &dimensions, source)?;
+    let written = Written { formulas, implicit };
+    let used = |name: &str| written.names().any(|used| used == name);
     known_to_model(file, model, &used)?;
     let (characteristics, outputs) = characteristics(file, model, program)?;
-    let composite = compose(file, evaluated.as_ref(), &dimensions, &formulas, outputs, source)?;
-    let warnings = unused(file, evaluated.as_ref(), &composite, &formulas, &used);
+    let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
+    let warnings = unused(file, evaluated.as_ref(), &composite, &written, &used);
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
@@ -57,7 +61,8 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
 /// Every name means one thing.
 fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Fault> {
     let with_formula = file.characteristics.0.iter().filter(|(_, entry)| entry.get_ref().formula.is_some());
-    let formulas = !file.formulas.0.is_empty() || with_formula.clone().next().is_some();
+    let written = [file.formulas.names(), file.unknowns.names(), file.equations.names(), file.loops.names()];
+    let formulas = written.iter().any(|names| !names.is_empty()) || with_formula.clone().next().is_some();
     let mut taken: HashMap<&str, &'static str> = HashMap::new();
     if let Some(model) = model {
         taken.extend(model.outputs.iter().map(|output| (output.name, "an output of the model")));
@@ -66,6 +71,7 @@ fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Fault> {
         ("dimensions", "a dimension", file.dimensions.names()),
         ("constants", "a constant", file.constants.names()),
         ("formulas", "a formula", file.formulas.names()),
+        ("unknowns", "an unknown", file.unknowns.names()),
         ("characteristics", "a characteristic", with_formula.map(|(name, _)| name).collect()),
     ];
     let all = all.into_iter().flat_map(|(section, by, names)| names.into_iter().map(move |name| (section, by, name)));
@@ -119,14 +125,38 @@ fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, 
     own.chain(of_characteristics)
         .map(|(name, text, key)| match Formula::parse(text.get_ref()) {
             Ok(formula) => Ok(Named { name: name.get_ref().clone(), text, key, formula }),
-            Err(error) => Err(in_formula(source, text, key, error)),
+            Err(error) => Err(in_formula(source, text.span(), key, error)),
         })
         .collect()
 }
 
+/// Everything that is written as a formula.
+struct Written<'f> {
+    formulas: Vec<Named<'f>>,
+    implicit: Option<Implicit>,
+}
+
+impl Written<'_> {
+    /// Every name that a formula or a condition uses.
+    fn names(&self) -> impl Iterator<Item = String> {
+        let of_conditions = self.implicit.iter().flat_map(|implicit| implicit.conditions.formulas());
+        let all =
+            self.formulas.iter().map(|named| named.formula.clone()).chain(of_conditions.map(|(_, formula)| formula));
+        all.flat_map(|formula| formula.names().map(|(name, _)| name.to_owned()).collect::<Vec<_>>())
+    }
+
+    fn is_formula(&self, name: &str) -> bool {
+        self.formulas.iter().any(|named| named.name == name)
+    }
+
+    fn is_unknown(&self, name: &str) -> bool {
+        self.implicit.iter().flat_map(|implicit| implicit.conditions.unknowns()).any(|unknown| unknown.name() == name)
+    }
+}
+
 /// A fault within a formula, at its place in the file.
-fn in_formula(source: &Source, text: &Spanned<String>, key: String, error: FormulaError) -> Fault {
-    let span = source.within_string(text.span(), error.span);
+pub(super) fn in_formula(source: &Source, text: Range<usize>, key: String, error: FormulaError) -> Fault {
+    let span = source.within_string(text, error.span);
     fault(span, key, StudyFault::Formula(error.fault))
 }
 
@@ -161,8 +191,9 @@ fn characteristics(
         let entry = entry.get_ref();
         let mut unit = entry.unit.clone();
         // What a program offers it says itself.
-        if entry.formula.is_none() && !program {
-            let output = offered(name, &key, model)?;
+        let unknowns = file.unknowns.names();
+        if entry.formula.is_none() && !program && !unknowns.iter().any(|unknown| unknown.get_ref() == text) {
+            let output = offered(name, &key, model, &unknowns)?;
             unit = unit.or_else(|| Some(output.unit.to_owned()));
         }
         outputs.push((text.clone(), unit.clone()));
@@ -171,10 +202,21 @@ fn characteristics(
     Ok((characteristics, outputs))
 }
 
-/// The model's output of this name, for a characteristic without formula.
-fn offered<'m>(name: &Spanned<String>, key: &str, model: Option<&'m Model>) -> Result<&'m models::ModelOutput, Fault> {
+/// The model's output of this name, for a characteristic that has no formula and is no unknown.
+fn offered<'m>(
+    name: &Spanned<String>,
+    key: &str,
+    model: Option<&'m Model>,
+    unknowns: &[&Spanned<String>],
+) -> Result<&'m models::ModelOutput, Fault> {
     let text = name.get_ref();
     let Some(model) = model else {
+        if !unknowns.is_empty() {
+            let known: Vec<String> = unknowns.iter().map(|unknown| unknown.get_ref().clone()).collect();
+            let nearest = nearest(text, known.iter().map(String::as_str)).map(str::to_owned);
+            let what = "formula or unknown";
+            return Err(fault(name.span(), key, StudyFault::UnknownWord { what, found: text.clone(), nearest, known }));
+        }
         let instead = "write what it is, such as formula = \"a + b - c\", or name a model below [model]".to_owned();
         return Err(fault(name.span(), key, StudyFault::MissingKey { key: "formula".into(), instead }));
     };
@@ -216,7 +258,7 @@ fn compose(
     file: &StudyFile,
     model: Option<&ModelOf>,
     dimensions: &[Dimension],
-    formulas: &[Named<'_>],
+    written: &Written<'_>,
     outputs: Outputs,
     source: &Source,
 ) -> Result<Composite, Fault> {
@@ -234,8 +276,7 @@ fn compose(
         Ok(match model {
             ModelOf::BuiltIn(model) => (Arc::new(model.function()), sources(model, dimensions, &constants)),
             ModelOf::Program(program) => {
-                let used =
-                    |name: &str| formulas.iter().any(|named| named.formula.names().any(|(used, _)| used == name));
+                let used = |name: &str| written.names().any(|used| used == name);
                 let names =
                     dimensions.iter().map(Dimension::name).chain(constants.iter().map(|(name, _)| name.as_str()));
                 let greeting = Greeting {
@@ -243,7 +284,7 @@ fn compose(
                     constants: constants.clone(),
                     optional: names.filter(|name| used(name)).map(str::to_owned).collect(),
                 };
-                let offered = asked_of_program(&inputs, &constants, formulas, &outputs);
+                let offered = asked_of_program(&inputs, &constants, written, &outputs);
                 let all = (0..dimensions.len()).map(assembly::Source::Dimension).collect();
                 (process(program, &inputs, greeting, offered, source).map_err(nowhere)?, all)
             }
@@ -254,12 +295,19 @@ fn compose(
         inputs,
         constants,
         model,
-        formulas: formulas.iter().map(|named| (named.name.clone(), named.formula.clone())).collect(),
+        formulas: written.formulas.iter().map(|named| (named.name.clone(), named.formula.clone())).collect(),
+        conditions: written.implicit.as_ref().map(|implicit| implicit.conditions.clone()),
         outputs,
     };
-    Composite::new(parts).map_err(|error| {
-        let named = formulas.iter().find(|named| named.name == error.name).expect("the formula came from here");
-        in_formula(source, named.text, named.key.clone(), error.error)
+    Composite::new(parts).map_err(|error| match error {
+        CompositeError::Conditions(error) => placed(file, error),
+        CompositeError::Formula { index, error, .. } => {
+            let (text, key) = match index.checked_sub(written.formulas.len()) {
+                None => (written.formulas[index].text.span(), written.formulas[index].key.clone()),
+                Some(index) => written.implicit.as_ref().expect("the formula came from here").places[index].clone(),
+            };
+            in_formula(source, text, key, error)
+        }
     })
 }
 
@@ -278,38 +326,39 @@ fn sources(model: &Model, dimensions: &[Dimension], constants: &[(String, f64)])
 fn asked_of_program(
     inputs: &[Input],
     constants: &[(String, f64)],
-    formulas: &[Named<'_>],
+    written: &Written<'_>,
     outputs: &Outputs,
 ) -> Outputs {
-    let is_formula = |name: &str| formulas.iter().any(|named| named.name == name);
-    let mut asked: Outputs = outputs.iter().filter(|(name, _)| !is_formula(name)).cloned().collect();
-    for (name, _) in formulas.iter().flat_map(|named| named.formula.names()) {
-        let known = is_formula(name)
-            || inputs.iter().any(|input| input.name == name)
+    let is_written = |name: &str| written.is_formula(name) || written.is_unknown(name);
+    let mut asked: Outputs = outputs.iter().filter(|(name, _)| !is_written(name)).cloned().collect();
+    for name in &written.names().collect::<Vec<_>>() {
+        let known = is_written(name)
+            || inputs.iter().any(|input| input.name == *name)
             || constants.iter().any(|(constant, _)| constant == name)
             || asked.iter().any(|(known, _)| known == name)
             || is_reserved(name);
         if !known {
-            asked.push((name.to_owned(), None));
+            asked.push((name.clone(), None));
         }
     }
     asked
 }
 
-/// Constants and formulas that no characteristic of the file needs.
+/// Constants, formulas and unknowns that no characteristic of the file needs.
 fn unused(
     file: &StudyFile,
     model: Option<&ModelOf>,
     composite: &Composite,
-    formulas: &[Named<'_>],
+    written: &Written<'_>,
     used: &dyn Fn(&str) -> bool,
 ) -> Vec<Warning> {
-    let is_asked = |named: &Named<'_>| file.characteristics.0.iter().any(|(name, _)| *name.get_ref() == named.name);
-    let asked = formulas.iter().enumerate().filter(|(_, named)| is_asked(named)).map(|(index, _)| index);
-    let needed = composite.formulas().used(asked);
-    let idle_formulas = (formulas.iter().zip(needed))
+    let (needed, solved) = composite.used();
+    let idle_formulas = (written.formulas.iter().zip(needed))
         .filter(|(_, needed)| !needed)
         .map(|(named, _)| Warning::UnusedName { what: "formula", name: named.name.clone() });
+    let idle_unknowns = (file.unknowns.names().into_iter())
+        .filter(|_| !solved)
+        .map(|name| Warning::UnusedName { what: "unknown", name: name.get_ref().clone() });
     let is_input = |name: &str| match model {
         None => false,
         Some(ModelOf::BuiltIn(model)) => model.inputs.iter().any(|input| input.name == name),
@@ -319,12 +368,12 @@ fn unused(
     let idle_constants = (file.constants.names().into_iter())
         .filter(|name| !used(name.get_ref()) && !is_input(name.get_ref()))
         .map(|name| Warning::UnusedName { what: "constant", name: name.get_ref().clone() });
-    idle_constants.chain(idle_formulas).collect()
+    idle_constants.chain(idle_formulas).chain(idle_unknowns).collect()
 }
 
 impl<T> Entries<T> {
     /// The names, in order.
-    fn names(&self) -> Vec<&Spanned<String>> {
+    pub(super) fn names(&self) -> Vec<&Spanned<String>> {
         self.0.iter().map(|(name, _)| name).collect()
     }
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::assembly::formula::FormulaFault;
+use crate::assembly::implicit::ConditionsError;
 use crate::characteristic::LimitsError;
 use crate::correlation::Refusal;
 use crate::dimension::DimensionFault;
@@ -179,6 +180,9 @@ pub enum StudyFault {
     /// The limits are impossible.
     #[error(transparent)]
     Limits(#[from] LimitsError),
+    /// The closure conditions determine nothing.
+    #[error(transparent)]
+    Conditions(#[from] ConditionsError),
     /// A formula is wrong.
     #[error("{0}")]
     Formula(FormulaFault),
@@ -273,6 +277,16 @@ impl StudyFault {
                 Some("measure from a nearer datum, or leave the tolerance out".into())
             }
             Self::Limits(LimitsError::Swapped { .. }) => Some("exchange them".into()),
+            Self::Conditions(ConditionsError::Unbalanced { .. }) => Some(
+                "as many equations as unknowns are needed; a loop counts for two, one along x and one along y".into(),
+            ),
+            Self::Conditions(ConditionsError::EmptyLoop { .. }) => Some(
+                "write its vectors, such as [ { length = \"a\", angle = 0 }, { length = \"b\", angle = \"phi\" } ]"
+                    .into(),
+            ),
+            Self::Conditions(ConditionsError::Undetermined { .. }) => {
+                Some("use it in an equation or a loop, or write it as a constant".into())
+            }
             Self::Formula(fault) => fault.help(),
             Self::ReservedName { .. } => Some("choose another name".into()),
             Self::NameTaken { .. } => Some("one of the two needs another name".into()),

@@ -19,6 +19,12 @@ pub(super) struct StudyFile {
     #[serde(default)]
     pub(super) formulas: Entries<String>,
     #[serde(default)]
+    pub(super) unknowns: Entries<UnknownEntry>,
+    #[serde(default)]
+    pub(super) equations: Entries<String>,
+    #[serde(default)]
+    pub(super) loops: Entries<Vec<LinkEntry>>,
+    #[serde(default)]
     pub(super) characteristics: Entries<CharacteristicEntry>,
     #[serde(default)]
     pub(super) correlation: Correlations,
@@ -102,6 +108,26 @@ pub(super) struct PartEntry {
     pub(super) shift: Option<Spanned<f64>>,
 }
 
+/// One line of `[unknowns]`: `59.0` or `{ start = 59.0, lower = 0.0 }`.
+#[derive(Debug)]
+pub(super) struct UnknownEntry {
+    pub(super) start: f64,
+    pub(super) lower: Option<f64>,
+    pub(super) upper: Option<f64>,
+}
+
+/// One vector of a loop.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a vector such as { length = \"R - r\", angle = \"phi\" }")]
+pub(super) struct LinkEntry {
+    pub(super) length: Spanned<TermEntry>,
+    pub(super) angle: Spanned<TermEntry>,
+}
+
+/// A formula, or a number in its place.
+#[derive(Debug)]
+pub(super) struct TermEntry(pub(super) String);
+
 /// One line of `[characteristics]`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table such as { formula = \"a - b\" }")]
@@ -152,6 +178,7 @@ pub(super) struct AnalysisEntry {
     pub(super) pairs: Option<Spanned<PairsEntry>>,
     pub(super) stencil: Option<Spanned<String>>,
     pub(super) sensitivities: Option<Spanned<String>>,
+    pub(super) derivatives: Option<Spanned<String>>,
     pub(super) seed: Option<Spanned<u64>>,
 }
 
@@ -285,5 +312,65 @@ impl<'de> Deserialize<'de> for PairsEntry {
             }
         }
         deserializer.deserialize_any(Pairs)
+    }
+}
+
+impl<'de> Deserialize<'de> for UnknownEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Table {
+            start: f64,
+            lower: Option<f64>,
+            upper: Option<f64>,
+        }
+        struct Unknown;
+        impl<'de> Visitor<'de> for Unknown {
+            type Value = UnknownEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a start value such as 59.0, or { start = 59.0, lower = 0.0, upper = 90.0 },")
+            }
+
+            fn visit_f64<E>(self, start: f64) -> Result<Self::Value, E> {
+                Ok(UnknownEntry { start, lower: None, upper: None })
+            }
+
+            fn visit_i64<E>(self, start: i64) -> Result<Self::Value, E> {
+                Ok(UnknownEntry { start: start as f64, lower: None, upper: None })
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+                let Table { start, lower, upper } = Table::deserialize(value::MapAccessDeserializer::new(map))?;
+                Ok(UnknownEntry { start, lower, upper })
+            }
+        }
+        deserializer.deserialize_any(Unknown)
+    }
+}
+
+impl<'de> Deserialize<'de> for TermEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Term;
+        impl<'de> Visitor<'de> for Term {
+            type Value = TermEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a formula such as \"R - r\", or a number")
+            }
+
+            fn visit_str<E>(self, formula: &str) -> Result<Self::Value, E> {
+                Ok(TermEntry(formula.to_owned()))
+            }
+
+            fn visit_f64<E>(self, number: f64) -> Result<Self::Value, E> {
+                Ok(TermEntry(format!("{number:?}")))
+            }
+
+            fn visit_i64<E>(self, number: i64) -> Result<Self::Value, E> {
+                Ok(TermEntry(number.to_string()))
+            }
+        }
+        deserializer.deserialize_any(Term)
     }
 }

@@ -43,6 +43,7 @@ mod dimension;
 mod error;
 mod externals;
 mod file;
+mod implicit;
 mod model;
 mod options;
 mod source;

@@ -4,7 +4,7 @@ use serde_spanned::Spanned;
 
 use super::error::{Fault, StudyFault, fault};
 use super::file::{AnalysisEntry, PairsEntry};
-use crate::method::{ALL as METHODS, Method, Options, Pairs};
+use crate::method::{ALL as METHODS, DerivativeSource, Method, Options, Pairs};
 use crate::names::nearest;
 use crate::plan::Stencil;
 use crate::problem::Problem;
@@ -53,9 +53,17 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
             _ => return Err(word(sensitivities, "sensitivities", "choice of sensitivities", &["all", "varying"])),
         };
     }
+    if let Some(derivatives) = &entry.derivatives {
+        let found = DerivativeSource::by_name(derivatives.get_ref());
+        let known = &DerivativeSource::NAMES;
+        options.derivatives =
+            Some(found.ok_or_else(|| word(derivatives, "derivatives", "source of derivatives", known))?);
+    }
     // Whether the options fit each other and the study shows at its plan; what is at fault is most likely the pairs.
     options.method.procedure().plan(problem, &options).map_err(|error| {
-        let spans = [entry.pairs.as_ref().map(Spanned::span), entry.stencil.as_ref().map(Spanned::span)];
+        let of_derivatives = entry.derivatives.as_ref().map(Spanned::span);
+        let spans =
+            [entry.pairs.as_ref().map(Spanned::span), entry.stencil.as_ref().map(Spanned::span), of_derivatives];
         let span = spans.into_iter().flatten().next().or(entry.method.as_ref().map(Spanned::span));
         Fault { span, key: "analysis".into(), fault: Box::new(error.into()) }
     })?;

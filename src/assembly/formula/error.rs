@@ -132,7 +132,7 @@ impl FormulaFault {
             }
             Self::UndefinedName { nearest: name @ Some(_), .. } => nearest(name),
             Self::UndefinedName { .. } => Some(
-                "formulas know dimensions, constants, other formulas and the model's outputs; \
+                "formulas know dimensions, constants, unknowns, other formulas and the model's outputs; \
                  a name with other characters than letters, digits and _ stands in backquotes"
                     .into(),
             ),

@@ -7,8 +7,10 @@ use super::batch::{LANES, Machine};
 use super::error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
 use super::functions::{Binary, select};
 use super::graph::{Graph, NodeId};
+use super::jet::Jet;
 use super::parser::{Formula, Node};
 use super::program::Program;
+use super::scalar::Scalar;
 use crate::names::nearest;
 
 /// What a name stands for, where it is no formula.
@@ -56,6 +58,17 @@ pub struct FormulaSet {
     program: Mutex<Option<(Vec<usize>, Arc<Program>)>>,
 }
 
+/// Formulas that are run on one point at a time.
+#[derive(Debug, Clone)]
+pub(crate) struct Routine(Arc<Program>);
+
+impl Routine {
+    /// Every formula on what `variable` returns; `room` is what one run leaves to the next.
+    pub(crate) fn run<S: Scalar>(&self, variable: &impl Fn(usize) -> S, room: &mut Vec<S>) -> Vec<S> {
+        self.0.evaluate(variable, room)
+    }
+}
+
 #[derive(Debug)]
 struct Entry {
     name: String,
@@ -73,9 +86,22 @@ impl FormulaSet {
         formulas: Vec<(String, Formula)>,
         meanings: impl IntoIterator<Item = (&'n str, Meaning)>,
     ) -> Result<Self, (usize, FormulaError)> {
+        let named = formulas.len();
+        Self::with_unnamed(formulas, named, meanings)
+    }
+
+    /// The same, but that only the first `named` formulas can be used by the others: the rest bear a name for errors.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_unnamed<'n>(
+        formulas: Vec<(String, Formula)>,
+        named: usize,
+        meanings: impl IntoIterator<Item = (&'n str, Meaning)>,
+    ) -> Result<Self, (usize, FormulaError)> {
         let mut known: HashMap<String, Reference> =
             meanings.into_iter().map(|(name, meaning)| (name.to_owned(), Reference::Outside(meaning))).collect();
-        for (index, (name, _)) in formulas.iter().enumerate() {
+        for (index, (name, _)) in formulas[..named].iter().enumerate() {
             known.insert(name.clone(), Reference::Formula(index));
         }
         let mut entries = Vec::with_capacity(formulas.len());
@@ -147,6 +173,24 @@ impl FormulaSet {
                 values.enumerate().for_each(|(lane, value)| result(formula, first + lane, value));
             });
         }
+    }
+
+    /// Some formulas at one point, with exact derivatives; `variable` gives a variable's value and how it moves.
+    ///
+    /// Cost: about what ten evaluations take.
+    pub fn jets(&self, formulas: &[usize], variable: impl Fn(usize) -> Jet) -> Vec<Jet> {
+        self.evaluate_scalar(formulas, variable)
+    }
+
+    /// Some formulas at one point, on any kind of value.
+    pub(crate) fn evaluate_scalar<S: Scalar>(&self, formulas: &[usize], variable: impl Fn(usize) -> S) -> Vec<S> {
+        self.program(formulas).evaluate(&variable, &mut Vec::new())
+    }
+
+    /// Some formulas made ready to be run again and again, by any number of threads.
+    pub(crate) fn routine(&self, formulas: &[usize]) -> Routine {
+        let roots: Vec<NodeId> = formulas.iter().map(|&formula| self.roots[formula]).collect();
+        Routine(Arc::new(Program::of(&self.graph, &roots)))
     }
 
     fn program(&self, formulas: &[usize]) -> Arc<Program> {

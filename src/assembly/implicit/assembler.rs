@@ -1,0 +1,284 @@
+//! The state at every point: found from the nominal one, and on its branch.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use faer::Mat;
+
+use super::conditions::Conditions;
+use super::error::AssemblyFailure;
+use super::newton::{Root, Search, Stuck};
+use super::system::{Scales, System};
+use crate::assembly::formula::FormulaSet;
+
+/// Solves the conditions at any point, once the nominal state is known.
+pub(in crate::assembly) struct Assembler {
+    pub(super) system: System,
+    /// The dimensions to which the start values belong.
+    nominal: Vec<f64>,
+    anchor: Mutex<Option<Result<Arc<Anchor>, Box<AssemblyFailure>>>>,
+}
+
+/// The nominal state, from which every other one is found.
+pub(in crate::assembly) struct Anchor {
+    pub(super) given: Vec<f64>,
+    pub(super) u: Vec<f64>,
+    pub(super) scales: Scales,
+    sign: f64,
+    /// The derivatives of the unknowns by what the conditions use, 0 where there is none: a prediction only.
+    slopes: Mat<f64>,
+    /// The condition number of the scaled Jacobian, and the unknown that is held least.
+    condition: f64,
+    weakest: usize,
+}
+
+/// A root further off its prediction than this part of the way is followed before it is believed.
+const OFF: f64 = 0.25;
+/// As is one that took more steps than this.
+const STEPS: usize = 12;
+/// What is followed may be off by this part of a step, and a step that is off by less may grow.
+const FOLLOWED: f64 = 0.5;
+const EASY: f64 = 0.1;
+/// Rounding may set a root off its prediction by this.
+const SLACK: f64 = 1e-9;
+/// The shortest step, as a part of the way.
+const SHORTEST: f64 = 1.0 / 65536.0;
+/// The most parts of the way.
+const PARTS: usize = 1000;
+/// Beyond this condition number the unknowns are not determined.
+const SINGULAR: f64 = 1e10;
+/// Above this one a nominal position is worth a warning: the assembly ends at a distance of about the square of the
+/// inverse, a ten-thousandth of its size, which is what tolerances are.
+const NEARLY_SINGULAR: f64 = 100.0;
+
+impl Assembler {
+    /// Of conditions whose formulas stand in `set` from `first` on; `given` counts the variables that are no unknowns.
+    pub(in crate::assembly) fn new(conditions: &Conditions, set: &FormulaSet, first: usize, given: usize) -> Self {
+        let system = System::new(conditions, set, first, given);
+        Self { system, nominal: conditions.nominal.clone(), anchor: Mutex::new(None) }
+    }
+
+    /// How many unknowns there are.
+    pub(in crate::assembly) fn len(&self) -> usize {
+        self.system.len()
+    }
+
+    /// The variables that the conditions depend on, ascending.
+    pub(in crate::assembly) fn uses(&self) -> &[usize] {
+        &self.system.uses
+    }
+
+    /// The nominal dimensions.
+    pub(in crate::assembly) fn nominal(&self) -> &[f64] {
+        &self.nominal
+    }
+
+    /// The nominal state, sought at the first call: `given` says what the variables are there, None when that cannot be
+    /// had now.
+    pub(in crate::assembly) fn anchor(
+        &self,
+        set: &FormulaSet,
+        given: impl FnOnce() -> Option<Vec<f64>>,
+    ) -> Option<Result<Arc<Anchor>, Box<AssemblyFailure>>> {
+        let mut anchor = self.anchor.lock().unwrap_or_else(PoisonError::into_inner);
+        if anchor.is_none() {
+            *anchor = Some(self.assemble(set, given()?).map(Arc::new).map_err(Box::new));
+        }
+        anchor.clone()
+    }
+
+    /// The nominal state, if it was sought and found.
+    pub(in crate::assembly) fn known_anchor(&self) -> Option<Arc<Anchor>> {
+        let anchor = self.anchor.lock().unwrap_or_else(PoisonError::into_inner);
+        anchor.as_ref()?.as_ref().ok().map(Arc::clone)
+    }
+
+    /// From the start values to the nominal state.
+    fn assemble(&self, set: &FormulaSet, given: Vec<f64>) -> Result<Anchor, AssemblyFailure> {
+        let system = &self.system;
+        let start: Vec<f64> = system.unknowns.iter().map(|unknown| unknown.start()).collect();
+        let begun = system.values(&given, &start);
+        if let Some(failure) = system.explain(set, &given, &start) {
+            return Err(failure.into());
+        }
+        let scales = system.scales(&given, &start);
+        let search = Search { system, scales: &scales, given: &given };
+        let root = search.from(&start).map_err(|stuck| self.failure(set, &search, stuck, Some(&begun), None))?;
+        let scales = system.scales(&given, &root.u);
+        let search = Search { system, scales: &scales, given: &given };
+        let stuck = || Stuck { u: root.u.clone(), values: system.values(&given, &root.u), singular: true };
+        let singular = || self.failure(set, &search, stuck(), None, None);
+        let linear = search.linear(&root.u).ok_or_else(singular)?;
+        let condition = linear.condition();
+        if condition.number.is_nan() || condition.number >= SINGULAR {
+            return Err(singular());
+        }
+        let by = system.derivatives(&given, &root.u, &system.uses);
+        let mut slopes = Mat::zeros(system.len(), system.uses.len());
+        for k in 0..system.uses.len() {
+            let right: Vec<f64> = (0..system.len())
+                .map(|i| -by[(i, k)] / scales.equations[i])
+                .map(|value| if value.is_finite() { value } else { 0.0 })
+                .collect();
+            let slope = linear.solve(&right);
+            (0..system.len()).for_each(|j| slopes[(j, k)] = slope[j] * scales.unknowns[j]);
+        }
+        Ok(Anchor {
+            sign: linear.sign(),
+            u: root.u,
+            given,
+            scales,
+            slopes,
+            condition: condition.number,
+            weakest: condition.unknown,
+        })
+    }
+
+    /// The unknowns at a point; `set` explains a formula that has no value there.
+    pub(in crate::assembly) fn solve(
+        &self,
+        set: &FormulaSet,
+        anchor: &Anchor,
+        given: &[f64],
+    ) -> Result<Vec<f64>, AssemblyFailure> {
+        let moves = |&index: &usize| given[index] != anchor.given[index];
+        if !self.system.uses.iter().any(moves) {
+            return Ok(anchor.u.clone());
+        }
+        let search = Search { system: &self.system, scales: &anchor.scales, given };
+        let predicted = search.moved(&anchor.u, &self.prediction(anchor, given), 1.0);
+        let direct = search.from(&predicted);
+        if let Ok(root) = &direct {
+            let way = search.distance(&predicted, &anchor.u);
+            let near = search.distance(&root.u, &predicted) <= OFF * way + SLACK;
+            if near && root.sign == anchor.sign && root.iterations <= STEPS {
+                return Ok(root.u.clone());
+            }
+        }
+        match (self.follow(anchor, given), direct) {
+            (Ok(u), _) => Ok(u),
+            (Err(followed), Err(stuck)) => Err(self.failure(set, &search, stuck, None, Some(followed))),
+            (Err(followed), Ok(root)) => {
+                let off = |j: usize| ((root.u[j] - predicted[j]) / anchor.scales.unknowns[j]).abs();
+                let worst = (0..root.u.len()).max_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0);
+                Err(AssemblyFailure::OtherBranch {
+                    unknown: self.system.unknowns[worst].name().to_owned(),
+                    nominal: anchor.u[worst],
+                    found: root.u[worst],
+                    followed,
+                })
+            }
+        }
+    }
+
+    /// How the unknowns move from the nominal state to a point, to first order, in scales.
+    fn prediction(&self, anchor: &Anchor, given: &[f64]) -> Vec<f64> {
+        let change =
+            |(k, &index): (usize, &usize), j: usize| anchor.slopes[(j, k)] * (given[index] - anchor.given[index]);
+        (0..self.len())
+            .map(|j| {
+                let sum: f64 = self.system.uses.iter().enumerate().map(|use_| change(use_, j)).sum();
+                sum / anchor.scales.unknowns[j]
+            })
+            .collect()
+    }
+
+    /// Follows the state along the straight way from the nominal dimensions to a point; or how far that went.
+    fn follow(&self, anchor: &Anchor, given: &[f64]) -> Result<Vec<f64>, f64> {
+        let system = &self.system;
+        let at = |part: f64| -> Vec<f64> {
+            let between = |(&from, &to): (&f64, &f64)| if part == 1.0 { to } else { from + part * (to - from) };
+            anchor.given.iter().zip(given).map(between).collect()
+        };
+        let (mut done, mut step, mut u) = (0.0, 0.25f64, anchor.u.clone());
+        for _ in 0..PARTS {
+            let here = at(done);
+            let search = Search { system, scales: &anchor.scales, given: &here };
+            let Some(linear) = search.linear(&u) else { return Err(done) };
+            let by = system.derivatives(&here, &u, &system.uses);
+            let right: Vec<f64> = (0..system.len())
+                .map(|i| {
+                    let terms = system.uses.iter().enumerate().map(|(k, &index)| {
+                        let rate = by[(i, k)] * (given[index] - anchor.given[index]);
+                        if rate.is_finite() { rate } else { 0.0 }
+                    });
+                    -terms.sum::<f64>() / anchor.scales.equations[i]
+                })
+                .collect();
+            let rate = linear.solve(&right);
+            loop {
+                let part = step.min(1.0 - done);
+                let next = if part < step || done + part == 1.0 { 1.0 } else { done + part };
+                let there = at(next);
+                let search = Search { system, scales: &anchor.scales, given: &there };
+                let predicted = search.moved(&u, &rate, next - done);
+                let way = search.distance(&predicted, &u);
+                if let Ok(Root { u: found, sign, .. }) = search.from(&predicted) {
+                    let off = search.distance(&found, &predicted);
+                    if sign == anchor.sign && off <= FOLLOWED * way + SLACK {
+                        if off <= EASY * way + SLACK {
+                            step *= 2.0;
+                        }
+                        (u, done) = (found, next);
+                        if done == 1.0 {
+                            return Ok(u);
+                        }
+                        break;
+                    }
+                }
+                step *= 0.5;
+                if step < SHORTEST {
+                    return Err(done);
+                }
+            }
+        }
+        Err(done)
+    }
+
+    /// What a search that got stuck says; `begun` are the equations at the start values of the nominal state.
+    fn failure(
+        &self,
+        set: &FormulaSet,
+        search: &Search<'_>,
+        stuck: Stuck,
+        begun: Option<&[f64]>,
+        followed: Option<f64>,
+    ) -> AssemblyFailure {
+        let system = &self.system;
+        if let Some(failure) = system.explain(set, search.given, &stuck.u) {
+            return failure.into();
+        }
+        let at = system.named(&stuck.u);
+        let nominal = followed.is_none();
+        let bound = system.unknowns.iter().zip(&stuck.u).find(|(unknown, value)| unknown.bounds().contains(value));
+        if stuck.singular && bound.is_none() {
+            let condition = search.linear(&stuck.u).map(|linear| linear.condition());
+            let (unknown, worst) = condition.map_or((0, 0), |condition| (condition.unknown, condition.equation));
+            return AssemblyFailure::Singular {
+                nominal,
+                unknown: system.unknowns[unknown].name().to_owned(),
+                worst: system.equations[worst].clone(),
+                residual: stuck.values[worst],
+                at,
+                followed,
+            };
+        }
+        let worst = search.worst(&stuck.values);
+        AssemblyFailure::Open {
+            nominal,
+            worst: system.equations[worst].clone(),
+            residual: stuck.values[worst],
+            start: begun.map(|begun| begun[worst]),
+            at,
+            bound: bound.map(|(unknown, &value)| (unknown.name().to_owned(), value)),
+            followed,
+        }
+    }
+}
+
+impl Anchor {
+    /// The unknown that is held least and the condition number, where the nominal position is nearly singular.
+    pub(in crate::assembly) fn nearly_singular(&self, assembler: &Assembler) -> Option<(String, f64)> {
+        let unknown = || assembler.system.unknowns[self.weakest].name().to_owned();
+        (self.condition > NEARLY_SINGULAR).then(|| (unknown(), self.condition))
+    }
+}

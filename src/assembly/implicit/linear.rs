@@ -1,0 +1,85 @@
+//! Small square systems: solution, sign of the determinant, condition.
+
+use faer::linalg::solvers::{PartialPivLu, Solve};
+use faer::prelude::*;
+
+/// A factorised Jacobian, scaled so that its entries are of the order of 1.
+pub(super) struct Linear {
+    lu: PartialPivLu<f64>,
+    matrix: Mat<f64>,
+}
+
+/// Directions that are held less than this part of the best held one are left out of a step.
+const LEAST: f64 = 1e-8;
+
+/// How well a matrix determines a solution.
+pub(super) struct Condition {
+    /// Largest by smallest singular value.
+    pub(super) number: f64,
+    /// The unknown that is determined least.
+    pub(super) unknown: usize,
+    /// The equation that should determine it.
+    pub(super) equation: usize,
+}
+
+impl Linear {
+    /// None when an entry is not finite.
+    pub(super) fn new(matrix: Mat<f64>) -> Option<Self> {
+        let finite = (0..matrix.nrows()).all(|i| (0..matrix.ncols()).all(|j| matrix[(i, j)].is_finite()));
+        finite.then(|| Self { lu: matrix.partial_piv_lu(), matrix })
+    }
+
+    /// The solution of `J t = b`; where `J` is singular, the least that helps.
+    pub(super) fn solve(&self, b: &[f64]) -> Vec<f64> {
+        let right = Mat::from_fn(b.len(), 1, |i, _| b[i]);
+        let exact = self.lu.solve(&right);
+        let exact: Vec<f64> = (0..b.len()).map(|i| exact[(i, 0)]).collect();
+        if exact.iter().all(|t| t.is_finite()) { exact } else { self.least(b) }
+    }
+
+    /// The least step that meets `b` as well as the directions that are held can.
+    pub(super) fn least(&self, b: &[f64]) -> Vec<f64> {
+        let Ok(svd) = self.matrix.svd() else { return vec![0.0; b.len()] };
+        let (u, s, v) = (svd.U(), svd.S().column_vector(), svd.V());
+        let mut t = vec![0.0; b.len()];
+        for k in (0..b.len()).filter(|&k| s[k] > LEAST * s[0]) {
+            let along: f64 = (0..b.len()).map(|i| u[(i, k)] * b[i]).sum::<f64>() / s[k];
+            t.iter_mut().enumerate().for_each(|(j, t)| *t += along * v[(j, k)]);
+        }
+        t
+    }
+
+    /// The sign of the determinant: it changes where a branch of solutions ends.
+    pub(super) fn sign(&self) -> f64 {
+        let (upper, (forward, _)) = (self.lu.U(), self.lu.P().arrays());
+        let mut sign: f64 = (0..forward.len()).map(|i| upper[(i, i)].signum()).product();
+        let mut seen = vec![false; forward.len()];
+        for start in 0..forward.len() {
+            let (mut at, mut length) = (start, 0);
+            while !std::mem::replace(&mut seen[at], true) {
+                at = forward[at];
+                length += 1;
+            }
+            if length > 0 && length % 2 == 0 {
+                sign = -sign;
+            }
+        }
+        sign
+    }
+
+    pub(super) fn condition(&self) -> Condition {
+        let n = self.matrix.nrows();
+        let Ok(svd) = self.matrix.svd() else {
+            return Condition { number: f64::INFINITY, unknown: 0, equation: 0 };
+        };
+        let largest = |column: &dyn Fn(usize) -> f64| {
+            (0..n).max_by(|&a, &b| column(a).abs().total_cmp(&column(b).abs())).unwrap_or(0)
+        };
+        let s = svd.S().column_vector();
+        Condition {
+            number: s[0] / s[n - 1],
+            unknown: largest(&|j| svd.V()[(j, n - 1)]),
+            equation: largest(&|i| svd.U()[(i, n - 1)]),
+        }
+    }
+}

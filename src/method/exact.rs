@@ -1,0 +1,116 @@
+//! Exact derivatives in the place of differences.
+
+use super::{DerivativeSource, MethodError, Order};
+use crate::assembly::{Derivatives, Directions};
+use crate::plan::{DifferencePlan, Mixed};
+use crate::problem::Problem;
+use crate::surrogate::Univariate;
+
+/// One characteristic's derivatives at the means, as the assembly function knows them; None where there is none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExactDerivatives {
+    /// By every dimension of the problem, in order; None too for those that were not asked for.
+    pub first: Vec<Option<f64>>,
+    /// Twice by every dimension.
+    pub second: Vec<Option<f64>>,
+    /// By both dimensions of every pair examined.
+    pub mixed: Vec<Option<f64>>,
+}
+
+impl ExactDerivatives {
+    /// Of every characteristic; None for those of which the function does not know them.
+    pub(super) fn of(problem: &Problem, plan: &DifferencePlan) -> Vec<Option<Self>> {
+        let (inputs, point) = (plan.moved(), plan.centre());
+        let directions = Directions { point: &point, inputs: &inputs, pairs: &[] };
+        let known = |derivatives: Derivatives| {
+            let spread = |values: &[Option<f64>]| {
+                let mut spread = vec![None; point.len()];
+                inputs.iter().zip(values).for_each(|(&d, &value)| spread[d] = value);
+                spread
+            };
+            let (first, second) = (spread(&derivatives.first), spread(&derivatives.second));
+            Self { first, second, mixed: Vec::new() }
+        };
+        let derivatives = problem.function().derivatives(problem.outputs(), &directions);
+        derivatives.into_iter().map(|derivatives| derivatives.map(known)).collect()
+    }
+
+    /// Adds the mixed ones of these pairs of positions.
+    pub(super) fn add_pairs(
+        all: &mut [Option<Self>],
+        problem: &Problem,
+        plan: &DifferencePlan,
+        pairs: &[(usize, usize)],
+    ) {
+        let dimensions: Vec<(usize, usize)> =
+            pairs.iter().map(|&(j, k)| (plan.varying()[j], plan.varying()[k])).collect();
+        let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &dimensions };
+        let derivatives = problem.function().derivatives(problem.outputs(), &directions);
+        for (exact, derivatives) in all.iter_mut().zip(derivatives) {
+            if let (Some(exact), Some(derivatives)) = (exact, derivatives) {
+                exact.mixed = derivatives.mixed;
+            }
+        }
+    }
+
+    /// One dimension's own part, in sigmas: a parabola, a straight line where the curvature does not exist.
+    pub(super) fn part(&self, plan: &DifferencePlan, dimension: usize) -> Option<Univariate> {
+        let scale = plan.axis(dimension).scale;
+        let slope = scale * self.first[dimension]?;
+        Some(match self.second[dimension] {
+            Some(second) => Univariate::of_coefficients(&[slope, 0.5 * scale * scale * second]),
+            None => Univariate::of_coefficients(&[slope]),
+        })
+    }
+
+    /// The mixed derivatives in sigmas.
+    pub(super) fn mixed(&self, plan: &DifferencePlan, pairs: &[(usize, usize)]) -> Vec<Option<Mixed>> {
+        let in_sigmas = |(&(j, k), value): (&(usize, usize), &Option<f64>)| {
+            let scale = |position: usize| plan.axis(plan.varying()[position]).scale;
+            value.map(|value| Mixed { value: scale(j) * scale(k) * value, complete: true })
+        };
+        pairs.iter().zip(&self.mixed).map(in_sigmas).collect()
+    }
+
+    /// Why this characteristic's moments cannot be had from exact derivatives.
+    pub(super) fn lacking(
+        &self,
+        problem: &Problem,
+        plan: &DifferencePlan,
+        c: usize,
+        order: Order,
+        pairs: &[(usize, usize)],
+    ) -> Option<MethodError> {
+        let name = |d: usize| problem.dimensions()[d].name().to_owned();
+        let none = |dimensions: Vec<String>| MethodError::NoDerivative {
+            characteristic: problem.characteristics()[c].name().to_owned(),
+            dimensions,
+        };
+        let lacks = |d: usize| self.first[d].is_none() || order == Order::Second && self.second[d].is_none();
+        if let Some(&d) = plan.varying().iter().find(|&&d| lacks(d)) {
+            return Some(none(vec![name(d)]));
+        }
+        let pair = pairs.iter().zip(&self.mixed).find(|(_, mixed)| mixed.is_none()).map(|(pair, _)| pair);
+        pair.map(|&(j, k)| none(vec![name(plan.varying()[j]), name(plan.varying()[k])]))
+    }
+}
+
+/// Whether every characteristic's derivatives are known to the function at all, before anything is evaluated.
+pub(super) fn known(problem: &Problem, plan: &DifferencePlan) -> Result<(), MethodError> {
+    let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &[] };
+    let derivatives = problem.function().derivatives(problem.outputs(), &directions);
+    match derivatives.iter().position(Option::is_none) {
+        None => Ok(()),
+        Some(c) => {
+            Err(MethodError::DerivativesUnknown { characteristic: problem.characteristics()[c].name().to_owned() })
+        }
+    }
+}
+
+/// Whether an option fits the source of the derivatives: without differences there are no steps.
+pub(super) fn fits(source: Option<DerivativeSource>, option: &'static str, given: bool) -> Result<(), MethodError> {
+    if source == Some(DerivativeSource::Exact) && given {
+        return Err(MethodError::NoDifferences { option });
+    }
+    Ok(())
+}
