@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::assembly::formula::FormulaFault;
 use crate::characteristic::LimitsError;
 use crate::dimension::DimensionFault;
+use crate::fits::FitError;
 use crate::method::MethodError;
 use crate::problem::ProblemError;
 
@@ -175,6 +176,9 @@ pub enum StudyFault {
     /// The dimension is impossible.
     #[error(transparent)]
     Dimension(#[from] DimensionFault),
+    /// There is no such fit.
+    #[error(transparent)]
+    Fit(#[from] FitError),
     /// The limits are impossible.
     #[error(transparent)]
     Limits(#[from] LimitsError),
@@ -268,6 +272,7 @@ impl StudyFault {
             Self::Dimension(DimensionFault::Unresolvable { .. }) => {
                 Some("measure from a nearer datum, or leave the tolerance out".into())
             }
+            Self::Fit(error) => error.help(),
             Self::Limits(LimitsError::Swapped { .. }) => Some("exchange them".into()),
             Self::Formula(fault) => fault.help(),
             Self::ReservedName { .. } => Some("choose another name".into()),

@@ -23,7 +23,7 @@ const LAYERS: &[&[&str]] = &[
     &["assembly"],
     &["warning"],
     &["dimension", "characteristic"],
-    &["distribution"],
+    &["distribution", "fits"],
     &["names"],
 ];
 

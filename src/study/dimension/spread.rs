@@ -174,7 +174,7 @@ fn sigmas(entry: &DimensionEntry) -> Result<Option<PerBand>, Fault> {
 
 /// A dimension without band and sigma is fixed, unless something in it speaks of variation.
 fn nothing_to_spread(entry: &DimensionEntry) -> Result<Option<Arc<dyn Distribution>>, Fault> {
-    let flat = entry.tolerance.is_some() || entry.limits.is_some();
+    let flat = entry.tolerance.is_some() || entry.limits.is_some() || entry.position.is_some();
     let speaks: [(&'static str, Option<Range<usize>>); 4] = [
         ("distribution", entry.distribution.as_ref().map(Spanned::span)),
         ("shift", entry.shift.as_ref().map(Spanned::span)),
