@@ -5,6 +5,7 @@
 mod analyze;
 mod args;
 mod check;
+mod csv;
 mod failure;
 mod interrupt;
 mod journal;

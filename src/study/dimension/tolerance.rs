@@ -68,9 +68,7 @@ fn deviations(tolerance: &Spanned<ToleranceEntry>, nominal: f64) -> Result<[f64;
 /// ISO 286 counts in millimetres, and nothing here converts units.
 fn fit(class: &Spanned<String>, unit: Option<&str>, nominal: f64) -> Result<[f64; 2], Fault> {
     match unit {
-        Some("mm") => {
-            fits::deviations(nominal, class.get_ref()).map_err(|error| fault(class.span(), "fit", error))
-        }
+        Some("mm") => fits::deviations(nominal, class.get_ref()).map_err(|error| fault(class.span(), "fit", error)),
         Some(unit) => {
             let to = format!("a dimension in `{unit}`");
             let instead = "fits of ISO 286 are in millimetres: write the tolerance as numbers, or everything in mm";
