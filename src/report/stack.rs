@@ -19,6 +19,8 @@ use crate::method::Method;
 /// A slope this near to 1 or -1 is a direction.
 const DIRECTION: f64 = 1e-9;
 const SIGMAS: f64 = 3.0;
+/// A part of a half width that rounding may make.
+const ROUNDING: f64 = 1e-9;
 /// The longest line of a note.
 const LINE: usize = 96;
 const UNKNOWN: &str = "?";
@@ -163,9 +165,11 @@ impl Stack {
         }
     }
 
-    /// Whether the interval of a total lies within the limits; None where it or every limit is unknown.
+    /// Whether the interval of a total lies within the limits, and reaches them at most; None where it or every limit is unknown.
     pub fn keeps(&self, total: &StackTotal) -> Option<bool> {
-        let [from, to] = total.interval()?;
+        // A stack that just reaches a limit keeps it: what rounding adds is no excess.
+        let slack = ROUNDING * total.half_width? + 8.0 * f64::EPSILON * total.middle?.abs();
+        let [from, to] = total.interval().map(|[from, to]| [from + slack, to - slack])?;
         match self.limits {
             [None, None] => None,
             [lower, upper] => Some(lower.is_none_or(|lower| from >= lower) && upper.is_none_or(|upper| to <= upper)),
@@ -214,7 +218,7 @@ impl StackRow {
 
 /// Whether a dimension belongs into the table: it varies and is not known to do nothing, or is known to do something.
 fn matters(row: &SensitivityReport, dimension: &DimensionReport) -> bool {
-    let idle = row.first == Some(0.0) && row.curvature_share.unwrap_or(0.0) == 0.0;
+    let idle = row.first == Some(0.0) && row.second.unwrap_or(0.0) == 0.0;
     !idle && (dimension.sigma > 0.0 || row.first.is_some())
 }
 
@@ -358,7 +362,9 @@ pub fn stack_markdown(stacks: &[Stack]) -> String {
         if index > 0 {
             text.push('\n');
         }
-        text += &format!("**{}**\n\n", escaped(&heading(stack)));
+        let unit = stack.unit.as_deref().map(|unit| format!(" ({})", escaped(&clean(unit)))).unwrap_or_default();
+        let name = escaped(&clean(&stack.characteristic));
+        text += &format!("**Stack of {name}**{unit}{}\n\n", limits(stack));
         text += "| dimension | direction | nominal | tolerance | unit | contribution | share % |\n|---|--:|--:|---|---|--:|--:|\n";
         for row in &stack.rows {
             text += &line(&cells(stack, row, clean(&row.dimension.name)));
@@ -376,13 +382,16 @@ pub fn stack_markdown(stacks: &[Stack]) -> String {
 
 fn heading(stack: &Stack) -> String {
     let unit = stack.unit.as_deref().map(|unit| format!(" [{}]", clean(unit))).unwrap_or_default();
-    let limits = match stack.limits {
+    format!("stack of {}{unit}{}", clean(&stack.characteristic), limits(stack))
+}
+
+fn limits(stack: &Stack) -> String {
+    match stack.limits {
         [None, None] => String::new(),
         [Some(lower), None] => format!(", above {}", plain(lower)),
         [None, Some(upper)] => format!(", below {}", plain(upper)),
         [Some(lower), Some(upper)] => format!(", {} .. {}", plain(lower), plain(upper)),
-    };
-    format!("stack of {}{unit}{limits}", clean(&stack.characteristic))
+    }
 }
 
 /// Lines of words that fit a page.

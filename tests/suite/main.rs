@@ -16,5 +16,7 @@ mod plans;
 mod probe;
 mod process;
 mod published;
+mod stack;
 mod studies;
 mod support;
+mod tolerances;

@@ -4,12 +4,12 @@ use sensitol::{Dimension, Method, Study, StudyError, analyze};
 
 use super::support::{close, relative, repository};
 
-fn parse(text: &str) -> Result<Study, StudyError> {
+pub fn parse(text: &str) -> Result<Study, StudyError> {
     Study::from_toml(text, "study.toml")
 }
 
 /// A study of one dimension `a`, written as this line.
-fn dimension(line: &str) -> Result<Dimension, StudyError> {
+pub fn dimension(line: &str) -> Result<Dimension, StudyError> {
     let text = format!("[dimensions]\na = {line}\n[characteristics]\ny = {{ formula = \"a\" }}\n");
     parse(&text).map(|study| study.problem.dimensions()[0].clone())
 }
@@ -23,7 +23,7 @@ fn fault(text: &str) -> String {
     format!("{place} [{spanned}] {}: {}{help}", error.key, error.fault)
 }
 
-fn faults(texts: &[&str]) -> String {
+pub fn faults(texts: &[&str]) -> String {
     texts.iter().map(|text| fault(text)).collect::<Vec<_>>().join("\n")
 }
 
