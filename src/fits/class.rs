@@ -27,15 +27,13 @@ impl Class {
     pub(super) fn parse(text: &str) -> Result<Self, FitError> {
         let digits = text.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(text.len());
         let (letters, number) = text.split_at(digits);
-        let of_case = |c: fn(&char) -> bool| !letters.is_empty() && letters.chars().all(|letter| c(&letter));
         if number.is_empty() || letters.is_empty() || !number.chars().all(|c| c.is_ascii_digit()) {
             return Err(FitError::NoClass { found: text.to_owned() });
         }
-        let side = if of_case(char::is_ascii_uppercase) { Side::Hole } else { Side::Shaft };
-        // `Js7` is neither: it is said which two it may be.
-        let known = of_case(char::is_ascii_uppercase) || of_case(char::is_ascii_lowercase);
-        let letter = Letter::ALL.into_iter().find(|letter| known && letter.name(side) == letters);
-        let letter = letter.ok_or_else(|| FitError::unknown_letter(letters))?;
+        // `Js7` is neither a hole nor a shaft.
+        let all = [Side::Hole, Side::Shaft].into_iter().flat_map(|side| Letter::ALL.map(|letter| (letter, side)));
+        let known = all.into_iter().find(|(letter, side)| letter.name(*side) == letters);
+        let (letter, side) = known.ok_or_else(|| FitError::unknown_letter(letters))?;
         let grade = Grade::parse(number).ok_or_else(|| FitError::UnknownGrade { found: number.to_owned() })?;
         Ok(Self { letter, side, grade })
     }

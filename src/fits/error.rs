@@ -41,6 +41,8 @@ pub enum FitError {
     SizeOfLetter {
         /// The tolerance class.
         class: String,
+        /// Its letters.
+        letter: &'static str,
         /// The nominal size in mm.
         nominal: f64,
         /// The sizes at which there is one begin above this, in mm,
@@ -69,7 +71,7 @@ impl FitError {
         let shaft = found.starts_with(|c: char| c.is_ascii_lowercase());
         let side = if shaft { Side::Shaft } else { Side::Hole };
         let known = Letter::ALL.map(|letter| letter.name(side)).to_vec();
-        // `Js` is `JS`: letters alone, their case apart, are a likeness that edits do not see.
+        // `Js` is `JS` or `js`, and no other that an edit may turn it into.
         let same = known.iter().copied().find(|name| name.eq_ignore_ascii_case(found));
         let nearest = same.or_else(|| nearest(found, known.iter().copied())).map(str::to_owned);
         Self::UnknownLetter { found: found.to_owned(), nearest, known }
@@ -85,8 +87,7 @@ impl FitError {
             }
             Self::UnknownGrade { .. } => Some("grades are 01, 0 and 1 to 18".into()),
             Self::Size { .. } => None,
-            Self::SizeOfLetter { class, above, to, .. } => {
-                let letter = class.trim_end_matches(|c: char| c.is_ascii_digit());
+            Self::SizeOfLetter { letter, above, to, .. } => {
                 Some(format!("{letter} is there for sizes above {above} and up to {to} mm"))
             }
             Self::GradeOfLetter { letter, first, last, .. } => {

@@ -51,6 +51,7 @@ pub fn deviations(nominal_mm: f64, class: &str) -> Result<[f64; 2], FitError> {
     if !(nominal_mm > sizes[0] && nominal_mm <= sizes[1]) {
         return Err(FitError::SizeOfLetter {
             class: class.to_owned(),
+            letter: letter.name(side),
             nominal: nominal_mm,
             above: sizes[0],
             to: sizes[1],

@@ -6,8 +6,18 @@ use super::Report;
 use super::distribution::DistributionReport;
 use super::stack::Stack;
 
-/// Longer names make no better file names.
-const LONGEST: usize = 80;
+/// The tables but for the stacks, by the names of their files.
+const TABLES: [(&str, fn(&Report) -> String); 6] = [
+    ("dimensions.csv", dimensions),
+    ("characteristics.csv", characteristics),
+    ("sensitivities.csv", sensitivities),
+    ("interactions.csv", interactions),
+    ("quantiles.csv", quantiles),
+    ("warnings.csv", warnings),
+];
+
+/// Bytes of a characteristic's name in a file name, of the 255 that a file name has.
+const LONGEST: usize = 100;
 
 /// One file: its name and its text.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,26 +31,15 @@ pub struct CsvFile {
 /// The tables of a report: `dimensions.csv`, `characteristics.csv`, `sensitivities.csv`, `interactions.csv`, `quantiles.csv`,
 /// `warnings.csv`, and `stack-NAME.csv` for every characteristic.
 pub fn csv_files(report: &Report) -> Vec<CsvFile> {
-    let file = |name: &str, text: String| CsvFile { name: name.to_owned(), text };
-    let mut files = vec![
-        file("dimensions.csv", dimensions(report)),
-        file("characteristics.csv", characteristics(report)),
-        file("sensitivities.csv", sensitivities(report)),
-        file("interactions.csv", interactions(report)),
-        file("quantiles.csv", quantiles(report)),
-        file("warnings.csv", warnings(report)),
-    ];
-    let names = report.characteristics.iter().map(|one| one.name.as_str());
-    for (name, stack) in stack_file_names(names).into_iter().zip(report.stacks()) {
-        files.push(CsvFile { name, text: stack_csv(std::slice::from_ref(&stack)) });
-    }
-    files
+    let names = csv_file_names(report.characteristics.iter().map(|one| one.name.as_str()));
+    let tables = TABLES.iter().map(|(_, table)| table(report));
+    let stacks = report.stacks().into_iter().map(|stack| stack_csv(&[stack]));
+    names.into_iter().zip(tables.chain(stacks)).map(|(name, text)| CsvFile { name, text }).collect()
 }
 
 /// The names of the files that [`csv_files`] makes of a report on these characteristics.
 pub fn csv_file_names<'n>(characteristics: impl IntoIterator<Item = &'n str>) -> Vec<String> {
-    let all = ["dimensions", "characteristics", "sensitivities", "interactions", "quantiles", "warnings"];
-    all.iter().map(|name| format!("{name}.csv")).chain(stack_file_names(characteristics)).collect()
+    TABLES.iter().map(|(name, _)| (*name).to_owned()).chain(stack_file_names(characteristics)).collect()
 }
 
 /// `stack-NAME.csv`: letters, digits, `-`, `_` and `.` stay, everything else is `_`; names that would be the same where case does
@@ -49,7 +48,8 @@ fn stack_file_names<'n>(characteristics: impl IntoIterator<Item = &'n str>) -> V
     let mut taken: Vec<String> = Vec::new();
     let safe = |c: char| if c.is_alphanumeric() || ['-', '_', '.'].contains(&c) { c } else { '_' };
     for name in characteristics {
-        let stem: String = name.chars().take(LONGEST).map(safe).collect();
+        let kept = name.char_indices().take_while(|(at, c)| at + c.len_utf8() <= LONGEST);
+        let stem: String = kept.map(|(_, c)| safe(c)).collect();
         let numbered = |number: usize| match number {
             1 => format!("stack-{stem}.csv"),
             number => format!("stack-{stem}-{number}.csv"),
