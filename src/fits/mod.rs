@@ -90,7 +90,7 @@ fn limits(letter: Letter, side: Side, grade: Grade, nominal: f64) -> [f64; 2] {
     let from_lower = |lower: i32| [lower, lower + it];
     let from_upper = |upper: i32| [upper - it, upper];
     let tenths = match (letter, side) {
-        // Half a tenth of a micrometre, where IT is 0.3 um: the one value that is not a whole number of them.
+        // Not in tenths: half of an odd number of them is none.
         (Letter::Js, _) => return [-f64::from(it) / 20_000.0, f64::from(it) / 20_000.0],
         (Letter::J, Side::Hole) => from_upper(tables::hole_j(grade, nominal)),
         (Letter::J, Side::Shaft) => from_lower(-tables::shaft_j(grade, nominal)),

@@ -6,8 +6,11 @@ use super::Report;
 use super::distribution::DistributionReport;
 use super::stack::Stack;
 
-/// The tables but for the stacks, by the names of their files.
-const TABLES: [(&str, fn(&Report) -> String); 6] = [
+/// The name of a file, and what makes its table.
+type Writer = (&'static str, fn(&Report) -> String);
+
+/// The tables but for the stacks.
+const TABLES: [Writer; 6] = [
     ("dimensions.csv", dimensions),
     ("characteristics.csv", characteristics),
     ("sensitivities.csv", sensitivities),

@@ -288,7 +288,7 @@ fn shape(one: &CharacteristicReport, rows: &[StackRow]) -> Option<StackNote> {
     if not_examined {
         return Some(StackNote::NotExamined);
     }
-    match one.possible_interactions - one.interactions.len() {
+    match one.possible_interactions.saturating_sub(one.interactions.len()) {
         0 => None,
         count => Some(StackNote::InteractionsNotExamined { count }),
     }
@@ -300,7 +300,7 @@ impl fmt::Display for StackNote {
         match self {
             Self::Curved { share, mean_shift } => write!(
                 f,
-                "not linear: curvature and interactions have {} % of the variance and move the mean by {}; this is the stack of its \
+                "not linear: curvature and the interactions examined have {} % of the variance and move the mean by {}; this is the stack of its \
                  tangent at the means",
                 percent(*share),
                 significant(*mean_shift, 3)
