@@ -26,6 +26,7 @@ pub struct Dimension {
     tolerance: Option<[f64; 2]>,
     distribution: Option<Arc<dyn Distribution>>,
     step: Option<f64>,
+    zone: Option<Arc<str>>,
 }
 
 /// Why a dimension cannot be.
@@ -116,7 +117,7 @@ impl Dimension {
         distribution: Result<Option<Arc<dyn Distribution>>, DimensionFault>,
     ) -> Result<Self, DimensionError> {
         match check(nominal, tolerance, distribution) {
-            Ok(distribution) => Ok(Self { name, unit: None, nominal, tolerance, distribution, step: None }),
+            Ok(distribution) => Ok(Self { name, unit: None, nominal, tolerance, distribution, step: None, zone: None }),
             Err(fault) => Err(DimensionError { name, fault }),
         }
     }
@@ -165,6 +166,22 @@ impl Dimension {
         })
     }
 
+    /// As one coordinate of a point that a zone of this name keeps: with all other coordinates of the zone, its deviations from
+    /// the bands' middles lie within one circle, or a sphere, rather than each within its own band.
+    ///
+    /// ```
+    /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
+    /// let [x, y] = ["x", "y"].map(|name| Dimension::normal(name, 0.0, 0.1).unwrap().within_zone("hole"));
+    /// let sum = Problem::new([x, y], Closure::scalar("sum", |at| 3.0 * at[0] + 4.0 * at[1]))?;
+    /// let [lower, upper] = analyze(&sum, &Method::SecondOrder.into())?.characteristics[0].worst_case.unwrap();
+    /// assert!((lower + 0.5).abs() < 1e-12 && (upper - 0.5).abs() < 1e-12); // 0.1 hypot(3, 4), not 0.1 (3 + 4)
+    /// # Ok::<(), sensitol::Error>(())
+    /// ```
+    pub fn within_zone(mut self, zone: impl Into<Arc<str>>) -> Self {
+        self.zone = Some(zone.into());
+        self
+    }
+
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
@@ -193,6 +210,11 @@ impl Dimension {
     /// Its step in sigmas, where one was given.
     pub fn step(&self) -> Option<f64> {
         self.step
+    }
+
+    /// The circular zone that it shares with other coordinates, where there is one.
+    pub fn zone(&self) -> Option<&str> {
+        self.zone.as_deref()
     }
 
     /// Mean of its distribution: the nominal when it is fixed, the band's middle for an asymmetric tolerance.

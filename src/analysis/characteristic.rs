@@ -1,5 +1,6 @@
 //! What is known of one characteristic.
 
+use super::linear::Linear;
 use crate::capability::{Capability, Law};
 use crate::characteristic::Characteristic;
 use crate::method::{Order, Outcome};
@@ -25,11 +26,19 @@ pub struct CharacteristicAnalysis {
     /// How the normal distribution with the same mean and sigma would.
     pub normal: Option<Capability>,
     /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
-    /// band that hurts.
+    /// band that hurts, and a point of a circular zone ([`Dimension::zone`](crate::Dimension::zone)) at its edge.
     pub worst_case: Option<[f64; 2]>,
+    /// The value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the RSS and of
+    /// the two inflations of it. The nominal where all bands are symmetric.
+    pub middle: Option<f64>,
     /// `sqrt(t'R t)` with `t` = slope x half band (three sigma where a dimension has no band) and the correlation `R`:
     /// without correlation the root of the sum of squares.
     pub rss: Option<f64>,
+    /// 1.5 times the RSS (Bender 1962, 1968).
+    pub inflated_rss: Option<f64>,
+    /// RSS with means that are off by half their half bands, 1.5 sigma of 3, all the wrong way:
+    /// `0.5 sum of |slope| x half band + 0.5 rss` (Greenwood and Chase 1987 with m = 0.5).
+    pub mean_shift_rss: Option<f64>,
     /// For every dimension of the problem, in order.
     pub sensitivities: Vec<Sensitivity>,
     /// The interactions examined, strongest first.
@@ -113,7 +122,8 @@ impl CharacteristicAnalysis {
             moments.map(|moments| Capability::of(law, moments.mean(), moments.sigma(), characteristic.limits()))
         };
         let normal = moments.and_then(|moments| capability(&Law::normal(&moments).ok()?));
-        let (worst_case, rss) = extremes(problem, plan.varying(), &sensitivities, fitted.nominal);
+        let linear = linear(problem, plan.varying(), &sensitivities);
+        let middle = fitted.nominal.zip(linear).map(|(nominal, linear)| nominal + linear.middle);
         Self {
             nominal: fitted.nominal,
             moments,
@@ -122,8 +132,13 @@ impl CharacteristicAnalysis {
             normal,
             law,
             characteristic,
-            worst_case,
-            rss,
+            worst_case: middle
+                .zip(linear)
+                .map(|(middle, linear)| [middle - linear.worst_case, middle + linear.worst_case]),
+            middle,
+            rss: linear.map(|linear| linear.rss),
+            inflated_rss: linear.map(|linear| linear.inflated_rss),
+            mean_shift_rss: linear.map(|linear| linear.mean_shift_rss),
             sensitivities,
             interactions,
             possible_interactions,
@@ -213,32 +228,8 @@ fn interactions(
     interactions
 }
 
-/// The linear worst case and the RSS; None where a slope is missing.
-fn extremes(
-    problem: &Problem,
-    varying: &[usize],
-    sensitivities: &[Sensitivity],
-    nominal: Option<f64>,
-) -> (Option<[f64; 2]>, Option<f64>) {
+/// What slopes and bands say; None where a slope is missing.
+fn linear(problem: &Problem, varying: &[usize], sensitivities: &[Sensitivity]) -> Option<Linear> {
     let slopes: Option<Vec<(f64, usize)>> = varying.iter().map(|&d| Some((sensitivities[d].first?, d))).collect();
-    let Some(slopes) = slopes else { return (None, None) };
-    let (mut down, mut up) = (0.0, 0.0);
-    for &(slope, d) in &slopes {
-        let dimension = &problem.dimensions()[d];
-        let [a, b] = dimension.reach().map(|deviation| slope * deviation);
-        down += a.min(b);
-        up += a.max(b);
-    }
-    (nominal.map(|nominal| [nominal + down, nominal + up]), Some(rss(problem, &slopes)))
-}
-
-fn rss(problem: &Problem, slopes: &[(f64, usize)]) -> f64 {
-    let reach = |&(slope, d): &(f64, usize)| slope * problem.dimensions()[d].half_band();
-    let alone = slopes.iter().map(reach).fold(0.0, f64::hypot);
-    let Some(correlation) = problem.correlation().filter(|_| alone > 0.0) else { return alone };
-    let member = |&&(_, d): &&(f64, usize)| correlation.members().binary_search(&d).is_ok();
-    let members: Vec<(f64, usize)> = slopes.iter().filter(member).map(|at| (reach(at) / alone, at.1)).collect();
-    let pairs = members.iter().enumerate().flat_map(|(i, a)| members[i + 1..].iter().map(move |b| (a, b)));
-    let together: f64 = pairs.map(|(a, b)| 2.0 * a.0 * b.0 * correlation.of(a.1, b.1)).sum();
-    alone * (1.0 + together).max(0.0).sqrt()
+    Some(Linear::of(problem, &slopes?))
 }

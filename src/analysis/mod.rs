@@ -1,6 +1,7 @@
 //! The main job: from a problem to moments, sensitivities, contributions and warnings.
 
 mod characteristic;
+mod linear;
 mod warnings;
 
 pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::args::AnalyzeArgs;
+use super::args::{AnalyzeArgs, StackArg};
+use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
 use super::interrupt;
 use super::output::{Destination, Look, json};
@@ -12,7 +13,7 @@ use super::progress::Bar;
 use super::study;
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::{Progress, Run, Table};
-use crate::report::{About, Report, text};
+use crate::report::{About, Report, stack_csv, stack_markdown, stack_text, text};
 use crate::study::{Externals, Study};
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
@@ -22,6 +23,7 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
         return Err(Failure::NothingToCheck);
     }
     let destination = Destination::open(&asked.output)?;
+    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &study.problem)).transpose()?;
     let begun = Instant::now();
     let analysis = analyze(&study, asked, begun, look)?;
     let about = About {
@@ -32,8 +34,15 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
         warnings: study.warnings.clone(),
     };
     let report = Report::of(&study.problem, &analysis, about);
-    let printed = if asked.output.json { json(&report) } else { text(&report, look.style()) };
+    let printed = match asked.stack {
+        None if asked.output.json => json(&report),
+        None => text(&report, look.style()),
+        Some(StackArg::Text) => stack_text(&report.stacks(), look.style()),
+        Some(StackArg::Csv) => stack_csv(&report.stacks()),
+        Some(StackArg::Markdown) => stack_markdown(&report.stacks()),
+    };
     let written = destination.write(&printed);
+    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&report)));
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }

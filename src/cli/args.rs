@@ -118,6 +118,14 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with = "journal")]
     pub(super) points: Option<PathBuf>,
 
+    /// Print the stack-up table of every characteristic instead of the report: text, csv or markdown
+    #[arg(long, value_name = "FORMAT", conflicts_with = "json", help_heading = OUTPUT)]
+    pub(super) stack: Option<StackArg>,
+
+    /// Write the tables of the report as CSV files into DIR, which is made where it is missing
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    pub(super) csv: Option<PathBuf>,
+
     /// Exit with 1 when a characteristic misses its target_yield, or its yield is unknown
     #[arg(long)]
     pub(super) check: bool,
@@ -422,6 +430,17 @@ pub(super) enum DerivativesArg {
     Exact,
     /// Differences, for the sensitivities too
     Difference,
+}
+
+/// How a stack-up table is written.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum StackArg {
+    /// For people
+    Text,
+    /// For spreadsheets, all characteristics in one table
+    Csv,
+    /// For documents
+    Markdown,
 }
 
 /// Which sensitivities are wanted, as values of an option.

@@ -65,6 +65,8 @@ pub(super) enum Failure {
     UnknownModel { name: String, help: String },
     #[error("{path} cannot be written: {error}", path = path.display())]
     Unwritable { path: PathBuf, error: std::io::Error },
+    #[error("{path} is a file, and --csv needs a folder", path = path.display())]
+    NoFolder { path: PathBuf },
     #[error("cannot write to standard output: {0}")]
     Stdout(std::io::Error),
     #[error("cannot start {threads} threads: {reason}")]

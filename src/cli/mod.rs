@@ -6,6 +6,7 @@ mod analyze;
 mod args;
 mod check;
 mod compare;
+mod csv;
 mod failure;
 mod interrupt;
 mod journal;

@@ -3,6 +3,7 @@
 mod compare;
 mod compare_svg;
 mod compare_text;
+mod csv;
 mod distribution;
 mod limits;
 pub(crate) mod number;
@@ -10,16 +11,19 @@ mod page;
 mod simulation;
 mod simulation_text;
 mod sketch;
+mod stack;
 mod text;
 
 pub use compare::{CompareReport, ComparedReport, ErrorReport, FiguresReport, MethodReport, NotRunReport};
 pub use compare_svg::compare_svg;
 pub use compare_text::{compare_csv, compare_text};
+pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
 pub use limits::law_text;
 pub use page::{Detail, Style};
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
 pub use simulation_text::simulation_text;
+pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_markdown, stack_text};
 pub use text::text;
 
 use serde::Serialize;
@@ -83,6 +87,8 @@ pub struct DimensionReport {
     pub nominal: f64,
     /// Lower and upper deviation from the nominal.
     pub tolerance: Option<[f64; 2]>,
+    /// The circular zone of which it is a coordinate.
+    pub zone: Option<String>,
     /// The kind of its distribution; null when it does not vary.
     pub distribution: Option<&'static str>,
     /// Its mean.
@@ -136,8 +142,14 @@ pub struct CharacteristicReport {
     pub error_estimate: Option<()>,
     /// Intervals that no assembly leaves.
     pub worst_case: WorstCaseReport,
-    /// Root of the sum of squares.
+    /// The value of a linear model with every dimension in the middle of its band.
+    pub middle: Option<f64>,
+    /// Root of the sum of squares, about the middle.
     pub rss: Option<f64>,
+    /// 1.5 times that (Bender).
+    pub inflated_rss: Option<f64>,
+    /// With every mean off by half its half band, 1.5 sigma of 3, all the wrong way.
+    pub mean_shift_rss: Option<f64>,
     /// Every dimension, in the study's order.
     pub sensitivities: Vec<SensitivityReport>,
     /// The interactions examined, strongest first.
@@ -313,6 +325,7 @@ impl DimensionReport {
             unit: dimension.unit().map(str::to_owned),
             nominal: dimension.nominal(),
             tolerance: dimension.tolerance(),
+            zone: dimension.zone().map(str::to_owned),
             distribution: dimension.distribution().map(|distribution| distribution.name()),
             mean: dimension.mean(),
             sigma: dimension.sigma(),
@@ -344,7 +357,10 @@ impl CharacteristicReport {
             }),
             error_estimate: None,
             worst_case: WorstCaseReport { linear: analysis.worst_case, extremes: None, proven: None },
+            middle: analysis.middle,
             rss: analysis.rss,
+            inflated_rss: analysis.inflated_rss,
+            mean_shift_rss: analysis.mean_shift_rss,
             sensitivities: (analysis.sensitivities.iter())
                 .map(|sensitivity| SensitivityReport {
                     dimension: sensitivity.dimension.clone(),

@@ -88,11 +88,12 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
     let shift = one.mean.and_then(|mean| Some(mean - one.nominal?));
     let mut table = Grid::new(["", "", "", ""], "<><<");
     for [name, value, other, text] in [
-        ["nominal", &number(one.nominal), "", ""],
-        ["mean", &number(one.mean), "mean shift", &number(shift)],
-        ["sigma", &number(one.sigma), "3 sigma", &interval(around(one.mean, one.sigma.map(|sigma| 3.0 * sigma)))],
-        ["skewness", &shape(one.skewness), "rss", &interval(around(one.nominal, one.rss))],
-        ["kurtosis", &shape(one.kurtosis), "worst case", &interval(one.worst_case.linear)],
+        ["nominal", &number(one.nominal), "mean shift", &number(shift)],
+        ["mean", &number(one.mean), "3 sigma", &interval(around(one.mean, one.sigma.map(|sigma| 3.0 * sigma)))],
+        ["sigma", &number(one.sigma), "rss", &interval(around(one.middle, one.rss))],
+        ["skewness", &shape(one.skewness), "inflated rss", &interval(around(one.middle, one.inflated_rss))],
+        ["kurtosis", &shape(one.kurtosis), "mean-shift rss", &interval(around(one.middle, one.mean_shift_rss))],
+        ["", "", "worst case", &interval(one.worst_case.linear)],
     ] {
         table.row([name, value, other, text].map(str::to_owned));
     }
@@ -197,7 +198,7 @@ fn rounded(shift: f64, sigma: f64) -> String {
     if text.parse() == Ok(0.0) { "0".to_owned() } else { text }
 }
 
-fn tolerance(dimension: &DimensionReport) -> String {
+pub(super) fn tolerance(dimension: &DimensionReport) -> String {
     match dimension.tolerance {
         Some([lower, upper]) if lower == -upper => format!("± {}", plain(upper)),
         Some([lower, upper]) => {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde_spanned::Spanned;
 
 use super::correlation::correlated;
-use super::dimension::dimension;
+use super::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::implicit::{Implicit, implicit, placed};
@@ -63,12 +63,13 @@ fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Fault> {
     let with_formula = file.characteristics.0.iter().filter(|(_, entry)| entry.get_ref().formula.is_some());
     let written = [file.formulas.names(), file.unknowns.names(), file.equations.names(), file.loops.names()];
     let formulas = written.iter().any(|names| !names.is_empty()) || with_formula.clone().next().is_some();
+    let dimensions = dimension::names(&file.dimensions);
     let mut taken: HashMap<&str, &'static str> = HashMap::new();
     if let Some(model) = model {
         taken.extend(model.outputs.iter().map(|output| (output.name, "an output of the model")));
     }
     let all = [
-        ("dimensions", "a dimension", file.dimensions.names()),
+        ("dimensions", "a dimension", dimensions.iter().collect()),
         ("constants", "a constant", file.constants.names()),
         ("formulas", "a formula", file.formulas.names()),
         ("unknowns", "an unknown", file.unknowns.names()),
@@ -92,20 +93,23 @@ fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Fault> {
 }
 
 fn dimensions(file: &StudyFile, model: Option<&Model>) -> Result<Vec<Dimension>, Fault> {
-    let build = |(name, entry): &(Spanned<String>, _)| {
-        let input = model.and_then(|model| model.inputs.iter().find(|input| input.name == name.get_ref()));
-        let dimension = dimension(name.get_ref(), entry, input.map(|input| input.nominal)).map_err(|found| {
+    let input = |name: &str| model.and_then(|model| model.inputs.iter().find(|input| input.name == name));
+    let with_unit = |dimension: Dimension| match (dimension.unit(), input(dimension.name())) {
+        (None, Some(input)) => dimension.with_unit(input.unit),
+        _ => dimension,
+    };
+    let mut dimensions = Vec::new();
+    for (name, entry) in &file.dimensions.0 {
+        let of_model = |name: &str| input(name).map(|input| input.nominal);
+        let of_line = dimension::dimensions(name, entry, &of_model).map_err(|found| {
             let below = if found.key.is_empty() { String::new() } else { format!(".{}", found.key) };
             // A fault of the line as a whole is shown at the dimension's name.
             let span = found.span.filter(|span| !span.is_empty()).unwrap_or_else(|| name.span());
             Fault { span: Some(span), key: format!("dimensions.{}{below}", name.get_ref()), fault: found.fault }
         })?;
-        Ok(match (dimension.unit(), input) {
-            (None, Some(input)) => dimension.with_unit(input.unit),
-            _ => dimension,
-        })
-    };
-    file.dimensions.0.iter().map(build).collect()
+        dimensions.extend(of_line.into_iter().map(with_unit));
+    }
+    Ok(dimensions)
 }
 
 /// A formula of the file: of `[formulas]` or of a characteristic.
@@ -163,7 +167,8 @@ pub(super) fn in_formula(source: &Source, text: Range<usize>, key: String, error
 /// Dimensions and constants are inputs of the model, or else a formula uses them.
 fn known_to_model(file: &StudyFile, model: Option<&Model>, used: &dyn Fn(&str) -> bool) -> Result<(), Fault> {
     let Some(model) = model else { return Ok(()) };
-    let names = (file.dimensions.names().into_iter().map(|name| ("dimensions", name)))
+    let dimensions = dimension::names(&file.dimensions);
+    let names = (dimensions.iter().map(|name| ("dimensions", name)))
         .chain(file.constants.names().into_iter().map(|name| ("constants", name)));
     for (section, name) in names {
         let text = name.get_ref();

@@ -8,6 +8,7 @@ use crate::assembly::implicit::ConditionsError;
 use crate::characteristic::LimitsError;
 use crate::correlation::Refusal;
 use crate::dimension::DimensionFault;
+use crate::fits::FitError;
 use crate::method::MethodError;
 use crate::problem::ProblemError;
 
@@ -177,6 +178,9 @@ pub enum StudyFault {
     /// The dimension is impossible.
     #[error(transparent)]
     Dimension(#[from] DimensionFault),
+    /// There is no such fit.
+    #[error(transparent)]
+    Fit(#[from] FitError),
     /// The limits are impossible.
     #[error(transparent)]
     Limits(#[from] LimitsError),
@@ -276,6 +280,7 @@ impl StudyFault {
             Self::Dimension(DimensionFault::Unresolvable { .. }) => {
                 Some("measure from a nearer datum, or leave the tolerance out".into())
             }
+            Self::Fit(error) => error.help(),
             Self::Limits(LimitsError::Swapped { .. }) => Some("exchange them".into()),
             Self::Conditions(ConditionsError::Unbalanced { .. }) => Some(
                 "as many equations as unknowns are needed; a loop counts for two, one along x and one along y".into(),

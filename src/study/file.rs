@@ -7,6 +7,8 @@ use serde::de::{MapAccess, SeqAccess, Visitor, value};
 use serde::{Deserialize, Deserializer};
 use serde_spanned::Spanned;
 
+use super::values::{NominalEntry, ToleranceEntry};
+
 /// A whole study file.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of sections")]
@@ -41,9 +43,11 @@ pub(super) struct Entries<T>(pub(super) Vec<(Spanned<String>, Spanned<T>)>);
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table such as { nominal = 10.0, tolerance = 0.3 }")]
 pub(super) struct DimensionEntry {
-    pub(super) nominal: Option<Spanned<f64>>,
+    pub(super) nominal: Option<Spanned<NominalEntry>>,
     pub(super) tolerance: Option<Spanned<ToleranceEntry>>,
     pub(super) limits: Option<Spanned<[f64; 2]>>,
+    pub(super) fit: Option<Spanned<String>>,
+    pub(super) position: Option<Spanned<f64>>,
     pub(super) unit: Option<String>,
     #[serde(default, deserialize_with = "distribution")]
     pub(super) distribution: Option<Spanned<DistributionEntry>>,
@@ -59,7 +63,10 @@ impl PartEntry {
     /// Its line, as if it were a dimension of its own.
     pub(super) fn as_dimension(&self) -> DimensionEntry {
         DimensionEntry {
-            nominal: self.nominal.clone(),
+            nominal: self
+                .nominal
+                .as_ref()
+                .map(|nominal| Spanned::new(nominal.span(), NominalEntry::One(*nominal.get_ref()))),
             tolerance: self.tolerance.clone(),
             limits: self.limits.clone(),
             distribution: self.distribution.clone(),
@@ -70,13 +77,6 @@ impl PartEntry {
             ..DimensionEntry::default()
         }
     }
-}
-
-/// `0.3` or `[-0.1, 0.3]`.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum ToleranceEntry {
-    Half(f64),
-    Deviations([f64; 2]),
 }
 
 /// `"uniform"` or `{ kind = "beta", alpha = 2, beta = 5 }`: the parameters of all kinds.
@@ -214,32 +214,6 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Entries<T> {
             }
         }
         deserializer.deserialize_map(Table(PhantomData))
-    }
-}
-
-impl<'de> Deserialize<'de> for ToleranceEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Tolerance;
-        impl<'de> Visitor<'de> for Tolerance {
-            type Value = ToleranceEntry;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a half band such as 0.3, or two deviations such as [-0.1, 0.3],")
-            }
-
-            fn visit_f64<E>(self, value: f64) -> Result<Self::Value, E> {
-                Ok(ToleranceEntry::Half(value))
-            }
-
-            fn visit_i64<E>(self, value: i64) -> Result<Self::Value, E> {
-                Ok(ToleranceEntry::Half(value as f64))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
-                <[f64; 2]>::deserialize(value::SeqAccessDeserializer::new(seq)).map(ToleranceEntry::Deviations)
-            }
-        }
-        deserializer.deserialize_any(Tolerance)
     }
 }
 

@@ -48,6 +48,7 @@ mod model;
 mod options;
 mod source;
 mod tree;
+mod values;
 
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};

@@ -25,7 +25,7 @@ const LAYERS: &[&[&str]] = &[
     &["warning"],
     &["correlation"],
     &["dimension", "characteristic"],
-    &["distribution"],
+    &["distribution", "fits"],
     &["pearson"],
     &["names"],
 ];

@@ -4,7 +4,7 @@ use sensitol::{Dimension, Method, Study, StudyError, analyze};
 
 use super::support::{close, relative, repository};
 
-fn parse(text: &str) -> Result<Study, StudyError> {
+pub fn parse(text: &str) -> Result<Study, StudyError> {
     Study::from_toml(text, "study.toml")
 }
 

@@ -1,7 +1,8 @@
-//! From one line of `[dimensions]` to a dimension: tolerance and distribution in their several forms.
+//! From one line of `[dimensions]` to a dimension, or the two of a position: tolerance and distribution in their several forms.
 
 mod kinds;
 mod mixture;
+mod position;
 mod spread;
 mod tolerance;
 
@@ -10,14 +11,47 @@ use std::ops::Range;
 use serde_spanned::Spanned;
 
 use super::error::{Fault, StudyFault, fault};
-use super::file::DimensionEntry;
+use super::file::{DimensionEntry, Entries};
+use super::values::NominalEntry;
 use crate::dimension::{Dimension, DimensionError};
 
-/// The dimension of this line, or what is wrong at which key below the dimension's; `model` is the value that the model gives it by itself.
-pub(super) fn dimension(name: &str, entry: &Spanned<DimensionEntry>, model: Option<f64>) -> Result<Dimension, Fault> {
+/// The dimensions of this line, or what is wrong at which key below the dimension's; `model` knows the values that the model
+/// gives by itself.
+pub(super) fn dimensions(
+    name: &Spanned<String>,
+    entry: &Spanned<DimensionEntry>,
+    model: &dyn Fn(&str) -> Option<f64>,
+) -> Result<Vec<Dimension>, Fault> {
+    match &entry.get_ref().position {
+        Some(diameter) => position::position(name.get_ref(), diameter, entry, model),
+        None => dimension(name.get_ref(), entry, model(name.get_ref())).map(|dimension| vec![dimension]),
+    }
+}
+
+/// The names of all dimensions with their places: a position declares two.
+pub(super) fn names(entries: &Entries<DimensionEntry>) -> Vec<Spanned<String>> {
+    let of_line = |(name, entry): &(Spanned<String>, Spanned<DimensionEntry>)| match entry.get_ref().position {
+        Some(_) => position::names(name.get_ref()).map(|coordinate| Spanned::new(name.span(), coordinate)).to_vec(),
+        None => vec![name.clone()],
+    };
+    entries.0.iter().flat_map(of_line).collect()
+}
+
+fn dimension(name: &str, entry: &Spanned<DimensionEntry>, model: Option<f64>) -> Result<Dimension, Fault> {
     let (line, entry) = (entry.span(), entry.get_ref());
     let nominal = nominal(entry, model, &line)?;
     let tolerance = tolerance::tolerance(entry, nominal)?;
+    built(name, entry, nominal, tolerance, line)
+}
+
+/// With the spread over this band, unit and step.
+fn built(
+    name: &str,
+    entry: &DimensionEntry,
+    nominal: f64,
+    tolerance: Option<[f64; 2]>,
+    line: Range<usize>,
+) -> Result<Dimension, Fault> {
     let distribution = kinds::distribution(entry, nominal, tolerance)?;
     let whole = |error: DimensionError| fault(line, "", error.fault);
     let mut dimension = match distribution {
@@ -37,7 +71,17 @@ pub(super) fn dimension(name: &str, entry: &Spanned<DimensionEntry>, model: Opti
 
 fn nominal(entry: &DimensionEntry, model: Option<f64>, line: &Range<usize>) -> Result<f64, Fault> {
     let middle = entry.limits.as_ref().map(|limits| 0.5 * (limits.get_ref()[0] + limits.get_ref()[1]));
-    let given = entry.nominal.as_ref().map(|nominal| *nominal.get_ref());
+    let given = match &entry.nominal {
+        None => None,
+        Some(nominal) => match *nominal.get_ref() {
+            NominalEntry::One(value) => Some(value),
+            NominalEntry::Two(_) => {
+                let instead = "two nominal values are those of a position: write the diameter of its zone, such as position = 0.2";
+                let missing = StudyFault::MissingKey { key: "position".into(), instead: instead.into() };
+                return Err(fault(nominal.span(), "nominal", missing));
+            }
+        },
+    };
     given.or(model).or(middle).ok_or_else(|| {
         let instead = "write the value on the drawing, such as nominal = 10.0".to_owned();
         fault(line.clone(), "", StudyFault::MissingKey { key: "nominal".into(), instead })

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_spanned::Spanned;
 
 use super::super::error::{Fault, StudyFault, fault};
-use super::super::file::{DimensionEntry, ToleranceEntry};
+use super::super::file::DimensionEntry;
 use super::conflict;
 use crate::distribution::Distribution;
 
@@ -76,7 +76,7 @@ pub(super) fn sigmas(entry: &DimensionEntry) -> Result<Option<PerBand>, Fault> {
 
 /// A dimension without band and sigma is fixed, unless something in it speaks of variation.
 pub(super) fn nothing_to_spread(entry: &DimensionEntry) -> Result<Spread, Fault> {
-    let flat = entry.tolerance.is_some() || entry.limits.is_some();
+    let flat = entry.tolerance.is_some() || entry.limits.is_some() || entry.position.is_some();
     let speaks: [(&'static str, Option<Range<usize>>); 4] = [
         ("distribution", entry.distribution.as_ref().map(Spanned::span)),
         ("shift", entry.shift.as_ref().map(Spanned::span)),
@@ -105,8 +105,5 @@ pub(super) fn agree(a: f64, b: f64) -> bool {
 
 /// Whether it is written that there is no tolerance.
 pub(super) fn is_flat(entry: &DimensionEntry) -> bool {
-    let no_band = |tolerance: &ToleranceEntry| {
-        matches!(tolerance, ToleranceEntry::Half(0.0) | ToleranceEntry::Deviations([0.0, 0.0]))
-    };
-    entry.tolerance.as_ref().is_some_and(|tolerance| no_band(tolerance.get_ref()))
+    entry.tolerance.as_ref().is_some_and(|tolerance| tolerance.get_ref().is_zero())
 }
