@@ -8,21 +8,31 @@
 //! name distributions (`study/dimension/spread.rs`), and one row in `tests/suite/distributions.rs`.
 
 mod central_moments;
+mod measured;
 mod normal;
+mod outliers;
+mod pearson;
 mod probability;
 mod rule;
+mod sample;
 mod standard_moments;
 pub(crate) mod standard_normal;
 mod uniform;
 
 pub use central_moments::CentralMoments;
+pub use measured::Measured;
 pub use normal::Normal;
+pub use outliers::{extreme, outliers};
+pub use pearson::PearsonLaw;
 pub use probability::Probability;
 pub use rule::{Jacobi, Rule};
+pub use sample::{Resample, Reweighted, Sample};
 pub use standard_moments::StandardMoments;
 pub use uniform::Uniform;
 
 use std::fmt::Debug;
+
+use crate::pearson::PearsonError;
 
 /// A probability distribution of one dimension, with sigma above 0.
 ///
@@ -50,6 +60,11 @@ pub trait Distribution: Debug + Send + Sync {
 
     /// Density, probabilities, quantiles and samples; None where only moments are known.
     fn probability(&self) -> Option<&dyn Probability>;
+
+    /// The measured values that the law follows from; None where it was given by parameters.
+    fn measured(&self) -> Option<&dyn Resample> {
+        None
+    }
 }
 
 /// What is wrong with a distribution's parameters.
@@ -91,6 +106,38 @@ pub enum DistributionError {
         /// The negative pivot, of standardised moments.
         pivot: f64,
     },
+    /// Measured values that are all the same, or none at all.
+    #[error("{}", no_variation(*count, *value))]
+    NoVariation {
+        /// How many there are.
+        count: usize,
+        /// What they are.
+        value: Option<f64>,
+    },
+    /// No Pearson law has these moments.
+    #[error("no Pearson law fits: {0}")]
+    Pearson(PearsonError),
+    /// A Pearson law with tails so long that a moment is infinite.
+    #[error(
+        "the Pearson law with skewness {skewness:.4} and kurtosis {kurtosis:.4} has tails so long that its moment of \
+         order {order} is infinite, and moments up to 8 are needed"
+    )]
+    InfiniteMoment {
+        /// The lowest order whose moment is infinite.
+        order: usize,
+        /// Third standardised moment.
+        skewness: f64,
+        /// Fourth standardised moment.
+        kurtosis: f64,
+    },
+}
+
+fn no_variation(count: usize, value: Option<f64>) -> String {
+    match (count, value) {
+        (1, Some(value)) => format!("one value, {value}, does not vary"),
+        (count, Some(value)) => format!("all {count} values are {value}: nothing varies"),
+        (_, None) => "there are no values".to_owned(),
+    }
 }
 
 pub(crate) fn finite(parameter: &'static str, value: f64) -> Result<f64, DistributionError> {

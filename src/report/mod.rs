@@ -4,12 +4,14 @@ mod distribution;
 mod limits;
 pub(crate) mod number;
 mod page;
+mod sampling;
 mod sketch;
 mod text;
 
 pub use distribution::{DistributionReport, Quantiles};
 pub use limits::law_text;
 pub use page::{Detail, Style};
+pub use sampling::SamplingReport;
 pub use text::text;
 
 use serde::Serialize;
@@ -32,7 +34,7 @@ pub struct Report {
     pub sensitol: &'static str,
     /// The study's title.
     pub title: Option<String>,
-    /// SHA-256 of the study file.
+    /// SHA-256 of the study file and the files of measured values that it reads.
     pub study_sha256: String,
     /// The command that made the report.
     pub command: &'static str,
@@ -48,7 +50,7 @@ pub struct Report {
     pub failed: usize,
     /// Seconds from the first evaluation to the finished result.
     pub wall_s: f64,
-    /// The seed of what draws random numbers.
+    /// The seed of what draws random numbers, where one was given or used.
     pub seed: Option<u64>,
     /// The dimensions, in the study's order.
     pub dimensions: Vec<DimensionReport>,
@@ -96,6 +98,8 @@ pub struct CharacteristicReport {
     pub kurtosis: Option<f64>,
     /// How far the results may be off; not estimated yet.
     pub error_estimate: Option<()>,
+    /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
+    pub sampling_interval: Option<SamplingReport>,
     /// Intervals that no assembly leaves.
     pub worst_case: WorstCaseReport,
     /// Root of the sum of squares.
@@ -240,7 +244,7 @@ impl Report {
             reused: analysis.reused,
             failed: analysis.failed,
             wall_s: about.wall_s,
-            seed: about.seed,
+            seed: about.seed.or(analysis.seed),
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             characteristics: analysis.characteristics.iter().map(CharacteristicReport::of).collect(),
             warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
@@ -279,6 +283,7 @@ impl CharacteristicReport {
             skewness: moments.and_then(|moments| moments.skewness()),
             kurtosis: moments.and_then(|moments| moments.kurtosis()),
             error_estimate: None,
+            sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
             worst_case: WorstCaseReport { linear: analysis.worst_case, extremes: None, proven: None },
             rss: analysis.rss,
             sensitivities: (analysis.sensitivities.iter())

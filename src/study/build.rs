@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_spanned::Spanned;
 
+use super::data::Data;
 use super::dimension::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
@@ -26,6 +27,8 @@ pub(super) struct Built {
     pub(super) problem: Problem,
     pub(super) options: Options,
     pub(super) warnings: Vec<Warning>,
+    /// The files that it read beside the study.
+    pub(super) data: Vec<Arc<[u8]>>,
 }
 
 pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
@@ -33,7 +36,8 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     let program = matches!(evaluated, Some(ModelOf::Program(_)));
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     names(file, model)?;
-    let dimensions = dimensions(file, model)?;
+    let mut data = Data::of(&source.folder);
+    let dimensions = dimensions(file, model, &mut data)?;
     let formulas = formulas(file, source)?;
     for (what, empty) in [("dimension", dimensions.is_empty()), ("characteristic", file.characteristics.0.is_empty())] {
         if empty {
@@ -44,12 +48,13 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     known_to_model(file, model, &used)?;
     let (characteristics, outputs) = characteristics(file, model, program)?;
     let composite = compose(file, evaluated.as_ref(), &dimensions, &formulas, outputs, source)?;
-    let warnings = unused(file, evaluated.as_ref(), &composite, &formulas, &used);
+    let mut warnings = std::mem::take(&mut data.warnings);
+    warnings.extend(unused(file, evaluated.as_ref(), &composite, &formulas, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
     let options = super::options::options(&file.analysis, &problem)?;
-    Ok(Built { problem, options, warnings })
+    Ok(Built { problem, options, warnings, data: data.bytes() })
 }
 
 /// Every name means one thing.
@@ -83,10 +88,10 @@ fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Fault> {
     Ok(())
 }
 
-fn dimensions(file: &StudyFile, model: Option<&Model>) -> Result<Vec<Dimension>, Fault> {
+fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> Result<Vec<Dimension>, Fault> {
     let build = |(name, entry): &(Spanned<String>, _)| {
         let input = model.and_then(|model| model.inputs.iter().find(|input| input.name == name.get_ref()));
-        let dimension = dimension(name.get_ref(), entry, input.map(|input| input.nominal)).map_err(|found| {
+        let dimension = dimension(name.get_ref(), entry, input.map(|input| input.nominal), data).map_err(|found| {
             let below = if found.key.is_empty() { String::new() } else { format!(".{}", found.key) };
             // A fault of the line as a whole is shown at the dimension's name.
             let span = found.span.filter(|span| !span.is_empty()).unwrap_or_else(|| name.span());

@@ -3,9 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::data::DataFault;
 use crate::assembly::formula::FormulaFault;
 use crate::characteristic::LimitsError;
 use crate::dimension::DimensionFault;
+use crate::distribution::DistributionError;
 use crate::method::MethodError;
 use crate::problem::ProblemError;
 
@@ -234,6 +236,9 @@ pub enum StudyFault {
     /// The analysis options do not fit the study.
     #[error(transparent)]
     Method(#[from] MethodError),
+    /// A file of measured values cannot be used.
+    #[error(transparent)]
+    Data(#[from] DataFault),
     /// Dimensions, model and characteristics do not fit together.
     #[error(transparent)]
     Problem(#[from] ProblemError),
@@ -268,6 +273,10 @@ impl StudyFault {
             Self::Dimension(DimensionFault::Unresolvable { .. }) => {
                 Some("measure from a nearer datum, or leave the tolerance out".into())
             }
+            Self::Dimension(DimensionFault::Distribution(
+                DistributionError::InfiniteMoment { .. } | DistributionError::Pearson(_),
+            )) => Some("leave model out: the values themselves have all moments".into()),
+            Self::Data(fault) => fault.problem.help(),
             Self::Limits(LimitsError::Swapped { .. }) => Some("exchange them".into()),
             Self::Formula(fault) => fault.help(),
             Self::ReservedName { .. } => Some("choose another name".into()),

@@ -6,9 +6,11 @@
 //!
 //! It is filled by difference plans; its moments are exact for any independent inputs.
 
+mod relocation;
 mod shape;
 mod univariate;
 
+pub use relocation::Relocation;
 pub use shape::{InputShape, shapes};
 pub use univariate::Univariate;
 

@@ -8,6 +8,7 @@ mod distributions;
 mod docs;
 mod formulas;
 mod journal;
+mod measured;
 mod methods;
 mod moments;
 mod pearson;
