@@ -2,7 +2,8 @@
 //!
 //! Every measured sample is drawn anew from itself, many times. Each time the surrogate stays the function of the
 //! dimensions that it is, and its moments are computed exactly for the law that the resample makes: no point is
-//! evaluated. What the resamples scatter by is what other samples of the same size would.
+//! evaluated. What the resamples scatter by is what other samples of the same size would. Dimensions are drawn apart from
+//! one another, columns of one file too, as they are taken for independent everywhere.
 
 use rand::SeedableRng;
 use rand::seq::SliceRandom;

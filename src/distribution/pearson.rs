@@ -25,7 +25,13 @@ pub struct PearsonLaw {
     law: Pearson,
     recurrence: Recurrence,
     moments: StandardMoments,
-    sample: Option<Sample>,
+    fit: Option<Fit>,
+}
+
+/// The values that a law was fitted to.
+#[derive(Debug, Clone, PartialEq)]
+struct Fit {
+    sample: Sample,
 }
 
 impl PearsonLaw {
@@ -40,7 +46,7 @@ impl PearsonLaw {
         if let Some(order) = (5..=8).find(|&order| !recurrence.has_moment(order)) {
             return Err(DistributionError::InfiniteMoment { order, skewness, kurtosis: 3.0 + excess });
         }
-        Ok(Self { law, moments: recurrence.moments(), recurrence, sample: None })
+        Ok(Self { law, moments: recurrence.moments(), recurrence, fit: None })
     }
 
     /// With the first four moments of measured values.
@@ -52,7 +58,7 @@ impl PearsonLaw {
         let sample = Sample::new(values)?;
         let moments = sample.moments();
         let law = Self::new(sample.mean(), sample.sigma(), moments.skewness, moments.excess)?;
-        Ok(Self { sample: Some(sample), ..law })
+        Ok(Self { fit: Some(Fit { sample }), ..law })
     }
 }
 
@@ -88,18 +94,18 @@ impl Distribution for PearsonLaw {
     }
 
     fn measured(&self) -> Option<&dyn Resample> {
-        self.sample.is_some().then_some(self)
+        self.fit.as_ref().map(|fit| fit as &dyn Resample)
     }
 }
 
-impl Resample for PearsonLaw {
+impl Resample for Fit {
     fn sample(&self) -> &Sample {
-        self.sample.as_ref().expect("a law without sample is not resampled")
+        &self.sample
     }
 
     /// The law with the first four moments of the resample; higher ones are NaN where they are infinite.
     fn reweighted(&self, counts: &[u32]) -> Reweighted {
-        let empirical = self.sample().reweighted(counts);
+        let empirical = self.sample.reweighted(counts);
         if empirical.stretch == 0.0 {
             return empirical;
         }

@@ -263,7 +263,8 @@ fn a_fitted_law_has_the_moments_of_the_values() {
             let (own, of_values) = (fitted.standard_moments(), law.standard_moments());
             assert_eq!((fitted.mean(), fitted.sigma()), (law.mean(), law.sigma()));
             assert_eq!((own.skewness, own.excess), (of_values.skewness, of_values.excess));
-            let same = fitted.reweighted(fitted.sample().counts());
+            let fit = fitted.measured().unwrap();
+            let same = fit.reweighted(fit.sample().counts());
             relative(same.moments.m8, own.m8, 1e-11);
             // A step of the last digit of x moves the probability by the density times that step.
             let x = fitted.quantile(0.01);
