@@ -157,8 +157,82 @@ pub enum Warning {
         /// Fourth standardised moment.
         kurtosis: f64,
     },
+    /// Cells of a measured column have no value.
+    MissingValues {
+        /// The dimension.
+        dimension: String,
+        /// The file.
+        file: String,
+        /// How many have none.
+        missing: usize,
+        /// Of how many.
+        rows: usize,
+        /// The first lines without one.
+        lines: Vec<u64>,
+    },
+    /// Measured values that lie too far from the others.
+    Outliers {
+        /// The dimension.
+        dimension: String,
+        /// The file.
+        file: String,
+        /// How many do.
+        count: usize,
+        /// Of how many.
+        values: usize,
+        /// The farthest of them with their lines.
+        first: Vec<(f64, u64)>,
+    },
+    /// A sample that says little of the higher moments.
+    SmallSample {
+        /// The dimension.
+        dimension: String,
+        /// How many values it has.
+        values: usize,
+        /// How many it should have.
+        enough: usize,
+    },
+    /// What the size of a sample leaves uncertain is not computed where dimensions are correlated.
+    NoSamplingInterval {
+        /// The dimension.
+        dimension: String,
+    },
+    /// Measured values that are rounded too coarsely.
+    CoarseResolution {
+        /// The dimension.
+        dimension: String,
+        /// The least difference of two values.
+        resolution: f64,
+        /// Their sigma.
+        sigma: f64,
+        /// How many different values there are.
+        distinct: usize,
+    },
+    /// Measured values outside the tolerance band.
+    OutsideBand {
+        /// The dimension.
+        dimension: String,
+        /// How many.
+        count: usize,
+        /// Of how many.
+        values: usize,
+        /// The first of them with their lines.
+        first: Vec<(f64, u64)>,
+        /// Whether their mean lies outside too.
+        mean_too: bool,
+    },
     /// `auto` was asked for.
     AutoIsSecondOrder,
+}
+
+fn lie(count: usize) -> &'static str {
+    if count == 1 { "lies" } else { "lie" }
+}
+
+/// Values with their lines, and whether there are more of them.
+fn values_and_lines(first: &[(f64, u64)], count: usize) -> String {
+    let named: Vec<String> = first.iter().map(|(value, line)| format!("{value} (line {line})")).collect();
+    format!("{}{}", named.join(", "), if count > first.len() { ", ..." } else { "" })
 }
 
 /// What of a derivative is lost.
@@ -197,6 +271,12 @@ impl Warning {
             Self::NearSingular { .. } => "near-singular",
             Self::InfeasibleMoments { .. } => "infeasible-moments",
             Self::NearInfeasibleMoments { .. } => "near-infeasible-moments",
+            Self::MissingValues { .. } => "missing-values",
+            Self::Outliers { .. } => "outliers",
+            Self::SmallSample { .. } => "small-sample",
+            Self::NoSamplingInterval { .. } => "no-sampling-interval",
+            Self::CoarseResolution { .. } => "coarse-resolution",
+            Self::OutsideBand { .. } => "outside-band",
             Self::AutoIsSecondOrder => "auto-is-second-order",
         }
     }
@@ -226,6 +306,12 @@ impl Warning {
             Self::UnusedDimension { dimension }
             | Self::DomainEdge { dimension, .. }
             | Self::LongTail { dimension, .. }
+            | Self::MissingValues { dimension, .. }
+            | Self::Outliers { dimension, .. }
+            | Self::SmallSample { dimension, .. }
+            | Self::NoSamplingInterval { dimension }
+            | Self::CoarseResolution { dimension, .. }
+            | Self::OutsideBand { dimension, .. }
             | Self::SupportEdge { dimension, .. } => Some(dimension),
             Self::LostDerivative { dimensions, .. } => dimensions.first().map(String::as_str),
             _ => None,
@@ -332,6 +418,40 @@ impl Warning {
                 "the kurtosis {kurtosis:.4} of `{characteristic}` is hardly above 1 + skewness^2 = {:.4}, the least that there \
                  is: it has nearly two values only, and its yield hangs on every digit of that",
                 1.0 + skewness * skewness
+            ),
+            Self::MissingValues { dimension, file, missing, rows, lines } => {
+                let named = lines.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
+                let more = if missing > &lines.len() { ", ..." } else { "" };
+                format!(
+                    "{missing} of {rows} values of `{dimension}` {} missing in {file} (lines {named}{more}): the others \
+                     stand for all",
+                    if *missing == 1 { "is" } else { "are" }
+                )
+            }
+            Self::Outliers { dimension, file, count, values, first } => format!(
+                "{count} of {values} values of `{dimension}` in {file} {} farther out than a normal sample of this size \
+                 reaches: {}; kept all the same, as a skewed law may have such values: take out what was measured wrongly",
+                lie(*count),
+                values_and_lines(first, *count)
+            ),
+            Self::SmallSample { dimension, values, enough } => format!(
+                "`{dimension}` is known by {values} values: its skewness and everything beyond are guesses below {enough}; \
+                 mind the sampling interval"
+            ),
+            Self::NoSamplingInterval { dimension } => format!(
+                "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed where dimensions are \
+                 correlated; leave [[correlation]] out to see it"
+            ),
+            Self::CoarseResolution { dimension, resolution, sigma, distinct } => format!(
+                "the {distinct} different values of `{dimension}` lie {:.2} sigma apart or more: rounding has a part in sigma; \
+                 measure with a finer resolution",
+                resolution / sigma
+            ),
+            Self::OutsideBand { dimension, count, values, first, mean_too } => format!(
+                "{count} of {values} measured values of `{dimension}` {} outside its tolerance: {}{}",
+                lie(*count),
+                values_and_lines(first, *count),
+                if *mean_too { "; so does their mean: check column and unit" } else { "" }
             ),
             Self::AutoIsSecondOrder => {
                 "method auto is not built yet and stands for second-order; --method full adds every interaction".into()

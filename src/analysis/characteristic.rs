@@ -1,5 +1,6 @@
 //! What is known of one characteristic.
 
+use super::SamplingInterval;
 use super::linear::Linear;
 use crate::capability::{Capability, Law};
 use crate::characteristic::Characteristic;
@@ -25,6 +26,8 @@ pub struct CharacteristicAnalysis {
     pub capability: Option<Capability>,
     /// How the normal distribution with the same mean and sigma would.
     pub normal: Option<Capability>,
+    /// How far the results may be off because measured dimensions are known by samples; None where there are none.
+    pub sampling: Option<SamplingInterval>,
     /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
     /// band that hurts, and a point of a circular zone ([`Dimension::zone`](crate::Dimension::zone)) at its edge.
     pub worst_case: Option<[f64; 2]>,
@@ -131,6 +134,7 @@ impl CharacteristicAnalysis {
             capability: law.as_ref().and_then(|law| capability(law.as_ref().ok()?)),
             normal,
             law,
+            sampling: None,
             characteristic,
             worst_case: middle
                 .zip(linear)

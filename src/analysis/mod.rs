@@ -1,9 +1,12 @@
 //! The main job: from a problem to moments, sensitivities, contributions and warnings.
 
+mod bootstrap;
 mod characteristic;
+mod interval;
 mod linear;
 mod warnings;
 
+pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
 
 use std::time::Duration;
@@ -32,6 +35,8 @@ pub struct Analysis {
     pub stopped: bool,
     /// Time within the model.
     pub in_model: Duration,
+    /// The seed, where random numbers were drawn.
+    pub seed: Option<u64>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<CharacteristicAnalysis>,
     /// Where the derivatives that the moments rest on come from.
@@ -67,9 +72,11 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
     let outcome = options.method.procedure().run(problem, options, run)?;
-    let characteristics: Vec<CharacteristicAnalysis> =
+    let mut characteristics: Vec<CharacteristicAnalysis> =
         (0..problem.characteristics().len()).map(|c| CharacteristicAnalysis::of(problem, &outcome, c)).collect();
     let warnings = warnings::of(problem, &outcome, &characteristics);
+    let seed = options.seed.unwrap_or(Options::SEED);
+    let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
     Ok(Analysis {
         method: outcome.method,
         varying: outcome.plan.varying().len(),
@@ -79,6 +86,7 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         stages: outcome.evaluated.stages,
         stopped: outcome.evaluated.stopped,
         in_model: outcome.evaluated.in_model,
+        seed: drawn.then_some(seed),
         characteristics,
         derivatives: if outcome.exact { DerivativeSource::Exact } else { DerivativeSource::Difference },
         warnings,

@@ -40,6 +40,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         };
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
+    warnings.extend(not_resampled(problem, outcome));
     warnings.extend(history(problem, outcome));
     warnings.extend(problem.function().warnings(problem.outputs()));
     for (c, analysis) in characteristics.iter().enumerate() {
@@ -54,6 +55,17 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
     warnings
+}
+
+/// Measured dimensions whose sample was not drawn anew.
+fn not_resampled<'a>(problem: &'a Problem, outcome: &'a Outcome) -> impl Iterator<Item = Warning> + 'a {
+    let correlated = outcome.plan.inputs().correlation().is_some();
+    let measured = move |d: &&usize| {
+        let law = problem.dimensions()[**d].distribution();
+        correlated && law.is_some_and(|law| law.measured().is_some())
+    };
+    let warning = |d: &usize| Warning::NoSamplingInterval { dimension: problem.dimensions()[*d].name().to_owned() };
+    outcome.plan.varying().iter().filter(measured).map(warning)
 }
 
 /// External models that do not answer as they did: one warning for each output.

@@ -29,6 +29,22 @@ pub struct Capability {
     pub cpk_percentile: Option<f64>,
 }
 
+/// `min(U - mean, mean - L) / 3 sigma` of the limits that there are, which needs no law; None where sigma is 0.
+pub fn cpk(mean: f64, sigma: f64, limits: SpecLimits) -> Option<f64> {
+    nearer(limits, mean, 3.0 * sigma, 3.0 * sigma)
+}
+
+fn width(narrow: f64, wide: f64) -> Option<f64> {
+    (wide > 0.0).then_some(narrow / wide)
+}
+
+/// The distance of the nearer limit, each in units of its own side.
+fn nearer(limits: SpecLimits, middle: f64, down: f64, up: f64) -> Option<f64> {
+    let below = limits.lower().map(|lower| width(middle - lower, down));
+    let above = limits.upper().map(|upper| width(upper - middle, up));
+    below.into_iter().chain(above).reduce(|a, b| Some(a?.min(b?))).flatten()
+}
+
 impl Capability {
     /// Of a law with this mean and sigma.
     ///
@@ -48,20 +64,14 @@ impl Capability {
     pub fn of(law: &Law, mean: f64, sigma: f64, limits: SpecLimits) -> Self {
         let (lower, upper) = (limits.lower(), limits.upper());
         let [low, middle, high] = [law.quantile(TAIL), law.quantile(0.5), law.upper_quantile(TAIL)];
-        let width = |narrow: f64, wide: f64| (wide > 0.0).then_some(narrow / wide);
         let both = |wide: f64| width(upper? - lower?, wide);
-        let nearer = |middle: f64, down: f64, up: f64| {
-            let below = lower.map(|lower| width(middle - lower, down));
-            let above = upper.map(|upper| width(upper - middle, up));
-            below.into_iter().chain(above).reduce(|a, b| Some(a?.min(b?))).flatten()
-        };
         Self {
             below: lower.map(|lower| law.below(lower)),
             above: upper.map(|upper| law.above(upper)),
             cp: both(6.0 * sigma),
-            cpk: nearer(mean, 3.0 * sigma, 3.0 * sigma),
+            cpk: cpk(mean, sigma, limits),
             cp_percentile: both(high - low),
-            cpk_percentile: nearer(middle, middle - low, high - middle),
+            cpk_percentile: nearer(limits, middle, middle - low, high - middle),
         }
     }
 

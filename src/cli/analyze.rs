@@ -18,7 +18,8 @@ use crate::study::{Externals, Study};
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
-    let study = study::read(&asked.study, externals(asked, look, given.clone()))?;
+    let mut study = study::read(&asked.study, externals(asked, look, given.clone()))?;
+    study.options.seed = asked.seed.or(study.options.seed);
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }
@@ -29,7 +30,7 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let about = About {
         title: study.title.clone(),
         sha256: study.sha256.clone(),
-        seed: asked.seed.or(study.seed),
+        seed: study.options.seed,
         wall_s: begun.elapsed().as_secs_f64(),
         warnings: study.warnings.clone(),
     };

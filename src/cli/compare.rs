@@ -8,11 +8,9 @@ use super::output::{Destination, Look, json};
 use super::{interrupt, on_threads, study};
 use crate::assembly::Run;
 use crate::compare::{CompareOptions, compare_within};
+use crate::method::Options;
 use crate::report::{About, CompareReport, compare_csv, compare_svg, compare_text};
 use crate::study::Externals;
-
-/// A seed for who does not care.
-const SEED: u64 = 1;
 
 pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let externals = Externals {
@@ -28,7 +26,7 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let options = CompareOptions {
         budget: asked.budget.or(study.options.budget),
         reference: asked.samples,
-        seed: asked.seed.or(study.seed).unwrap_or(SEED),
+        seed: asked.seed.or(study.seed).unwrap_or(Options::SEED),
     };
     interrupt::listen();
     let begun = Instant::now();

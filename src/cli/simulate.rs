@@ -9,6 +9,7 @@ use super::output::{Destination, Look, json};
 use super::progress::Samples;
 use super::{interrupt, on_threads, study};
 use crate::assembly::Run;
+use crate::method::Options;
 use crate::report::{About, SimulationReport, simulation_text};
 use crate::sampling::Sampler;
 use crate::simulation::{Pace, SimulationOptions, simulate_within};
@@ -16,8 +17,7 @@ use crate::study::{Externals, Study};
 
 /// Points unless the user says otherwise; where accuracy is wanted, as many as that takes.
 const SAMPLES: u64 = 100_000;
-/// A seed for who does not care.
-const SEED: u64 = 1;
+
 /// A simulation that will take longer than this tells so.
 const LONG: Duration = Duration::from_secs(60);
 
@@ -34,7 +34,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
             SamplerArg::Random => Sampler::Random,
             SamplerArg::Sobol => Sampler::Sobol,
         },
-        seed: asked.seed.or(study.seed).unwrap_or(SEED),
+        seed: asked.seed.or(study.seed).unwrap_or(Options::SEED),
         until: asked.until,
         until_yield: asked.until_yield,
     };

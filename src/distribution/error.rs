@@ -1,5 +1,7 @@
 //! What can be wrong with a distribution, and the checks that every one of them uses.
 
+use crate::pearson::PearsonError;
+
 /// What is wrong with a distribution's parameters.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -96,6 +98,38 @@ pub enum DistributionError {
         /// The negative pivot, of standardised moments.
         pivot: f64,
     },
+    /// Measured values that are all the same, or none at all.
+    #[error("{}", no_variation(*count, *value))]
+    NoVariation {
+        /// How many there are.
+        count: usize,
+        /// What they are.
+        value: Option<f64>,
+    },
+    /// No Pearson law has these moments.
+    #[error("no Pearson law fits: {0}")]
+    Pearson(PearsonError),
+    /// A Pearson law with tails so long that a moment is infinite.
+    #[error(
+        "the Pearson law with skewness {skewness:.4} and kurtosis {kurtosis:.4} has tails so long that its moment of \
+         order {order} is infinite, and moments up to 8 are needed"
+    )]
+    InfiniteMoment {
+        /// The lowest order whose moment is infinite.
+        order: usize,
+        /// Third standardised moment.
+        skewness: f64,
+        /// Fourth standardised moment.
+        kurtosis: f64,
+    },
+}
+
+fn no_variation(count: usize, value: Option<f64>) -> String {
+    match (count, value) {
+        (1, Some(value)) => format!("one value, {value}, does not vary"),
+        (count, Some(value)) => format!("all {count} values are {value}: nothing varies"),
+        (_, None) => "there are no values".to_owned(),
+    }
 }
 
 pub(crate) fn finite(parameter: &'static str, value: f64) -> Result<f64, DistributionError> {

@@ -16,11 +16,15 @@ mod exponential;
 mod gamma;
 mod inverse;
 mod lognormal;
+mod measured;
 mod mixture;
 mod normal;
+mod outliers;
+mod pearson;
 mod probability;
 mod rayleigh;
 mod rule;
+mod sample;
 mod standard_moments;
 pub(crate) mod standard_normal;
 mod tail;
@@ -36,11 +40,15 @@ pub use error::DistributionError;
 pub use exponential::Exponential;
 pub use gamma::Gamma;
 pub use lognormal::Lognormal;
+pub use measured::Measured;
 pub use mixture::{Mixture, Part};
 pub use normal::Normal;
+pub use outliers::{extreme, outliers};
+pub use pearson::PearsonLaw;
 pub use probability::Probability;
 pub use rayleigh::Rayleigh;
 pub use rule::{Jacobi, Rule};
+pub use sample::{Resample, Reweighted, Sample};
 pub use standard_moments::StandardMoments;
 pub use trapezoidal::Trapezoidal;
 pub use triangular::Triangular;
@@ -96,6 +104,11 @@ pub trait Distribution: Debug + Send + Sync {
     /// When the scaled parameters are out of range.
     fn scaled(&self, factor: f64, moved: f64) -> Option<Scaled> {
         let _ = (factor, moved);
+        None
+    }
+
+    /// The measured values that the law follows from; None where it was given by parameters.
+    fn measured(&self) -> Option<&dyn Resample> {
         None
     }
 }

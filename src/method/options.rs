@@ -26,6 +26,8 @@ pub struct Options {
     pub stencil: Option<Stencil>,
     /// Whether dimensions without tolerance get a sensitivity too, at two evaluations each.
     pub all_sensitivities: bool,
+    /// The seed of what draws random numbers: [`SEED`](Self::SEED) unless given.
+    pub seed: Option<u64>,
     /// Where derivatives come from. Unless said otherwise the reported sensitivities are exact where the assembly function
     /// knows its derivatives, and moments come from differences at nodes that suit each distribution.
     pub derivatives: Option<DerivativeSource>,
@@ -87,6 +89,11 @@ impl Pairs {
     }
 }
 
+impl Options {
+    /// The seed where none is given: the same study gives the same numbers.
+    pub const SEED: u64 = 1;
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {
@@ -97,6 +104,7 @@ impl Default for Options {
             pairs: None,
             stencil: None,
             all_sensitivities: false,
+            seed: None,
             derivatives: None,
         }
     }

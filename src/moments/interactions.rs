@@ -65,6 +65,41 @@ impl Interactions {
         }
     }
 
+    /// The products in which one input has a part: `(k, A_jk)`.
+    pub fn neighbours(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let (sparse, dense) = match &self.kind {
+            Kind::Sparse(rows) => (&rows[j][..], &[][..]),
+            Kind::Dense(matrix) => (&[][..], matrix.col_as_slice(j)),
+        };
+        sparse.iter().copied().chain(dense.iter().copied().enumerate())
+    }
+
+    /// With `by_j by_k A_jk` in place of `A_jk`.
+    ///
+    /// Shapes: `by` has length N.
+    pub fn scaled(&self, by: &[f64]) -> Self {
+        let kind = match &self.kind {
+            Kind::Sparse(rows) => {
+                let row = |(j, row): (usize, &Vec<(usize, f64)>)| {
+                    row.iter().map(|&(k, value)| (k, by[j] * by[k] * value)).collect()
+                };
+                Kind::Sparse(rows.iter().enumerate().map(row).collect())
+            }
+            Kind::Dense(matrix) => {
+                Kind::Dense(Mat::from_fn(self.dimensions, self.dimensions, |j, k| by[j] * by[k] * matrix[(j, k)]))
+            }
+        };
+        Self { dimensions: self.dimensions, kind }
+    }
+
+    /// Multiplications that the moments of these products take, roughly.
+    pub(crate) fn work(&self) -> usize {
+        match &self.kind {
+            Kind::Sparse(rows) => rows.iter().map(|row| row.len() * row.len()).sum(),
+            Kind::Dense(_) => self.dimensions.saturating_pow(3),
+        }
+    }
+
     pub(super) fn kind(&self) -> &Kind {
         &self.kind
     }

@@ -8,6 +8,7 @@ mod distribution;
 mod limits;
 pub(crate) mod number;
 mod page;
+mod sampling;
 mod simulation;
 mod simulation_text;
 mod sketch;
@@ -21,6 +22,7 @@ pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
 pub use limits::law_text;
 pub use page::{Detail, Style};
+pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
 pub use simulation_text::simulation_text;
 pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_markdown, stack_text};
@@ -46,7 +48,7 @@ pub struct Report {
     pub sensitol: &'static str,
     /// The study's title.
     pub title: Option<String>,
-    /// SHA-256 of the study file.
+    /// SHA-256 of the study file and the files of measured values that it reads.
     pub study_sha256: String,
     /// The command that made the report.
     pub command: &'static str,
@@ -64,7 +66,7 @@ pub struct Report {
     pub failed: usize,
     /// Seconds from the first evaluation to the finished result.
     pub wall_s: f64,
-    /// The seed of what draws random numbers.
+    /// The seed of what draws random numbers, where one was given or used.
     pub seed: Option<u64>,
     /// The dimensions, in the study's order.
     pub dimensions: Vec<DimensionReport>,
@@ -140,6 +142,8 @@ pub struct CharacteristicReport {
     pub surrogate_sampling: Option<SurrogateSamplingReport>,
     /// How far the results may be off; not estimated yet.
     pub error_estimate: Option<()>,
+    /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
+    pub sampling_interval: Option<SamplingReport>,
     /// Intervals that no assembly leaves.
     pub worst_case: WorstCaseReport,
     /// The value of a linear model with every dimension in the middle of its band.
@@ -297,7 +301,7 @@ impl Report {
             reused: analysis.reused,
             failed: analysis.failed,
             wall_s: about.wall_s,
-            seed: about.seed,
+            seed: about.seed.or(analysis.seed),
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             correlation: correlation(problem),
             characteristics: analysis.characteristics.iter().map(CharacteristicReport::of).collect(),
@@ -356,6 +360,7 @@ impl CharacteristicReport {
                 kurtosis: sampled.kurtosis,
             }),
             error_estimate: None,
+            sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
             worst_case: WorstCaseReport { linear: analysis.worst_case, extremes: None, proven: None },
             middle: analysis.middle,
             rss: analysis.rss,

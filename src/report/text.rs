@@ -3,6 +3,7 @@
 use super::limits::{distribution, verdict};
 use super::number::{beside, percent, plain, significant, unsigned_zero};
 use super::page::{Detail, Grid, Page, Style, clean, short};
+use super::sampling::sampling;
 use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
 
 /// Contributions and interactions that are shown unless all are asked for.
@@ -70,6 +71,7 @@ fn one(page: &mut Page, report: &Report, one: &CharacteristicReport) {
     page.line(&format!("{}{unit}", clean(&one.name)));
     figures(page, one);
     distribution(page, one);
+    sampling(page, one);
     page.line("");
     contributions(page, report, one);
     correlation(page, report, one);

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde_spanned::Spanned;
 
 use super::correlation::correlated;
+use super::data::Data;
 use super::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
@@ -29,6 +30,8 @@ pub(super) struct Built {
     pub(super) problem: Problem,
     pub(super) options: Options,
     pub(super) warnings: Vec<Warning>,
+    /// The files that it read beside the study.
+    pub(super) data: Vec<Arc<[u8]>>,
 }
 
 pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
@@ -36,7 +39,8 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     let program = matches!(evaluated, Some(ModelOf::Program(_)));
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     names(file, model)?;
-    let dimensions = dimensions(file, model)?;
+    let mut data = Data::of(&source.folder);
+    let dimensions = dimensions(file, model, &mut data)?;
     let formulas = formulas(file, source)?;
     for (what, empty) in [("dimension", dimensions.is_empty()), ("characteristic", file.characteristics.0.is_empty())] {
         if empty {
@@ -49,13 +53,14 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     known_to_model(file, model, &used)?;
     let (characteristics, outputs) = characteristics(file, model, program)?;
     let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
-    let warnings = unused(file, evaluated.as_ref(), &composite, &written, &used);
+    let mut warnings = std::mem::take(&mut data.warnings);
+    warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
     let problem = correlated(problem, &file.correlation.0)?;
     let options = super::options::options(&file.analysis, &problem)?;
-    Ok(Built { problem, options, warnings })
+    Ok(Built { problem, options, warnings, data: data.bytes() })
 }
 
 /// Every name means one thing.
@@ -92,7 +97,7 @@ fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Fault> {
     Ok(())
 }
 
-fn dimensions(file: &StudyFile, model: Option<&Model>) -> Result<Vec<Dimension>, Fault> {
+fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> Result<Vec<Dimension>, Fault> {
     let input = |name: &str| model.and_then(|model| model.inputs.iter().find(|input| input.name == name));
     let with_unit = |dimension: Dimension| match (dimension.unit(), input(dimension.name())) {
         (None, Some(input)) => dimension.with_unit(input.unit),
@@ -101,7 +106,7 @@ fn dimensions(file: &StudyFile, model: Option<&Model>) -> Result<Vec<Dimension>,
     let mut dimensions = Vec::new();
     for (name, entry) in &file.dimensions.0 {
         let of_model = |name: &str| input(name).map(|input| input.nominal);
-        let of_line = dimension::dimensions(name, entry, &of_model).map_err(|found| {
+        let of_line = dimension::dimensions(name, entry, &of_model, data).map_err(|found| {
             let below = if found.key.is_empty() { String::new() } else { format!(".{}", found.key) };
             // A fault of the line as a whole is shown at the dimension's name.
             let span = found.span.filter(|span| !span.is_empty()).unwrap_or_else(|| name.span());

@@ -3,11 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::data::DataFault;
 use crate::assembly::formula::FormulaFault;
 use crate::assembly::implicit::ConditionsError;
 use crate::characteristic::LimitsError;
 use crate::correlation::Refusal;
 use crate::dimension::DimensionFault;
+use crate::distribution::DistributionError;
 use crate::fits::FitError;
 use crate::method::MethodError;
 use crate::problem::ProblemError;
@@ -246,6 +248,9 @@ pub enum StudyFault {
     /// The analysis options do not fit the study.
     #[error(transparent)]
     Method(#[from] MethodError),
+    /// A file of measured values cannot be used.
+    #[error(transparent)]
+    Data(#[from] DataFault),
     /// Dimensions, model and characteristics do not fit together.
     #[error(transparent)]
     Problem(#[from] ProblemError),
@@ -281,6 +286,10 @@ impl StudyFault {
                 Some("measure from a nearer datum, or leave the tolerance out".into())
             }
             Self::Fit(error) => error.help(),
+            Self::Dimension(DimensionFault::Distribution(
+                DistributionError::InfiniteMoment { .. } | DistributionError::Pearson(_),
+            )) => Some("leave model out: the values themselves have all moments".into()),
+            Self::Data(fault) => fault.problem.help(),
             Self::Limits(LimitsError::Swapped { .. }) => Some("exchange them".into()),
             Self::Conditions(ConditionsError::Unbalanced { .. }) => Some(
                 "as many equations as unknowns are needed; a loop counts for two, one along x and one along y".into(),

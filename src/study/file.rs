@@ -56,6 +56,9 @@ pub(super) struct DimensionEntry {
     pub(super) cp: Option<Spanned<f64>>,
     pub(super) shift: Option<Spanned<f64>>,
     pub(super) moments: Option<Spanned<[f64; 7]>>,
+    pub(super) measured: Option<Spanned<String>>,
+    pub(super) column: Option<Spanned<String>>,
+    pub(super) model: Option<Spanned<String>>,
     pub(super) step: Option<Spanned<f64>>,
 }
 

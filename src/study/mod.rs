@@ -38,6 +38,7 @@
 
 mod build;
 mod correlation;
+mod data;
 mod de;
 mod dimension;
 mod error;
@@ -50,6 +51,7 @@ mod source;
 mod tree;
 mod values;
 
+pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};
 pub use source::Format;
@@ -80,7 +82,8 @@ pub struct Study {
     pub seed: Option<u64>,
     /// What is legal but most likely not meant.
     pub warnings: Vec<Warning>,
-    /// SHA-256 of the file's bytes, in hexadecimal.
+    /// SHA-256 of the file's bytes, followed by those of every file of measured values, each once, in the order of the
+    /// dimensions; in hexadecimal. As `cat gap.toml pin.csv | sha256sum` prints it.
     pub sha256: String,
 }
 
@@ -178,13 +181,15 @@ impl Study {
         let tree = tree.map_err(failed)?;
         let file = file::StudyFile::deserialize(&tree).map_err(|error| failed(error.into_fault()))?;
         let built = build::build(&file, &source).map_err(failed)?;
+        let mut hash = Sha256::new_with_prefix(text.as_bytes());
+        built.data.iter().for_each(|bytes| hash.update(bytes));
         Ok(Self {
             title: file.title,
             problem: built.problem,
             options: built.options,
             seed: file.analysis.seed.map(serde_spanned::Spanned::into_inner),
             warnings: built.warnings,
-            sha256: Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
         })
     }
 }

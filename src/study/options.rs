@@ -26,6 +26,7 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
     let mut options = Options {
         accuracy: positive(&entry.accuracy, "accuracy")?,
         step: positive(&entry.step, "step")?,
+        seed: entry.seed.as_ref().map(|seed| *seed.get_ref()),
         budget: entry.budget.as_ref().map(|budget| usize::try_from(*budget.get_ref()).unwrap_or(usize::MAX)),
         ..Options::default()
     };

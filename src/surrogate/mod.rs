@@ -8,11 +8,13 @@
 
 mod correlated;
 mod inputs;
+mod relocation;
 mod sampled;
 mod shape;
 mod univariate;
 
 pub use inputs::Inputs;
+pub use relocation::Relocation;
 pub use shape::{InputShape, shapes};
 pub use univariate::Univariate;
 

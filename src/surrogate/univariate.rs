@@ -6,8 +6,8 @@ use crate::moments::Term;
 /// `g(u) = c1 u + c2 u^2 + c3 u^3 + c4 u^4`, of the degree that the nodes allow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Univariate {
-    coefficients: [f64; 4],
-    degree: usize,
+    pub(super) coefficients: [f64; 4],
+    pub(super) degree: usize,
 }
 
 impl Univariate {
@@ -88,6 +88,12 @@ impl Univariate {
     /// The largest coefficient, to scale by.
     pub fn largest(&self) -> f64 {
         self.coefficients.iter().fold(0.0, |largest, coefficient| largest.max(coefficient.abs()))
+    }
+
+    /// Whether nothing but the slope is above this part of it.
+    pub fn is_straight(&self, part: f64) -> bool {
+        let [slope, higher @ ..] = self.coefficients;
+        higher.iter().all(|coefficient| coefficient.abs() <= part * slope.abs())
     }
 
     /// The part as a term of the moments: a parabola by the input's moments, anything higher by its rule.

@@ -12,6 +12,7 @@ mod fits;
 mod formulas;
 mod implicit;
 mod journal;
+mod measured;
 mod methods;
 mod moments;
 mod pearson;

@@ -1,30 +1,35 @@
 //! From one line of `[dimensions]` to a dimension, or the two of a position: tolerance and distribution in their several forms.
 
 mod kinds;
+mod measured;
 mod mixture;
 mod position;
 mod spread;
 mod tolerance;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use serde_spanned::Spanned;
 
+use super::data::Data;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{DimensionEntry, Entries};
 use super::values::NominalEntry;
 use crate::dimension::{Dimension, DimensionError};
+use spread::Spread;
 
 /// The dimensions of this line, or what is wrong at which key below the dimension's; `model` knows the values that the model
-/// gives by itself.
+/// gives by itself. What is needed beside the study, and what is odd about that, is in `data`.
 pub(super) fn dimensions(
     name: &Spanned<String>,
     entry: &Spanned<DimensionEntry>,
     model: &dyn Fn(&str) -> Option<f64>,
+    data: &mut Data<'_>,
 ) -> Result<Vec<Dimension>, Fault> {
     match &entry.get_ref().position {
         Some(diameter) => position::position(name.get_ref(), diameter, entry, model),
-        None => dimension(name.get_ref(), entry, model(name.get_ref())).map(|dimension| vec![dimension]),
+        None => dimension(name.get_ref(), entry, model(name.get_ref()), data).map(|dimension| vec![dimension]),
     }
 }
 
@@ -37,22 +42,37 @@ pub(super) fn names(entries: &Entries<DimensionEntry>) -> Vec<Spanned<String>> {
     entries.0.iter().flat_map(of_line).collect()
 }
 
-fn dimension(name: &str, entry: &Spanned<DimensionEntry>, model: Option<f64>) -> Result<Dimension, Fault> {
+fn dimension(
+    name: &str,
+    entry: &Spanned<DimensionEntry>,
+    model: Option<f64>,
+    data: &mut Data<'_>,
+) -> Result<Dimension, Fault> {
     let (line, entry) = (entry.span(), entry.get_ref());
-    let nominal = nominal(entry, model, &line)?;
+    let law = measured::law(name, entry, data)?;
+    let mean =
+        law.as_ref().filter(|_| entry.tolerance.is_none() && entry.fit.is_none()).map(|law| law.distribution.mean());
+    let nominal = nominal(entry, model, mean, &line)?;
     let tolerance = tolerance::tolerance(entry, nominal)?;
-    built(name, entry, nominal, tolerance, line)
+    let distribution = match &law {
+        Some(law) => {
+            measured::outside(name, nominal, tolerance, law, data);
+            Some(Arc::clone(&law.distribution))
+        }
+        None => kinds::distribution(entry, nominal, tolerance)?,
+    };
+    built(name, entry, nominal, tolerance, distribution, line)
 }
 
-/// With the spread over this band, unit and step.
+/// With this spread over this band, unit and step.
 fn built(
     name: &str,
     entry: &DimensionEntry,
     nominal: f64,
     tolerance: Option<[f64; 2]>,
+    distribution: Spread,
     line: Range<usize>,
 ) -> Result<Dimension, Fault> {
-    let distribution = kinds::distribution(entry, nominal, tolerance)?;
     let whole = |error: DimensionError| fault(line, "", error.fault);
     let mut dimension = match distribution {
         None => Dimension::fixed(name, nominal),
@@ -69,7 +89,8 @@ fn built(
     Ok(dimension)
 }
 
-fn nominal(entry: &DimensionEntry, model: Option<f64>, line: &Range<usize>) -> Result<f64, Fault> {
+/// As given, or of the model, or the middle of the limits, or the mean of what was measured.
+fn nominal(entry: &DimensionEntry, model: Option<f64>, mean: Option<f64>, line: &Range<usize>) -> Result<f64, Fault> {
     let middle = entry.limits.as_ref().map(|limits| 0.5 * (limits.get_ref()[0] + limits.get_ref()[1]));
     let given = match &entry.nominal {
         None => None,
@@ -82,7 +103,7 @@ fn nominal(entry: &DimensionEntry, model: Option<f64>, line: &Range<usize>) -> R
             }
         },
     };
-    given.or(model).or(middle).ok_or_else(|| {
+    given.or(model).or(middle).or(mean).ok_or_else(|| {
         let instead = "write the value on the drawing, such as nominal = 10.0".to_owned();
         fault(line.clone(), "", StudyFault::MissingKey { key: "nominal".into(), instead })
     })

@@ -7,7 +7,7 @@ use serde_spanned::Spanned;
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
 use super::super::values::NominalEntry;
-use super::{built, conflict};
+use super::{built, conflict, kinds};
 use crate::dimension::Dimension;
 
 /// The dimensions that a position of this name declares.
@@ -29,7 +29,8 @@ pub(super) fn position(
     let nominal = nominal(entry, names.each_ref().map(|name| model(name)), &line.span())?;
     let band = radius.map(|radius| [-radius, radius]);
     let coordinate = |(coordinate, nominal): (&String, f64)| {
-        built(coordinate, entry, nominal, band, line.span()).map(|dimension| dimension.within_zone(name))
+        let distribution = kinds::distribution(entry, nominal, band)?;
+        built(coordinate, entry, nominal, band, distribution, line.span()).map(|dimension| dimension.within_zone(name))
     };
     names.iter().zip(nominal).map(coordinate).collect()
 }
@@ -77,7 +78,8 @@ fn alone(entry: &DimensionEntry) -> Result<(), Fault> {
             return Err(fault(span, key, conflict("position", key, "say the same thing: leave one out")));
         }
     }
-    let spreads: [(&'static str, Option<Range<usize>>); 3] = [
+    let spreads: [(&'static str, Option<Range<usize>>); 4] = [
+        ("measured", entry.measured.as_ref().map(Spanned::span)),
         ("distribution", entry.distribution.as_ref().map(Spanned::span)),
         ("moments", entry.moments.as_ref().map(Spanned::span)),
         ("shift", entry.shift.as_ref().map(Spanned::span)),

@@ -1,0 +1,333 @@
+//! Tables of measured values: CSV files beside a study.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::names::nearest;
+use crate::warning::Warning;
+
+/// Between columns, in the order in which they are tried: a comma may be a decimal one.
+const DELIMITERS: [u8; 3] = [b'\t', b';', b','];
+/// What stands where nothing was measured, in any case of letters.
+const MISSING: [&str; 5] = ["", "-", "na", "n/a", "nan"];
+
+/// A file of measured values that cannot be used: file, line, column, what is wrong, and what to write instead.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{}{}{}: {problem}", self.file, self.line.map(|line| format!(", line {line}")).unwrap_or_default(), self.column())]
+pub struct DataFault {
+    /// The file as the study names it.
+    pub file: String,
+    /// The line, from 1; None where the fault has none.
+    pub line: Option<u64>,
+    /// The column's name; None where the fault has none.
+    pub column: Option<String>,
+    /// What is wrong.
+    pub problem: Box<DataProblem>,
+}
+
+/// What is wrong with a file of measured values.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DataProblem {
+    /// The file cannot be read.
+    #[error("the file cannot be read: {reason}")]
+    Unreadable {
+        /// The operating system's words.
+        reason: String,
+    },
+    /// The file is not text, or in another encoding.
+    #[error("the file is not UTF-8 text")]
+    NotUtf8,
+    /// There is no header.
+    #[error("the file is empty")]
+    Empty,
+    /// A line with more or fewer cells than the header.
+    #[error("columns: {expected} in the header, {found} in this line")]
+    Ragged {
+        /// Cells of the line.
+        found: usize,
+        /// Cells of the header.
+        expected: usize,
+    },
+    /// A cell that is neither a number nor empty.
+    #[error("`{text}` is no number")]
+    NoNumber {
+        /// The cell.
+        text: String,
+        /// Whether a decimal comma is what is wrong with it.
+        comma: bool,
+    },
+    /// A number that is infinite, or beyond a double.
+    #[error("`{text}` is not finite")]
+    NotFinite {
+        /// The cell.
+        text: String,
+    },
+    /// Decimal commas and decimal points in one column.
+    #[error("`{text}` has a decimal {}, but line {other} a {}", mark(*comma), mark(!*comma))]
+    TwoMarks {
+        /// The cell.
+        text: String,
+        /// Whether it has the comma.
+        comma: bool,
+        /// The first line with the other mark.
+        other: u64,
+    },
+    /// There is no such column.
+    #[error("there is no column `{name}`")]
+    UnknownColumn {
+        /// As written.
+        name: String,
+        /// The most similar one.
+        nearest: Option<String>,
+        /// The columns that there are.
+        known: Vec<String>,
+    },
+    /// Two columns of the name.
+    #[error("the column `{name}` stands twice")]
+    ColumnTwice {
+        /// The name.
+        name: String,
+    },
+    /// Several columns, of which not just one holds numbers, and no name.
+    #[error("there are several columns, and the study names none")]
+    WhichColumn {
+        /// The columns that there are.
+        known: Vec<String>,
+    },
+    /// Too few values to tell a law from.
+    #[error("there are {found} values{}, and at least {least} are needed", besides(*.missing))]
+    TooFew {
+        /// Values in the column.
+        found: usize,
+        /// Cells without one.
+        missing: usize,
+        /// How many there must be.
+        least: usize,
+    },
+    /// All values are the same.
+    #[error("all {count} values are {value}: nothing varies")]
+    Constant {
+        /// How many there are.
+        count: usize,
+        /// What they are.
+        value: f64,
+    },
+}
+
+fn mark(comma: bool) -> &'static str {
+    if comma { "comma" } else { "point" }
+}
+
+fn besides(count: usize) -> String {
+    if count == 0 { String::new() } else { format!(" ({count} are missing)") }
+}
+
+impl DataFault {
+    fn column(&self) -> String {
+        self.column.as_ref().map(|column| format!(", column `{column}`")).unwrap_or_default()
+    }
+}
+
+impl DataProblem {
+    /// What to write instead, where that can be said.
+    pub fn help(&self) -> Option<String> {
+        let columns = |known: &[String]| {
+            format!("its columns are {}", known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))
+        };
+        match self {
+            Self::Unreadable { .. } => Some("the path starts from the study file's folder".into()),
+            Self::NotUtf8 => Some("save it as CSV in UTF-8".into()),
+            Self::Empty => Some("the first line names the columns, such as d_mm".into()),
+            Self::Ragged { .. } => {
+                Some("a decimal comma needs semicolons or tabs between the columns, a comma in text quotes".into())
+            }
+            Self::NoNumber { comma: true, .. } => {
+                Some("decimal commas need semicolons or tabs between the columns".into())
+            }
+            Self::NoNumber { .. } => Some("leave a cell empty, or write NA, where nothing was measured".into()),
+            Self::TwoMarks { .. } => Some("write all numbers of a column alike".into()),
+            Self::UnknownColumn { nearest: Some(name), known, .. } => {
+                Some(format!("did you mean `{name}`? {}", columns(known)))
+            }
+            Self::UnknownColumn { known, .. } => Some(columns(known)),
+            Self::WhichColumn { known } => Some(format!("write column = \"...\"; {}", columns(known))),
+            Self::Constant { value, .. } => Some(format!("a dimension that does not vary is {{ nominal = {value} }}")),
+            Self::TooFew { .. } => {
+                Some("measure more parts, or write nominal and tolerance instead of measured".into())
+            }
+            Self::NotFinite { .. } => Some("leave a cell empty, or write NA, where nothing was measured".into()),
+            Self::ColumnTwice { .. } => Some("one of the two needs another name".into()),
+        }
+    }
+}
+
+/// What the dimensions of a study read beside it, and what is odd about that.
+pub(super) struct Data<'s> {
+    folder: &'s Path,
+    /// Every file once, in the order of the dimensions.
+    files: Vec<(PathBuf, Arc<[u8]>)>,
+    pub(super) warnings: Vec<Warning>,
+}
+
+/// One column of measured values.
+pub(super) struct Column {
+    pub(super) name: String,
+    pub(super) values: Vec<f64>,
+    /// The line of each value.
+    pub(super) lines: Vec<u64>,
+    /// The lines without one.
+    pub(super) missing: Vec<u64>,
+}
+
+impl<'s> Data<'s> {
+    pub(super) fn of(folder: &'s Path) -> Self {
+        Self { folder, files: Vec::new(), warnings: Vec::new() }
+    }
+
+    /// The bytes of every file that was read.
+    pub(super) fn bytes(&self) -> Vec<Arc<[u8]>> {
+        self.files.iter().map(|(_, bytes)| Arc::clone(bytes)).collect()
+    }
+
+    /// A column of a file; without a name the only one, or the only one that holds nothing but numbers.
+    pub(super) fn column(&mut self, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
+        let bytes = self.read(file)?;
+        let fault = |line, problem| DataFault { file: file.to_owned(), line, column: None, problem: Box::new(problem) };
+        let text = std::str::from_utf8(&bytes).map_err(|error| {
+            let line = bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
+            fault(Some(line), DataProblem::NotUtf8)
+        })?;
+        let table = Table::parse(text).map_err(|(line, problem)| fault(line, problem))?;
+        let index = table.index(name).map_err(|problem| fault(None, problem))?;
+        table.numbers(index).map_err(|(line, problem)| {
+            let column = Some(table.names[index].clone());
+            DataFault { column, ..fault(Some(line), problem) }
+        })
+    }
+
+    fn read(&mut self, file: &str) -> Result<Arc<[u8]>, DataFault> {
+        let path = self.folder.join(file);
+        if let Some((_, bytes)) = self.files.iter().find(|(known, _)| *known == path) {
+            return Ok(Arc::clone(bytes));
+        }
+        let bytes: Arc<[u8]> = match std::fs::read(&path) {
+            Ok(bytes) => bytes.into(),
+            Err(error) => {
+                let problem = Box::new(DataProblem::Unreadable { reason: error.to_string() });
+                return Err(DataFault { file: file.to_owned(), line: None, column: None, problem });
+            }
+        };
+        self.files.push((path, Arc::clone(&bytes)));
+        Ok(bytes)
+    }
+}
+
+/// A table with a header, every row with its line.
+struct Table {
+    names: Vec<String>,
+    rows: Vec<(u64, csv::StringRecord)>,
+    /// Whether a comma in a cell can only be a decimal one.
+    decimal_commas: bool,
+}
+
+impl Table {
+    /// Blank lines count as nothing; there are no comments.
+    fn parse(text: &str) -> Result<Self, (Option<u64>, DataProblem)> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let delimiter = delimiter(text);
+        let mut rows = records(text, delimiter);
+        let Some((_, header)) = rows.next() else { return Err((None, DataProblem::Empty)) };
+        let names: Vec<String> = header.iter().map(str::to_owned).collect();
+        let rows: Vec<(u64, csv::StringRecord)> = rows.collect();
+        let expected = names.len();
+        if let Some((line, row)) = rows.iter().find(|(_, row)| row.len() != expected) {
+            return Err((Some(*line), DataProblem::Ragged { found: row.len(), expected }));
+        }
+        Ok(Self { names, rows, decimal_commas: delimiter != b',' })
+    }
+
+    fn index(&self, name: Option<&str>) -> Result<usize, DataProblem> {
+        let known = || self.names.iter().filter(|name| !name.is_empty()).cloned().collect::<Vec<_>>();
+        let Some(name) = name else {
+            let numeric = |&index: &usize| self.numbers(index).is_ok_and(|column| !column.values.is_empty());
+            let mut numeric = (0..self.names.len()).filter(|_| self.names.len() > 1).filter(numeric);
+            return match (self.names.len(), numeric.next(), numeric.next()) {
+                (1, _, _) => Ok(0),
+                (_, Some(index), None) => Ok(index),
+                _ => Err(DataProblem::WhichColumn { known: known() }),
+            };
+        };
+        let mut found = (0..self.names.len()).filter(|&index| self.names[index] == name.trim());
+        match (found.next(), found.next()) {
+            (Some(index), None) => Ok(index),
+            (Some(_), Some(_)) => Err(DataProblem::ColumnTwice { name: name.to_owned() }),
+            (None, _) => {
+                let nearest = nearest(name, self.names.iter().map(String::as_str)).map(str::to_owned);
+                Err(DataProblem::UnknownColumn { name: name.to_owned(), nearest, known: known() })
+            }
+        }
+    }
+
+    /// The numbers of a column, or the first line with something else.
+    fn numbers(&self, index: usize) -> Result<Column, (u64, DataProblem)> {
+        let name = self.names[index].clone();
+        let mut column = Column { name, values: Vec::new(), lines: Vec::new(), missing: Vec::new() };
+        // The first line with a decimal point, and with a decimal comma.
+        let mut marks: [Option<u64>; 2] = [None, None];
+        for (line, row) in &self.rows {
+            let text = row.get(index).unwrap_or("");
+            if MISSING.contains(&text.to_lowercase().as_str()) {
+                column.missing.push(*line);
+                continue;
+            }
+            let comma = text.contains(',');
+            let no_number =
+                || (*line, DataProblem::NoNumber { text: text.to_owned(), comma: comma && !self.decimal_commas });
+            if comma && !self.decimal_commas {
+                return Err(no_number());
+            }
+            let point = if comma { text.replacen(',', ".", 1) } else { text.to_owned() };
+            let value: f64 = point.parse().map_err(|_| no_number())?;
+            if !value.is_finite() {
+                return Err((*line, DataProblem::NotFinite { text: text.to_owned() }));
+            }
+            if point.contains('.') {
+                marks[usize::from(comma)].get_or_insert(*line);
+                if let Some(other) = marks[usize::from(!comma)] {
+                    return Err((*line, DataProblem::TwoMarks { text: text.to_owned(), comma, other }));
+                }
+            }
+            column.values.push(value);
+            column.lines.push(*line);
+        }
+        Ok(column)
+    }
+}
+
+/// What separates the columns: the first candidate that splits the header and the row after it alike, or else the header
+/// alone. A comma where nothing does: there is one column.
+fn delimiter(text: &str) -> u8 {
+    let cells = |delimiter: u8| {
+        let mut rows = records(text, delimiter).map(|(_, row)| row.len());
+        (rows.next().unwrap_or(0), rows.next())
+    };
+    let splits = |delimiter: &u8| cells(*delimiter).0 > 1;
+    let alike = |delimiter: &u8| {
+        let (header, row) = cells(*delimiter);
+        header > 1 && row == Some(header)
+    };
+    let found = DELIMITERS.iter().find(|delimiter| alike(delimiter));
+    found.or_else(|| DELIMITERS.iter().find(|delimiter| splits(delimiter))).copied().unwrap_or(b',')
+}
+
+fn records(text: &str, delimiter: u8) -> impl Iterator<Item = (u64, csv::StringRecord)> + '_ {
+    let reader = csv::ReaderBuilder::new()
+        .delimiter(delimiter)
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    // UTF-8 in memory, with rows of any length, has no errors left.
+    reader.into_records().filter_map(Result::ok).map(|row| (row.position().map_or(0, csv::Position::line), row))
+}
