@@ -145,8 +145,9 @@ impl Rule {
         let mut nodes: Vec<f64> = (0..n).map(|i| eigen.S()[i]).collect();
         let mut weights: Vec<f64> = (0..n).map(|i| eigen.U()[(0, i)].powi(2)).collect();
         // The eigenvalues are good beside the largest of them, the weights beside 1; a far node of a long tail needs
-        // its own digits, because high powers of it count.
-        for i in 0..n {
+        // its own digits, because high powers of it count. One that weighs more has them, and the polynomials would
+        // rather lose some where nodes lie close together.
+        for i in (0..n).filter(|&i| weights[i] < LIGHT) {
             let left = if i > 0 { nodes[i] - nodes[i - 1] } else { f64::INFINITY };
             let right = if i + 1 < n { nodes[i + 1] - nodes[i] } else { f64::INFINITY };
             if let Some((node, weight)) = polished(nodes[i], 1e-3 * left.min(right), diagonal, squared_off_diagonal) {
@@ -166,6 +167,9 @@ impl Rule {
         Self { nodes, weights }
     }
 }
+
+/// A weight below this has lost digits as the square of an eigenvector's component.
+const LIGHT: f64 = 1e-4;
 
 /// A node after one step of Newton's method towards the root of the last orthogonal polynomial, and its weight: one over the
 /// sum of the squares of the orthonormal polynomials below it (Christoffel), in which nothing cancels. None where the step

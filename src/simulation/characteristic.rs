@@ -131,11 +131,12 @@ fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
     estimates
 }
 
-/// The standard error of the mean of independent replicates; None where one has no value.
+/// The standard error of the mean of independent replicates, widened so that two of it are Student's 95 %; None where one
+/// has no value.
 fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let values: Vec<f64> = values.collect::<Option<_>>()?;
     let summary = Summary::of(&values);
-    (values.len() > 1).then(|| summary.sigma() / (values.len() as f64).sqrt())
+    (values.len() > 1).then(|| 0.5 * STUDENT * summary.sigma() / (values.len() as f64).sqrt())
 }
 
 /// A quantile; its standard error is half the distance of the quantiles one standard deviation of the binomial count below
@@ -172,7 +173,7 @@ fn yield_of(limits: &SpecLimits, replicates: &[Replicate], known: u64, answered:
         let n = replicate.summary.count();
         (n > 0).then(|| 1.0 - rejected(replicate) as f64 / n as f64)
     })) {
-        Some(error) if !few && error > 0.0 => [(value - STUDENT * error).max(0.0), (value + STUDENT * error).min(1.0)],
+        Some(error) if !few && error > 0.0 => [(value - 2.0 * error).max(0.0), (value + 2.0 * error).min(1.0)],
         _ => wilson(within as f64, known as f64),
     };
     let bounds = [within, within + (answered - known)].map(|most| most as f64 / answered as f64);

@@ -10,7 +10,7 @@ use sensitol::distribution::{
     Distribution, DistributionError, Jacobi, Measured, PearsonLaw, Probability, Resample, Sample, extreme, outliers,
 };
 use sensitol::moments::Interactions;
-use sensitol::surrogate::{Relocation, Surrogate, Univariate};
+use sensitol::surrogate::{Inputs, Relocation, Surrogate, Univariate};
 use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, Study, StudyError, analyze};
 
 use super::support::{close, data, relative, repository};
@@ -443,7 +443,7 @@ fn resampled_moments_are_those_of_enumeration() {
         sensitol::surrogate::InputShape { moments: to.moments, rule: Arc::new(to.rule) },
         sensitol::surrogate::shapes([&coin as &dyn Distribution]).remove(0),
     ];
-    let found = surrogate.relocated(&moved).contributions(&shapes).unwrap().moments;
+    let found = surrogate.relocated(&moved).contributions(&Inputs::independent(shapes.to_vec())).unwrap().moments;
     let mut outcomes = Vec::new();
     for (&u, &count) in law.sample().standard().iter().zip(&counts) {
         for z in [-1.0f64, 1.0] {
