@@ -10,6 +10,7 @@ pub mod dimension;
 pub mod distribution;
 pub mod error;
 pub mod evaluation;
+pub mod extremes;
 #[cfg(feature = "journal")]
 pub mod journal;
 pub mod method;

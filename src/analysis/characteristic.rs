@@ -2,6 +2,7 @@
 
 use crate::capability::{Capability, Law};
 use crate::characteristic::Characteristic;
+use crate::extremes::Extremes;
 use crate::method::{Order, Outcome};
 use crate::moments::{Contributions, Moments};
 use crate::pearson::PearsonError;
@@ -25,6 +26,8 @@ pub struct CharacteristicAnalysis {
     /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
     /// band that hurts.
     pub worst_case: Option<[f64; 2]>,
+    /// The least and the greatest value in the box of the tolerance bands, where they were searched and found.
+    pub extremes: Option<Extremes>,
     /// `sqrt(sum of (slope x half band)^2)`; three sigma where a dimension has no band.
     pub rss: Option<f64>,
     /// For every dimension of the problem, in order.
@@ -102,7 +105,7 @@ impl CharacteristicAnalysis {
             moments.map(|moments| Capability::of(law, moments.mean(), moments.sigma(), characteristic.limits()))
         };
         let normal = moments.and_then(|moments| capability(&Law::normal(&moments).ok()?));
-        let (worst_case, rss) = extremes(problem, plan.varying(), &sensitivities, fitted.nominal);
+        let (worst_case, rss) = first_order(problem, plan.varying(), &sensitivities, fitted.nominal);
         Self {
             nominal: fitted.nominal,
             moments,
@@ -111,6 +114,7 @@ impl CharacteristicAnalysis {
             law,
             characteristic,
             worst_case,
+            extremes: None,
             rss,
             sensitivities,
             interactions,
@@ -188,7 +192,7 @@ fn interactions(
 }
 
 /// The linear worst case and the RSS; None where a slope is missing.
-fn extremes(
+fn first_order(
     problem: &Problem,
     varying: &[usize],
     sensitivities: &[Sensitivity],

@@ -18,7 +18,8 @@ use crate::study::{Externals, JournalPlace, Study};
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
-    let study = study::read(&asked.study, externals(asked, look, given.clone()))?;
+    let mut study = study::read(&asked.study, externals(asked, look, given.clone()))?;
+    study.options.extremes |= asked.extremes;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }

@@ -108,6 +108,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with = "journal")]
     pub(super) points: Option<PathBuf>,
 
+    /// Search the true extremes in the box of the tolerance bands too, at some 2N evaluations or more for either side
+    #[arg(long)]
+    pub(super) extremes: bool,
+
     /// Exit with 1 when a characteristic misses its target_yield, or its yield is unknown
     #[arg(long)]
     pub(super) check: bool,

@@ -26,6 +26,8 @@ pub struct Options {
     pub stencil: Option<Stencil>,
     /// Whether dimensions without tolerance get a sensitivity too, at two evaluations each.
     pub all_sensitivities: bool,
+    /// Whether the true extremes in the box of the tolerance bands are searched, at further evaluations.
+    pub extremes: bool,
 }
 
 /// Which interactions are examined.
@@ -63,6 +65,7 @@ impl Default for Options {
             pairs: None,
             stencil: None,
             all_sensitivities: false,
+            extremes: false,
         }
     }
 }

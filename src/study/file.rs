@@ -97,6 +97,7 @@ pub(super) struct AnalysisEntry {
     pub(super) pairs: Option<Spanned<PairsEntry>>,
     pub(super) stencil: Option<Spanned<String>>,
     pub(super) sensitivities: Option<Spanned<String>>,
+    pub(super) extremes: Option<bool>,
     pub(super) seed: Option<Spanned<u64>>,
 }
 

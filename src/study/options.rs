@@ -26,6 +26,7 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
     let mut options = Options {
         accuracy: positive(&entry.accuracy, "accuracy")?,
         step: positive(&entry.step, "step")?,
+        extremes: entry.extremes.unwrap_or(false),
         budget: entry.budget.as_ref().map(|budget| usize::try_from(*budget.get_ref()).unwrap_or(usize::MAX)),
         ..Options::default()
     };

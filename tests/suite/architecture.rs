@@ -11,6 +11,7 @@ const LAYERS: &[&[&str]] = &[
     &["error"],
     &["study", "report"],
     &["analysis", "probe"],
+    &["extremes"],
     &["method"],
     &["evaluation"],
     &["problem"],

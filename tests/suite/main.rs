@@ -6,6 +6,7 @@ mod capability;
 mod cli;
 mod distributions;
 mod docs;
+mod extremes;
 mod formulas;
 mod journal;
 mod methods;
