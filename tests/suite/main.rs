@@ -4,6 +4,7 @@ mod analysis;
 mod architecture;
 mod capability;
 mod cli;
+mod derivatives;
 mod distributions;
 mod docs;
 mod extremes;

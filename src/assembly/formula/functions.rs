@@ -2,7 +2,7 @@
 
 /// A function or operator of one argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Unary {
+pub(crate) enum Unary {
     /// `-x`
     Negate,
     /// `abs(x)`
@@ -43,7 +43,7 @@ pub(super) enum Unary {
 
 /// A function or operator of two arguments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Binary {
+pub(crate) enum Binary {
     /// `x + y`
     Add,
     /// `x - y`
@@ -137,7 +137,7 @@ pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("
 impl Unary {
     /// The function on one number.
     #[inline]
-    pub(super) fn apply(self, x: f64) -> f64 {
+    pub(crate) fn apply(self, x: f64) -> f64 {
         match self {
             Self::Negate => -x,
             Self::Abs => x.abs(),
@@ -177,7 +177,7 @@ impl Binary {
     /// The function on two numbers. NaN in is always NaN out: where IEEE 754 lets it vanish (`NaN ^ 0`, a comparison,
     /// `min`), a domain error would pass for a result.
     #[inline]
-    pub(super) fn apply(self, x: f64, y: f64) -> f64 {
+    pub(crate) fn apply(self, x: f64, y: f64) -> f64 {
         let truth = |is: bool| if x.is_nan() || y.is_nan() { f64::NAN } else { f64::from(u8::from(is)) };
         let guarded = |value: f64| if x.is_nan() || y.is_nan() { f64::NAN } else { value };
         match self {

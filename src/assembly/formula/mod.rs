@@ -10,16 +10,22 @@
 //!
 //! An infinity may occur on the way (`1/(1/a + 1/b)` at `a = 0` is 0), NaN never vanishes, and a result that is not
 //! finite is an error of that point.
+//!
+//! The same programs run on other things than columns of numbers, whatever can be a `Scalar`: on a [`Jet`] they give
+//! exact derivatives.
 
 mod batch;
 mod error;
 mod functions;
 mod graph;
+mod jet;
 mod lexer;
 mod parser;
 mod program;
+mod scalar;
 mod set;
 
 pub use error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
+pub use jet::Jet;
 pub use parser::{Formula, is_reserved};
 pub use set::{FormulaSet, Meaning};

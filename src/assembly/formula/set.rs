@@ -7,8 +7,10 @@ use super::batch::{LANES, Machine};
 use super::error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
 use super::functions::{Binary, select};
 use super::graph::{Graph, NodeId};
+use super::jet::Jet;
 use super::parser::{Formula, Node};
 use super::program::Program;
+use super::scalar::Scalar;
 use crate::names::nearest;
 
 /// What a name stands for, where it is no formula.
@@ -147,6 +149,18 @@ impl FormulaSet {
                 values.enumerate().for_each(|(lane, value)| result(formula, first + lane, value));
             });
         }
+    }
+
+    /// Some formulas at one point, with exact derivatives; `variable` gives a variable's value and how it moves.
+    ///
+    /// Cost: about what ten evaluations take.
+    pub fn jets(&self, formulas: &[usize], variable: impl Fn(usize) -> Jet) -> Vec<Jet> {
+        self.evaluate_scalar(formulas, variable)
+    }
+
+    /// Some formulas at one point, on any kind of value.
+    pub(crate) fn evaluate_scalar<S: Scalar>(&self, formulas: &[usize], variable: impl Fn(usize) -> S) -> Vec<S> {
+        self.program(formulas).evaluate(&variable, &mut Vec::new())
     }
 
     fn program(&self, formulas: &[usize]) -> Arc<Program> {
