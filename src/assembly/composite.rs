@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
 use super::process::Adapter;
-use super::{Ask, AssemblyFunction, EvaluationError, Input, Output, Points, Responses, Run, Signature, in_blocks};
+use super::{
+    Ask, AssemblyFunction, Bounds, EvaluationError, Input, Output, Points, Responses, Run, Signature, in_blocks,
+};
 
 /// Where a model's input comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -189,6 +191,15 @@ impl AssemblyFunction for Composite {
         match &self.model {
             Some(model) if !needed.is_empty() => model.function.prepare(&needed),
             _ => Ok(None),
+        }
+    }
+
+    fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
+        match self.outputs[output] {
+            Origin::Formula(formula) if self.needed(&[self.outputs[output]]).is_empty() => {
+                Some(self.formulas.bounds(formula, region))
+            }
+            _ => None,
         }
     }
 

@@ -4,7 +4,8 @@ use super::answers::Answers;
 use super::climb::Climb;
 use super::model::{Model, Region};
 use super::start::Starts;
-use super::{Coordinate, Ended, Extreme, Extremes, Place};
+use super::{Coordinate, Ended, Extreme, Extremes, Place, Proof, proof};
+use crate::assembly::Run;
 use crate::method::Outcome;
 use crate::plan::Point;
 use crate::problem::Problem;
@@ -15,6 +16,13 @@ const FORETOLD: f64 = 1e-9;
 const CLIMBS: usize = 2;
 /// A start whose value is farther from the best than this part of the range is not worth a search.
 const STRONG: f64 = 0.5;
+
+/// A bound is as good as an extreme when it lies no farther beyond it than this part of the range and this part of the values.
+const PROVEN: f64 = 1e-9;
+const ROUNDING: f64 = 1e-12;
+/// Boxes of either side, as long as there are few dimensions.
+const BOXES: usize = 20_000;
+const FEW: usize = 10;
 
 pub(super) struct Task {
     characteristic: usize,
@@ -144,8 +152,56 @@ impl Task {
         from.map(|(x, y)| Climb::new(&self.region, &self.surrogate, x, y)).collect()
     }
 
+    /// Bounds both extremes by interval arithmetic, where the function has bounds; and points that lie beyond them, if it comes
+    /// upon any.
+    pub(super) fn prove(
+        &self,
+        problem: &Problem,
+        answers: &Answers<'_>,
+        run: &Run<'_>,
+    ) -> (Option<Proof>, Vec<Vec<f64>>) {
+        let output = problem.outputs()[self.characteristic];
+        let everywhere = |region: &[[f64; 2]]| {
+            let mut all: Vec<[f64; 2]> = self.centre.iter().map(|&x| [x, x]).collect();
+            self.dimensions.iter().zip(region).for_each(|(&d, &band)| all[d] = band);
+            let mut bounds = problem.function().bounds(output, &all)?;
+            bounds.slopes = self.dimensions.iter().map(|&d| bounds.slopes[d]).collect();
+            Some(bounds)
+        };
+        let region: Vec<[f64; 2]> =
+            (0..self.region.len()).map(|d| [self.region.lower[d], self.region.upper[d]]).collect();
+        let values = self.known(answers).map(|(_, value)| value);
+        let [least, greatest] =
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], y| [least.min(y), greatest.max(y)]);
+        if answers.spent.stopped || least > greatest || everywhere(&region).is_none() {
+            return (None, Vec::new());
+        }
+        let allowed = PROVEN * (greatest - least) + ROUNDING * least.abs().max(greatest.abs());
+        let limit = BOXES * FEW / self.region.len().max(FEW);
+        let side = |sign: f64, best: f64| {
+            let bounds = |region: &[[f64; 2]]| {
+                let bounds = everywhere(region).expect("a function has bounds everywhere or nowhere");
+                if sign > 0.0 { bounds } else { bounds.negated() }
+            };
+            proof::least(&bounds, &region, sign * best, allowed, limit, &|| run.stopped())
+        };
+        let (below, above) = (side(1.0, least), side(-1.0, greatest));
+        let proof = Proof {
+            bounds: [below.lower.min(least), (-above.lower).max(greatest)],
+            proven: below.lower >= least - allowed && -above.lower <= greatest + allowed,
+            boxes: below.boxes + above.boxes,
+        };
+        (Some(proof), below.better.into_iter().chain(above.better).collect())
+    }
+
     /// The best that is known.
-    pub(super) fn result(&self, problem: &Problem, answers: &Answers<'_>, asked: usize) -> Option<Extremes> {
+    pub(super) fn result(
+        &self,
+        problem: &Problem,
+        answers: &Answers<'_>,
+        asked: usize,
+        proof: Option<Proof>,
+    ) -> Option<Extremes> {
         let least = self.known(answers).min_by(|a, b| a.1.total_cmp(&b.1))?;
         let greatest = self.known(answers).max_by(|a, b| a.1.total_cmp(&b.1))?;
         let failures = &answers.failures[self.characteristic];
@@ -160,7 +216,7 @@ impl Task {
                 spent if spent.over_budget => Ended::Budget,
                 _ => Ended::Converged,
             },
-            proof: None,
+            proof,
         })
     }
 

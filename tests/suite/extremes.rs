@@ -298,3 +298,113 @@ fn nothing_is_searched_unless_asked() {
     assert_eq!((analysis.evaluations, &analysis.characteristics[0].extremes), (5, &None));
     assert!(analysis.warnings.iter().all(|warning| warning.code() != "not-proven"));
 }
+
+fn of_formula(dimensions: &str, formula: &str, method: Method) -> Extremes {
+    let study = format!("[dimensions]\n{dimensions}\n[characteristics]\ny = {{ formula = \"{formula}\" }}\n");
+    let study = Study::from_toml(&study, "y.toml").unwrap();
+    searched(&study.problem, method).characteristics.remove(0).extremes.unwrap()
+}
+
+/// A proof rests on interval arithmetic alone: it names bounds that lie no farther beyond the extremes than a part in 10^9 of
+/// their range.
+#[test]
+fn extremes_of_formulas_are_proven() {
+    let abc = "a = { nominal = 10, tolerance = 0.3 }\nb = { nominal = 2, tolerance = 0.1 }\nc = { nominal = -1, tolerance = [-0.1, 0.5] }";
+    let cases: &[(&str, [f64; 2])] = &[
+        ("a - 2*b + c", [9.7 - 4.2 - 1.1, 10.3 - 3.8 - 0.5]),
+        // Interior: 0 at a = 10.1, and (10.1 - 9.7)^2 at the far end.
+        ("(a - 10.1)^2", [0.0, 0.16]),
+        // Along a line: 0 wherever a = 5 b.
+        ("(a - 5*b)^2", [0.0, 0.64]),
+        ("sin(a)*cos(b)", [0.0; 2]),
+        ("abs(a - 10.07) + max(b, 2.05)", [2.05, 0.37 + 2.1]),
+        ("if(a < 10, 1, 2) + c", [1.0 - 1.1, 2.0 - 0.5]),
+        ("a/b^2 + exp(c/a)", [0.0; 2]),
+        ("floor(a) - hypot(b, c)", [9.0 - 2.1f64.hypot(1.1), 10.0 - 1.9f64.hypot(0.5)]),
+        ("5", [5.0, 5.0]),
+    ];
+    for &(formula, exact) in cases {
+        for method in [Method::Rss, Method::SixN] {
+            let found = of_formula(abc, formula, method);
+            let proof = found.proof.as_ref().unwrap();
+            assert!(found.proven(), "{formula}: {found:?}");
+            let range = found.greatest.value - found.least.value;
+            let allowed = 1e-9 * range + 1e-12 * found.least.value.abs().max(found.greatest.value.abs());
+            assert!(found.least.value - allowed <= proof.bounds[0] && proof.bounds[0] <= found.least.value);
+            assert!(found.greatest.value <= proof.bounds[1] && proof.bounds[1] <= found.greatest.value + allowed);
+            for (found, exact) in ends(&found).into_iter().zip(exact).filter(|_| exact != [0.0; 2]) {
+                close(found, exact, 1e-9, 1.0);
+            }
+        }
+    }
+}
+
+/// A linear characteristic by formulas: the linear worst case, in four evaluations and a few boxes.
+#[test]
+fn linear_formulas_equal_the_linear_worst_case() {
+    let study = Study::read(&repository("examples/quick-return-published/study.toml")).unwrap();
+    let analysis = searched(&study.problem, Method::SecondOrder);
+    for one in &analysis.characteristics {
+        let found = one.extremes.as_ref().unwrap();
+        assert!(found.proven() && found.evaluations == 4);
+        // Two calls and the middle, for either side.
+        assert_eq!(found.proof.as_ref().unwrap().boxes, 6);
+        for (found, linear) in ends(found).into_iter().zip(one.worst_case.unwrap()) {
+            relative(found, linear, 1e-13);
+        }
+    }
+    assert!(analysis.warnings.iter().all(|warning| warning.code() != "not-proven"));
+}
+
+/// A search by moves along coordinates ends in a valley beside the deepest one; the proof comes upon the deeper, and the search
+/// goes on from there.
+#[test]
+fn a_proof_mends_a_search() {
+    // Waves of which the deepest within -3 .. 3 is at -2.6, far from where any slope at 0 leads.
+    let waves = "cos(3*a + 1.6) + 0.1*a + 0.02*(a + b)^2";
+    let exact = |x: [f64; 2]| (3.0 * x[0] + 1.6).cos() + 0.1 * x[0] + 0.02 * (x[0] + x[1]).powi(2);
+    let grid = |count: usize| (0..=count).map(move |i| -3.0 + 6.0 * i as f64 / count as f64);
+    let sampled = grid(2000).flat_map(|a| grid(200).map(move |b| exact([a, b]))).fold(f64::INFINITY, f64::min);
+    for method in [Method::Rss, Method::SecondOrder, Method::Full] {
+        let found = of_formula("a = { nominal = 0, tolerance = 3 }\nb = { nominal = 0, tolerance = 3 }", waves, method);
+        assert!(found.proven() && found.least.value <= sampled, "{found:?} and {sampled}");
+        // The grid is as near as its steps: slope and curvature below 10 over 0.0015.
+        close(found.least.value, sampled, 1e-4, 1.0);
+    }
+}
+
+/// The engine written as formulas. Its least values are vertices and proven; the greatest lie along a line, which no number of
+/// boxes covers: the bounds say how far off they can be.
+#[test]
+fn bounds_are_named_where_a_proof_does_not_end() {
+    let angles: String = (1..=4)
+        .map(|n| {
+            format!(
+                "phi{n} = {{ nominal = {}, tolerance = 0.00872 }}\n",
+                [0.0, 1.0, 3.0, 2.0][n - 1] * std::f64::consts::PI
+            )
+        })
+        .collect();
+    let dimensions =
+        format!("{angles}t = {{ nominal = 0, tolerance = 0.00872 }}\nR = {{ nominal = 0.0425, tolerance = 4e-5 }}");
+    let share = |n: usize| format!("cos(t + phi{n}) + R/0.1345*cos(2*(t + phi{n}))");
+    let formula = (1..=4).map(share).collect::<Vec<_>>().join(" + ");
+    let found = of_formula(&dimensions, &formula, Method::SecondOrder);
+    let proof = found.proof.as_ref().unwrap();
+    assert!(!found.proven());
+    close(proof.bounds[0], found.least.value, 1e-11, 1.0);
+    assert!(proof.bounds[1] > found.greatest.value && proof.bounds[1] < found.greatest.value + 1e-3);
+    // All shafts at their place: 4 R/L, R at its upper end.
+    close(found.greatest.value, 4.0 * 0.04254 / 0.1345, 1e-9, 1.0);
+}
+
+/// Where the formula has no value in part of the box, the others are enclosed.
+#[test]
+fn a_proof_leaves_out_what_has_no_value() {
+    let found = of_formula("a = { nominal = 1, tolerance = 1.5 }", "2 - sqrt(a)", Method::SecondOrder);
+    let proof = found.proof.as_ref().unwrap();
+    assert!(found.failed > 0);
+    relative(found.least.value, 2.0 - 2.5f64.sqrt(), 1e-12);
+    // The greatest value, 2 at the very edge of the domain, is approached only.
+    assert!(found.greatest.value > 1.9 && proof.bounds[1] >= found.greatest.value && proof.bounds[1] <= 2.0 + 1e-12);
+}

@@ -9,6 +9,7 @@ mod distributions;
 mod docs;
 mod extremes;
 mod formulas;
+mod intervals;
 mod journal;
 mod methods;
 mod moments;
