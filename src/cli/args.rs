@@ -41,6 +41,9 @@ pub(super) enum Command {
     /// The built-in models, or one of them with its inputs and outputs
     #[command(after_help = "Example: sensitol models engine-balance")]
     Models(ModelsArgs),
+    /// The JSON Schema of study files
+    #[command(after_help = "Example: sensitol schema -o study.schema.json")]
+    Schema(SchemaArgs),
     /// The Pearson distribution of four moments: densities, probabilities, quantiles
     #[command(after_help = "Example: sensitol pearson --skewness 0.5 --kurtosis 3.4 --sf 4 --upper-quantile 1e-6,1e-9")]
     Pearson(PearsonArgs),
@@ -154,6 +157,13 @@ pub(super) struct ModelsArgs {
 
     #[command(flatten)]
     pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SchemaArgs {
+    /// Write to a file instead of stdout
+    #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
+    pub(super) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -16,6 +16,7 @@ mod plan;
 mod points;
 mod probe;
 mod progress;
+mod schema;
 mod study;
 
 use std::ffi::OsString;
@@ -52,6 +53,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Models(asked) => models::run(asked, style),
         Command::Probe(asked) => probe::run(asked, style),
         Command::Journal(asked) => journal::run(asked, style),
+        Command::Schema(asked) => schema::run(asked),
         Command::Pearson(asked) => pearson::run(asked, style),
     };
     let exit = result.unwrap_or_else(|failure| {

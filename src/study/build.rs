@@ -3,13 +3,12 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use serde_spanned::Spanned;
-
 use super::dimension::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::model::{ModelOf, model, process};
 use super::source::Source;
+use super::spanned::Spanned;
 use crate::assembly::formula::{Formula, FormulaError, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, Input, Parts};

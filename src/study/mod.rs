@@ -11,11 +11,16 @@ mod externals;
 mod file;
 mod model;
 mod options;
+#[cfg(feature = "cli")]
+mod schema;
 mod source;
+mod spanned;
 mod tree;
 
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};
+#[cfg(feature = "cli")]
+pub use schema::schema;
 pub use source::Format;
 
 use std::path::{Path, PathBuf};
@@ -146,7 +151,7 @@ impl Study {
             title: file.title,
             problem: built.problem,
             options: built.options,
-            seed: file.analysis.seed.map(serde_spanned::Spanned::into_inner),
+            seed: file.analysis.seed.map(spanned::Spanned::into_inner),
             warnings: built.warnings,
             sha256: Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect(),
         })

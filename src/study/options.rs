@@ -1,13 +1,15 @@
 //! From `[analysis]` to options.
 
-use serde_spanned::Spanned;
-
 use super::error::{Fault, StudyFault, fault};
 use super::file::{AnalysisEntry, PairsEntry};
+use super::spanned::Spanned;
 use crate::method::{ALL as METHODS, Method, Options, Pairs};
 use crate::names::nearest;
 use crate::plan::Stencil;
 use crate::problem::Problem;
+
+/// Which sensitivities can be asked for.
+pub(super) const SENSITIVITIES: [&str; 2] = ["all", "varying"];
 
 pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Options, Fault> {
     let word = |given: &Spanned<String>, key: &str, what: &'static str, known: &[&str]| {
@@ -51,7 +53,7 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
         options.all_sensitivities = match sensitivities.get_ref().as_str() {
             "all" => true,
             "varying" => false,
-            _ => return Err(word(sensitivities, "sensitivities", "choice of sensitivities", &["all", "varying"])),
+            _ => return Err(word(sensitivities, "sensitivities", "choice of sensitivities", &SENSITIVITIES)),
         };
     }
     // Whether the options fit each other and the study shows at its plan; what is at fault is most likely the pairs.

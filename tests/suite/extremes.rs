@@ -356,6 +356,25 @@ fn linear_formulas_equal_the_linear_worst_case() {
     assert!(analysis.warnings.iter().all(|warning| warning.code() != "not-proven"));
 }
 
+/// Closed form: the housing's coefficient is the greatest both where it is coldest and where it is hottest.
+#[test]
+fn thermal_clearance_has_its_extremes() {
+    let study = Study::read(&repository("examples/thermal-clearance/study.toml")).unwrap();
+    let least = 120.12 * (1.0 - 40.0 * 23.5e-6) - 120.02 * (1.0 - 40.0 * 11.2e-6);
+    let greatest = 120.18 * (1.0 + 60.0 * 23.5e-6) - 119.86 * (1.0 + 60.0 * 11.2e-6);
+    for method in [Method::Rss, Method::SecondOrder, Method::SixN, Method::Full] {
+        let analysis = searched(&study.problem, method);
+        let one = &analysis.characteristics[0];
+        let found = one.extremes.as_ref().unwrap();
+        assert!(found.proven(), "{method:?}");
+        // Differences of lengths of 120: their rounding errors.
+        close(found.least.value, least, 1e-13, 1.0);
+        close(found.greatest.value, greatest, 1e-13, 1.0);
+        let linear = one.worst_case.unwrap();
+        assert!(found.least.value < linear[0] && linear[1] < found.greatest.value);
+    }
+}
+
 /// A search by moves along coordinates ends in a valley beside the deepest one; the proof comes upon the deeper, and the search
 /// goes on from there.
 #[test]

@@ -81,10 +81,10 @@ proptest! {
             if !bounds.value.is_whole() {
                 continue;
             }
-            for d in 0..3 {
+            for (d, band) in region.iter().enumerate() {
                 let along = |e: usize| if e == d { [1.0; 2] } else { [0.0; 2] };
                 let jet = set.jets(&[0], |e| Jet::variable(x[e], along(e)))[0];
-                if let (true, Some(slope)) = (region[d][0] < region[d][1], jet.first(0)) {
+                if let (true, Some(slope)) = (band[0] < band[1], jet.first(0)) {
                     let allowed = 1e-9 * slope.abs() + 1e-12;
                     let slopes = bounds.slopes[d];
                     prop_assert!(
@@ -106,7 +106,8 @@ fn ends(text: &str, a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 #[test]
 fn single_operations_are_tight() {
     use std::f64::consts::PI;
-    let cases: &[(&str, [f64; 2], [f64; 2], [f64; 2])] = &[
+    type Ends = [f64; 2];
+    let cases: &[(&str, Ends, Ends, Ends)] = &[
         ("a + b", [1.0, 2.0], [-0.5, 0.25], [0.5, 2.25]),
         ("a - b", [1.0, 2.0], [-0.5, 0.25], [0.75, 2.5]),
         ("a*b", [-1.0, 2.0], [-3.0, 5.0], [-6.0, 10.0]),

@@ -18,5 +18,6 @@ mod plans;
 mod probe;
 mod process;
 mod published;
+mod schema;
 mod studies;
 mod support;

@@ -5,11 +5,12 @@ mod tolerance;
 
 use std::ops::Range;
 
-use serde_spanned::Spanned;
-
 use super::error::{Fault, StudyFault, fault};
 use super::file::DimensionEntry;
+use super::spanned::Spanned;
 use crate::dimension::{Dimension, DimensionError};
+#[cfg(feature = "cli")]
+pub(super) use spread::KINDS;
 
 /// The dimension of this line, or what is wrong at which key below the dimension's; `model` is the value that the model gives it by itself.
 pub(super) fn dimension(name: &str, entry: &Spanned<DimensionEntry>, model: Option<f64>) -> Result<Dimension, Fault> {

@@ -3,10 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use serde_spanned::Spanned;
-
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
+use super::super::spanned::Spanned;
 use super::conflict;
 use crate::dimension::DimensionFault;
 use crate::distribution::{CentralMoments, Distribution, DistributionError, Normal, Uniform};
@@ -17,7 +16,7 @@ const SIGMAS: f64 = 3.0;
 /// Two ways of giving sigma agree when they differ by no more than this.
 const AGREE: f64 = 1e-9;
 /// The kinds of distribution.
-const KINDS: [&str; 2] = ["normal", "uniform"];
+pub(in crate::study) const KINDS: [&str; 2] = ["normal", "uniform"];
 
 /// The distribution of this line; None when it does not vary.
 pub(super) fn distribution(
