@@ -112,7 +112,7 @@ pub(super) struct AnalyzeArgs {
     pub(super) points: Option<PathBuf>,
 
     /// Search the true extremes in the box of the tolerance bands too, at some 2N evaluations or more for either side
-    #[arg(long)]
+    #[arg(long, conflicts_with = "points")]
     pub(super) extremes: bool,
 
     /// Exit with 1 when a characteristic misses its target_yield, or its yield is unknown

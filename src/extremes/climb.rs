@@ -112,8 +112,9 @@ impl<'r> Climb<'r> {
             .map(|d| self.line(d).into_iter().filter_map(|x| Some((x, value(&self.with(d, x))?))).collect())
             .collect();
         let (region, model) = self.local(&known, value);
+        let separate = model.separate();
         let mut moves: Vec<(usize, f64, f64)> = (0..self.x.len())
-            .map(|d| (d, model.separate().lowest(&region, &self.x, d)))
+            .map(|d| (d, separate.lowest(&region, &self.x, d)))
             .filter_map(|(d, (x, gain))| (gain > 0.0).then_some((d, x, gain)))
             .collect();
         moves.sort_by(|a, b| b.2.total_cmp(&a.2));

@@ -10,8 +10,8 @@
 //!    box, to its middle and to the stationary point of a curve through the values on its line, one by one and several at
 //!    once, until no move along a coordinate improves. Interior points are refined with shorter and shorter steps.
 //!
-//! Evaluations: four for a linear characteristic. Otherwise up to ten, and `2N + 7` for every round of either side and start,
-//! of which there are rarely more than three; coordinates that end within the box take up to four in a round, and two in
+//! Evaluations: four for a linear characteristic. Otherwise up to ten, and `2N` and some for every round of either side and
+//! start, of which there are rarely more than three; coordinates that end within the box take up to four in a round, and two in
 //! each of the rounds of refinement, where each pair of them takes one more while there are no more than eight.
 //!
 //! A search finds no certainty. A [`Proof`] is one: branch and bound with formulas in interval arithmetic, until no value can

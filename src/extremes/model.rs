@@ -39,7 +39,11 @@ impl Region {
 
     /// The point at these parts of the way from the lower to the upper bounds.
     pub(super) fn at(&self, part: impl Fn(usize) -> f64) -> Vec<f64> {
-        (0..self.len()).map(|d| self.clamp(d, self.lower[d] + part(d) * self.width(d))).collect()
+        let at = |d: usize| match part(d) {
+            1.0 => self.upper[d], // lower + width may be rounded to its neighbour
+            part => self.clamp(d, self.lower[d] + part * self.width(d)),
+        };
+        (0..self.len()).map(at).collect()
     }
 
     /// Whether a point lies within.

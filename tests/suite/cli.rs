@@ -138,6 +138,7 @@ fn wrong_input() {
         &["analyze", ENGINE, "--method", "full", "--pairs", "adjacent"],
         &["analyze", ENGINE, "--stencil", "nine"],
         &["analyze", ENGINE, "--extremes", "all"],
+        &["analyze", ENGINE, "--extremes", "--points", "points.csv"],
         &["schema", ENGINE],
         &["schema", "-o", "/nowhere/study.schema.json"],
         &["analyze", ENGINE, "-o", "/nowhere/report.txt"],
