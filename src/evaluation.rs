@@ -8,7 +8,7 @@ use crate::plan::{DifferencePlan, Known, Stage};
 use crate::problem::Problem;
 
 /// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
-const BATCH: usize = 1 << 23;
+pub(crate) const BATCH: usize = 1 << 23;
 
 /// What evaluating a plan came to.
 #[derive(Debug, Clone)]

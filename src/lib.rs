@@ -12,6 +12,7 @@ pub mod dimension;
 pub mod distribution;
 pub mod error;
 pub mod evaluation;
+pub mod extremes;
 pub mod fits;
 #[cfg(feature = "journal")]
 pub mod journal;

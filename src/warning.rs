@@ -221,6 +221,21 @@ pub enum Warning {
         /// Whether their mean lies outside too.
         mean_too: bool,
     },
+    /// The extremes of a characteristic are those that a search found, and no proof.
+    NotProven {
+        /// The characteristic.
+        characteristic: String,
+        /// Evaluations of the search.
+        evaluations: usize,
+        /// How it ended.
+        ended: Ended,
+        /// Points in the box at which the characteristic has no value.
+        failed: usize,
+        /// Why it has none at the first of them.
+        failure: Option<String>,
+        /// An interval that no assembly leaves, and the boxes of interval arithmetic that it took; for formulas.
+        bounds: Option<([f64; 2], usize)>,
+    },
     /// `auto` was asked for.
     AutoIsSecondOrder,
 }
@@ -233,6 +248,17 @@ fn lie(count: usize) -> &'static str {
 fn values_and_lines(first: &[(f64, u64)], count: usize) -> String {
     let named: Vec<String> = first.iter().map(|(value, line)| format!("{value} (line {line})")).collect();
     format!("{}{}", named.join(", "), if count > first.len() { ", ..." } else { "" })
+}
+
+/// How a search for extremes ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ended {
+    /// No move along a coordinate improves either extreme.
+    Converged,
+    /// The budget was spent.
+    Budget,
+    /// The run was stopped.
+    Stopped,
 }
 
 /// What of a derivative is lost.
@@ -277,6 +303,7 @@ impl Warning {
             Self::NoSamplingInterval { .. } => "no-sampling-interval",
             Self::CoarseResolution { .. } => "coarse-resolution",
             Self::OutsideBand { .. } => "outside-band",
+            Self::NotProven { .. } => "not-proven",
             Self::AutoIsSecondOrder => "auto-is-second-order",
         }
     }
@@ -295,6 +322,7 @@ impl Warning {
             | Self::History { output: characteristic, .. }
             | Self::InfeasibleMoments { characteristic, .. }
             | Self::NearInfeasibleMoments { characteristic, .. }
+            | Self::NotProven { characteristic, .. }
             | Self::RssInvalid { characteristic, .. } => Some(characteristic),
             _ => None,
         }
@@ -453,6 +481,27 @@ impl Warning {
                 values_and_lines(first, *count),
                 if *mean_too { "; so does their mean: check column and unit" } else { "" }
             ),
+            Self::NotProven { characteristic, evaluations, ended, failed, failure, bounds } => {
+                let doubt = match bounds {
+                    Some(([lower, upper], boxes)) => format!(
+                        "interval arithmetic on {boxes} boxes shows only that no assembly lies outside {lower} .. {upper}"
+                    ),
+                    None => "an assembly beyond them cannot be ruled out, as it can for formulas".to_owned(),
+                };
+                let cut = match ended {
+                    Ended::Converged => "",
+                    Ended::Budget => "; the budget ended the search: allow more evaluations with --budget",
+                    Ended::Stopped => "; the search was stopped before its end",
+                };
+                let lost = match failure {
+                    Some(reason) => format!("; {failed} of its points have no value and were left out: {reason}"),
+                    None => String::new(),
+                };
+                format!(
+                    "the extremes of `{characteristic}` are the best of {evaluations} evaluations and not proven: {doubt}\
+                     {cut}{lost}"
+                )
+            }
             Self::AutoIsSecondOrder => {
                 "method auto is not built yet and stands for second-order; --method full adds every interaction".into()
             }

@@ -4,6 +4,7 @@ use super::SamplingInterval;
 use super::linear::Linear;
 use crate::capability::{Capability, Law};
 use crate::characteristic::Characteristic;
+use crate::extremes::Extremes;
 use crate::method::{Order, Outcome};
 use crate::moments::{Contributions, Moments, Sampled};
 use crate::pearson::PearsonError;
@@ -31,6 +32,8 @@ pub struct CharacteristicAnalysis {
     /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
     /// band that hurts, and a point of a circular zone ([`Dimension::zone`](crate::Dimension::zone)) at its edge.
     pub worst_case: Option<[f64; 2]>,
+    /// The least and the greatest value in the box of the tolerance bands, where they were searched and found.
+    pub extremes: Option<Extremes>,
     /// The value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the RSS and of
     /// the two inflations of it. The nominal where all bands are symmetric.
     pub middle: Option<f64>,
@@ -143,6 +146,7 @@ impl CharacteristicAnalysis {
             rss: linear.map(|linear| linear.rss),
             inflated_rss: linear.map(|linear| linear.inflated_rss),
             mean_shift_rss: linear.map(|linear| linear.mean_shift_rss),
+            extremes: None,
             sensitivities,
             interactions,
             possible_interactions,

@@ -12,6 +12,7 @@ pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
 use std::time::Duration;
 
 use crate::assembly::Run;
+use crate::extremes::{Found, search};
 use crate::method::{DerivativeSource, Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::warning::Warning;
@@ -48,7 +49,7 @@ pub struct Analysis {
 /// Analyses a problem.
 ///
 /// Evaluations: as the method says ([`Procedure::count`](crate::method::Procedure::count)), one more when some mean is not
-/// the nominal, and more only where the model fails.
+/// the nominal, and more only where the model fails; with [`Options::extremes`] those of the [search](crate::extremes) too.
 ///
 /// # Errors
 /// When the options do not fit the problem; nothing is evaluated then. A model that fails is no error: what it costs is
@@ -71,21 +72,27 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
-    let outcome = options.method.procedure().run(problem, options, run)?;
+    let mut outcome = options.method.procedure().run(problem, options, run)?;
+    let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
+    let found = if options.extremes { search(problem, &outcome, left, run) } else { Found::default() };
+    outcome.evaluated.doubts.extend(found.spent.doubts);
     let mut characteristics: Vec<CharacteristicAnalysis> =
         (0..problem.characteristics().len()).map(|c| CharacteristicAnalysis::of(problem, &outcome, c)).collect();
+    for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
+        characteristic.extremes = extremes;
+    }
     let warnings = warnings::of(problem, &outcome, &characteristics);
     let seed = options.seed.unwrap_or(Options::SEED);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
     Ok(Analysis {
         method: outcome.method,
         varying: outcome.plan.varying().len(),
-        evaluations: outcome.evaluated.evaluations,
-        reused: outcome.evaluated.reused,
-        failed: outcome.evaluated.known.failed_points(),
-        stages: outcome.evaluated.stages,
-        stopped: outcome.evaluated.stopped,
-        in_model: outcome.evaluated.in_model,
+        evaluations: outcome.evaluated.evaluations + found.spent.evaluations,
+        reused: outcome.evaluated.reused + found.spent.reused,
+        failed: outcome.evaluated.known.failed_points() + found.spent.failed,
+        stages: outcome.evaluated.stages + found.spent.stages,
+        stopped: outcome.evaluated.stopped || found.spent.stopped,
+        in_model: outcome.evaluated.in_model + found.spent.in_model,
         seed: drawn.then_some(seed),
         characteristics,
         derivatives: if outcome.exact { DerivativeSource::Exact } else { DerivativeSource::Difference },

@@ -49,6 +49,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         warnings.extend(atom(problem, outcome, c));
         warnings.extend(long_tails(problem, outcome, analysis));
         warnings.extend(doubtful(outcome, c, analysis));
+        warnings.extend(not_proven(analysis));
     }
     let possible = outcome.plan.possible_pairs();
     if outcome.order == Order::Second && outcome.pairs.len() < possible {
@@ -234,6 +235,19 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
         }
     }
     warnings
+}
+
+/// Extremes that were searched only.
+fn not_proven(analysis: &CharacteristicAnalysis) -> Option<Warning> {
+    let extremes = analysis.extremes.as_ref().filter(|extremes| !extremes.proven())?;
+    Some(Warning::NotProven {
+        characteristic: analysis.characteristic.name().to_owned(),
+        evaluations: extremes.evaluations,
+        ended: extremes.ended,
+        failed: extremes.failed,
+        failure: extremes.failure.clone(),
+        bounds: extremes.proof.as_ref().map(|proof| (proof.bounds, proof.boxes)),
+    })
 }
 
 /// Moments that no distribution has, or hardly any.

@@ -9,8 +9,8 @@ use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
 use super::process::Adapter;
 use super::{
-    Ask, AssemblyFunction, Derivatives, Directions, EvaluationError, Input, Output, Points, Responses, Run, Signature,
-    in_blocks,
+    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, Output, Points, Responses, Run,
+    Signature, in_blocks,
 };
 use crate::warning::Warning;
 
@@ -340,6 +340,15 @@ impl AssemblyFunction for Composite {
         match &self.model {
             Some(model) if !needs.answers.is_empty() => model.function.prepare(&needs.answers),
             _ => Ok(None),
+        }
+    }
+
+    fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
+        let origin = self.outputs[output];
+        let Needs { answers, unknowns, .. } = self.needs(origin);
+        match origin {
+            Origin::Formula(formula) if answers.is_empty() && !unknowns => Some(self.formulas.bounds(formula, region)),
+            _ => None,
         }
     }
 

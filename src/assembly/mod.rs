@@ -10,6 +10,7 @@
 
 mod ask;
 mod blocks;
+mod bounds;
 mod closure;
 mod composite;
 mod derivatives;
@@ -24,6 +25,7 @@ mod signature;
 
 pub use ask::{Ask, Points};
 pub use blocks::in_blocks;
+pub use bounds::Bounds;
 pub use closure::Closure;
 pub use composite::{Composite, CompositeError, Parts, Source};
 pub use derivatives::{Derivatives, Directions};
@@ -48,6 +50,13 @@ pub trait AssemblyFunction: Send + Sync {
     fn prepare(&self, outputs: &[usize]) -> Result<Option<process::Adapter>, EvaluationError> {
         let _ = outputs;
         Ok(None)
+    }
+
+    /// Encloses an output over the box of these intervals, one for every input: a certainty, which no evaluation gives. None
+    /// from a black box.
+    fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
+        let _ = (output, region);
+        None
     }
 
     /// Answers `ask.points` for `ask.outputs` into `out`, whose rows are the points and whose columns are the asked

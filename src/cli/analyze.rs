@@ -20,6 +20,7 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
     let mut study = study::read(&asked.study, externals(asked, look, given.clone()))?;
     study.options.seed = asked.seed.or(study.options.seed);
+    study.options.extremes |= asked.extremes;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }

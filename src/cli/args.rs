@@ -47,6 +47,9 @@ pub(super) enum Command {
     /// The built-in models, or one of them with its inputs and outputs
     #[command(after_help = "Example: sensitol models engine-balance")]
     Models(ModelsArgs),
+    /// The JSON Schema of study files
+    #[command(after_help = "Example: sensitol schema -o study.schema.json")]
+    Schema(SchemaArgs),
     /// The Pearson distribution of four moments: densities, probabilities, quantiles
     #[command(after_help = "Example: sensitol pearson --skewness 0.5 --kurtosis 3.4 --sf 4 --upper-quantile 1e-6,1e-9")]
     Pearson(PearsonArgs),
@@ -118,6 +121,9 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with = "journal")]
     pub(super) points: Option<PathBuf>,
 
+    /// Search the true extremes in the box of the tolerance bands too, at some 2N evaluations or more for either side
+    #[arg(long, conflicts_with = "points")]
+    pub(super) extremes: bool,
     /// Print the stack-up table of every characteristic instead of the report: text, csv or markdown
     #[arg(long, value_name = "FORMAT", conflicts_with = "json", help_heading = OUTPUT)]
     pub(super) stack: Option<StackArg>,
@@ -262,6 +268,13 @@ pub(super) struct ModelsArgs {
 
     #[command(flatten)]
     pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SchemaArgs {
+    /// Write to a file instead of stdout
+    #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
+    pub(super) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

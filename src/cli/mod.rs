@@ -18,6 +18,7 @@ mod plan;
 mod points;
 mod probe;
 mod progress;
+mod schema;
 mod simulate;
 mod study;
 
@@ -75,6 +76,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Models(asked) => models::run(asked, style),
         Command::Probe(asked) => probe::run(asked, style),
         Command::Journal(asked) => journal::run(asked, style),
+        Command::Schema(asked) => schema::run(asked),
         Command::Pearson(asked) => pearson::run(asked, style),
     };
     let exit = result.unwrap_or_else(|failure| {

@@ -23,6 +23,8 @@ struct PlanReport {
     varying: usize,
     evaluations: usize,
     stages: Vec<StageReport>,
+    /// Whether a search of the extremes follows, whose points nobody knows beforehand.
+    extremes: bool,
     dimensions: Vec<AxisReport>,
 }
 
@@ -69,6 +71,7 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         varying: plan.varying().len(),
         evaluations,
         stages: vec![of_stage(&first)],
+        extremes: study.options.extremes,
         dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &plan, d)).collect(),
     };
     if stages > 1 {
@@ -117,6 +120,11 @@ fn text(report: &PlanReport) -> String {
         let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };
         lines.push(format!("stage {}: {} points{chosen}", index + 1, stage.evaluations));
         lines.extend(stage.purposes.iter().map(|purpose| format!("  {:>6}  {}", purpose.points, purpose.purpose)));
+    }
+    if report.extremes {
+        let search = "then the search of the extremes: 4 points for a linear characteristic, some 2N or more for either side \
+                      of another";
+        lines.push(search.to_owned());
     }
     if report.dimensions.iter().any(|dimension| !dimension.sigmas.is_empty()) {
         lines.push("steps in sigma about the mean:".to_owned());

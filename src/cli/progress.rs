@@ -32,6 +32,10 @@ impl Bar {
         so_far.reused += more.reused;
         let part = |count: usize, what: &str| if count == 0 { String::new() } else { format!(", {count} {what}") };
         self.bar.set_message(part(so_far.failed, "failed") + &part(so_far.reused, "known"));
+        // A search asks for more than was planned.
+        if self.bar.length().is_some_and(|length| length < so_far.points as u64) {
+            self.bar.set_length(so_far.points as u64);
+        }
         self.bar.set_position(so_far.points as u64);
     }
 

@@ -147,7 +147,8 @@ impl Rule {
         // The eigenvalues are good beside the largest of them, the weights beside 1; a far node of a long tail needs
         // its own digits, because high powers of it count. One that weighs more has them, and the polynomials would
         // rather lose some where nodes lie close together.
-        for i in (0..n).filter(|&i| weights[i] < LIGHT) {
+        let light: Vec<usize> = (0..n).filter(|&i| weights[i] < LIGHT).collect();
+        for i in light {
             let left = if i > 0 { nodes[i] - nodes[i - 1] } else { f64::INFINITY };
             let right = if i + 1 < n { nodes[i + 1] - nodes[i] } else { f64::INFINITY };
             if let Some((node, weight)) = polished(nodes[i], 1e-3 * left.min(right), diagonal, squared_off_diagonal) {

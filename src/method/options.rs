@@ -26,6 +26,8 @@ pub struct Options {
     pub stencil: Option<Stencil>,
     /// Whether dimensions without tolerance get a sensitivity too, at two evaluations each.
     pub all_sensitivities: bool,
+    /// Whether the true extremes in the box of the tolerance bands are searched, at further evaluations.
+    pub extremes: bool,
     /// The seed of what draws random numbers: [`SEED`](Self::SEED) unless given.
     pub seed: Option<u64>,
     /// Where derivatives come from. Unless said otherwise the reported sensitivities are exact where the assembly function
@@ -104,6 +106,7 @@ impl Default for Options {
             pairs: None,
             stencil: None,
             all_sensitivities: false,
+            extremes: false,
             seed: None,
             derivatives: None,
         }

@@ -58,6 +58,11 @@ impl Known {
         (!value.is_nan()).then_some(value)
     }
 
+    /// Every point that was evaluated, in order.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
     /// Every known value of a characteristic.
     pub fn values(&self, characteristic: usize) -> impl Iterator<Item = f64> {
         self.values[characteristic].iter().copied().filter(|value| !value.is_nan())

@@ -5,6 +5,7 @@ mod compare_svg;
 mod compare_text;
 mod csv;
 mod distribution;
+mod extremes;
 mod limits;
 pub(crate) mod number;
 mod page;
@@ -33,6 +34,7 @@ use serde::Serialize;
 use crate::analysis::{Analysis, CharacteristicAnalysis};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
+use crate::extremes::{Extreme, Extremes};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -201,10 +203,38 @@ pub struct CharacteristicReport {
 pub struct WorstCaseReport {
     /// Of the linear model.
     pub linear: Option<[f64; 2]>,
-    /// Of the model itself; not searched yet.
+    /// Of the model itself, where they were searched.
     pub extremes: Option<[f64; 2]>,
-    /// Whether the search proved them; not searched yet.
+    /// Whether it is proven that no assembly lies beyond the extremes.
     pub proven: Option<bool>,
+    /// Where the extremes are: every dimension that matters by name.
+    pub at: Option<ExtremesAtReport>,
+    /// An interval that no assembly leaves, by interval arithmetic; of formulas only.
+    pub bounds: Option<[f64; 2]>,
+    /// What the search evaluated; a point that serves several characteristics counts for each.
+    pub evaluations: Option<usize>,
+    /// The same, to be printed.
+    #[serde(skip)]
+    pub found: Option<Extremes>,
+}
+
+/// Where the extremes are.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExtremesAtReport {
+    /// The dimensions at the least value.
+    pub lower: PointReport,
+    /// The dimensions at the greatest value.
+    pub upper: PointReport,
+}
+
+/// A point by the names of its dimensions, in the study's order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointReport(pub Vec<(String, f64)>);
+
+impl Serialize for PointReport {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, x)| (name, x)))
+    }
 }
 
 /// What a normal distribution with the same mean and sigma would make of the limits.
@@ -361,7 +391,7 @@ impl CharacteristicReport {
             }),
             error_estimate: None,
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
-            worst_case: WorstCaseReport { linear: analysis.worst_case, extremes: None, proven: None },
+            worst_case: WorstCaseReport::of(analysis),
             middle: analysis.middle,
             rss: analysis.rss,
             inflated_rss: analysis.inflated_rss,
@@ -409,6 +439,22 @@ impl CharacteristicReport {
                 ppm_below: normal.below.map(ppm),
                 ppm_above: normal.above.map(ppm),
             }),
+        }
+    }
+}
+
+impl WorstCaseReport {
+    fn of(analysis: &CharacteristicAnalysis) -> Self {
+        let found = analysis.extremes.as_ref();
+        let point = |extreme: &Extreme| PointReport(extreme.at.iter().map(|at| (at.dimension.clone(), at.x)).collect());
+        Self {
+            linear: analysis.worst_case,
+            extremes: found.map(|found| [found.least.value, found.greatest.value]),
+            proven: found.map(Extremes::proven),
+            at: found.map(|found| ExtremesAtReport { lower: point(&found.least), upper: point(&found.greatest) }),
+            bounds: found.and_then(|found| found.proof.as_ref()).map(|proof| proof.bounds),
+            evaluations: found.map(|found| found.evaluations),
+            found: found.cloned(),
         }
     }
 }

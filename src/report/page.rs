@@ -21,7 +21,7 @@ pub struct Style {
 }
 
 /// No line is longer.
-const WIDTH: usize = 100;
+pub(super) const WIDTH: usize = 100;
 /// Before every column.
 const GAP: usize = 2;
 /// Names longer than this are shortened in their middle, to no less than `SHORTEST` where a table would be too wide.

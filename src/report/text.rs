@@ -1,5 +1,6 @@
 //! The report for a terminal: the verdict first, then a table per characteristic; at most 100 columns.
 
+use super::extremes::extremes;
 use super::limits::{distribution, verdict};
 use super::number::{beside, percent, plain, significant, unsigned_zero};
 use super::page::{Detail, Grid, Page, Style, clean, short};
@@ -70,6 +71,7 @@ fn one(page: &mut Page, report: &Report, one: &CharacteristicReport) {
     let unit = one.unit.as_deref().map(|unit| format!(" [{}]", clean(unit))).unwrap_or_default();
     page.line(&format!("{}{unit}", clean(&one.name)));
     figures(page, one);
+    extremes(page, one);
     distribution(page, one);
     sampling(page, one);
     page.line("");

@@ -4,8 +4,6 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use serde_spanned::Spanned;
-
 use super::correlation::correlated;
 use super::data::Data;
 use super::dimension;
@@ -14,6 +12,7 @@ use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
 use super::source::Source;
+use super::spanned::Spanned;
 use crate::assembly::formula::{Formula, FormulaError, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};

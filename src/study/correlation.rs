@@ -1,9 +1,8 @@
 //! From `[[correlation]]` to pairs of dimensions that vary together.
 
-use serde_spanned::Spanned;
-
 use super::error::{Fault, StudyFault, fault};
 use super::file::CorrelationEntry;
+use super::spanned::Spanned;
 use crate::correlation::{Pair, Refusal};
 use crate::problem::Problem;
 

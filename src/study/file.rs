@@ -3,34 +3,52 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+#[cfg(feature = "cli")]
+use super::schema;
+use super::spanned::Spanned;
 use serde::de::{MapAccess, SeqAccess, Visitor, value};
 use serde::{Deserialize, Deserializer};
-use serde_spanned::Spanned;
 
 use super::values::{NominalEntry, ToleranceEntry};
 
 /// A whole study file.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", schemars(title = "Study of sensitol", extend("required" = ["dimensions", "characteristics"])))]
 #[serde(deny_unknown_fields, expecting = "a table of sections")]
 pub(super) struct StudyFile {
+    /// Where editors find the schema; it means nothing here.
+    #[serde(rename = "$schema")]
+    pub(super) _schema: Option<String>,
+    /// What the study is about, in one line.
     pub(super) title: Option<String>,
+    /// The inputs: each with its nominal value, its tolerance and its distribution.
     #[serde(default)]
     pub(super) dimensions: Entries<DimensionEntry>,
+    /// Fixed numbers for formulas and models.
     #[serde(default)]
     pub(super) constants: Entries<f64>,
+    /// Intermediate values by name, in any order, without cycles.
     #[serde(default)]
     pub(super) formulas: Entries<String>,
+    /// What equations and loops determine: where the search for each begins.
     #[serde(default)]
     pub(super) unknowns: Entries<UnknownEntry>,
+    /// Formulas that are 0 in the assembled state.
     #[serde(default)]
     pub(super) equations: Entries<String>,
+    /// Vectors that close: two equations each.
     #[serde(default)]
     pub(super) loops: Entries<Vec<LinkEntry>>,
+    /// The key characteristics: what is asked.
     #[serde(default)]
     pub(super) characteristics: Entries<CharacteristicEntry>,
+    /// Pairs of dimensions that vary together.
     #[serde(default)]
     pub(super) correlation: Correlations,
+    /// What is evaluated beside formulas: a built-in model or an external program.
     pub(super) model: Option<Spanned<ModelEntry>>,
+    /// How the study is analysed; flags of the command line win.
     #[serde(default)]
     pub(super) analysis: AnalysisEntry,
 }
@@ -41,24 +59,43 @@ pub(super) struct Entries<T>(pub(super) Vec<(Spanned<String>, Spanned<T>)>);
 
 /// One line of `[dimensions]`.
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table such as { nominal = 10.0, tolerance = 0.3 }")]
 pub(super) struct DimensionEntry {
+    /// The value on the drawing, two of a position; that of a built-in model where it is left out.
     pub(super) nominal: Option<Spanned<NominalEntry>>,
+    /// Half the tolerance band, or lower and upper deviation from the nominal; numbers or percent of the nominal.
     pub(super) tolerance: Option<Spanned<ToleranceEntry>>,
+    /// Lower and upper limit, in place of a tolerance.
     pub(super) limits: Option<Spanned<[f64; 2]>>,
+    /// A tolerance class of ISO 286, such as H7, in place of a tolerance; the unit must be mm.
     pub(super) fit: Option<Spanned<String>>,
+    /// Diameter of the circular zone of a position: two dimensions, NAME_x and NAME_y.
     pub(super) position: Option<Spanned<f64>>,
+    /// The unit, which is shown and never converted.
     pub(super) unit: Option<String>,
+    /// How it is distributed: normal unless said otherwise.
     #[serde(default, deserialize_with = "distribution")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "schema::distribution"))]
     pub(super) distribution: Option<Spanned<DistributionEntry>>,
+    /// Standard deviation.
     pub(super) sigma: Option<Spanned<f64>>,
+    /// How many sigmas half a tolerance band has: 3 unless said otherwise.
     pub(super) sigmas: Option<Spanned<f64>>,
+    /// Process capability: sigmas/3.
     pub(super) cp: Option<Spanned<f64>>,
+    /// How far the mean lies off the middle of the band.
     pub(super) shift: Option<Spanned<f64>>,
+    /// Central moments 2 to 8, where nothing else is known of the distribution.
     pub(super) moments: Option<Spanned<[f64; 7]>>,
+    /// A CSV file of measured values, relative to the study's folder.
     pub(super) measured: Option<Spanned<String>>,
+    /// The column of the file; its only one where it is left out.
     pub(super) column: Option<Spanned<String>>,
+    /// What is made of measured values: empirical unless said otherwise, or pearson.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::measured_models())))]
     pub(super) model: Option<Spanned<String>>,
+    /// Evaluation step in sigmas, in place of the nodes that suit the distribution.
     pub(super) step: Option<Spanned<f64>>,
 }
 
@@ -84,30 +121,50 @@ impl PartEntry {
 
 /// `"uniform"` or `{ kind = "beta", alpha = 2, beta = 5 }`: the parameters of all kinds.
 #[derive(Debug, Clone, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct DistributionEntry {
+    /// The kind of distribution.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::kinds())))]
     pub(super) kind: String,
+    /// Of a triangular distribution its most probable value; the band's middle unless given.
     pub(super) mode: Option<Spanned<f64>>,
+    /// Of a trapezoidal distribution the share of the band over which it is flat.
     pub(super) top: Option<Spanned<f64>>,
+    /// Of a beta distribution the exponent at the lower end.
     pub(super) alpha: Option<Spanned<f64>>,
+    /// Of a beta distribution the exponent at the upper end.
     pub(super) beta: Option<Spanned<f64>>,
+    /// Where a distribution with a tail begins; 0 unless given.
     pub(super) origin: Option<Spanned<f64>>,
+    /// The parts of a mixture by name.
     pub(super) parts: Option<Spanned<Entries<PartEntry>>>,
 }
 
 /// A part of a mixture: a weight, and what of a dimension is its own.
 #[derive(Debug, Clone, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table such as { weight = 0.6, shift = 0.02, sigma = 0.01 }")]
 pub(super) struct PartEntry {
+    /// Its share, relative to those of the other parts.
     pub(super) weight: Spanned<f64>,
+    /// Its nominal value; that of the dimension unless given.
     pub(super) nominal: Option<Spanned<f64>>,
+    /// Its tolerance; that of the dimension unless given.
     pub(super) tolerance: Option<Spanned<ToleranceEntry>>,
+    /// Its limits, in place of a tolerance.
     pub(super) limits: Option<Spanned<[f64; 2]>>,
+    /// How it is distributed: normal unless said otherwise.
     #[serde(default, deserialize_with = "distribution")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "schema::distribution"))]
     pub(super) distribution: Option<Spanned<DistributionEntry>>,
+    /// Standard deviation.
     pub(super) sigma: Option<Spanned<f64>>,
+    /// How many sigmas half a tolerance band has.
     pub(super) sigmas: Option<Spanned<f64>>,
+    /// Process capability: sigmas/3.
     pub(super) cp: Option<Spanned<f64>>,
+    /// How far its mean lies off the middle of the band.
     pub(super) shift: Option<Spanned<f64>>,
 }
 
@@ -121,9 +178,12 @@ pub(super) struct UnknownEntry {
 
 /// One vector of a loop.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a vector such as { length = \"R - r\", angle = \"phi\" }")]
 pub(super) struct LinkEntry {
+    /// Its length: a formula or a number.
     pub(super) length: Spanned<TermEntry>,
+    /// Its absolute angle in radians: a formula or a number.
     pub(super) angle: Spanned<TermEntry>,
 }
 
@@ -133,12 +193,18 @@ pub(super) struct TermEntry(pub(super) String);
 
 /// One line of `[characteristics]`.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table such as { formula = \"a - b\" }")]
 pub(super) struct CharacteristicEntry {
+    /// A formula of dimensions, constants, formulas and outputs of the model; without one it is an output of that name.
     pub(super) formula: Option<Spanned<String>>,
+    /// The unit, which is shown and never converted.
     pub(super) unit: Option<String>,
+    /// Lower limit.
     pub(super) lower: Option<Spanned<f64>>,
+    /// Upper limit.
     pub(super) upper: Option<Spanned<f64>>,
+    /// The share of assemblies that must keep the limits, between 0 and 1.
     pub(super) target_yield: Option<Spanned<f64>>,
 }
 
@@ -148,40 +214,69 @@ pub(super) struct Correlations(pub(super) Vec<Spanned<CorrelationEntry>>);
 
 /// One `[[correlation]]`.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table such as { between = [\"a\", \"b\"], value = 0.4 }")]
 pub(super) struct CorrelationEntry {
+    /// The two dimensions.
     pub(super) between: Spanned<(String, String)>,
+    /// Their coefficient of correlation, from -1 to 1.
     pub(super) value: Spanned<f64>,
 }
 
 /// `[model]`.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", schemars(extend("oneOf" = schema::one_of(["builtin", "command"]))))]
 #[serde(
     deny_unknown_fields,
     expecting = "a table such as { builtin = \"engine-balance\" } or { command = [\"python3\", \"gap.py\"] }"
 )]
 pub(super) struct ModelEntry {
+    /// A built-in model, by name: `sensitol models` lists them.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::built_in_models())))]
     pub(super) builtin: Option<Spanned<String>>,
+    /// A program and its arguments, run in the study's folder.
     pub(super) command: Option<Spanned<Vec<String>>>,
+    /// Processes side by side.
     pub(super) workers: Option<Spanned<u64>>,
+    /// Seconds that an evaluation may take.
     pub(super) timeout_s: Option<Spanned<f64>>,
+    /// Seconds that the program may take to start.
     pub(super) start_timeout_s: Option<Spanned<f64>>,
+    /// How often a point is tried again.
     pub(super) retries: Option<Spanned<u64>>,
+    /// Files that the model depends on: other contents make other answers.
     pub(super) files: Option<Vec<Spanned<String>>>,
 }
 
 /// `[analysis]`.
 #[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table of options")]
 pub(super) struct AnalysisEntry {
+    /// The method.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::methods())))]
     pub(super) method: Option<Spanned<String>>,
+    /// Wanted relative error of sigma, for auto.
     pub(super) accuracy: Option<Spanned<f64>>,
+    /// Most evaluations that may be spent.
     pub(super) budget: Option<Spanned<u64>>,
+    /// Evaluate at so many sigma on either side, in place of the nodes that suit each distribution.
     pub(super) step: Option<Spanned<f64>>,
+    /// The interactions that six-n examines.
     pub(super) pairs: Option<Spanned<PairsEntry>>,
+    /// How six-n evaluates an interaction.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::stencils())))]
     pub(super) stencil: Option<Spanned<String>>,
+    /// Whether dimensions without tolerance get a sensitivity too.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::sensitivities())))]
     pub(super) sensitivities: Option<Spanned<String>>,
+    /// Where derivatives come from, for sensitivities and moments alike.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::derivatives())))]
     pub(super) derivatives: Option<Spanned<String>>,
+    /// Whether the true extremes in the box of the tolerance bands are searched too.
+    pub(super) extremes: Option<bool>,
+    /// Seed of random numbers.
     pub(super) seed: Option<Spanned<u64>>,
 }
 

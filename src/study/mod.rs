@@ -47,13 +47,18 @@ mod file;
 mod implicit;
 mod model;
 mod options;
+#[cfg(feature = "cli")]
+mod schema;
 mod source;
+mod spanned;
 mod tree;
 mod values;
 
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};
+#[cfg(feature = "cli")]
+pub use schema::schema;
 pub use source::Format;
 
 use std::path::{Path, PathBuf};
@@ -187,7 +192,7 @@ impl Study {
             title: file.title,
             problem: built.problem,
             options: built.options,
-            seed: file.analysis.seed.map(serde_spanned::Spanned::into_inner),
+            seed: file.analysis.seed.map(spanned::Spanned::into_inner),
             warnings: built.warnings,
             sha256: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
         })

@@ -4,11 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use serde_spanned::Spanned;
-
 use super::error::{Fault, StudyFault, fault};
 use super::file::ModelEntry;
 use super::source::Source;
+use super::spanned::Spanned;
 use crate::assembly::process::{Greeting, Process, Settings};
 use crate::assembly::{AssemblyFunction, Given, Input, Output, Signature};
 use crate::models::{self, Model};

@@ -1,13 +1,15 @@
 //! From `[analysis]` to options.
 
-use serde_spanned::Spanned;
-
 use super::error::{Fault, StudyFault, fault};
 use super::file::{AnalysisEntry, PairsEntry};
+use super::spanned::Spanned;
 use crate::method::{ALL as METHODS, DerivativeSource, Method, Options, Pairs};
 use crate::names::nearest;
 use crate::plan::Stencil;
 use crate::problem::Problem;
+
+/// Which sensitivities can be asked for.
+pub(super) const SENSITIVITIES: [&str; 2] = ["all", "varying"];
 
 pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Options, Fault> {
     let word = |given: &Spanned<String>, key: &str, what: &'static str, known: &[&str]| {
@@ -27,6 +29,7 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
         accuracy: positive(&entry.accuracy, "accuracy")?,
         step: positive(&entry.step, "step")?,
         seed: entry.seed.as_ref().map(|seed| *seed.get_ref()),
+        extremes: entry.extremes.unwrap_or(false),
         budget: entry.budget.as_ref().map(|budget| usize::try_from(*budget.get_ref()).unwrap_or(usize::MAX)),
         ..Options::default()
     };
@@ -51,7 +54,7 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
         options.all_sensitivities = match sensitivities.get_ref().as_str() {
             "all" => true,
             "varying" => false,
-            _ => return Err(word(sensitivities, "sensitivities", "choice of sensitivities", &["all", "varying"])),
+            _ => return Err(word(sensitivities, "sensitivities", "choice of sensitivities", &SENSITIVITIES)),
         };
     }
     if let Some(derivatives) = &entry.derivatives {

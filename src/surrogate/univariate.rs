@@ -64,6 +64,11 @@ impl Univariate {
         self.degree
     }
 
+    /// Its coefficients `c1` to `c4`, 0 beyond what is known.
+    pub fn coefficients(&self) -> [f64; 4] {
+        self.coefficients
+    }
+
     /// `g(u)`.
     pub fn value(&self, u: f64) -> f64 {
         self.coefficients.iter().rev().fold(0.0, |value, coefficient| (value + coefficient) * u)

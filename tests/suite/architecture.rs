@@ -12,6 +12,7 @@ const LAYERS: &[&[&str]] = &[
     &["study", "report"],
     &["compare"],
     &["analysis", "probe", "simulation"],
+    &["extremes"],
     &["method"],
     &["evaluation"],
     &["problem"],

@@ -70,9 +70,34 @@ fn plan_says_what_would_be_evaluated() {
     insta::assert_snapshot!("models", run(&["models"]) + &run(&["models", "engine-balance"]));
 }
 
+/// The search is counted, its points depend on the answers, and the report says where the extremes are.
+#[test]
+fn extremes_are_reported() {
+    let thermal = "examples/thermal-clearance/study.toml";
+    let output = sensitol(&["analyze", thermal, "--extremes", "--json"]).output().unwrap();
+    assert!(output.stderr.is_empty());
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let mut worst_case = report["characteristics"][0]["worst_case"].clone();
+    rounded(&mut worst_case);
+    insta::assert_json_snapshot!("extremes-json", worst_case);
+    insta::assert_snapshot!(
+        "extremes-not-proven",
+        run(&["analyze", ENGINE, "--extremes", "--method", "rss", "--kc", "F"])
+    );
+
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let text = std::fs::read_to_string(repository(thermal)).unwrap() + "extremes = true\n";
+    std::fs::write(&study, text).unwrap();
+    let plan = run(&["plan", study.to_str().unwrap()]);
+    assert!(plan.contains("then the search of the extremes"), "{plan}");
+    let searched = run(&["analyze", study.to_str().unwrap()]);
+    assert!(searched.contains("  extremes  0.040856 .. 0.408908  proven, "), "{searched}");
+}
+
 #[test]
 fn help_is_there() {
-    for command in ["", "analyze", "plan", "check", "models", "pearson", "probe", "journal"] {
+    for command in ["", "analyze", "plan", "check", "models", "schema", "pearson", "probe", "journal"] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
         insta::assert_snapshot!(format!("help-{}", if command.is_empty() { "all" } else { command }), run(&arguments));
     }
@@ -112,6 +137,10 @@ fn wrong_input() {
         &["analyze", ENGINE, "--pairs", "R:`L"],
         &["analyze", ENGINE, "--method", "full", "--pairs", "adjacent"],
         &["analyze", ENGINE, "--stencil", "nine"],
+        &["analyze", ENGINE, "--extremes", "all"],
+        &["analyze", ENGINE, "--extremes", "--points", "points.csv"],
+        &["schema", ENGINE],
+        &["schema", "-o", "/nowhere/study.schema.json"],
         &["analyze", ENGINE, "-o", "/nowhere/report.txt"],
         &["analyze", ENGINE, "-o", "examples"],
         &["plan", ENGINE, "--write-points", "/nowhere/points.csv"],

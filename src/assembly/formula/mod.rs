@@ -12,21 +12,24 @@
 //! finite is an error of that point.
 //!
 //! The same programs run on other things than columns of numbers, whatever can be a `Scalar`: on a [`Jet`] they give
-//! exact derivatives.
+//! exact derivatives, on an [`Interval`] bounds that no rounding breaks.
 
 mod batch;
 mod error;
 mod functions;
 mod graph;
+mod interval;
 mod jet;
 mod lexer;
 mod parser;
 mod program;
 mod scalar;
 mod set;
+mod slopes;
 
 pub use error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
 pub(crate) use functions::{Binary, Unary};
+pub use interval::Interval;
 pub use jet::Jet;
 pub use parser::{Formula, is_reserved};
 pub(crate) use scalar::Scalar;

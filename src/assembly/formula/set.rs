@@ -7,10 +7,13 @@ use super::batch::{LANES, Machine};
 use super::error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
 use super::functions::{Binary, select};
 use super::graph::{Graph, NodeId};
+use super::interval::Interval;
 use super::jet::Jet;
 use super::parser::{Formula, Node};
 use super::program::Program;
 use super::scalar::Scalar;
+use super::slopes::Sloped;
+use crate::assembly::Bounds;
 use crate::names::nearest;
 
 /// What a name stands for, where it is no formula.
@@ -180,6 +183,33 @@ impl FormulaSet {
     /// Cost: about what ten evaluations take.
     pub fn jets(&self, formulas: &[usize], variable: impl Fn(usize) -> Jet) -> Vec<Jet> {
         self.evaluate_scalar(formulas, variable)
+    }
+
+    /// Encloses a formula over a box, an interval for every variable, in interval arithmetic.
+    ///
+    /// Cost: about as many operations on intervals as the formula has, times one more than there are variables that vary.
+    ///
+    /// ```
+    /// use sensitol::assembly::formula::{Formula, FormulaSet, Meaning};
+    /// let formulas = vec![("y".to_owned(), Formula::parse("a^2 - b")?)];
+    /// let names = [("a", Meaning::Variable(0)), ("b", Meaning::Variable(1))];
+    /// let set = FormulaSet::new(formulas, names).map_err(|(_, error)| error)?;
+    /// let bounds = set.bounds(0, &[[-1.0, 2.0], [3.0, 4.0]]);
+    /// assert_eq!((bounds.value.lower(), bounds.value.upper()), (-4.0, 1.0));
+    /// assert_eq!((bounds.slopes[0].lower(), bounds.slopes[0].upper()), (-2.0, 4.0));
+    /// # Ok::<(), sensitol::assembly::formula::FormulaError>(())
+    /// ```
+    pub fn bounds(&self, formula: usize, region: &[[f64; 2]]) -> Bounds {
+        let moving: Vec<usize> = (0..region.len()).filter(|&d| region[d][0] < region[d][1]).collect();
+        let place: HashMap<usize, usize> = moving.iter().enumerate().map(|(index, &d)| (d, index)).collect();
+        let variable = |d: usize| {
+            let value = Interval::between(region[d][0], region[d][1]);
+            place.get(&d).map_or(Sloped::still(value), |&index| Sloped::variable(value, index, moving.len()))
+        };
+        let Sloped { value, slopes: of_moving } = self.evaluate_scalar(&[formula], variable).swap_remove(0);
+        let mut slopes = vec![Interval::between(0.0, 0.0); region.len()];
+        moving.iter().zip(of_moving).for_each(|(&d, slope)| slopes[d] = slope);
+        Bounds { value, slopes }
     }
 
     /// Some formulas at one point, on any kind of value.

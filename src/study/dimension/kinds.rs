@@ -3,10 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use serde_spanned::Spanned;
-
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::{DimensionEntry, DistributionEntry};
+use super::super::spanned::Spanned;
 use super::conflict;
 use super::mixture::mixture;
 use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, shift, sigma, sigmas};
@@ -55,6 +54,12 @@ const KINDS: [Known; 12] = [
     ("rayleigh", Kind::Rayleigh, &["origin"], ORIGIN),
     ("mixture", Kind::Mixture, &["parts"], "it knows `parts`"),
 ];
+
+/// The names of all kinds.
+#[cfg(feature = "cli")]
+pub(in crate::study) fn kind_names() -> impl Iterator<Item = &'static str> {
+    KINDS.iter().map(|known| known.0)
+}
 
 /// The distribution of this line; None when it does not vary.
 pub(super) fn distribution(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {

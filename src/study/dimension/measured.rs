@@ -3,11 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use serde_spanned::Spanned;
-
 use super::super::data::{Column, Data, DataFault, DataProblem};
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
+use super::super::spanned::Spanned;
 use crate::dimension::DimensionFault;
 use crate::distribution::{Distribution, DistributionError, Measured, PearsonLaw, Resample, outliers};
 use crate::names::nearest;
@@ -23,7 +22,7 @@ const RESOLUTION: f64 = 0.6;
 /// Lines and values that a warning names.
 const NAMED: usize = 5;
 /// What can be made of the values.
-const MODELS: [&str; 2] = ["empirical", "pearson"];
+pub(in crate::study) const MODELS: [&str; 2] = ["empirical", "pearson"];
 
 /// A law, and the column that it follows from.
 pub(super) struct Law {

@@ -1,9 +1,8 @@
 //! A mixture: parts that are written as dimensions are, and take from the dimension what they do not say.
 
-use serde_spanned::Spanned;
-
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::{DimensionEntry, PartEntry};
+use super::super::spanned::Spanned;
 use super::kinds::{agreeing, distribution, placed, shared};
 use super::spread::{Spread, is_flat, nothing_to_spread, sigma, sigmas};
 use super::tolerance::tolerance;

@@ -10,13 +10,16 @@ mod tolerance;
 use std::ops::Range;
 use std::sync::Arc;
 
-use serde_spanned::Spanned;
-
 use super::data::Data;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{DimensionEntry, Entries};
+use super::spanned::Spanned;
 use super::values::NominalEntry;
 use crate::dimension::{Dimension, DimensionError};
+#[cfg(feature = "cli")]
+pub(super) use kinds::kind_names;
+#[cfg(feature = "cli")]
+pub(super) use measured::MODELS;
 use spread::Spread;
 
 /// The dimensions of this line, or what is wrong at which key below the dimension's; `model` knows the values that the model

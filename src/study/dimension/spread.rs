@@ -3,10 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use serde_spanned::Spanned;
-
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
+use super::super::spanned::Spanned;
 use super::conflict;
 use crate::distribution::Distribution;
 

@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use serde_spanned::Spanned;
-
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
+use super::super::spanned::Spanned;
 use super::super::values::{Deviation, ToleranceEntry};
 use super::conflict;
 use crate::dimension::DimensionFault;

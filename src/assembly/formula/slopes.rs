@@ -1,0 +1,165 @@
+//! Intervals that carry how fast they change: what decides on which side of a box a formula is least.
+
+use super::functions::{Binary, Unary};
+use super::interval::Interval;
+use super::scalar::{Scalar, Verdict};
+
+/// A value over a box with its slope along each of some dimensions.
+///
+/// Where the value is [whole](Interval::is_whole), the mean value theorem holds with these slopes: at a kink they enclose those
+/// of both sides.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sloped {
+    pub(super) value: Interval,
+    /// None for what does not depend on any dimension.
+    pub(super) slopes: Vec<Interval>,
+}
+
+impl Sloped {
+    /// The dimension at `index` of `count`.
+    pub(super) fn variable(value: Interval, index: usize, count: usize) -> Self {
+        let slope = |other: usize| Interval::constant(if other == index { 1.0 } else { 0.0 });
+        Self { value, slopes: (0..count).map(slope).collect() }
+    }
+
+    /// A value that does not depend on any dimension.
+    pub(super) fn still(value: Interval) -> Self {
+        Self { value, slopes: Vec::new() }
+    }
+
+    /// `f(self)` from `f` and `f'`.
+    fn through(&self, value: Interval, slope: Interval) -> Self {
+        Self { value, slopes: self.slopes.iter().map(|own| slope.multiply(own)).map(certain).collect() }
+    }
+
+    /// With slopes made of those of two values, 0 where one of them has none.
+    fn from(value: Interval, a: &Self, b: &Self, slope: impl Fn(&Interval, &Interval) -> Interval) -> Self {
+        let zero = Interval::constant(0.0);
+        let of = |operand: &'_ Self, index: usize| operand.slopes.get(index).copied().unwrap_or(zero);
+        let count = a.slopes.len().max(b.slopes.len());
+        Self { value, slopes: (0..count).map(|index| certain(slope(&of(a, index), &of(b, index)))).collect() }
+    }
+
+    /// Nothing is known of the slopes of what moves.
+    fn unknown(value: Interval, operands: &[&Self]) -> Self {
+        let count = operands.iter().map(|operand| operand.slopes.len()).max().unwrap_or(0);
+        Self { value, slopes: vec![Interval::EVERYTHING; count] }
+    }
+
+    fn power(&self, exponent: &Self, value: Interval) -> Self {
+        let (x, c) = (&self.value, &exponent.value);
+        if exponent.slopes.is_empty() {
+            let less = c.subtract(&Interval::constant(1.0));
+            return self.through(value, c.multiply(&Interval::binary(Binary::Power, x, &less)));
+        }
+        if x.lower() > 0.0 {
+            let logarithm = Interval::unary(Unary::Ln, x);
+            return Self::from(value, self, exponent, |of_x, of_c| {
+                value.multiply(&of_c.multiply(&logarithm).add(&c.multiply(of_x).divide(x)))
+            });
+        }
+        Self::unknown(value, &[self, exponent])
+    }
+}
+
+/// An empty slope says nothing.
+fn certain(slope: Interval) -> Interval {
+    if slope.is_empty() { Interval::EVERYTHING } else { slope }
+}
+
+impl Scalar for Sloped {
+    fn constant(value: f64) -> Self {
+        Self::still(Interval::constant(value))
+    }
+
+    fn unary(function: Unary, a: &Self) -> Self {
+        let (x, y) = (a.value, Interval::unary(function, &a.value));
+        if a.slopes.is_empty() {
+            return Self::still(y);
+        }
+        let one = Interval::constant(1.0);
+        let slope = match function {
+            Unary::Negate => Interval::constant(-1.0),
+            Unary::Abs if x.lower() >= 0.0 => one,
+            Unary::Abs if x.upper() <= 0.0 => Interval::constant(-1.0),
+            Unary::Abs => Interval::between(-1.0, 1.0),
+            Unary::Sqrt => Interval::constant(0.5).multiply(&y.reciprocal()),
+            Unary::Exp => y,
+            Unary::Ln => positive(&x).reciprocal(),
+            Unary::Log10 => {
+                let e = std::f64::consts::LOG10_E;
+                Interval::between(e.next_down(), e.next_up()).multiply(&positive(&x).reciprocal())
+            }
+            Unary::Sin => x.cos(),
+            Unary::Cos => Interval::unary(Unary::Negate, &x.sin()),
+            Unary::Tan => one.add(&y.squared()),
+            Unary::Asin | Unary::Acos => {
+                let inverse = one.subtract(&x).multiply(&one.add(&x)).sqrt().reciprocal();
+                if function == Unary::Asin { inverse } else { Interval::unary(Unary::Negate, &inverse) }
+            }
+            Unary::Atan => one.divide(&one.add(&x.squared())),
+            Unary::Sinh => Interval::unary(Unary::Cosh, &x),
+            Unary::Cosh => Interval::unary(Unary::Sinh, &x),
+            Unary::Tanh => one.subtract(&y.squared()),
+            Unary::Floor | Unary::Ceil | Unary::Sign if y.lower() == y.upper() => return Self::still(y),
+            Unary::Floor | Unary::Ceil | Unary::Sign => Interval::EVERYTHING,
+        };
+        a.through(y, slope)
+    }
+
+    fn binary(function: Binary, a: &Self, b: &Self) -> Self {
+        let y = Interval::binary(function, &a.value, &b.value);
+        match function {
+            _ if a.slopes.is_empty() && b.slopes.is_empty() => Self::still(y),
+            Binary::Add => Self::from(y, a, b, Interval::add),
+            Binary::Subtract => Self::from(y, a, b, Interval::subtract),
+            Binary::Multiply => Self::from(y, a, b, |of_a, of_b| of_a.multiply(&b.value).add(&a.value.multiply(of_b))),
+            // From q b = a.
+            Binary::Divide => Self::from(y, a, b, |of_a, of_b| of_a.subtract(&y.multiply(of_b)).divide(&b.value)),
+            Binary::Power => a.power(b, y),
+            Binary::Hypot => {
+                let [cos, sin] = [&a.value, &b.value].map(|side| direction(side, &y));
+                Self::from(y, a, b, |of_a, of_b| cos.multiply(of_a).add(&sin.multiply(of_b)))
+            }
+            Binary::Atan2 => {
+                let square = a.value.squared().add(&b.value.squared());
+                Self::from(y, a, b, |of_a, of_b| {
+                    b.value.multiply(of_a).subtract(&a.value.multiply(of_b)).divide(&square)
+                })
+            }
+            Binary::Min if a.value.upper() < b.value.lower() => Self { value: y, ..a.clone() },
+            Binary::Min if b.value.upper() < a.value.lower() => Self { value: y, ..b.clone() },
+            Binary::Max if a.value.lower() > b.value.upper() => Self { value: y, ..a.clone() },
+            Binary::Max if b.value.lower() > a.value.upper() => Self { value: y, ..b.clone() },
+            Binary::Min | Binary::Max => Self::from(y, a, b, Interval::hull),
+            // A comparison that is certain stands still.
+            _ if y.lower() == y.upper() => Self::still(y),
+            _ => Self::unknown(y, &[a, b]),
+        }
+    }
+
+    fn square(a: &Self) -> Self {
+        a.through(a.value.squared(), Interval::constant(2.0).multiply(&a.value))
+    }
+
+    fn verdict(&self) -> Verdict {
+        self.value.verdict()
+    }
+
+    fn join(condition: &Self, then: Self, otherwise: Self) -> Self {
+        let value = Interval::join(&condition.value, then.value, otherwise.value);
+        Self::unknown(value, &[condition, &then, &otherwise])
+    }
+}
+
+/// What of it is not negative.
+fn positive(x: &Interval) -> Interval {
+    Interval::between(x.lower().max(0.0), x.upper().max(0.0))
+}
+
+/// `side / length`, a sine or cosine.
+fn direction(side: &Interval, length: &Interval) -> Interval {
+    let ratio = side.divide(length);
+    let (lower, upper) = (ratio.lower().max(-1.0), ratio.upper().min(1.0));
+    if lower <= upper { Interval::between(lower, upper) } else { Interval::between(-1.0, 1.0) }
+}

@@ -1,0 +1,150 @@
+//! What the model has answered: every point asked once, for all characteristics, within the budget.
+
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
+use std::time::{Duration, Instant};
+
+use crate::assembly::process::Doubt;
+use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
+use crate::evaluation::BATCH;
+use crate::problem::Problem;
+
+/// Every point known so far, with what asking came to.
+pub(super) struct Answers<'a> {
+    problem: &'a Problem,
+    run: &'a Run<'a>,
+    /// Evaluations that may still be spent; None without a limit.
+    left: Option<usize>,
+    rows: HashMap<Vec<u64>, usize>,
+    points: Vec<Vec<f64>>,
+    /// For every row the value of each characteristic, NaN where there is none.
+    values: Vec<Vec<f64>>,
+    pub(super) spent: Spent,
+    pub(super) failures: Vec<Failures>,
+}
+
+/// Points at which a characteristic has no value: how many, and why at the first.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Failures {
+    pub(super) count: usize,
+    pub(super) first: Option<EvaluationError>,
+}
+
+/// What asking came to.
+#[derive(Debug, Clone, Default)]
+pub struct Spent {
+    /// Points sent to the model.
+    pub evaluations: usize,
+    /// Points whose answers were known from an earlier run.
+    pub reused: usize,
+    /// Points that lost at least one characteristic.
+    pub failed: usize,
+    /// Batches in which they were sent.
+    pub stages: usize,
+    /// Whether the run was stopped.
+    pub stopped: bool,
+    /// Whether points were not evaluated because the budget was spent.
+    pub over_budget: bool,
+    /// Where the model answered the nominal point otherwise than before.
+    pub doubts: Vec<Doubt>,
+    /// Time within the model.
+    pub in_model: Duration,
+}
+
+impl<'a> Answers<'a> {
+    pub(super) fn new(problem: &'a Problem, left: Option<usize>, run: &'a Run<'a>) -> Self {
+        let failures = vec![Failures::default(); problem.characteristics().len()];
+        let (points, values) = (Vec::new(), Vec::new());
+        Self { problem, run, left, rows: HashMap::new(), points, values, spent: Spent::default(), failures }
+    }
+
+    /// Takes over what is known of a point already.
+    pub(super) fn learn(&mut self, point: &[f64], values: Vec<f64>) {
+        if let Entry::Vacant(entry) = self.rows.entry(bits(point)) {
+            entry.insert(self.points.len());
+            self.points.push(point.to_vec());
+            self.values.push(values);
+        }
+    }
+
+    /// Whether nothing more can be asked.
+    pub(super) fn ended(&self) -> bool {
+        self.spent.stopped || self.spent.over_budget
+    }
+
+    /// The value of a characteristic at a point, where it is known.
+    pub(super) fn value(&self, point: &[f64], characteristic: usize) -> Option<f64> {
+        let value = self.values[*self.rows.get(&bits(point))?][characteristic];
+        (!value.is_nan()).then_some(value)
+    }
+
+    /// Every point known, with the values of all characteristics, NaN where there is none.
+    pub(super) fn known(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+        self.points.iter().zip(&self.values).map(|(point, values)| (&point[..], &values[..]))
+    }
+
+    /// Those of these points that are not known yet, each once.
+    pub(super) fn unknown(&self, points: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
+        let mut seen = HashSet::new();
+        let new = |point: &Vec<f64>| {
+            let bits = bits(point);
+            !self.rows.contains_key(&bits) && seen.insert(bits)
+        };
+        points.filter(new).collect()
+    }
+
+    /// Asks for these points, each once, in batches, as far as the budget goes.
+    pub(super) fn ask(&mut self, points: Vec<Vec<f64>>) {
+        let mut new = self.unknown(points.into_iter());
+        if let Some(left) = self.left.map(|left| left.saturating_sub(self.spent.evaluations))
+            && new.len() > left
+        {
+            new.truncate(left);
+            self.spent.over_budget = true;
+        }
+        let rows = (BATCH / self.problem.dimensions().len()).max(1);
+        for batch in new.chunks(rows) {
+            if !self.spent.stopped {
+                self.send(batch);
+            }
+        }
+    }
+
+    fn send(&mut self, batch: &[Vec<f64>]) {
+        let mut out = Responses::open(batch.len(), self.problem.outputs().len());
+        let begun = Instant::now();
+        let points = Points::from_rows(batch);
+        self.problem.function().evaluate(&Ask::values(&points, self.problem.outputs()), self.run, &mut out);
+        self.spent.in_model += begun.elapsed();
+        self.spent.stages += 1;
+        for (row, point) in batch.iter().enumerate() {
+            self.keep(point, row, &out);
+        }
+        self.spent.evaluations = self.spent.evaluations.saturating_add_signed(out.extra() as isize);
+        self.spent.reused += out.count_reused();
+        self.spent.doubts.extend(out.doubts().iter().cloned());
+    }
+
+    /// A row that is still open was not finished: it was sent only if some of it was answered.
+    fn keep(&mut self, point: &[f64], row: usize, out: &Responses) {
+        let columns = 0..out.outputs();
+        self.spent.stopped |= columns.clone().any(|c| out.is_open(row, c));
+        if columns.clone().all(|c| out.is_open(row, c)) {
+            return;
+        }
+        self.spent.evaluations += 1;
+        self.spent.failed += usize::from(columns.clone().any(|c| out.error(row, c).is_some()));
+        for c in columns.clone() {
+            if let Some(error) = out.error(row, c) {
+                self.failures[c].count += 1;
+                self.failures[c].first.get_or_insert_with(|| error.clone());
+            }
+        }
+        self.learn(point, columns.map(|c| out.value(row, c).unwrap_or(f64::NAN)).collect());
+    }
+}
+
+/// 0 has one sign only.
+fn bits(point: &[f64]) -> Vec<u64> {
+    point.iter().map(|x| (x + 0.0).to_bits()).collect()
+}

@@ -1,0 +1,171 @@
+//! Branch and bound: certainty that no assembly lies beyond an extreme.
+//!
+//! Source: Moore, Kearfott and Cloud, Introduction to Interval Analysis, 2009, chapters 6 and 11: monotonicity test and mean
+//! value form, boxes with the lowest bound first.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use crate::assembly::Bounds;
+use crate::assembly::formula::Interval;
+
+/// A box, an interval for every dimension.
+type Region = Vec<[f64; 2]>;
+
+/// What is certain of the least value in a box.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Least {
+    /// No value is below.
+    pub(super) lower: f64,
+    /// Boxes that were looked at.
+    pub(super) boxes: usize,
+    /// A point whose value is below what was believed to be the least.
+    pub(super) better: Option<Vec<f64>>,
+}
+
+/// How often a box that has lost dimensions is looked at again before it is split.
+const AGAIN: usize = 4;
+
+/// Bounds the least value of `bounds` over `region`, until it is certain to be no more than `allowed` below `best`, or `limit`
+/// boxes have been looked at, or `stop` says so.
+///
+/// A dimension along which the value only rises or only falls is held at the end where it is least.
+pub(super) fn least(
+    bounds: &dyn Fn(&[[f64; 2]]) -> Bounds,
+    region: &[[f64; 2]],
+    best: f64,
+    allowed: f64,
+    limit: usize,
+    stop: &dyn Fn() -> bool,
+) -> Least {
+    let mut search = Search { bounds, best, allowed, boxes: 0, better: None };
+    let mut open: BinaryHeap<Open> = search.examine(region.to_vec(), f64::NEG_INFINITY).into_iter().collect();
+    // The least bound of the boxes that cannot be split.
+    let mut lower = f64::INFINITY;
+    while let Some(next) = open.pop() {
+        if next.lower >= search.best - allowed || search.boxes >= limit || stop() {
+            lower = lower.min(next.lower);
+            break;
+        }
+        match next.halves() {
+            Some(halves) => open.extend(halves.into_iter().filter_map(|half| search.examine(half, next.lower))),
+            None => lower = lower.min(next.lower),
+        }
+    }
+    Least { lower, boxes: search.boxes, better: search.better }
+}
+
+struct Search<'b> {
+    bounds: &'b dyn Fn(&[[f64; 2]]) -> Bounds,
+    best: f64,
+    allowed: f64,
+    boxes: usize,
+    better: Option<Vec<f64>>,
+}
+
+/// A box that may hold the least value. The one with the lowest bound is the greatest.
+struct Open {
+    lower: f64,
+    region: Region,
+    /// How much the value may change along each dimension.
+    swing: Vec<f64>,
+}
+
+impl Search<'_> {
+    /// None when nothing in the box has a value.
+    fn examine(&mut self, mut region: Region, above: f64) -> Option<Open> {
+        let mut found = self.look(&region);
+        for _ in 0..AGAIN {
+            if found.value.is_empty() {
+                return None;
+            }
+            if !found.value.is_whole() || !hold(&mut region, &found.slopes) {
+                break;
+            }
+            found = self.look(&region);
+        }
+        let middle: Vec<f64> = region.iter().map(|&[lower, upper]| middle(lower, upper)).collect();
+        let at = self.look(&middle.iter().map(|&x| [x, x]).collect::<Region>()).value;
+        if at.upper() < self.best - self.allowed {
+            self.best = at.upper();
+            self.better = Some(middle.clone());
+        }
+        let mut lower = above.max(found.value.lower());
+        let mut swing = vec![f64::INFINITY; region.len()];
+        if found.value.is_whole() {
+            let mut about = at;
+            for (d, slope) in found.slopes.iter().enumerate() {
+                let [from, to] =
+                    region[d].map(|x| Interval::between(x, x).subtract(&Interval::between(middle[d], middle[d])));
+                let change = slope.multiply(&Interval::between(from.lower(), to.upper()));
+                about = about.add(&change);
+                swing[d] = change.upper() - change.lower();
+            }
+            lower = lower.max(about.lower());
+        }
+        Some(Open { lower, region, swing })
+    }
+
+    fn look(&mut self, region: &[[f64; 2]]) -> Bounds {
+        self.boxes += 1;
+        (self.bounds)(region)
+    }
+}
+
+/// Holds every dimension whose slope has one sign at the end where the value is least; says whether there was any.
+fn hold(region: &mut Region, slopes: &[Interval]) -> bool {
+    let mut held = false;
+    for (band, slope) in region.iter_mut().zip(slopes).filter(|(band, _)| band[0] < band[1]) {
+        if slope.lower() >= 0.0 {
+            band[1] = band[0];
+            held = true;
+        } else if slope.upper() <= 0.0 {
+            band[0] = band[1];
+            held = true;
+        }
+    }
+    held
+}
+
+fn middle(lower: f64, upper: f64) -> f64 {
+    0.5 * lower + 0.5 * upper
+}
+
+impl Open {
+    /// Split across the dimension along which the value may change most; None when no double lies between the ends of any.
+    fn halves(&self) -> Option<[Region; 2]> {
+        let splits = |&d: &usize| {
+            let [lower, upper] = self.region[d];
+            lower < middle(lower, upper) && middle(lower, upper) < upper
+        };
+        let width = |d: usize| self.region[d][1] - self.region[d][0];
+        let relative = |d: usize| width(d) / self.region[d][0].abs().max(self.region[d][1].abs());
+        let most =
+            |&a: &usize, &b: &usize| self.swing[a].total_cmp(&self.swing[b]).then(relative(a).total_cmp(&relative(b)));
+        let d = (0..self.region.len()).filter(splits).max_by(most)?;
+        let mut halves = [self.region.clone(), self.region.clone()];
+        let middle = middle(self.region[d][0], self.region[d][1]);
+        (halves[0][d][1], halves[1][d][0]) = (middle, middle);
+        Some(halves)
+    }
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.lower.total_cmp(&self.lower)
+    }
+}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Open {}

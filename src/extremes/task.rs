@@ -1,0 +1,284 @@
+//! One characteristic's part of the search.
+
+use super::answers::Answers;
+use super::climb::Climb;
+use super::model::{Model, Region};
+use super::start::Starts;
+use super::{Coordinate, Ended, Extreme, Extremes, Place, Proof, proof};
+use crate::assembly::Run;
+use crate::method::Outcome;
+use crate::plan::Point;
+use crate::problem::Problem;
+
+/// A surrogate has foretold values that it misses by no more than this part of their range.
+const FORETOLD: f64 = 1e-9;
+/// Searches of either side: from the best point, and from the best other start.
+const CLIMBS: usize = 2;
+/// A start whose value is farther from the best than this part of the range is not worth a search.
+const STRONG: f64 = 0.5;
+
+/// A bound is as good as an extreme when it lies no farther beyond it than this part of the range and this part of the values.
+const PROVEN: f64 = 1e-9;
+const ROUNDING: f64 = 1e-12;
+/// Boxes of either side, as long as there are few dimensions.
+const BOXES: usize = 20_000;
+const FEW: usize = 10;
+
+/// A point on the edge of a zone is within it.
+const ON_THE_EDGE: f64 = 1e-12;
+
+pub(super) struct Task {
+    characteristic: usize,
+    /// The dimensions that vary and on which it can depend.
+    dimensions: Vec<usize>,
+    /// Where all the others stay.
+    centre: Vec<f64>,
+    region: Region,
+    /// Places of coordinates that one circular zone keeps.
+    zones: Vec<Vec<usize>>,
+    surrogate: Model,
+    /// The value at the base of the surrogate.
+    base: Option<f64>,
+    pub(super) starts: Starts,
+}
+
+impl Task {
+    pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> Self {
+        let (plan, fitted) = (&outcome.plan, &outcome.fitted[c]);
+        let band = |d: usize| problem.dimensions()[d].reach().map(|reach| problem.dimensions()[d].nominal() + reach);
+        let matters = |&d: &usize| plan.depends(c, d) && band(d)[0] < band(d)[1];
+        let dimensions: Vec<usize> = plan.varying().iter().copied().filter(matters).collect();
+        let region = Region {
+            lower: dimensions.iter().map(|&d| band(d)[0]).collect(),
+            upper: dimensions.iter().map(|&d| band(d)[1]).collect(),
+        };
+        let zones = zones(problem, &dimensions);
+        let place = |position: usize| dimensions.iter().position(|&d| d == plan.varying()[position]);
+        let mut products = vec![Vec::new(); dimensions.len()];
+        for (&(j, k), mixed) in outcome.pairs.iter().zip(&fitted.mixed) {
+            if let (Some(j), Some(k), Some(mixed)) = (place(j), place(k), mixed.filter(|mixed| mixed.value != 0.0)) {
+                products[j].push((k, mixed.value));
+                products[k].push((j, mixed.value));
+            }
+        }
+        let part = |&d: &usize| fitted.parts[d].map_or([0.0; 4], |part| part.coefficients());
+        let centre = plan.centre();
+        let surrogate = Model {
+            base: dimensions.iter().map(|&d| centre[d]).collect(),
+            scale: dimensions.iter().map(|&d| plan.axis(d).scale).collect(),
+            parts: dimensions.iter().map(part).collect(),
+            products,
+        };
+        let starts = Starts::of(&surrogate, &region);
+        Self { characteristic: c, dimensions, centre, region, zones, surrogate, base: fitted.centre, starts }
+    }
+
+    /// With all dimensions. A place outside a circular zone stands for the one on its edge in the same direction, so that the
+    /// box covers the zone.
+    pub(super) fn point(&self, x: &[f64]) -> Vec<f64> {
+        let mut point = self.centre.clone();
+        self.dimensions.iter().zip(x).for_each(|(&d, &x)| point[d] = x);
+        for zone in &self.zones {
+            let radius = self.radius(zone, x);
+            if radius > 1.0 {
+                for &j in zone {
+                    let middle = self.middle(j);
+                    point[self.dimensions[j]] = middle + (x[j] - middle) / radius;
+                }
+            }
+        }
+        point
+    }
+
+    fn middle(&self, j: usize) -> f64 {
+        0.5 * (self.region.lower[j] + self.region.upper[j])
+    }
+
+    /// How far from the middle of a zone, in its radii.
+    fn radius(&self, zone: &[usize], x: &[f64]) -> f64 {
+        let part = |&j: &usize| (x[j] - self.middle(j)) / (0.5 * (self.region.upper[j] - self.region.lower[j]));
+        zone.iter().map(part).fold(0.0, f64::hypot)
+    }
+
+    /// Whether no zone is left, but for rounding.
+    fn within_zones(&self, x: &[f64]) -> bool {
+        self.zones.iter().all(|zone| self.radius(zone, x) <= 1.0 + ON_THE_EDGE)
+    }
+
+    fn own(&self, point: &[f64]) -> Vec<f64> {
+        self.dimensions.iter().map(|&d| point[d]).collect()
+    }
+
+    pub(super) fn value(&self, answers: &Answers<'_>, x: &[f64]) -> Option<f64> {
+        answers.value(&self.point(x), self.characteristic)
+    }
+
+    /// Every known value within the box.
+    fn known<'a>(&'a self, answers: &'a Answers<'_>) -> impl Iterator<Item = (Vec<f64>, f64)> + 'a {
+        (answers.known())
+            .filter(|(_, values)| !values[self.characteristic].is_nan())
+            .map(|(point, values)| (self.own(point), values[self.characteristic]))
+            .filter(|(x, _)| self.region.contains(x) && self.within_zones(x))
+    }
+
+    /// How far the known values lie apart.
+    pub(super) fn range(&self, answers: &Answers<'_>) -> f64 {
+        let [least, greatest] = self
+            .known(answers)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], (_, y)| [least.min(y), greatest.max(y)]);
+        (greatest - least).max(0.0)
+    }
+
+    /// Hands on what the method has found out: the points on the axes, and the extremes of all others.
+    pub(super) fn learn_from(&self, answers: &mut Answers<'_>, outcome: &Outcome) {
+        let (plan, known) = (&outcome.plan, &outcome.evaluated.known);
+        let within = |point: &Point| {
+            point.at().iter().all(|at| {
+                let x = plan.axis(at.dimension as usize).nodes[at.node as usize].x;
+                let own = self.dimensions.iter().position(|&d| d == at.dimension as usize);
+                own.is_none_or(|own| self.region.lower[own] <= x && x <= self.region.upper[own])
+            })
+        };
+        let value = |point: &&Point| known.value(point, self.characteristic);
+        let inside = || known.points().iter().filter(|point| value(point).is_some() && within(point));
+        let by_value = |a: &&Point, b: &&Point| value(a).partial_cmp(&value(b)).unwrap_or(std::cmp::Ordering::Equal);
+        let extremes = [inside().min_by(by_value), inside().max_by(by_value)];
+        let axes = known.points().iter().filter(|point| point.at().len() <= 1);
+        for point in axes.chain(extremes.into_iter().flatten()) {
+            let mut x = self.centre.clone();
+            for at in point.at() {
+                x[at.dimension as usize] = plan.axis(at.dimension as usize).nodes[at.node as usize].x;
+            }
+            let values = (0..known.characteristics()).map(|c| known.value(point, c).unwrap_or(f64::NAN)).collect();
+            answers.learn(&x, values);
+        }
+    }
+
+    /// Whether the surrogate has foretold the value of every start, up to rounding.
+    pub(super) fn foretold(&self, answers: &Answers<'_>) -> bool {
+        let Some(base) = self.base else { return false };
+        let rounding = 16.0 * f64::EPSILON * self.region.len() as f64 * base.abs();
+        let allowed = FORETOLD * self.range(answers) + rounding;
+        let right = |x: &Vec<f64>| {
+            self.value(answers, x).is_some_and(|value| (value - base - self.surrogate.rise(x)).abs() <= allowed)
+        };
+        self.starts.points().all(right)
+    }
+
+    /// Searches from the best point known and from the best other start of this side: `sign` 1 goes down, -1 up.
+    pub(super) fn climbs(&self, answers: &Answers<'_>, sign: f64) -> Vec<Climb<'_>> {
+        let signed = |(x, y): (Vec<f64>, f64)| (x, sign * y);
+        let Some((best, y)) = self.known(answers).map(signed).min_by(|a, b| a.1.total_cmp(&b.1)) else {
+            return Vec::new();
+        };
+        let starts = if sign > 0.0 { &self.starts.least } else { &self.starts.greatest };
+        let strong = y + STRONG * self.range(answers);
+        let mut others: Vec<(Vec<f64>, f64)> = (starts.iter())
+            .filter(|x| **x != best)
+            .filter_map(|x| Some((x.clone(), sign * self.value(answers, x)?)))
+            .filter(|&(_, y)| y <= strong)
+            .collect();
+        others.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let from = std::iter::once((best, y)).chain(others).take(CLIMBS);
+        from.map(|(x, y)| Climb::new(&self.region, &self.surrogate, x, y)).collect()
+    }
+
+    /// Bounds both extremes by interval arithmetic, where the function has bounds; and points that lie beyond them, if it comes
+    /// upon any.
+    pub(super) fn prove(
+        &self,
+        problem: &Problem,
+        answers: &Answers<'_>,
+        run: &Run<'_>,
+    ) -> (Option<Proof>, Vec<Vec<f64>>) {
+        let output = problem.outputs()[self.characteristic];
+        let everywhere = |region: &[[f64; 2]]| {
+            let mut all: Vec<[f64; 2]> = self.centre.iter().map(|&x| [x, x]).collect();
+            self.dimensions.iter().zip(region).for_each(|(&d, &band)| all[d] = band);
+            let mut bounds = problem.function().bounds(output, &all)?;
+            bounds.slopes = self.dimensions.iter().map(|&d| bounds.slopes[d]).collect();
+            Some(bounds)
+        };
+        let region: Vec<[f64; 2]> =
+            (0..self.region.len()).map(|d| [self.region.lower[d], self.region.upper[d]]).collect();
+        let values = self.known(answers).map(|(_, value)| value);
+        let [least, greatest] =
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], y| [least.min(y), greatest.max(y)]);
+        if answers.spent.stopped || least > greatest || everywhere(&region).is_none() {
+            return (None, Vec::new());
+        }
+        let allowed = PROVEN * (greatest - least) + ROUNDING * least.abs().max(greatest.abs());
+        let limit = BOXES * FEW / self.region.len().max(FEW);
+        let side = |sign: f64, best: f64| {
+            let bounds = |region: &[[f64; 2]]| {
+                let bounds = everywhere(region).expect("a function has bounds everywhere or nowhere");
+                if sign > 0.0 { bounds } else { bounds.negated() }
+            };
+            proof::least(&bounds, &region, sign * best, allowed, limit, &|| run.stopped())
+        };
+        let (below, above) = (side(1.0, least), side(-1.0, greatest));
+        let proof = Proof {
+            bounds: [below.lower.min(least), (-above.lower).max(greatest)],
+            proven: below.lower >= least - allowed && -above.lower <= greatest + allowed,
+            boxes: below.boxes + above.boxes,
+        };
+        if !self.zones.is_empty() {
+            // What lies beyond in the box may lie outside the zone.
+            return (Some(proof), Vec::new());
+        }
+        (Some(proof), below.better.into_iter().chain(above.better).collect())
+    }
+
+    /// The best that is known.
+    pub(super) fn result(
+        &self,
+        problem: &Problem,
+        answers: &Answers<'_>,
+        asked: usize,
+        proof: Option<Proof>,
+    ) -> Option<Extremes> {
+        let least = self.known(answers).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let greatest = self.known(answers).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let failures = &answers.failures[self.characteristic];
+        Some(Extremes {
+            least: self.extreme(problem, least),
+            greatest: self.extreme(problem, greatest),
+            evaluations: asked,
+            failed: failures.count,
+            failure: failures.first.as_ref().map(ToString::to_string),
+            ended: match &answers.spent {
+                spent if spent.stopped => Ended::Stopped,
+                spent if spent.over_budget => Ended::Budget,
+                _ => Ended::Converged,
+            },
+            proof,
+        })
+    }
+
+    fn extreme(&self, problem: &Problem, (x, value): (Vec<f64>, f64)) -> Extreme {
+        let coordinate = |(j, &x): (usize, &f64)| Coordinate {
+            dimension: problem.dimensions()[self.dimensions[j]].name().to_owned(),
+            x,
+            band: [self.region.lower[j], self.region.upper[j]],
+            place: match x {
+                x if x == self.region.lower[j] => Place::Lower,
+                x if x == self.region.upper[j] => Place::Upper,
+                _ => Place::Interior,
+            },
+        };
+        Extreme { value, at: x.iter().enumerate().map(coordinate).collect() }
+    }
+}
+
+/// The places among `dimensions` of those that share a zone.
+fn zones(problem: &Problem, dimensions: &[usize]) -> Vec<Vec<usize>> {
+    let mut zones: Vec<(&str, Vec<usize>)> = Vec::new();
+    for (j, &d) in dimensions.iter().enumerate() {
+        let Some(zone) = problem.dimensions()[d].zone() else { continue };
+        match zones.iter_mut().find(|(name, _)| *name == zone) {
+            Some((_, places)) => places.push(j),
+            None => zones.push((zone, vec![j])),
+        }
+    }
+    zones.into_iter().map(|(_, places)| places).collect()
+}

@@ -1,0 +1,249 @@
+//! The JSON Schema of study files, from the types that read them.
+//!
+//! A new key of a study needs nothing here: its type's `derive` and its doc comment make its schema. What is written by hand are
+//! the forms that serde does not know, such as a number or a pair of numbers, and the words that a registry knows.
+
+use std::borrow::Cow;
+
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::{Value, json};
+
+use super::dimension::{MODELS, kind_names};
+use super::file::{
+    CorrelationEntry, Correlations, DistributionEntry, Entries, PairsEntry, StudyFile, TermEntry, UnknownEntry,
+};
+use super::values::{Deviation, NominalEntry, ToleranceEntry};
+use crate::method::{ALL as METHODS, DerivativeSource, Pairs};
+use crate::models;
+use crate::plan::Stencil;
+
+/// The schema of study files, draft 2020-12, in TOML and JSON alike.
+///
+/// What it accepts is well formed; whether formulas, names and numbers fit each other only [`Study`](super::Study) knows.
+pub fn schema() -> Value {
+    let schema = SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<StudyFile>();
+    let mut schema = schema.to_value();
+    tidy(&mut schema);
+    schema
+}
+
+/// A key that may be left out is not a key that may be null; and the width of a number is ours alone.
+fn tidy(value: &mut Value) {
+    match value {
+        Value::Object(object) => {
+            if object.get("format").is_some_and(Value::is_string) && object.contains_key("type") {
+                object.remove("format");
+            }
+            if let Some(Value::Array(types)) = object.get_mut("type") {
+                types.retain(|kind| kind != "null");
+                if let [only] = &types[..] {
+                    object["type"] = only.clone();
+                }
+            }
+            let null = json!({ "type": "null" });
+            let present = match object.get("anyOf") {
+                Some(Value::Array(forms)) if forms.contains(&null) => {
+                    Some(forms.iter().filter(|form| **form != null).cloned().collect::<Vec<_>>())
+                }
+                _ => None,
+            };
+            if let Some(present) = present {
+                object.remove("anyOf");
+                match &present[..] {
+                    [Value::Object(only)] => object.extend(only.clone()),
+                    _ => _ = object.insert("anyOf".to_owned(), present.into()),
+                }
+            }
+            // What is left out stands for something, but not for null.
+            if object.get("default") == Some(&Value::Null) {
+                object.remove("default");
+            }
+            object.values_mut().for_each(tidy);
+        }
+        Value::Array(items) => items.iter_mut().for_each(tidy),
+        _ => {}
+    }
+}
+
+/// The names of all methods.
+pub(super) fn methods() -> Vec<&'static str> {
+    METHODS.iter().map(|method| method.name()).collect()
+}
+
+/// The names of all built-in models.
+pub(super) fn built_in_models() -> Vec<&'static str> {
+    models::ALL.iter().map(|model| model.name).collect()
+}
+
+/// The names of all stencils.
+pub(super) fn stencils() -> Vec<&'static str> {
+    Stencil::NAMES.to_vec()
+}
+
+/// Which sensitivities can be asked for.
+pub(super) fn sensitivities() -> Vec<&'static str> {
+    super::options::SENSITIVITIES.to_vec()
+}
+
+/// The sources of derivatives.
+pub(super) fn derivatives() -> Vec<&'static str> {
+    DerivativeSource::NAMES.to_vec()
+}
+
+/// The kinds of distribution.
+pub(super) fn kinds() -> Vec<&'static str> {
+    kind_names().collect()
+}
+
+/// What can be made of measured values.
+pub(super) fn measured_models() -> Vec<&'static str> {
+    MODELS.to_vec()
+}
+
+/// Exactly one of these keys must be there.
+pub(super) fn one_of<const N: usize>(keys: [&str; N]) -> Value {
+    keys.iter().map(|key| json!({ "required": [key] })).collect()
+}
+
+impl<T: JsonSchema> JsonSchema for Entries<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        format!("Entries_{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "object",
+            "propertyNames": { "minLength": 1 },
+            "additionalProperties": generator.subschema_for::<T>(),
+        })
+    }
+}
+
+impl JsonSchema for ToleranceEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Tolerance".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "anyOf": [
+                { "description": "Half the band: 0.3 is nominal ± 0.3.", "type": "number", "minimum": 0 },
+                { "description": "Half the band in percent of the nominal.", "type": "string", "pattern": PERCENT },
+                {
+                    "description": "Lower and upper deviation: [-0.1, 0.3].",
+                    "type": "array",
+                    "items": generator.subschema_for::<Deviation>(),
+                    "minItems": 2,
+                    "maxItems": 2,
+                },
+            ],
+        })
+    }
+}
+
+/// A number and a percent sign.
+const PERCENT: &str = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*%\s*$";
+
+impl JsonSchema for Deviation {
+    fn schema_name() -> Cow<'static, str> {
+        "Deviation".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "anyOf": [{ "type": "number" }, { "type": "string", "pattern": PERCENT }] })
+    }
+}
+
+impl JsonSchema for NominalEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Nominal".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "anyOf": [
+                { "type": "number" },
+                { "description": "The place of a position.", "allOf": [generator.subschema_for::<[f64; 2]>()] },
+            ],
+        })
+    }
+}
+
+/// The name of a kind, or a table with its parameters.
+pub(super) fn distribution(generator: &mut SchemaGenerator) -> Schema {
+    json_schema!({
+        "anyOf": [
+            { "description": "The kind of distribution.", "type": "string", "enum": kinds() },
+            generator.subschema_for::<DistributionEntry>(),
+        ],
+    })
+}
+
+impl JsonSchema for UnknownEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Unknown".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let number = |what: &str| json!({ "description": what, "type": "number" });
+        json_schema!({
+            "anyOf": [
+                { "description": "Where the search for it begins.", "type": "number" },
+                {
+                    "type": "object",
+                    "properties": {
+                        "start": number("Where the search for it begins."),
+                        "lower": number("It does not lie below."),
+                        "upper": number("It does not lie above."),
+                    },
+                    "required": ["start"],
+                    "additionalProperties": false,
+                },
+            ],
+        })
+    }
+}
+
+impl JsonSchema for TermEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Term".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "anyOf": [{ "description": "A formula.", "type": "string" }, { "type": "number" }] })
+    }
+}
+
+impl JsonSchema for Correlations {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Correlations".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "array", "items": generator.subschema_for::<CorrelationEntry>() })
+    }
+}
+
+impl JsonSchema for PairsEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Pairs".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "anyOf": [
+                { "type": "string", "enum": Pairs::NAMES },
+                generator.subschema_for::<Vec<(String, String)>>(),
+            ],
+        })
+    }
+}
