@@ -7,9 +7,9 @@ use std::borrow::Cow;
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use super::dimension::{MODELS, kind_names};
+use super::dimension::{self, MODELS};
 use super::file::{
     CorrelationEntry, Correlations, DistributionEntry, Entries, PairsEntry, StudyFile, TermEntry, UnknownEntry,
 };
@@ -93,7 +93,7 @@ pub(super) fn derivatives() -> Vec<&'static str> {
 
 /// The kinds of distribution.
 pub(super) fn kinds() -> Vec<&'static str> {
-    kind_names().collect()
+    dimension::kinds().map(|(name, _)| name).collect()
 }
 
 /// What can be made of measured values.
@@ -174,14 +174,21 @@ impl JsonSchema for NominalEntry {
     }
 }
 
-/// The name of a kind, or a table with its parameters.
+/// The name of a kind, or a table with the parameters that it knows.
 pub(super) fn distribution(generator: &mut SchemaGenerator) -> Schema {
-    json_schema!({
-        "anyOf": [
-            { "description": "The kind of distribution.", "type": "string", "enum": kinds() },
-            generator.subschema_for::<DistributionEntry>(),
-        ],
-    })
+    let all = DistributionEntry::json_schema(generator).to_value();
+    let table = |(name, knows): (&'static str, &'static [&'static str])| {
+        let mut properties: Map<String, Value> =
+            knows.iter().map(|&key| (key.to_owned(), all["properties"][key].clone())).collect();
+        properties.insert(
+            "kind".to_owned(),
+            json!({ "description": all["properties"]["kind"]["description"], "const": name }),
+        );
+        json!({ "type": "object", "properties": properties, "required": ["kind"], "additionalProperties": false })
+    };
+    let mut forms = vec![json!({ "description": "The kind of distribution.", "type": "string", "enum": kinds() })];
+    forms.extend(dimension::kinds().map(table));
+    json_schema!({ "anyOf": forms })
 }
 
 impl JsonSchema for UnknownEntry {

@@ -55,10 +55,10 @@ const KINDS: [Known; 12] = [
     ("mixture", Kind::Mixture, &["parts"], "it knows `parts`"),
 ];
 
-/// The names of all kinds.
+/// The names of all kinds, with the parameters that each knows.
 #[cfg(feature = "cli")]
-pub(in crate::study) fn kind_names() -> impl Iterator<Item = &'static str> {
-    KINDS.iter().map(|known| known.0)
+pub(in crate::study) fn kinds() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+    KINDS.iter().map(|known| (known.0, known.2))
 }
 
 /// The distribution of this line; None when it does not vary.

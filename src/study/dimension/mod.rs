@@ -17,7 +17,7 @@ use super::spanned::Spanned;
 use super::values::NominalEntry;
 use crate::dimension::{Dimension, DimensionError};
 #[cfg(feature = "cli")]
-pub(super) use kinds::kind_names;
+pub(super) use kinds::kinds;
 #[cfg(feature = "cli")]
 pub(super) use measured::MODELS;
 use spread::Spread;
