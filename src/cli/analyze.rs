@@ -13,7 +13,8 @@ use super::progress::Bar;
 use super::study;
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::{Progress, Run, Table};
-use crate::report::{About, Report, stack_csv, stack_markdown, stack_text, text};
+use crate::characteristic::Characteristic;
+use crate::report::{About, Report, csv_file_names, csv_files, stack_csv, stack_markdown, stack_text, text};
 use crate::study::{Externals, Study};
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
@@ -25,7 +26,8 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
         return Err(Failure::NothingToCheck);
     }
     let destination = Destination::open(&asked.output)?;
-    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &study.problem)).transpose()?;
+    let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
+    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
     let begun = Instant::now();
     let analysis = analyze(&study, asked, begun, look)?;
     let about = About {
@@ -44,7 +46,7 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
         Some(StackArg::Markdown) => stack_markdown(&report.stacks()),
     };
     let written = destination.write(&printed);
-    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&report)));
+    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }

@@ -193,6 +193,10 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) threads: Option<u16>,
 
+    /// Write estimates and histogram as CSV files into DIR, which is made where it is missing
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    pub(super) csv: Option<PathBuf>,
+
     #[command(flatten)]
     pub(super) output: OutputArgs,
 }
@@ -230,8 +234,8 @@ pub(super) struct CompareArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) threads: Option<u16>,
 
-    /// Write the table to a CSV file too
-    #[arg(long, value_name = "FILE.csv", help_heading = OUTPUT)]
+    /// Write the table as comparison.csv into DIR, which is made where it is missing
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
 
     /// Draw evaluations against error

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::args::CompareArgs;
+use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use super::{interrupt, on_threads, study};
@@ -21,7 +22,8 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     };
     let study = study::read_only(&asked.study, &asked.characteristics, externals)?;
     let destination = Destination::open(&asked.output)?;
-    let table = asked.csv.as_deref().map(Destination::file).transpose()?;
+    let names = ["comparison.csv".to_owned()];
+    let table = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
     let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
     let options = CompareOptions {
         budget: asked.budget.or(study.options.budget),
@@ -45,7 +47,7 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let written =
         destination.write(&if asked.output.json { json(&report) } else { compare_text(&report, look.style()) });
     if let Some(table) = table {
-        table.write(&compare_csv(&report))?;
+        table.write(&[compare_csv(&report)])?;
     }
     if let Some(chart) = chart {
         chart.write(&compare_svg(&report))?;

@@ -4,15 +4,14 @@ use std::path::Path;
 
 use super::failure::Failure;
 use super::output::Destination;
-use crate::characteristic::Characteristic;
-use crate::problem::Problem;
-use crate::report::{Report, csv_file_names, csv_files};
+use crate::report::CsvFile;
 
 /// A folder of files, each opened before the work and renamed when it is whole.
 pub(super) struct CsvFolder(Vec<Destination>);
 
 impl CsvFolder {
-    pub(super) fn open(folder: &Path, problem: &Problem) -> Result<Self, Failure> {
+    /// For files of these names.
+    pub(super) fn open(folder: &Path, names: &[String]) -> Result<Self, Failure> {
         std::fs::create_dir_all(folder).map_err(|error| {
             // What the system says of a file in the way depends on where in the path it is.
             let in_the_way = folder.ancestors().find(|path| path.is_file());
@@ -21,11 +20,11 @@ impl CsvFolder {
                 None => Failure::Unwritable { path: folder.to_owned(), error },
             }
         })?;
-        let names = csv_file_names(problem.characteristics().iter().map(Characteristic::name));
         names.iter().map(|name| Destination::file(&folder.join(name))).collect::<Result<_, _>>().map(Self)
     }
 
-    pub(super) fn write(self, report: &Report) -> Result<(), Failure> {
-        self.0.into_iter().zip(csv_files(report)).try_for_each(|(file, table)| file.write(&table.text))
+    /// The files, in the order of their names.
+    pub(super) fn write(self, files: &[CsvFile]) -> Result<(), Failure> {
+        self.0.into_iter().zip(files).try_for_each(|(file, table)| file.write(&table.text))
     }
 }

@@ -4,13 +4,14 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use super::args::{SamplerArg, SimulateArgs};
+use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use super::progress::Samples;
 use super::{interrupt, on_threads, study};
 use crate::assembly::Run;
 use crate::method::Options;
-use crate::report::{About, SimulationReport, simulation_text};
+use crate::report::{About, SimulationReport, simulation_csv, simulation_text};
 use crate::sampling::Sampler;
 use crate::simulation::{Pace, SimulationOptions, simulate_within};
 use crate::study::{Externals, Study};
@@ -27,6 +28,8 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         return Err(Failure::NothingToCheck);
     }
     let destination = Destination::open(&asked.output)?;
+    let names = ["estimates.csv", "histogram.csv"].map(str::to_owned);
+    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
     let wanted = asked.until.is_some() || asked.until_yield.is_some();
     let options = SimulationOptions {
         samples: asked.samples.unwrap_or(if wanted { 1 << 52 } else { SAMPLES }),
@@ -50,6 +53,9 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let report = SimulationReport::of(&study.problem, &simulation, about);
     let written =
         destination.write(&if asked.output.json { json(&report) } else { simulation_text(&report, look.style()) });
+    if let Some(folder) = folder {
+        folder.write(&simulation_csv(&report))?;
+    }
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }

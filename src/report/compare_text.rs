@@ -1,6 +1,6 @@
 //! The report of a comparison for people.
 
-use super::compare::{CompareReport, ComparedReport, MethodReport};
+use super::compare::{CompareReport, ComparedReport};
 use super::number::significant;
 use super::page::{Grid, Page, Style, clean, short};
 
@@ -74,48 +74,4 @@ fn error(off: Option<f64>, own: Option<f64>, factor: f64) -> String {
 
 fn brief(value: f64) -> String {
     if value == 0.0 || (1e-3..1e4).contains(&value) { significant(value, 2) } else { format!("{value:.0e}") }
-}
-
-/// What a comparison says, as one table: a row for every characteristic and method.
-pub fn compare_csv(report: &CompareReport) -> String {
-    let mut text = String::from(
-        "characteristic,method,evaluations,evaluation_s,engine_s,mean,sigma,skewness,kurtosis,yield,\
-         mean_off_sigmas,sigma_off_relative,skewness_off,kurtosis_off,yield_off,overall,resolved,pareto\n",
-    );
-    for one in &report.characteristics {
-        for method in &one.methods {
-            text += &row(&one.name, method);
-        }
-    }
-    text
-}
-
-fn row(characteristic: &str, method: &MethodReport) -> String {
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    let quoted = |text: &str| match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    };
-    let (found, off) = (&method.figures, &method.error_vs_reference);
-    let cells = [
-        quoted(characteristic),
-        quoted(&method.method),
-        method.evaluations.to_string(),
-        method.evaluation_s.to_string(),
-        method.engine_s.to_string(),
-        number(found.mean),
-        number(found.sigma),
-        number(found.skewness),
-        number(found.kurtosis),
-        number(found.yield_),
-        number(off.off.mean),
-        number(off.off.sigma),
-        number(off.off.skewness),
-        number(off.off.kurtosis),
-        number(off.off.yield_),
-        number(off.overall),
-        off.resolved.to_string(),
-        method.pareto.to_string(),
-    ];
-    cells.join(",") + "\n"
 }

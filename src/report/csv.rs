@@ -5,6 +5,7 @@
 use super::Report;
 use super::distribution::DistributionReport;
 use super::stack::Stack;
+use super::table::{Table, empty, number, optional, text, truth};
 
 /// The name of a file, and what makes its table.
 type Writer = (&'static str, fn(&Report) -> String);
@@ -228,48 +229,4 @@ fn warnings(report: &Report) -> String {
         table.row([text(one.code), optional(characteristic), optional(dimension), text(&one.message)]);
     }
     table.text
-}
-
-/// A table as it grows.
-struct Table {
-    text: String,
-}
-
-impl Table {
-    fn new(header: &str) -> Self {
-        Self { text: format!("{header}\n") }
-    }
-
-    fn row<const N: usize>(&mut self, cells: [String; N]) {
-        self.text += &cells.join(",");
-        self.text.push('\n');
-    }
-}
-
-fn text(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
-}
-
-fn optional(value: Option<&str>) -> String {
-    value.map_or(String::new(), text)
-}
-
-/// The shortest decimals that are this double again.
-fn number(value: impl Into<Option<f64>>) -> String {
-    match value.into() {
-        Some(value) if value.is_finite() => {
-            // Without the sign of a zero.
-            let text = format!("{:?}", value + 0.0);
-            text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
-        }
-        _ => empty(),
-    }
-}
-
-fn truth(value: Option<bool>) -> String {
-    value.map_or(String::new(), |value| value.to_string())
-}
-
-fn empty() -> String {
-    String::new()
 }

@@ -1,6 +1,7 @@
 //! Reports: a versioned value with serde, and its text for people.
 
 mod compare;
+mod compare_csv;
 mod compare_svg;
 mod compare_text;
 mod csv;
@@ -11,20 +12,24 @@ pub(crate) mod number;
 mod page;
 mod sampling;
 mod simulation;
+mod simulation_csv;
 mod simulation_text;
 mod sketch;
 mod stack;
+mod table;
 mod text;
 
 pub use compare::{CompareReport, ComparedReport, ErrorReport, FiguresReport, MethodReport, NotRunReport};
+pub use compare_csv::compare_csv;
 pub use compare_svg::compare_svg;
-pub use compare_text::{compare_csv, compare_text};
+pub use compare_text::compare_text;
 pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
 pub use limits::law_text;
 pub use page::{Detail, Style};
 pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
+pub use simulation_csv::simulation_csv;
 pub use simulation_text::simulation_text;
 pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_markdown, stack_text};
 pub use text::text;

@@ -158,7 +158,8 @@ pub fn simulate_within(
     if !(2..=MOST).contains(&options.samples) {
         return Err(SimulationError::Samples { samples: options.samples, most: MOST });
     }
-    if let Some(value) = [options.until, options.until_yield].into_iter().flatten().find(|wanted| !(*wanted > 0.0)) {
+    let no_wish = |wanted: &f64| wanted.is_nan() || *wanted <= 0.0;
+    if let Some(value) = [options.until, options.until_yield].into_iter().flatten().find(no_wish) {
         return Err(SimulationError::Wanted { value });
     }
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;

@@ -6,14 +6,14 @@ use std::process::{Command, Stdio};
 use super::support::repository;
 
 /// A command of the program, run at the repository's root in a UTF-8 locale.
-fn sensitol(arguments: &[&str]) -> Command {
+pub fn sensitol(arguments: &[&str]) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
     command.args(arguments).current_dir(repository("")).env("LC_ALL", "C.UTF-8").env_remove("NO_COLOR");
     command
 }
 
 /// Exit code, stdout and stderr in one text.
-fn run(arguments: &[&str]) -> String {
+pub fn run(arguments: &[&str]) -> String {
     let output = sensitol(arguments).output().unwrap();
     let part = |name: &str, bytes: &[u8]| match String::from_utf8(bytes.to_vec()).unwrap() {
         empty if empty.is_empty() => String::new(),

@@ -22,6 +22,7 @@ mod plans;
 mod probe;
 mod process;
 mod published;
+mod sampled_cli;
 mod sampling;
 mod schema;
 mod simulation;

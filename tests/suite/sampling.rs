@@ -70,9 +70,9 @@ fn points_are_balanced_scrambled_or_not() {
                         continue;
                     }
                     let mut counts = vec![0; 1 << depth];
-                    for point in 0..1 << m {
-                        let cell = |d: usize, digits: u32| (columns[d][point] * f64::from(1 << digits)) as usize;
-                        counts[(cell(0, a) << b | cell(1, b)) << c | cell(2, c)] += 1;
+                    for ((x, y), z) in columns[0].iter().zip(&columns[1]).zip(&columns[2]) {
+                        let cell = |coordinate: &f64, digits: u32| (coordinate * f64::from(1 << digits)) as usize;
+                        counts[((cell(x, a) << b) | cell(y, b)) << c | cell(z, c)] += 1;
                     }
                     assert!(counts.iter().all(|&count| count == 1 << t), "{dimensions} dimensions, {a} {b} {c}");
                 }

@@ -1,0 +1,160 @@
+//! `simulate` and `compare` on the command line.
+
+use serde_json::Value;
+
+use super::cli::{run, sensitol};
+
+const BLOCKS: &str = "examples/stacked-blocks/study.toml";
+const PYTHON: &str = "examples/external-python/study.toml";
+
+fn json(arguments: &[&str]) -> Value {
+    let output = sensitol(arguments).output().unwrap();
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
+}
+
+#[test]
+fn a_simulation_prints_estimates_with_standard_errors() {
+    insta::assert_snapshot!("simulate", run(&["simulate", BLOCKS, "--samples", "20000", "--threads", "1"]));
+    insta::assert_snapshot!(
+        "simulate-sobol",
+        run(&["simulate", BLOCKS, "--sampler", "sobol", "--samples", "20000", "--color", "never"])
+    );
+    let report = json(&["simulate", BLOCKS, "--samples", "5000", "--json", "--seed", "9"]);
+    assert_eq!(
+        (&report["samples"], &report["seed"], &report["method"]),
+        (&5000.into(), &9.into(), &"monte-carlo".into())
+    );
+    let one = &report["characteristics"][0];
+    let counts: u64 = one["histogram"]["counts"].as_array().unwrap().iter().map(|count| count.as_u64().unwrap()).sum();
+    assert_eq!(counts, 5000);
+    assert_eq!(
+        one["histogram"]["edges"].as_array().unwrap().len(),
+        one["histogram"]["counts"].as_array().unwrap().len() + 1
+    );
+    let [low, high] = [0, 1].map(|end| one["standard_error"]["yield"][end].as_f64().unwrap());
+    assert!(low < one["yield"].as_f64().unwrap() && one["yield"].as_f64().unwrap() <= high);
+    assert!(one["standard_error"]["quantiles"]["0.5"].as_f64().unwrap() > 0.0);
+}
+
+/// A costly model's answers are kept: the second run asks for nothing.
+#[test]
+fn samples_of_programs_are_journaled() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("a.sqlite");
+    let arguments = ["simulate", PYTHON, "--samples", "300", "--json", "--journal", journal.to_str().unwrap()];
+    let (first, second) = (json(&arguments), json(&arguments));
+    assert_eq!((&first["reused"], &second["reused"]), (&0.into(), &300.into()));
+    // The nominal point, asked again by the sentinel, is all that the second run evaluates.
+    assert!(second["evaluations"].as_u64().unwrap() <= 2, "{}", second["evaluations"]);
+    assert_eq!(first["characteristics"][0]["mean"], second["characteristics"][0]["mean"]);
+}
+
+#[test]
+fn a_comparison_measures_every_method() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (svg, csv) = (path("trade.svg"), path("tables"));
+    let report = json(&["compare", BLOCKS, "--samples", "65536", "--json", "--svg", &svg, "--csv", &csv]);
+    let one = &report["characteristics"][0];
+    let methods = one["methods"].as_array().unwrap();
+    let named = |name: &str| methods.iter().find(|method| method["method"] == name).unwrap();
+    assert_eq!(named("rss")["evaluations"], 17);
+    assert_eq!(named("full")["evaluations"], 73);
+    assert_eq!(named("monte-carlo 1000")["evaluations"], 1000);
+    let error = |name: &str| named(name)["error_vs_reference"]["overall"].as_f64().unwrap();
+    assert!(error("full") < error("rss") && error("full") < error("monte-carlo 100"));
+    // The cheapest is on the front, and no method that is both dearer and worse than another.
+    assert_eq!(methods[0]["evaluations"], 17);
+    assert!(methods.iter().any(|method| method["evaluations"] == 17 && method["pareto"] == true));
+    assert_eq!(named("monte-carlo 100")["pareto"], false);
+    let skipped = |name: &str| report["not_run"].as_array().unwrap().iter().any(|one| one["method"] == name);
+    assert!(skipped("monte-carlo 100000"), "as long as the reference");
+    let table = std::fs::read_to_string(folder.path().join("tables/comparison.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + methods.len());
+    let chart = std::fs::read_to_string(svg).unwrap();
+    assert!(chart.starts_with("<svg") && chart.trim_end().ends_with("</svg>"));
+    assert_eq!(chart.matches("<circle").count(), methods.len());
+    assert!(chart.contains(">monte-carlo 1000<"));
+}
+
+/// What the program prints, but for seconds.
+#[test]
+fn a_comparison_is_a_table() {
+    let text = run(&["compare", BLOCKS, "--samples", "65536", "--budget", "5000", "--threads", "1"]);
+    let seconds = |word: &str| word.parse::<f64>().is_ok();
+    let line = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        // Method, points, two times: the times are anybody's.
+        let times = words.iter().position(|word| seconds(word)).filter(|_| words.len() > 7 && !line.contains("points"));
+        let kept = words.iter().enumerate().map(|(i, word)| match times {
+            Some(first) if words[0] != "monte-carlo" && words[0] != "sobol" && (i == first + 1 || i == first + 2) => {
+                "T"
+            }
+            Some(first) if (words[0] == "monte-carlo" || words[0] == "sobol") && (i == first + 2 || i == first + 3) => {
+                "T"
+            }
+            _ => *word,
+        });
+        kept.collect::<Vec<_>>().join(" ")
+    };
+    let table: Vec<String> = text.lines().filter(|line| !line.starts_with("not run")).map(line).collect();
+    insta::assert_snapshot!("compare", table.join("\n"));
+}
+
+#[test]
+fn a_comparison_of_a_program_shares_its_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("a.sqlite");
+    let report = json(&["compare", PYTHON, "--samples", "200", "--json", "--journal", journal.to_str().unwrap()]);
+    let methods = report["characteristics"][0]["methods"].as_array().unwrap();
+    let named = |name: &str| methods.iter().find(|method| method["method"] == name).unwrap();
+    // What rss has asked the others need not ask again; it alone asked the nominal point once more, as a sentinel.
+    assert_eq!((&named("rss")["evaluations"], &named("second-order")["evaluations"]), (&18.into(), &17.into()));
+    assert!(named("second-order")["reused"].as_u64().unwrap() >= 17);
+    assert!(named("second-order")["evaluation_s"].as_f64().unwrap() > 0.0);
+    let projected =
+        report["not_run"].as_array().unwrap().iter().find(|one| one["method"] == "monte-carlo 10000").unwrap();
+    assert!(projected["projected_s"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn wrong_wishes() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = |text: &str| {
+        let path = folder.path().join(format!("{}.toml", text.len()));
+        std::fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let nowhere = study(
+        "[dimensions]\na = { nominal = 1, tolerance = 0.1 }\n[characteristics]\ny = { formula = \"sqrt(a - 9)\" }\n",
+    );
+    let moments = study(
+        "[dimensions]\na = { nominal = 1, moments = [1, 0, 3, 0, 15, 0, 105] }\n[characteristics]\ny = { formula = \"a\", lower = 0 }\n",
+    );
+    let hide = |text: String| text.replace(folder.path().to_str().unwrap(), "DIR");
+    let mut all = String::new();
+    for arguments in [
+        &["simulate", BLOCKS, "--samples", "0"][..],
+        &["simulate", BLOCKS, "--samples", "1e5"],
+        &["simulate", BLOCKS, "--until", "-1"],
+        &["simulate", BLOCKS, "--sampler", "halton"],
+        &["simulate", BLOCKS, "--kc", "gab"],
+        &["simulate", &moments],
+        &["simulate", &nowhere, "--samples", "100"],
+        &["simulate", ENGINE_WITHOUT_TARGET, "--check"],
+        &["compare", &moments],
+        &["compare", &nowhere, "--samples", "100"],
+        &["compare", BLOCKS, "--svg", "/nowhere/a.svg"],
+        &["compare", BLOCKS, "--budget", "many"],
+    ] {
+        let mut text = hide(run(arguments));
+        if arguments[0] == "compare" && arguments[1] == nowhere {
+            // Its seconds are anybody's.
+            text = text.lines().filter(|line| !line.contains(" s")).collect::<Vec<_>>().join("\n");
+        }
+        all += &format!("$ {}\n{text}\n", hide(arguments.join(" ")));
+    }
+    insta::assert_snapshot!("wrong-wishes", all);
+}
+
+const ENGINE_WITHOUT_TARGET: &str = "examples/engine-balance/study.toml";
