@@ -119,6 +119,11 @@ pub enum StackNote {
         /// The dimensions.
         dimensions: Vec<String>,
     },
+    /// Dimensions that vary together.
+    Correlated {
+        /// The dimensions.
+        dimensions: Vec<String>,
+    },
     /// Coordinates of one circular zone.
     Zone {
         /// Its name.
@@ -139,8 +144,16 @@ impl Stack {
     fn of(report: &Report, one: &CharacteristicReport) -> Self {
         let pairs = || one.sensitivities.iter().zip(&report.dimensions);
         let rows = pairs().filter(|(row, dimension)| matters(row, dimension));
-        let rows: Vec<StackRow> =
-            rows.map(|(sensitivity, dimension)| StackRow::of(sensitivity, dimension, one.rss)).collect();
+        let mut rows: Vec<StackRow> =
+            rows.map(|(sensitivity, dimension)| StackRow::of(sensitivity, dimension)).collect();
+        // Of the sum of squares, which is the squared RSS unless dimensions are correlated; unknown where one slope is.
+        let alone: Option<f64> = one
+            .rss
+            .and(rows.iter().map(|row| row.contribution).try_fold(0.0, |sum, part| Some(f64::hypot(sum, part?))));
+        for row in &mut rows {
+            row.share =
+                row.contribution.zip(alone).map(|(part, all)| if all == 0.0 { 0.0 } else { (part / all).powi(2) });
+        }
         let first_order = [Method::Rss, Method::WorstCase].iter().any(|method| method.name() == report.method);
         let worst_case = one.worst_case.linear.map(|[lower, upper]| 0.5 * (upper - lower));
         let about_middle = |kind, half_width| StackTotal { kind, middle: one.middle, half_width };
@@ -200,17 +213,16 @@ impl TotalKind {
 }
 
 impl StackRow {
-    fn of(sensitivity: &SensitivityReport, dimension: &DimensionReport, rss: Option<f64>) -> Self {
+    fn of(sensitivity: &SensitivityReport, dimension: &DimensionReport) -> Self {
         let (shift, reach) = (dimension.mean - dimension.nominal, SIGMAS * dimension.sigma);
         let deviations = dimension.tolerance.unwrap_or([shift - reach, shift + reach]);
         let contribution = sensitivity.first.map(|slope| (0.5 * slope * (deviations[1] - deviations[0])).abs());
-        let share = contribution.zip(rss).map(|(part, rss)| if rss == 0.0 { 0.0 } else { (part / rss).powi(2) });
         Self {
             dimension: dimension.clone(),
             deviations,
             slope: sensitivity.first,
             contribution,
-            share,
+            share: None,
             direction: direction(sensitivity),
         }
     }
@@ -248,6 +260,10 @@ fn notes(report: &Report, one: &CharacteristicReport, rows: &[StackRow]) -> Vec<
     let unbanded = names(&|row| row.dimension.tolerance.is_none() && row.dimension.sigma > 0.0);
     if !unbanded.is_empty() {
         notes.push(StackNote::ThreeSigma { dimensions: unbanded });
+    }
+    let correlated = names(&|row| report.correlation.iter().any(|pair| pair.between.contains(&row.dimension.name)));
+    if correlated.len() > 1 {
+        notes.push(StackNote::Correlated { dimensions: correlated });
     }
     let zone = |row: &StackRow| row.dimension.zone.clone();
     for (index, name) in rows.iter().enumerate().filter_map(|(index, row)| Some((index, zone(row)?))) {
@@ -316,6 +332,9 @@ impl fmt::Display for StackNote {
             Self::ThreeSigma { dimensions } => write!(f, "3 sigma stands for a tolerance of {}", list(dimensions)),
             Self::Fixed { dimensions } => {
                 write!(f, "left out, without tolerance: {} (--sensitivities all shows them)", list(dimensions))
+            }
+            Self::Correlated { dimensions } => {
+                write!(f, "{} are correlated: every rss takes that in, shares and worst case do not", list(dimensions))
             }
             Self::Zone { zone, dimensions } => write!(
                 f,

@@ -4,6 +4,7 @@ use faer::Mat;
 use proptest::prelude::*;
 use sensitol::correlation::{Correlation, Pair, Refusal, Transform};
 use sensitol::distribution::{CentralMoments, Distribution, Normal, Uniform};
+use sensitol::report::{About, Report};
 use sensitol::study::Study;
 use sensitol::{Characteristic, Closure, Dimension, Method, Moments, Problem, analyze};
 
@@ -328,4 +329,19 @@ fn a_constant_stays_constant() {
     let problem = problem.correlated(&[pair("x0", "x1", 0.5)]).unwrap().asking([Characteristic::new("y")]).unwrap();
     let found = &analyze(&problem, &Method::Full.into()).unwrap().characteristics[0];
     assert_eq!(found.moments, Some(Moments::constant(4.0)));
+}
+
+/// A stack of three with sigma 0.1 each, two of them correlated by one half: `rss^2 = 0.09 (3 + 1)`; shares are of the sum of
+/// squares and sum to 1.
+#[test]
+fn stacks_take_correlation_into_the_rss() {
+    let problem = Problem::new(normals(&[1.0; 3], &[0.3; 3]), Closure::scalar("y", |x| x[0] + x[1] - x[2])).unwrap();
+    let problem = problem.correlated(&[pair("x0", "x1", 0.5)]).unwrap();
+    let analysis = analyze(&problem, &Method::Full.into()).unwrap();
+    let report = Report::of(&problem, &analysis, About::default());
+    let stack = report.stacks().remove(0);
+    relative(stack.totals[1].half_width.unwrap(), 0.3 * 2.0, 1e-12);
+    close(stack.rows.iter().map(|row| row.share.unwrap()).sum(), 1.0, 1e-12, 0.0);
+    assert!(stack.notes.iter().any(|note| note.to_string().starts_with("x0, x1 are correlated")));
+    assert_eq!(report.correlation.len(), 1);
 }
