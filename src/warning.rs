@@ -400,7 +400,8 @@ impl Warning {
                 100.0 * share
             ),
             Self::NoReaction { characteristic } => format!(
-                "`{characteristic}` is the same at every point: check that the model uses the dimensions at all"
+                "`{characteristic}` is the same at every point that was evaluated: check that the model uses the dimensions, and examine interactions \
+                 (--method full)"
             ),
             Self::Atom { characteristic, points } => format!(
                 "`{characteristic}` is exactly 0 at {points} points: a distance that ends at contact hides interference; \

@@ -28,6 +28,7 @@ pub struct Run<'a> {
     stop: Option<&'a (dyn Fn() -> bool + Sync)>,
     abandon: Option<&'a (dyn Fn() -> bool + Sync)>,
     progress: Option<&'a (dyn Fn(Progress) + Sync)>,
+    withdrawn: Option<&'a (dyn Fn(&[usize]) + Sync)>,
 }
 
 impl<'a> Run<'a> {
@@ -56,6 +57,11 @@ impl<'a> Run<'a> {
         Self { progress: Some(progress), ..self }
     }
 
+    /// Tells `withdrawn` of rows that were final and are not trusted any more; those that are answered again are told anew.
+    pub fn withdrawing(self, withdrawn: &'a (dyn Fn(&[usize]) + Sync)) -> Self {
+        Self { withdrawn: Some(withdrawn), ..self }
+    }
+
     /// The same, telling nobody: for a part of an answer that is no answer yet.
     pub fn quiet(self) -> Self {
         Self { finished: None, ..self }
@@ -73,6 +79,13 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// These rows, told of as final, are not trusted any more.
+    pub fn withdraw(&self, rows: &[usize]) {
+        if let Some(withdrawn) = self.withdrawn {
+            withdrawn(rows);
+        }
+    }
+
     /// A costly model has done with more points.
     pub fn progressed(&self, progress: Progress) {
         if let Some(show) = self.progress {
@@ -87,7 +100,7 @@ impl<'a> Run<'a> {
 
     /// The conditions of a part of the work: told to `finished` rather than to whom this one tells, and stopped by `stop`.
     pub fn within<'b>(&'b self, finished: &'b Finished<'b>, stop: &'b (dyn Fn() -> bool + Sync)) -> Run<'b> {
-        Run { finished: Some(finished), stop: Some(stop), abandon: self.abandon, progress: self.progress }
+        Run { finished: Some(finished), stop: Some(stop), withdrawn: None, ..*self }
     }
 
     /// Whether to return now, with what is answered so far.

@@ -65,6 +65,11 @@ pub(super) enum Destination {
         path: PathBuf,
         file: NamedTempFile,
     },
+    /// What is no ordinary file, such as a pipe or a device, is written to as it is.
+    Special {
+        path: PathBuf,
+        file: std::fs::File,
+    },
 }
 
 impl Destination {
@@ -83,6 +88,13 @@ impl Destination {
         };
         if path.is_dir() {
             return Err(unwritable(ErrorKind::IsADirectory.into()));
+        }
+        // A link leads to the file that is meant, and stays.
+        let target = std::fs::canonicalize(path);
+        let path = target.as_deref().unwrap_or(path);
+        if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+            let file = std::fs::OpenOptions::new().write(true).open(path).map_err(unwritable)?;
+            return Ok(Self::Special { path: path.to_owned(), file });
         }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
@@ -105,6 +117,13 @@ impl Destination {
                     ErrorKind::BrokenPipe => Failure::ClosedPipe,
                     _ => Failure::Stdout(error),
                 })
+            }
+            Self::Special { path, mut file } => {
+                let written = file.write_all(text.as_bytes()).and_then(|()| file.flush());
+                match written {
+                    Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::ClosedPipe),
+                    written => written.map_err(|error| Failure::Unwritable { path, error }),
+                }
             }
             Self::File { path, mut file } => {
                 let written = file.write_all(text.as_bytes()).and_then(|()| file.flush());

@@ -1,6 +1,7 @@
 //! The true worst case: the least and the greatest value of every characteristic in the box of the tolerance bands.
 //!
-//! The box is that of [`Dimension::reach`](crate::Dimension::reach): the tolerance bands, three sigma where there is none. The
+//! The box is that of [`Dimension::reach`](crate::Dimension::reach): the tolerance bands, three sigma where there is none, within
+//! the support of the distribution. The
 //! derivatives that the method has found say where the extremes should be; the assembly function itself says where they are.
 //!
 //! Coordinates of one position keep their circular zone, not the box about it; a proof for them would have to too, and is none.

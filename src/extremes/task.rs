@@ -6,6 +6,8 @@ use super::model::{Model, Region};
 use super::start::Starts;
 use super::{Coordinate, Ended, Extreme, Extremes, Place, Proof, proof};
 use crate::assembly::Run;
+use crate::dimension::Dimension;
+use crate::distribution::Distribution;
 use crate::method::Outcome;
 use crate::plan::Point;
 use crate::problem::Problem;
@@ -45,7 +47,7 @@ pub(super) struct Task {
 impl Task {
     pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> Self {
         let (plan, fitted) = (&outcome.plan, &outcome.fitted[c]);
-        let band = |d: usize| problem.dimensions()[d].reach().map(|reach| problem.dimensions()[d].nominal() + reach);
+        let band = |d: usize| band(&problem.dimensions()[d]);
         let matters = |&d: &usize| plan.depends(c, d) && band(d)[0] < band(d)[1];
         let dimensions: Vec<usize> = plan.varying().iter().copied().filter(matters).collect();
         let region = Region {
@@ -267,6 +269,16 @@ impl Task {
             },
         };
         Extreme { value, at: x.iter().enumerate().map(coordinate).collect() }
+    }
+}
+
+/// From where to where a dimension reaches, but not out of its distribution's support: no assembly has what cannot be.
+fn band(dimension: &Dimension) -> [f64; 2] {
+    let [lower, upper] = dimension.reach().map(|reach| dimension.nominal() + reach);
+    let [least, greatest] = dimension.distribution().map_or([f64::NEG_INFINITY, f64::INFINITY], Distribution::support);
+    match dimension.tolerance() {
+        Some(_) => [lower, upper],
+        None => [lower.max(least), upper.min(greatest)],
     }
 }
 

@@ -3,7 +3,8 @@
 //! Every answer is in the file before anything is made of it, so that a run that is killed goes on where it was, and a
 //! repeated or enlarged one evaluates only what is new. An answer is known by the model (program and arguments, the contents
 //! of its script and of the files that it depends on, what the adapter says of itself, constants, names and units of the
-//! dimensions), the exact point, and the output. What the program says has no value is kept too; a crash or a missed deadline is not: the next run tries again.
+//! dimensions), the exact point, and the output. What a sentinel puts in doubt is forgotten at once, and kept again only when
+//! another child has answered it in its right mind. What the program says has no value is kept too; a crash or a missed deadline is not: the next run tries again.
 
 mod store;
 
@@ -151,9 +152,18 @@ impl AssemblyFunction for Journaled {
             let rows: Vec<usize> = finished.iter().map(|&row| missing[row]).collect();
             run.finished(&rows, &out);
         };
+        let withdraw = |rows: &[usize]| {
+            let points: Vec<Vec<f64>> = rows.iter().map(|&row| points.row(row)).collect();
+            let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+            let done = open.as_mut().map_or(Ok(()), |open| open.store.withdraw(model, &points));
+            if let Err(error) = done {
+                failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            }
+        };
         // What cannot be kept is not paid for: no more is asked, and what is known already stays.
         let stop = || run.stopped() || failure.lock().unwrap_or_else(PoisonError::into_inner).is_some();
-        self.process.evaluate(&Ask { points: &points, ..*ask }, &run.within(&finished, &stop), &mut answers);
+        let within = run.within(&finished, &stop).withdrawing(&withdraw);
+        self.process.evaluate(&Ask { points: &points, ..*ask }, &within, &mut answers);
         let out = told.into_inner().unwrap_or_else(PoisonError::into_inner);
         out.spent(answers.extra());
         out.doubt(answers.doubts().iter().cloned());

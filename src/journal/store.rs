@@ -216,6 +216,24 @@ impl Store {
         self.failed(kept)
     }
 
+    /// Forgets what is known of these points: answers that are not trusted any more.
+    ///
+    /// # Errors
+    /// When writing fails; nothing of this is forgotten then.
+    pub fn withdraw(&mut self, model: i64, points: &[Vec<f64>]) -> Result<(), JournalError> {
+        let withdrawn = (|| {
+            let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            {
+                let mut statement = transaction.prepare_cached("DELETE FROM answer WHERE model = ?1 AND point = ?2")?;
+                for point in points {
+                    statement.execute(params![model, bytes(point)])?;
+                }
+            }
+            transaction.commit()
+        })();
+        self.failed(withdrawn)
+    }
+
     /// Every model in the file.
     ///
     /// # Errors

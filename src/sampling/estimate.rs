@@ -11,6 +11,9 @@ pub struct Estimate {
     pub standard_error: Option<f64>,
 }
 
+/// Fewer values have no standard errors.
+pub(crate) const FEWEST: u64 = 10;
+
 /// The four moments of a sample of independent values.
 ///
 /// The standard errors are those of the asymptotic normal law of a smooth function of moments, by its influence function
@@ -39,7 +42,9 @@ pub(crate) fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
         let terms = (0..25).map(|i| p[i / 5] * p[i % 5] * a[i / 5 + i % 5]);
         (terms.sum::<f64>().max(0.0) / n).sqrt()
     };
-    let estimate = |value, error| Some(Estimate { value, standard_error: Some(error) });
+    // Its own moments say nothing of how uncertain a handful of values leaves them.
+    let known = summary.count() >= FEWEST;
+    let estimate = |value, error| Some(Estimate { value, standard_error: known.then_some(error) });
     [
         estimate(mean, sigma * spread([0.0, 1.0, 0.0, 0.0, 0.0])),
         estimate(sigma, sigma * spread([-0.5, 0.0, 0.5, 0.0, 0.0])),

@@ -7,8 +7,8 @@ mod sobol;
 mod summary;
 
 pub use draws::{Draws, Portion, Sampler, SamplingError};
-pub(crate) use estimate::of_moments;
 pub use estimate::{Estimate, wilson};
+pub(crate) use estimate::{FEWEST, of_moments};
 pub use fine::{Fine, Scale};
 pub use sobol::{SOBOL_DIMENSIONS, Sobol};
 pub use summary::Summary;

@@ -4,7 +4,7 @@ use super::tally::{Count, Replicate};
 use crate::assembly::EvaluationError;
 use crate::capability::TAIL;
 use crate::characteristic::{Characteristic, SpecLimits};
-use crate::sampling::{Estimate, Fine, Summary, of_moments, wilson};
+use crate::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
 
 /// Estimates for one characteristic, each with its standard error. What is unknown is None.
 #[derive(Debug, Clone)]
@@ -83,7 +83,9 @@ impl SimulatedCharacteristic {
             (known > 0).then(|| outside as f64 / known as f64)
         };
         let limits = characteristic.limits();
-        let quantiles = fine.as_ref().map_or([None; 7], |fine| QUANTILES.map(|p| quantile(p, fine, &count.replicates)));
+        let quantiles = fine
+            .as_ref()
+            .map_or([None; 7], |fine| QUANTILES.map(|p| quantile(p, fine, all.range(), &count.replicates)));
         let [low, high] = [quantiles[0], quantiles[6]].map(|quantile| quantile.map(|quantile| quantile.value));
         let range = (known > 0).then(|| all.range());
         Self {
@@ -124,7 +126,8 @@ fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
         for (moment, estimate) in estimates.iter_mut().enumerate() {
             if let Some(estimate) = estimate {
                 let values = each.iter().map(|of| of[moment].map(|estimate| estimate.value));
-                estimate.standard_error = of_replicates(values);
+                let known = replicates.iter().all(|replicate| replicate.summary.count() >= FEWEST);
+                estimate.standard_error = of_replicates(values).filter(|_| known);
             }
         }
     }
@@ -141,9 +144,9 @@ fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
 
 /// A quantile; its standard error is half the distance of the quantiles one standard deviation of the binomial count below
 /// and above it, or that of the replicates.
-fn quantile(p: f64, fine: &Fine, replicates: &[Replicate]) -> Option<Estimate> {
+fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Replicate]) -> Option<Estimate> {
     let n = fine.total() as f64;
-    let value = fine.at_rank(p * n)?;
+    let value = fine.at_rank(p * n)?.clamp(least, greatest);
     let beyond = p.min(1.0 - p) * n / replicates.len() as f64;
     let standard_error = match replicates.len() {
         _ if beyond < BEYOND => None,
@@ -157,6 +160,8 @@ fn quantile(p: f64, fine: &Fine, replicates: &[Replicate]) -> Option<Estimate> {
             fine.at_rank(p * fine.total() as f64)
         })),
     };
+    // What the interpolation within a bin may have wrong is part of it.
+    let standard_error = standard_error.map(|error| error.hypot(fine.blur(p * n)));
     Some(Estimate { value, standard_error })
 }
 

@@ -137,6 +137,9 @@ pub enum SimulationError {
         /// The greatest.
         most: u64,
     },
+    /// A yield is wanted where there is no limit.
+    #[error("a yield is to be known that well, but no characteristic asked for has a limit")]
+    NoLimits,
     /// What is wanted is no positive number.
     #[error("what is wanted of a standard error is a number above 0, not {value}")]
     Wanted {
@@ -161,6 +164,9 @@ pub fn simulate_within(
     let no_wish = |wanted: &f64| wanted.is_nan() || *wanted <= 0.0;
     if let Some(value) = [options.until, options.until_yield].into_iter().flatten().find(no_wish) {
         return Err(SimulationError::Wanted { value });
+    }
+    if options.until_yield.is_some() && !problem.characteristics().iter().any(|one| one.limits().exist()) {
+        return Err(SimulationError::NoLimits);
     }
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;

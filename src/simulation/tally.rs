@@ -170,13 +170,17 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// The first values of a characteristic give its scale.
+    /// The first values of a characteristic give its bins.
     fn look(&mut self, blocks: &[Block]) {
         for (c, lens) in self.lenses.iter_mut().enumerate().filter(|(_, lens)| lens.scale.is_none()) {
-            let mut first = Summary::default();
-            blocks.iter().for_each(|block| first.merge(&block.columns[c].summary));
-            if first.count() > 0 {
-                lens.scale = Some(Scale::about(first.mean(), first.sigma()));
+            let mut values: Vec<f64> = Vec::new();
+            for block in blocks {
+                if let Values::Plain(plain) = &block.columns[c].values {
+                    values.extend(plain);
+                }
+            }
+            if !values.is_empty() {
+                lens.scale = Some(scale(values));
             }
         }
     }
@@ -217,4 +221,13 @@ impl<'a> Tally<'a> {
                 .collect(),
         }
     }
+}
+
+/// The median, and the spread of the middle half: a long tail must not make the bins of the bulk coarse.
+fn scale(mut values: Vec<f64>) -> Scale {
+    values.sort_unstable_by(f64::total_cmp);
+    let at = |share: f64| values[((values.len() - 1) as f64 * share) as usize];
+    let half = at(0.75) - at(0.25);
+    let spread = if half > 0.0 { half } else { Summary::of(&values).sigma() };
+    Scale::about(at(0.5), spread)
 }

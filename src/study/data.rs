@@ -38,6 +38,12 @@ pub enum DataProblem {
     /// The file is not text, or in another encoding.
     #[error("the file is not UTF-8 text")]
     NotUtf8,
+    /// The first line holds values.
+    #[error("the first line names the columns, but `{cell}` is a number")]
+    NoHeader {
+        /// The first number in it.
+        cell: String,
+    },
     /// There is no header.
     #[error("the file is empty")]
     Empty,
@@ -138,6 +144,7 @@ impl DataProblem {
         match self {
             Self::Unreadable { .. } => Some("the path starts from the study file's folder".into()),
             Self::NotUtf8 => Some("save it as CSV in UTF-8".into()),
+            Self::NoHeader { .. } => Some("write a line with names, such as d_mm, above the values".into()),
             Self::Empty => Some("the first line names the columns, such as d_mm".into()),
             Self::Ragged { .. } => {
                 Some("a decimal comma needs semicolons or tabs between the columns, a comma in text quotes".into())
@@ -239,6 +246,11 @@ impl Table {
         let mut rows = records(text, delimiter);
         let Some((_, header)) = rows.next() else { return Err((None, DataProblem::Empty)) };
         let names: Vec<String> = header.iter().map(str::to_owned).collect();
+        let number = |name: &&String| name.replace(',', ".").parse::<f64>().is_ok_and(f64::is_finite);
+        let mut written = names.iter().filter(|name| !name.is_empty());
+        if let Some(cell) = written.clone().next().filter(|_| written.all(|name| number(&name))) {
+            return Err((Some(1), DataProblem::NoHeader { cell: cell.clone() }));
+        }
         let rows: Vec<(u64, csv::StringRecord)> = rows.collect();
         let expected = names.len();
         if let Some((line, row)) = rows.iter().find(|(_, row)| row.len() != expected) {

@@ -274,6 +274,19 @@ fn files_are_written_whole_or_not_at_all() {
         let mode = std::os::unix::fs::PermissionsExt::mode(&std::fs::metadata(&path).unwrap().permissions());
         assert_eq!(mode & 0o444, 0o444 & mode, "as readable as the user's other files");
         assert_ne!(mode & 0o044, 0, "not private");
+        // A link stays one, and leads to what is new; a device stays a device, and a full one is an error.
+        let link = folder.path().join("link.json");
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        let output =
+            sensitol(&["analyze", ENGINE, "--json", "--method", "rss", "-o", link.to_str().unwrap()]).output().unwrap();
+        assert!(output.status.success() && std::fs::symlink_metadata(&link).unwrap().is_symlink());
+        let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+        assert_eq!(report["evaluations"], 21);
+        if Path::new("/dev/full").exists() {
+            let output = sensitol(&["analyze", ENGINE, "-o", "/dev/full"]).output().unwrap();
+            assert_eq!(output.status.code(), Some(2));
+            assert!(!std::fs::metadata("/dev/full").unwrap().is_file());
+        }
     }
 }
 

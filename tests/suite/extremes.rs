@@ -428,6 +428,19 @@ fn a_proof_leaves_out_what_has_no_value() {
     assert!(found.greatest.value > 1.9 && proof.bounds[1] >= found.greatest.value && proof.bounds[1] <= 2.0 + 1e-12);
 }
 
+/// Three sigma below the mean of an exponential distribution is nothing: it begins at its origin.
+#[test]
+fn extremes_stay_within_the_support() {
+    let text = "[dimensions]\nx = { nominal = 1, distribution = \"exponential\" }\ny = { nominal = 5, tolerance = 0.1 }\n\
+                [characteristics]\nz = { formula = \"y - sqrt(x)\" }\n";
+    let study = Study::from_toml(text, "study.toml").unwrap();
+    let found = searched(&study.problem, Method::SecondOrder).characteristics.remove(0).extremes.unwrap();
+    for (found, expected) in ends(&found).into_iter().zip([4.9 - 2.0, 5.1]) {
+        relative(found, expected, 1e-12);
+    }
+    assert_eq!((found.failed, found.proven()), (0, true));
+}
+
 /// Coordinates of a position keep their circle: `3 x + 4 y` reaches 5 radii, not 7, and `x^2 - y^2 + x` what a walk round the
 /// edge finds.
 #[test]

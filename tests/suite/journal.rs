@@ -6,7 +6,9 @@ use std::time::{Duration, Instant};
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol::journal::{JournalFault, Kept, Store};
+use sensitol::assembly::process::{Greeting, Process, Settings};
+use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run, Signature};
+use sensitol::journal::{JournalFault, Journaled, Kept, Store};
 
 use super::support::repository;
 
@@ -141,6 +143,38 @@ fn killed_runs_go_on_where_they_were() {
     let evaluations = study.evaluations() - before;
     assert!(evaluations <= 182 + kills * study.workers * study.window, "{evaluations}");
     assert!(field(&resumed, "reused") > 0, "some of it was kept");
+}
+
+/// What a sentinel puts in doubt does not stay in the file: the point that flips the model flips the fresh child too, and is
+/// asked again by every run; all others are kept as they were answered in the end.
+#[test]
+fn doubtful_answers_are_not_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = repository("tests/children/child.py").display().to_string();
+    let settings = || Settings { sentinels: true, ..Settings::new(["python3", &script, "flips"]) };
+    let model = || {
+        let greeting = Greeting { nominal: vec![1.0, 2.0], ..Greeting::default() };
+        let process = Process::new(Signature::of_names(["a", "b"], ["sum", "product"]), greeting, settings());
+        Journaled::new(process, folder.path().join("a.sqlite"), Vec::new())
+    };
+    let a = [1.0, 2.0, 3.0, 13.0, 4.0, 5.0];
+    let points = Points::from_rows(&a.map(|a| [a, 2.0]));
+    let ask = || {
+        let mut out = Responses::open(a.len(), 2);
+        model().evaluate(&Ask::values(&points, &[0, 1]), &Run::to_the_end(), &mut out);
+        out
+    };
+    let first = ask();
+    assert!(!first.doubts().is_empty());
+    let mut store = Store::open(&folder.path().join("a.sqlite")).unwrap();
+    let known = store.models().unwrap().remove(0);
+    let kept = store.answers(known.id).unwrap();
+    assert!(kept.iter().all(|kept| kept.point[0] != 13.0), "{kept:?}");
+    assert_eq!(kept.len(), 2 * 5);
+    assert!(kept.iter().filter(|kept| kept.output == "sum").all(|kept| kept.answer == Ok(kept.point[0] + 2.0)));
+    store.withdraw(known.id, &[vec![5.0, 2.0]]).unwrap();
+    let second = ask();
+    assert_eq!((first.count_reused(), second.count_reused()), (0, 4));
 }
 
 /// Two runs at once on one journal: both are right.

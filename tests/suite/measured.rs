@@ -611,6 +611,8 @@ fn tables_at_fault() {
     let all = [
         fault("", PLAIN),
         fault("\n\n", PLAIN),
+        fault("9.98\n9.99\n10.01\n10.02\n10.00\n9.97\n", PLAIN),
+        fault("n;d\n1;9,98\n", "measured = \"d.csv\", column = \"1\""),
         fault("d\n1\n2\n", "measured = \"e.csv\""),
         fault(b"d\n1\n2\n\xff3\n", PLAIN),
         fault(b"\xff\xfed\0\n\0", PLAIN),

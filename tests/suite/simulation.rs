@@ -173,6 +173,51 @@ fn nothing_known_is_none() {
     assert_eq!(run(&problem, 10, Sampler::Random, 1).characteristics[0].quantiles[0].unwrap().standard_error, None);
 }
 
+/// Quantiles where sigma says nothing of the bulk: a rare part far away, and a tail of a hundred sigmas' width.
+#[test]
+fn quantiles_do_not_mind_long_tails() {
+    // One in a thousand lies a thousand away; the others are normal with sigma 0.01.
+    let far = Closure::scalar("y", |x| if x[1] > 3.090_232_306 { 1000.0 } else { 10.0 + 0.01 * x[0] });
+    let problem = Problem::new(standard(2), far).unwrap();
+    let found = run(&problem, 1_000_000, Sampler::Random, 1).characteristics.remove(0);
+    for (index, z) in [(2, -1.643_8), (3, 0.001_253), (4, 1.648_2)] {
+        let quantile = found.quantiles[index].unwrap();
+        // Of 0.999 of the normal below; the standard error is about 0.01 sigma/100.
+        let expected = 10.0 + 0.01 * z;
+        assert!(
+            (quantile.value - expected).abs() <= 4.0 * quantile.standard_error.unwrap() + 1e-6,
+            "{index}: {quantile:?}"
+        );
+        assert!(quantile.standard_error.unwrap() < 1e-4);
+    }
+    // exp(3 u) has sigma 90 times its mean, and a median of 1.
+    let heavy = Problem::new(standard(1), Closure::scalar("y", |x| (3.0 * x[0]).exp())).unwrap();
+    let found = run(&heavy, 200_000, Sampler::Random, 1).characteristics.remove(0);
+    let [least, _] = found.range.unwrap();
+    for (quantile, z) in found.quantiles.into_iter().zip([-3.0f64, -2.326_348, -1.644_854, 0.0]) {
+        let quantile = quantile.unwrap();
+        assert!(quantile.value >= least && quantile.value > 0.0);
+        let off = (quantile.value - (3.0 * z).exp()).abs();
+        assert!(off <= 4.0 * quantile.standard_error.unwrap() + 1e-9, "{z}: {quantile:?} {off}");
+    }
+    let still = Problem::new(standard(1), Closure::scalar("y", |_| 10.0)).unwrap();
+    let found = run(&still, 1000, Sampler::Random, 1).characteristics.remove(0);
+    assert!(found.quantiles.iter().all(|quantile| quantile.unwrap().value == 10.0));
+}
+
+/// A handful of points has estimates, but nothing says how good they are.
+#[test]
+fn a_handful_has_no_standard_errors() {
+    let (problem, _) = lognormal();
+    for sampler in [Sampler::Random, Sampler::Sobol] {
+        let found = run(&problem, 2, sampler, 1).characteristics.remove(0);
+        assert!(found.mean.is_some());
+        for estimate in [found.mean, found.sigma, found.skewness, found.kurtosis].into_iter().flatten() {
+            assert_eq!(estimate.standard_error, None, "{sampler:?}");
+        }
+    }
+}
+
 #[test]
 fn it_goes_on_until_it_is_sure() {
     let (problem, _) = lognormal();
@@ -215,6 +260,9 @@ fn absurd_wishes_are_refused() {
     assert!(matches!(asked(SimulationOptions { samples: 0, ..default() }), SimulationError::Samples { .. }));
     assert!(matches!(asked(SimulationOptions { samples: u64::MAX, ..default() }), SimulationError::Samples { .. }));
     assert!(matches!(asked(SimulationOptions { until: Some(0.0), ..default() }), SimulationError::Wanted { .. }));
+    let without = Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
+    let wanted = SimulationOptions { until_yield: Some(0.1), ..default() };
+    assert_eq!(simulate(&without, &wanted).unwrap_err(), SimulationError::NoLimits);
     assert!(matches!(
         asked(SimulationOptions { until_yield: Some(f64::NAN), ..default() }),
         SimulationError::Wanted { .. }

@@ -20,6 +20,8 @@ pub(super) struct Batch<'a> {
     pub(super) again: HashSet<usize>,
     /// Rows that are final and not yet told of.
     pub(super) done: Vec<usize>,
+    /// Rows that are not trusted any more and not yet told of as such.
+    pub(super) withdrawn: Vec<usize>,
     pub(super) sent: usize,
 }
 
@@ -35,6 +37,7 @@ impl<'a> Batch<'a> {
             left: points.rows(),
             again: HashSet::new(),
             done: Vec::new(),
+            withdrawn: Vec::new(),
             sent: 0,
         }
     }
@@ -72,8 +75,9 @@ impl<'a> Batch<'a> {
         self.finish(row);
     }
 
-    /// Evaluates rows again whose answers are in doubt; once.
+    /// Evaluates rows again whose answers are in doubt; once. What is in doubt a second time stays so.
     pub(super) fn distrust(&mut self, rows: &[usize]) {
+        self.withdrawn.extend(rows);
         for &row in rows {
             if self.again.insert(row) {
                 self.waiting.push_back(row);
@@ -84,6 +88,8 @@ impl<'a> Batch<'a> {
 
     pub(super) fn finish(&mut self, row: usize) {
         self.left -= 1;
+        // A new answer takes the place of one that is not trusted.
+        self.withdrawn.retain(|&withdrawn| withdrawn != row);
         self.done.push(row);
     }
 
@@ -125,6 +131,10 @@ impl<'a> Batch<'a> {
             run.progressed(Progress { points: self.done.len(), failed, reused: 0 });
             run.finished(&self.done, self.out);
             self.done.clear();
+        }
+        if !self.withdrawn.is_empty() {
+            run.withdraw(&self.withdrawn);
+            self.withdrawn.clear();
         }
     }
 }
