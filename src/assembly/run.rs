@@ -5,6 +5,9 @@ use super::Responses;
 /// Called with rows that are final, and the responses that hold them.
 type Finished<'a> = dyn Fn(&[usize], &Responses) + Sync + 'a;
 
+/// Called with rows whose answers are not trusted any more.
+type Withdrawn<'a> = dyn Fn(&[usize]) + Sync + 'a;
+
 /// Points that a costly model has done with, as they come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Progress {
@@ -28,7 +31,7 @@ pub struct Run<'a> {
     stop: Option<&'a (dyn Fn() -> bool + Sync)>,
     abandon: Option<&'a (dyn Fn() -> bool + Sync)>,
     progress: Option<&'a (dyn Fn(Progress) + Sync)>,
-    withdrawn: Option<&'a (dyn Fn(&[usize]) + Sync)>,
+    withdrawn: Option<&'a Withdrawn<'a>>,
 }
 
 impl<'a> Run<'a> {
@@ -58,7 +61,7 @@ impl<'a> Run<'a> {
     }
 
     /// Tells `withdrawn` of rows that were final and are not trusted any more; those that are answered again are told anew.
-    pub fn withdrawing(self, withdrawn: &'a (dyn Fn(&[usize]) + Sync)) -> Self {
+    pub fn withdrawing(self, withdrawn: &'a Withdrawn<'a>) -> Self {
         Self { withdrawn: Some(withdrawn), ..self }
     }
 
