@@ -40,7 +40,7 @@ const SAMPLES: [u64; 4] = [100, 1000, 10_000, 100_000];
 /// Points of the quasi-random ones: 16 replicates of a power of two.
 const QUASI: [u64; 3] = [256, 4096, 65_536];
 /// An error is told from the reference's own when it is larger than so many of its standard errors.
-const RESOLVED: f64 = 2.0;
+pub const RESOLVED: f64 = 2.0;
 
 /// A method as it was run: a derivative method, or so many points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -210,7 +210,7 @@ impl Setting<'_> {
     fn resamples(&self) -> usize {
         let values: usize = self.measured.iter().map(|one| one.law.sample().len()).sum();
         let target = |target: &Target<'_>| {
-            let fit = if target.limits == SpecLimits::default() { 0 } else { FIT };
+            let fit = if target.limits.exist() { FIT } else { 0 };
             VALUE.saturating_mul(values).saturating_add(fit).saturating_add(target.surrogate.interactions.work())
         };
         let work = self.targets.iter().map(target).fold(1usize, usize::saturating_add);
@@ -259,20 +259,19 @@ impl Setting<'_> {
         }
         let of = |target: &Target<'_>| {
             let surrogate = target.surrogate.relocated(&moved);
-            let mut shapes = std::borrow::Cow::Borrowed(&shapes[..]);
+            let mut shapes = shapes.clone();
             for one in self.measured {
                 let part = surrogate.parts[one.position].as_ref();
                 // An infinite moment does no harm to a straight line, which has no use for it.
                 if shapes[one.position].moments.m8.is_nan() && part.is_some_and(|part| part.is_straight(STRAIGHT)) {
-                    shapes.to_mut()[one.position].moments = of_a_line(&shapes[one.position].moments);
+                    shapes[one.position].moments = of_a_line(&shapes[one.position].moments);
                 }
             }
-            let contributions = surrogate.contributions(&Inputs::independent(shapes.into_owned()));
+            let contributions = surrogate.contributions(&Inputs::independent(shapes));
             let Some(moments) = contributions.map(|contributions| contributions.moments) else {
                 return [f64::NAN; FIGURES];
             };
-            let limited = target.limits != SpecLimits::default();
-            let law = limited.then(|| Law::fit(&moments).ok()).flatten();
+            let law = target.limits.exist().then(|| Law::fit(&moments).ok()).flatten();
             let capability = law.map(|law| Capability::of(&law, moments.mean(), moments.sigma(), target.limits));
             figures(&moments, capability.as_ref(), target.limits)
         };

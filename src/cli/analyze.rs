@@ -1,7 +1,6 @@
 //! `sensitol analyze`.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use super::args::{AnalyzeArgs, StackArg};
 use super::csv::CsvFolder;
@@ -10,16 +9,17 @@ use super::interrupt;
 use super::output::{Destination, Look, json};
 use super::points;
 use super::progress::Bar;
+use super::running::{Clock, externals, on_threads};
 use super::study;
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::{Progress, Run, Table};
 use crate::characteristic::Characteristic;
-use crate::report::{About, Report, csv_file_names, csv_files, stack_csv, stack_markdown, stack_text, text};
-use crate::study::{Externals, Study};
+use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_markdown, stack_text, text};
+use crate::study::Study;
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
-    let mut study = study::read(&asked.study, externals(asked, look, given.clone()))?;
+    let mut study = study::read(&asked.study, externals(asked.journal.as_deref(), look, given.clone()))?;
     study.options.seed = asked.seed.or(study.options.seed);
     study.options.extremes |= asked.extremes;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
@@ -28,15 +28,9 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let destination = Destination::open(&asked.output)?;
     let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
     let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
-    let begun = Instant::now();
-    let analysis = analyze(&study, asked, begun, look)?;
-    let about = About {
-        title: study.title.clone(),
-        sha256: study.sha256.clone(),
-        seed: study.options.seed,
-        wall_s: begun.elapsed().as_secs_f64(),
-        warnings: study.warnings.clone(),
-    };
+    let clock = Clock::start(asked.time);
+    let analysis = analyze(&study, asked.threads, &clock, look)?;
+    let about = clock.about(&study, study.options.seed);
     let report = Report::of(&study.problem, &analysis, about);
     let printed = match asked.stack {
         None if asked.output.json => json(&report),
@@ -89,27 +83,15 @@ fn unmatched(given: &Table, look: Look) {
     }
 }
 
-/// Where the answers of an external model are kept, and who hears it.
-fn externals(asked: &AnalyzeArgs, look: Look, points: Option<Arc<Table>>) -> Externals {
-    Externals {
-        journal: super::journal_place(asked.journal.as_deref()),
-        listener: super::listener(look),
-        points,
-        sentinels: true,
-    }
-}
-
-fn analyze(study: &Study, asked: &AnalyzeArgs, begun: Instant, look: Look) -> Result<Analysis, Failure> {
-    interrupt::listen();
-    let limit = asked.time.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
-    let stop = || interrupt::stopped() || limit.is_some_and(|limit| begun.elapsed() >= limit);
+fn analyze(study: &Study, threads: Option<u16>, clock: &Clock, look: Look) -> Result<Analysis, Failure> {
+    let stop = || clock.stop();
     let costly = study.problem.function().signature().costly;
     let plan = costly.then(|| study.options.method.procedure().plan(&study.problem, &study.options)).transpose()?;
     let bar = plan.map(|plan| Bar::new(plan.cost().0, look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
     let analysis = || analyze_within(&study.problem, &study.options, &run);
-    let result = super::on_threads(asked.threads, analysis);
+    let result = on_threads(threads, analysis);
     if let Some(bar) = bar {
         bar.clear();
     }

@@ -148,14 +148,37 @@ pub(super) struct AnalyzeArgs {
     pub(super) output: OutputArgs,
 }
 
+/// A study of which points are drawn.
 #[derive(Debug, Args)]
-pub(super) struct SimulateArgs {
+pub(super) struct SampledArgs {
     /// The study, a .toml or .json file
     pub(super) study: PathBuf,
 
     /// Ask for this characteristic only (repeatable)
     #[arg(long = "kc", value_name = "NAME")]
     pub(super) characteristics: Vec<String>,
+
+    /// Seed of what is drawn [default: that of the study, or 1]
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+
+    /// Stop after S seconds and report what is known
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(super) time: Option<f64>,
+
+    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
+    #[arg(long, value_name = "FILE")]
+    pub(super) journal: Option<PathBuf>,
+
+    /// Threads that evaluate formulas and built-in models [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) threads: Option<u16>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SimulateArgs {
+    #[command(flatten)]
+    pub(super) of: SampledArgs,
 
     /// Points [default: 100000, or as many as --until takes]; Sobol' takes 16 times a power of two, at least as many
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
@@ -173,25 +196,9 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(super) until_yield: Option<f64>,
 
-    /// Seed of the sample [default: that of the study, or 1]
-    #[arg(long, value_name = "N")]
-    pub(super) seed: Option<u64>,
-
-    /// Stop after S seconds and report what is known
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub(super) time: Option<f64>,
-
-    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
-    #[arg(long, value_name = "FILE")]
-    pub(super) journal: Option<PathBuf>,
-
     /// Exit with 1 unless the sample shows that every target_yield is met
     #[arg(long)]
     pub(super) check: bool,
-
-    /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub(super) threads: Option<u16>,
 
     /// Write estimates and histogram as CSV files into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
@@ -203,12 +210,8 @@ pub(super) struct SimulateArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct CompareArgs {
-    /// The study, a .toml or .json file
-    pub(super) study: PathBuf,
-
-    /// Ask for this characteristic only (repeatable)
-    #[arg(long = "kc", value_name = "NAME")]
-    pub(super) characteristics: Vec<String>,
+    #[command(flatten)]
+    pub(super) of: SampledArgs,
 
     /// Most evaluations of one method
     #[arg(long, value_name = "N")]
@@ -217,22 +220,6 @@ pub(super) struct CompareArgs {
     /// Points of the reference [default: 1048576, or 2000 of an external model]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
     pub(super) samples: Option<u64>,
-
-    /// Seed of the samples [default: that of the study, or 1]
-    #[arg(long, value_name = "N")]
-    pub(super) seed: Option<u64>,
-
-    /// Stop after S seconds and report what is known
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub(super) time: Option<f64>,
-
-    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
-    #[arg(long, value_name = "FILE")]
-    pub(super) journal: Option<PathBuf>,
-
-    /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub(super) threads: Option<u16>,
 
     /// Write the table as comparison.csv into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]

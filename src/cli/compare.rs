@@ -1,26 +1,18 @@
 //! `sensitol compare`.
 
-use std::time::{Duration, Instant};
-
 use super::args::CompareArgs;
 use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
-use super::{interrupt, on_threads, study};
+use super::running::{Clock, on_threads};
+use super::{interrupt, study};
 use crate::assembly::Run;
 use crate::compare::{CompareOptions, compare_within};
 use crate::method::Options;
-use crate::report::{About, CompareReport, compare_csv, compare_svg, compare_text};
-use crate::study::Externals;
+use crate::report::{CompareReport, compare_csv, compare_svg, compare_text};
 
 pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
-    let externals = Externals {
-        journal: super::journal_place(asked.journal.as_deref()),
-        listener: super::listener(look),
-        points: None,
-        sentinels: true,
-    };
-    let study = study::read_only(&asked.study, &asked.characteristics, externals)?;
+    let study = study::read_sampled(&asked.of, look)?;
     let destination = Destination::open(&asked.output)?;
     let names = ["comparison.csv".to_owned()];
     let table = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
@@ -28,30 +20,18 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let options = CompareOptions {
         budget: asked.budget.or(study.options.budget),
         reference: asked.samples,
-        seed: asked.seed.or(study.seed).unwrap_or(Options::SEED),
+        seed: asked.of.seed.or(study.seed).unwrap_or(Options::SEED),
     };
-    interrupt::listen();
-    let begun = Instant::now();
-    let limit = asked.time.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
-    let stop = || interrupt::stopped() || limit.is_some_and(|limit| begun.elapsed() >= limit);
+    let clock = Clock::start(asked.of.time);
+    let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
-    let comparison = on_threads(asked.threads, || compare_within(&study.problem, &options, &run))??;
-    let about = About {
-        title: study.title.clone(),
-        sha256: study.sha256.clone(),
-        seed: Some(options.seed),
-        wall_s: begun.elapsed().as_secs_f64(),
-        warnings: study.warnings.clone(),
-    };
+    let comparison = on_threads(asked.of.threads, || compare_within(&study.problem, &options, &run))??;
+    let about = clock.about(&study, Some(options.seed));
     let report = CompareReport::of(&comparison, about);
     let written =
         destination.write(&if asked.output.json { json(&report) } else { compare_text(&report, look.style()) });
-    if let Some(table) = table {
-        table.write(&[compare_csv(&report)])?;
-    }
-    if let Some(chart) = chart {
-        chart.write(&compare_svg(&report))?;
-    }
+    let written = written.and(table.map_or(Ok(()), |table| table.write(&[compare_csv(&report)])));
+    let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&compare_svg(&report))));
     for warning in &study.warnings {
         look.warn(warning.code(), &warning.message());
     }

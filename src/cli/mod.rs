@@ -18,42 +18,18 @@ mod plan;
 mod points;
 mod probe;
 mod progress;
+mod running;
 mod schema;
 mod simulate;
 mod study;
 
 use std::ffi::OsString;
-use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use clap::Parser;
 
-use crate::assembly::process::Listener;
-use crate::study::JournalPlace;
 use args::{Arguments, Command};
 use failure::{Exit, Failure};
-
-/// Who shows what an external program writes to stderr: somebody, when all details are asked for.
-fn listener(look: output::Look) -> Option<Listener> {
-    look.verbose.then(|| Arc::new(|line: &str| anstream::eprintln!("model: {line}")) as Listener)
-}
-
-/// Where the answers of an external model are kept.
-fn journal_place(asked: Option<&Path>) -> JournalPlace {
-    match asked {
-        None => JournalPlace::BesideStudy,
-        Some(path) if path.as_os_str() == "none" => JournalPlace::Nowhere,
-        Some(path) => JournalPlace::At(path.to_owned()),
-    }
-}
-
-/// Does the work with as many threads as were asked for.
-fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    let Some(threads) = threads else { return Ok(work()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
-    Ok(pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(work))
-}
 
 /// Runs the command with these arguments, the program's name first, and says how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::args::ProbeArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
+use super::running::listener;
 use super::{interrupt, study};
 use crate::assembly::Run;
 use crate::method::MethodError;
@@ -60,7 +61,7 @@ struct StepReport {
 pub(super) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
     // Answers from a journal would prove nothing, and sentinels would hide what is looked for.
     let externals =
-        Externals { journal: JournalPlace::Nowhere, listener: super::listener(look), points: None, sentinels: false };
+        Externals { journal: JournalPlace::Nowhere, listener: listener(look), points: None, sentinels: false };
     let study = study::read(&asked.study, externals)?;
     let destination = Destination::open(&asked.output)?;
     interrupt::listen();

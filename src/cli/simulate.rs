@@ -1,20 +1,21 @@
 //! `sensitol simulate`.
 
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::args::{SamplerArg, SimulateArgs};
 use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use super::progress::Samples;
-use super::{interrupt, on_threads, study};
+use super::running::{Clock, on_threads};
+use super::{interrupt, study};
 use crate::assembly::Run;
 use crate::method::Options;
-use crate::report::{About, SimulationReport, simulation_csv, simulation_text};
+use crate::report::{SimulationReport, simulation_csv, simulation_text};
 use crate::sampling::Sampler;
-use crate::simulation::{Pace, SimulationOptions, simulate_within};
-use crate::study::{Externals, Study};
+use crate::simulation::{Pace, Simulation, SimulationOptions, simulate_within};
+use crate::study::Study;
 
 /// Points unless the user says otherwise; where accuracy is wanted, as many as that takes.
 const SAMPLES: u64 = 100_000;
@@ -23,7 +24,7 @@ const SAMPLES: u64 = 100_000;
 const LONG: Duration = Duration::from_secs(60);
 
 pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
-    let study = study::read_only(&asked.study, &asked.characteristics, externals(asked, look))?;
+    let study = study::read_sampled(&asked.of, look)?;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }
@@ -37,25 +38,17 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
             SamplerArg::Random => Sampler::Random,
             SamplerArg::Sobol => Sampler::Sobol,
         },
-        seed: asked.seed.or(study.seed).unwrap_or(Options::SEED),
+        seed: asked.of.seed.or(study.seed).unwrap_or(Options::SEED),
         until: asked.until,
         until_yield: asked.until_yield,
     };
-    let begun = Instant::now();
-    let simulation = simulate(&study, asked, &options, begun, look)?;
-    let about = About {
-        title: study.title.clone(),
-        sha256: study.sha256.clone(),
-        seed: Some(options.seed),
-        wall_s: begun.elapsed().as_secs_f64(),
-        warnings: study.warnings.clone(),
-    };
+    let clock = Clock::start(asked.of.time);
+    let simulation = simulate(&study, asked.of.threads, &options, &clock, look)?;
+    let about = clock.about(&study, Some(options.seed));
     let report = SimulationReport::of(&study.problem, &simulation, about);
     let written =
         destination.write(&if asked.output.json { json(&report) } else { simulation_text(&report, look.style()) });
-    if let Some(folder) = folder {
-        folder.write(&simulation_csv(&report))?;
-    }
+    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&simulation_csv(&report))));
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }
@@ -79,25 +72,13 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
 }
 
-fn externals(asked: &SimulateArgs, look: Look) -> Externals {
-    Externals {
-        journal: super::journal_place(asked.journal.as_deref()),
-        listener: super::listener(look),
-        points: None,
-        sentinels: true,
-    }
-}
-
 fn simulate(
     study: &Study,
-    asked: &SimulateArgs,
+    threads: Option<u16>,
     options: &SimulationOptions,
-    begun: Instant,
+    clock: &Clock,
     look: Look,
-) -> Result<crate::simulation::Simulation, Failure> {
-    interrupt::listen();
-    let limit = asked.time.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
-    let stop = || interrupt::stopped() || limit.is_some_and(|limit| begun.elapsed() >= limit);
+) -> Result<Simulation, Failure> {
     let bar = Samples::new(look.quiet);
     let told = Mutex::new(false);
     let pace = |pace: Pace| {
@@ -105,13 +86,14 @@ fn simulate(
         // Who waits for years should know after a second.
         let Ok(mut told) = told.lock() else { return };
         let rest = Duration::try_from_secs_f64(pace.expected_s()).unwrap_or(Duration::MAX);
-        if !*told && limit.is_none() && pace.elapsed > Duration::from_secs(1) && rest > LONG {
+        if !*told && !clock.limited() && pace.elapsed > Duration::from_secs(1) && rest > LONG {
             *told = true;
             look.warn("long", &format!("this will take about {}; --time S ends it before", span(pace.expected_s())));
         }
     };
+    let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
-    let result = on_threads(asked.threads, || simulate_within(&study.problem, options, &run, &pace));
+    let result = on_threads(threads, || simulate_within(&study.problem, options, &run, &pace));
     bar.clear();
     Ok(result??)
 }

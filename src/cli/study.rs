@@ -2,15 +2,22 @@
 
 use std::path::Path;
 
-use super::args::{DerivativesArg, SensitivitiesArg, StencilArg, StudyArgs};
+use super::args::{DerivativesArg, SampledArgs, SensitivitiesArg, StencilArg, StudyArgs};
 use super::failure::Failure;
+use super::output::Look;
 use super::pairs;
+use super::running::externals;
 use crate::method::{DerivativeSource, Method};
 use crate::plan::Stencil;
 use crate::study::{Externals, Study};
 
+/// Reads the study of which points are drawn.
+pub(super) fn read_sampled(asked: &SampledArgs, look: Look) -> Result<Study, Failure> {
+    asking(&asked.study, &asked.characteristics, externals(asked.journal.as_deref(), look, None))
+}
+
 /// Reads the study, asking for these characteristics only, where any is named.
-pub(super) fn read_only(path: &Path, characteristics: &[String], externals: Externals) -> Result<Study, Failure> {
+fn asking(path: &Path, characteristics: &[String], externals: Externals) -> Result<Study, Failure> {
     let mut study = Study::read_with(path, externals)?;
     if !characteristics.is_empty() {
         study.problem = study.problem.only(characteristics)?;
@@ -20,7 +27,7 @@ pub(super) fn read_only(path: &Path, characteristics: &[String], externals: Exte
 
 /// Reads the study; what the command line says wins over its `[analysis]`.
 pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Failure> {
-    let mut study = read_only(&asked.study, &asked.characteristics, externals)?;
+    let mut study = asking(&asked.study, &asked.characteristics, externals)?;
     let options = &mut study.options;
     if let Some(method) = asked.method {
         options.method = method.0;

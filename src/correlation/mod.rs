@@ -18,6 +18,7 @@ mod transform;
 pub use error::{CorrelationError, Refusal};
 pub use transform::Transform;
 
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use faer::Mat;
@@ -173,13 +174,16 @@ impl Correlation {
 
 /// Names become indices; each pair once, each end something that varies.
 fn resolved(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Vec<([usize; 2], f64)>, CorrelationError> {
-    let mut found: Vec<([usize; 2], f64)> = Vec::with_capacity(pairs.len());
+    let named: HashMap<&str, usize> =
+        dimensions.iter().enumerate().map(|(d, dimension)| (dimension.name(), d)).collect();
+    let (mut found, mut seen) = (Vec::with_capacity(pairs.len()), HashSet::new());
     for (index, pair) in pairs.iter().enumerate() {
         let refused = |refusal| CorrelationError { pair: Some(index), refusal };
         let mut ends = [0; 2];
         for (end, name) in ends.iter_mut().zip(&pair.between) {
-            let position = dimensions.iter().position(|dimension| dimension.name() == name);
-            let Some(position) = position else { return Err(refused(Refusal::unknown(name, dimensions))) };
+            let Some(&position) = named.get(name.as_str()) else {
+                return Err(refused(Refusal::unknown(name, dimensions)));
+            };
             let name = || name.clone();
             match dimensions[position].distribution() {
                 None => return Err(refused(Refusal::DoesNotVary { name: name() })),
@@ -196,7 +200,7 @@ fn resolved(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Vec<([usize; 2],
             return Err(refused(Refusal::NoCoefficient { value: pair.value }));
         }
         ends.sort_unstable();
-        if found.iter().any(|&(other, _)| other == ends) {
+        if !seen.insert(ends) {
             return Err(refused(Refusal::Twice { between: pair.between.clone() }));
         }
         found.push((ends, pair.value));

@@ -96,6 +96,9 @@ pub struct ErrorReport {
     pub overall: Option<f64>,
     /// Whether the reference tells that from 0.
     pub resolved: bool,
+    /// What of it the reference may be off itself.
+    #[serde(skip)]
+    pub floor: f64,
 }
 
 /// A method that was not run.
@@ -159,6 +162,7 @@ impl MethodReport {
                 reference_standard_error: FiguresReport::of(reference),
                 overall: ran.errors[c].overall(),
                 resolved: ran.errors[c].resolved(),
+                floor: ran.errors[c].floor(),
             },
             pareto: ran.pareto[c],
         }

@@ -51,10 +51,7 @@ impl Decades {
 
 fn chart(svg: &mut String, one: &ComparedReport) {
     let [left, right, above, below] = MARGIN;
-    let floor = one.methods.first().map_or(0.0, |method| {
-        let own = &method.error_vs_reference.reference_standard_error;
-        2.0 * own.mean.unwrap_or(0.0).hypot(own.sigma.unwrap_or(0.0))
-    });
+    let floor = one.methods.first().map_or(0.0, |method| method.error_vs_reference.floor);
     let shown: Vec<(&str, f64, f64, bool, bool)> = (one.methods.iter())
         .filter_map(|method| {
             let off = &method.error_vs_reference;

@@ -1,11 +1,9 @@
 //! The report of a comparison for people.
 
 use super::compare::{CompareReport, ComparedReport};
-use super::number::significant;
+use super::number::{UNKNOWN, significant};
 use super::page::{Grid, Page, Style, clean, short};
-
-/// In place of what is unknown.
-const UNKNOWN: &str = "-";
+use crate::compare::RESOLVED;
 
 /// A comparison as text: a table for every characteristic, fewest evaluations first.
 pub fn compare_text(report: &CompareReport, style: Style) -> String {
@@ -43,7 +41,6 @@ fn compared(page: &mut Page, one: &ComparedReport) {
     for method in &one.methods {
         let off = &method.error_vs_reference;
         let own = &off.reference_standard_error;
-        let error = |off: Option<f64>, own: Option<f64>, factor: f64| error(off, own, factor);
         table.row([
             method.method.clone(),
             method.evaluations.to_string(),
@@ -67,7 +64,7 @@ fn compared(page: &mut Page, one: &ComparedReport) {
 fn error(off: Option<f64>, own: Option<f64>, factor: f64) -> String {
     match (off, own) {
         (None, _) => UNKNOWN.to_owned(),
-        (Some(off), Some(own)) if off <= 2.0 * own => format!("<{}", brief(2.0 * own * factor)),
+        (Some(off), Some(own)) if off <= RESOLVED * own => format!("<{}", brief(RESOLVED * own * factor)),
         (Some(off), _) => brief(off * factor),
     }
 }

@@ -1,5 +1,8 @@
 //! Numbers for people: rounded to what they are worth, aligned by their decimal point.
 
+/// In place of what is unknown.
+pub(crate) const UNKNOWN: &str = "-";
+
 /// As many decimals as show `digits` significant digits of `scale`; None where that takes an exponent.
 pub(crate) fn decimals(scale: f64, digits: i32) -> Option<usize> {
     if scale == 0.0 || !scale.is_finite() {

@@ -1,12 +1,10 @@
 //! The report of a simulation for people.
 
 use super::limits::share;
-use super::number::{beside, plain, significant};
+use super::number::{UNKNOWN, beside, plain, significant};
 use super::page::{Grid, Page, Style, clean, short};
 use super::simulation::{SimulatedReport, SimulationReport};
 
-/// In place of what is unknown.
-const UNKNOWN: &str = "-";
 /// Characters of the longest bar of a histogram.
 const BAR: usize = 50;
 

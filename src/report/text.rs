@@ -2,7 +2,7 @@
 
 use super::extremes::extremes;
 use super::limits::{distribution, verdict};
-use super::number::{beside, percent, plain, significant, unsigned_zero};
+use super::number::{UNKNOWN, beside, percent, plain, significant, unsigned_zero};
 use super::page::{Detail, Grid, Page, Style, clean, short};
 use super::sampling::sampling;
 use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
@@ -12,7 +12,6 @@ const CONTRIBUTIONS: usize = 30;
 const INTERACTIONS: usize = 5;
 /// Interactions below this share of the variance are no news.
 const NEWS: f64 = 1e-4;
-const UNKNOWN: &str = "-";
 
 /// The report as text, without its warnings.
 pub fn text(report: &Report, style: Style) -> String {

@@ -67,6 +67,7 @@ pub struct Draws<'a> {
 /// The correlated dimensions: their places among the varying ones, and the factor of their normal variables.
 struct Correlated<'a> {
     correlation: &'a Correlation,
+    /// Ascending, as the members are.
     places: Vec<usize>,
     factor: Mat<f64>,
 }
@@ -123,7 +124,7 @@ impl<'a> Draws<'a> {
     }
 
     fn is_correlated(&self, place: usize) -> bool {
-        self.correlated.as_ref().is_some_and(|correlated| correlated.places.contains(&place))
+        self.correlated.as_ref().is_some_and(|correlated| correlated.places.binary_search(&place).is_ok())
     }
 
     /// A key that belongs to the seed, the portion's stream and the dimension.

@@ -65,16 +65,21 @@ impl Fine {
 
     /// The value below which `rank` of the values lie, interpolated within its bin; None where there are not as many.
     pub fn at_rank(&self, rank: f64) -> Option<f64> {
+        let (bin, below) = self.bin_of_rank(rank)?;
+        Some(self.scale.edge(bin as f64 + (rank - below) / self.counts[bin] as f64))
+    }
+
+    /// The bin that holds this rank, and how many values lie below it.
+    fn bin_of_rank(&self, rank: f64) -> Option<(usize, f64)> {
         if self.total == 0 || !(0.0..=self.total as f64).contains(&rank) {
             return None;
         }
         let mut below = 0.0;
         for (bin, &count) in self.counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
-            let count = count as f64;
-            if below + count >= rank {
-                return Some(self.scale.edge(bin as f64 + (rank - below) / count));
+            if below + count as f64 >= rank {
+                return Some((bin, below));
             }
-            below += count;
+            below += count as f64;
         }
         None
     }
@@ -82,19 +87,14 @@ impl Fine {
     /// How far the interpolation at this rank may be off: an eighth of the bin for a density that changes by all of itself from
     /// one neighbour to the other, and less as it changes less.
     pub fn blur(&self, rank: f64) -> f64 {
-        let mut below = 0.0;
-        for (bin, &count) in self.counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
-            below += count as f64;
-            if below >= rank {
-                let beside =
-                    |bin: Option<usize>| bin.and_then(|bin| self.counts.get(bin)).map_or(0.0, |&count| count as f64);
-                let change = (beside(Some(bin + 1)) - beside(bin.checked_sub(1))).abs() / count as f64;
-                let alone = beside(Some(bin + 1)) + beside(bin.checked_sub(1)) == 0.0;
-                let width = self.scale.edge(bin as f64 + 1.0) - self.scale.edge(bin as f64);
-                return width * if alone { 1.0 } else { 0.125 * change.min(8.0) };
-            }
+        let Some((bin, _)) = self.bin_of_rank(rank) else { return 0.0 };
+        let count = |bin: Option<usize>| bin.and_then(|bin| self.counts.get(bin)).map_or(0.0, |&count| count as f64);
+        let [before, own, after] = [bin.checked_sub(1), Some(bin), Some(bin + 1)].map(count);
+        let width = self.scale.edge(bin as f64 + 1.0) - self.scale.edge(bin as f64);
+        match before + after == 0.0 {
+            true => width,
+            false => width * 0.125 * ((after - before).abs() / own).min(8.0),
         }
-        0.0
     }
 
     /// About `bins` equal intervals from `low` to `high`, and how many values lie in each; the first and the last one reach

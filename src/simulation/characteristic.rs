@@ -73,8 +73,7 @@ const BINS: usize = 40;
 
 impl SimulatedCharacteristic {
     pub(super) fn of(characteristic: &Characteristic, count: &Count, answered: u64) -> Self {
-        let mut all = Summary::default();
-        count.replicates.iter().for_each(|replicate| all.merge(&replicate.summary));
+        let all = count.summary();
         let fine = pooled(&count.replicates);
         let [mean, sigma, skewness, kurtosis] = moments(&all, &count.replicates);
         let known = all.count();
@@ -97,7 +96,7 @@ impl SimulatedCharacteristic {
             sigma,
             skewness,
             kurtosis,
-            yield_: yield_of(&limits, &count.replicates, known, answered),
+            yield_: yield_of(limits, &count.replicates, known, answered),
             below: limits.lower().and_then(|_| share(0)),
             above: limits.upper().and_then(|_| share(1)),
             histogram: range.zip(fine).zip(low.zip(high)).map(|((range, fine), (low, high))| {
@@ -118,7 +117,7 @@ fn pooled(replicates: &[Replicate]) -> Option<Fine> {
 }
 
 /// Of all points together; the standard errors of the sample where it is random, of the replicates where there are such.
-fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
+pub(super) fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
     let mut estimates = of_moments(all);
     if replicates.len() > 1 {
         let each: Vec<[Option<Estimate>; 4]> =
@@ -165,7 +164,13 @@ fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Repl
     Some(Estimate { value, standard_error })
 }
 
-fn yield_of(limits: &SpecLimits, replicates: &[Replicate], known: u64, answered: u64) -> Option<YieldEstimate> {
+/// The share within the limits; None where there are none, or no value is known.
+pub(super) fn yield_of(
+    limits: SpecLimits,
+    replicates: &[Replicate],
+    known: u64,
+    answered: u64,
+) -> Option<YieldEstimate> {
     if !limits.exist() || known == 0 {
         return None;
     }

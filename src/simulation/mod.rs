@@ -95,8 +95,8 @@ impl Pace {
 
 /// Simulates a problem.
 ///
-/// Evaluations: as many as samples. Memory: flat in the number of samples, about a megabyte for each characteristic (four
-/// for Sobol's points). The numbers are the same for any number of threads.
+/// Evaluations: as many as samples. Memory: flat in the number of samples: a quarter of a megabyte of counts for each
+/// characteristic, four for Sobol's points. The numbers are the same for any number of threads.
 ///
 /// # Errors
 /// When a dimension cannot be sampled, or the model cannot be used at all; nothing is evaluated then.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::characteristic::SimulatedCharacteristic;
+use super::characteristic::{SimulatedCharacteristic, moments, yield_of};
 use super::{REPLICATES, Simulation, SimulationOptions};
 use crate::assembly::{EvaluationError, Responses};
 use crate::characteristic::SpecLimits;
@@ -99,6 +99,15 @@ pub(super) struct Count {
     pub(super) error: Option<EvaluationError>,
 }
 
+impl Count {
+    /// Of all replicates together.
+    pub(super) fn summary(&self) -> Summary {
+        let mut all = Summary::default();
+        self.replicates.iter().for_each(|replicate| all.merge(&replicate.summary));
+        all
+    }
+}
+
 pub(super) struct Tally<'a> {
     problem: &'a Problem,
     lenses: Vec<Lens>,
@@ -191,13 +200,16 @@ impl<'a> Tally<'a> {
             return None;
         }
         let ratio = |(c, count): (usize, &Count)| {
-            let found = SimulatedCharacteristic::of(&self.problem.characteristics()[c], count, self.answered);
+            let all = count.summary();
             let sigma = options.until.map(|wanted| {
-                let known = found.sigma.and_then(|sigma| Some((sigma.value, sigma.standard_error?)));
+                let [_, sigma, ..] = moments(&all, &count.replicates);
+                let known = sigma.and_then(|sigma| Some((sigma.value, sigma.standard_error?)));
                 known.map_or(f64::INFINITY, |(value, error)| if error == 0.0 { 0.0 } else { error / value / wanted })
             });
-            let shares = options.until_yield.filter(|_| found.characteristic.limits().exist()).map(|wanted| {
-                found.yield_.map_or(f64::INFINITY, |share| 0.5 * (share.interval[1] - share.interval[0]) / wanted)
+            let limits = self.problem.characteristics()[c].limits();
+            let shares = options.until_yield.filter(|_| limits.exist()).map(|wanted| {
+                yield_of(limits, &count.replicates, all.count(), self.answered)
+                    .map_or(f64::INFINITY, |share| 0.5 * (share.interval[1] - share.interval[0]) / wanted)
             });
             sigma.into_iter().chain(shares).fold(0.0, f64::max)
         };

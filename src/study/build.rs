@@ -253,7 +253,7 @@ fn characteristic(
     }
     if let Some(target) = &entry.target_yield {
         let at = |error: LimitsError| fault(target.span(), format!("{key}.target_yield"), error);
-        if limits == SpecLimits::default() {
+        if !limits.exist() {
             let instead = "a target yield needs a limit: write lower, upper or both".to_owned();
             let missing = StudyFault::MissingKey { key: "lower".into(), instead };
             return Err(fault(target.span(), format!("{key}.target_yield"), missing));

@@ -23,7 +23,7 @@ pub fn run(arguments: &[&str]) -> String {
     format!("exit {code}\n{}{}", part("stdout", &output.stdout), part("stderr", &output.stderr))
 }
 
-const ENGINE: &str = "examples/engine-balance/study.toml";
+pub const ENGINE: &str = "examples/engine-balance/study.toml";
 
 #[test]
 fn analyze_prints_the_report() {

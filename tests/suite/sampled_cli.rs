@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::cli::{run, sensitol};
+use super::cli::{ENGINE, run, sensitol};
 
 const BLOCKS: &str = "examples/stacked-blocks/study.toml";
 const PYTHON: &str = "examples/external-python/study.toml";
@@ -141,7 +141,7 @@ fn wrong_wishes() {
         &["simulate", BLOCKS, "--kc", "gab"],
         &["simulate", &moments],
         &["simulate", &nowhere, "--samples", "100"],
-        &["simulate", ENGINE_WITHOUT_TARGET, "--check"],
+        &["simulate", ENGINE, "--check"],
         &["compare", &moments],
         &["compare", &nowhere, "--samples", "100"],
         &["compare", BLOCKS, "--svg", "/nowhere/a.svg"],
@@ -157,5 +157,3 @@ fn wrong_wishes() {
     }
     insta::assert_snapshot!("wrong-wishes", all);
 }
-
-const ENGINE_WITHOUT_TARGET: &str = "examples/engine-balance/study.toml";
