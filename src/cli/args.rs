@@ -173,6 +173,14 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(super) until_yield: Option<f64>,
 
+    /// Sample only what the surrogate of an analysis leaves unexplained: the same standard errors with fewer points
+    #[arg(long)]
+    pub(super) surrogate_control: bool,
+
+    /// The method of that analysis [default: that of the study, or full to 20 dimensions and six-n beyond]
+    #[arg(short, long, value_name = "METHOD", requires = "surrogate_control")]
+    pub(super) method: Option<MethodArg>,
+
     /// Seed of the sample [default: that of the study, or 1]
     #[arg(long, value_name = "N")]
     pub(super) seed: Option<u64>,

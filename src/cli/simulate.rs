@@ -9,7 +9,7 @@ use super::output::{Destination, Look, json};
 use super::progress::Samples;
 use super::{interrupt, on_threads, study};
 use crate::assembly::Run;
-use crate::method::Options;
+use crate::method::{Method, Options};
 use crate::report::{About, SimulationReport, simulation_text};
 use crate::sampling::Sampler;
 use crate::simulation::{Pace, SimulationOptions, simulate_within};
@@ -37,6 +37,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         seed: asked.seed.or(study.seed).unwrap_or(Options::SEED),
         until: asked.until,
         until_yield: asked.until_yield,
+        control: asked.surrogate_control.then(|| surrogate(&study, asked)),
     };
     let begun = Instant::now();
     let simulation = simulate(&study, asked, &options, begun, look)?;
@@ -71,6 +72,19 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     }
     let missed = report.characteristics.iter().any(|one| one.target_yield.is_some() && one.met != Some(true));
     Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
+}
+
+/// How the surrogate is analysed: as the study says, but for the method that is asked for.
+fn surrogate(study: &Study, asked: &SimulateArgs) -> Options {
+    let mut options = study.options.clone();
+    if let Some(method) = asked.method {
+        options.method = method.0;
+        // The study's choice of pairs was made for its own method.
+        if method.0 != Method::SixN {
+            (options.pairs, options.stencil) = (None, None);
+        }
+    }
+    options
 }
 
 fn externals(asked: &SimulateArgs, look: Look) -> Externals {

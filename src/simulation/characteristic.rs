@@ -1,9 +1,12 @@
 //! What a simulation knows of one characteristic.
 
+use super::control::Twin;
+use super::difference::{Difference, Shares, moments as controlled, shares};
 use super::tally::{Count, Replicate};
 use crate::assembly::EvaluationError;
 use crate::capability::TAIL;
 use crate::characteristic::{Characteristic, SpecLimits};
+use crate::method::Method;
 use crate::sampling::{Estimate, Fine, Summary, of_moments, wilson};
 
 /// Estimates for one characteristic, each with its standard error. What is unknown is None.
@@ -37,6 +40,21 @@ pub struct SimulatedCharacteristic {
     pub range: Option<[f64; 2]>,
     /// The sample, counted in some tens of intervals.
     pub histogram: Option<Histogram>,
+    /// The surrogate that stood beside the model; None where none was asked for, or it does not vary.
+    pub control: Option<SurrogateControl>,
+}
+
+/// What a surrogate as control variate has done.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurrogateControl {
+    /// The method that it comes from.
+    pub method: Method,
+    /// The evaluations that it took, of all characteristics together.
+    pub evaluations: usize,
+    /// Standard error of the mean without it by that with it; None where that is unknown, or 0.
+    pub mean: Option<f64>,
+    /// The same of sigma.
+    pub sigma: Option<f64>,
 }
 
 /// The share of assemblies that keep the limits.
@@ -72,13 +90,23 @@ const STUDENT: f64 = 2.131_449_545_559_323;
 const BINS: usize = 40;
 
 impl SimulatedCharacteristic {
-    pub(super) fn of(characteristic: &Characteristic, count: &Count, answered: u64) -> Self {
+    pub(super) fn of(characteristic: &Characteristic, count: &Count, twin: Option<&Twin>, answered: u64) -> Self {
         let mut all = Summary::default();
         count.replicates.iter().for_each(|replicate| all.merge(&replicate.summary));
         let fine = pooled(&count.replicates);
-        let [mean, sigma, skewness, kurtosis] = moments(&all, &count.replicates);
+        let plain = moments(&all, &count.replicates);
         let known = all.count();
+        let differences = || count.replicates.iter().map(|one| &one.difference).collect();
+        let beside: Option<(&Twin, Vec<&Difference>)> = twin.filter(|_| known > 0).map(|twin| (twin, differences()));
+        let [mean, sigma, skewness, kurtosis] =
+            beside.as_ref().map_or(plain, |(twin, differences)| controlled(differences, twin));
+        let shares = beside.as_ref().and_then(|(twin, differences)| {
+            shares(differences, twin.outside.as_ref()?, REJECTED * differences.len() as u64)
+        });
         let share = |side: usize| {
+            if let Some(shares) = &shares {
+                return Some(shares.outside[side]);
+            }
             let outside: u64 = count.replicates.iter().map(|replicate| replicate.outside[side]).sum();
             (known > 0).then(|| outside as f64 / known as f64)
         };
@@ -95,7 +123,7 @@ impl SimulatedCharacteristic {
             sigma,
             skewness,
             kurtosis,
-            yield_: yield_of(&limits, &count.replicates, known, answered),
+            yield_: yield_of(&limits, &count.replicates, shares.as_ref(), [known, answered]),
             below: limits.lower().and_then(|_| share(0)),
             above: limits.upper().and_then(|_| share(1)),
             histogram: range.zip(fine).zip(low.zip(high)).map(|((range, fine), (low, high))| {
@@ -104,8 +132,21 @@ impl SimulatedCharacteristic {
             }),
             range,
             quantiles,
+            control: beside.map(|(twin, _)| SurrogateControl {
+                method: twin.method,
+                evaluations: twin.evaluations,
+                mean: reduction(plain[0], mean),
+                sigma: reduction(plain[1], sigma),
+            }),
         }
     }
+}
+
+/// By how much the standard error has shrunk.
+fn reduction(plain: Option<Estimate>, controlled: Option<Estimate>) -> Option<f64> {
+    let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
+    let times = error(plain)? / error(controlled).filter(|&error| error > 0.0)?;
+    times.is_finite().then_some(times)
 }
 
 fn pooled(replicates: &[Replicate]) -> Option<Fine> {
@@ -133,7 +174,7 @@ fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
 
 /// The standard error of the mean of independent replicates, widened so that two of it are Student's 95 %; None where one
 /// has no value.
-fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+pub(super) fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let values: Vec<f64> = values.collect::<Option<_>>()?;
     let summary = Summary::of(&values);
     (values.len() > 1).then(|| 0.5 * STUDENT * summary.sigma() / (values.len() as f64).sqrt())
@@ -160,9 +201,20 @@ fn quantile(p: f64, fine: &Fine, replicates: &[Replicate]) -> Option<Estimate> {
     Some(Estimate { value, standard_error })
 }
 
-fn yield_of(limits: &SpecLimits, replicates: &[Replicate], known: u64, answered: u64) -> Option<YieldEstimate> {
+fn yield_of(
+    limits: &SpecLimits,
+    replicates: &[Replicate],
+    shares: Option<&Shares>,
+    [known, answered]: [u64; 2],
+) -> Option<YieldEstimate> {
     if !limits.exist() || known == 0 {
         return None;
+    }
+    if let Some(Shares { outside, interval }) = shares {
+        let value = (1.0 - outside[0] - outside[1]).max(0.0);
+        let within = value * known as f64;
+        let bounds = [within, within + (answered - known) as f64].map(|most| most / answered as f64);
+        return Some(YieldEstimate { value, interval: *interval, bounds });
     }
     let rejected = |replicate: &Replicate| replicate.outside.iter().sum::<u64>();
     let outside: u64 = replicates.iter().map(rejected).sum();
