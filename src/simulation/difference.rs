@@ -62,7 +62,7 @@ fn standardised(differences: &[f64; 4], twin: &Twin) -> [Option<(f64, [f64; 4])>
     let c2 = m2 - m * m;
     let c3 = m3 - 3.0 * m * m2 + 2.0 * m.powi(3);
     let c4 = m4 - 4.0 * m * m3 + 6.0 * m * m * m2 - 3.0 * m.powi(4);
-    if !(c2 > 0.0) {
+    if c2.is_nan() || c2 <= 0.0 {
         return [mean, None, None, None];
     }
     let by2 = [-2.0 * m, 1.0, 0.0, 0.0];

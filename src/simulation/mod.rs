@@ -41,7 +41,9 @@ pub struct SimulationOptions {
     /// exact, only the difference is sampled, and standard errors shrink by what it explains. `auto` is `full` to 20
     /// varying dimensions, `six-n` beyond. Quantiles and histogram stay those of the sample.
     ///
-    /// Where the model fails at some points, their differences are taken to be like the others'.
+    /// Where the model fails at some points, their differences are taken to be like the others'. The kurtosis of what is far
+    /// from the surrogate wants more points than a plain one before its standard error is right: of a lognormal with log-sd
+    /// 0.15 two of them hold 89 % at 20 000 random points and 94 % at 100 000.
     pub control: Option<Options>,
 }
 

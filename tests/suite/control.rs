@@ -30,18 +30,28 @@ fn plain(problem: &Problem, samples: u64, seed: u64) -> Simulation {
 /// Mean, sigma, skewness, kurtosis, yield.
 type Truth = [f64; 5];
 
-fn covered(problem: &Problem, truth: Truth, samples: u64, sampler: Sampler) -> [usize; 5] {
-    let mut hits = [0; 5];
+/// In how many of the runs each moment lies within two standard errors, and the yield, where there are limits, in its
+/// interval.
+fn covered(problem: &Problem, truth: Truth, samples: u64, sampler: Sampler) -> Vec<usize> {
+    let limited = problem.characteristics()[0].limits().exist();
+    let mut hits = vec![0; if limited { 5 } else { 4 }];
     for seed in 0..SEEDS {
         let found = &controlled(problem, samples, sampler, seed).characteristics[0];
         for (index, estimate) in [found.mean, found.sigma, found.skewness, found.kurtosis].into_iter().enumerate() {
             let Estimate { value, standard_error } = estimate.unwrap();
             hits[index] += usize::from((value - truth[index]).abs() <= 2.0 * standard_error.unwrap());
         }
-        let [low, high] = found.yield_.unwrap().interval;
-        hits[4] += usize::from(low <= truth[4] && truth[4] <= high);
+        if limited {
+            let [low, high] = found.yield_.unwrap().interval;
+            hits[4] += usize::from(low <= truth[4] && truth[4] <= high);
+        }
     }
     hits
+}
+
+#[track_caller]
+fn holds(hits: &[usize]) {
+    assert!(hits.iter().all(|hits| COVERED.contains(hits)), "{hits:?} of {SEEDS}");
 }
 
 /// Two lognormal factors: a lognormal of this log-sd, whose truth is in every textbook.
@@ -77,20 +87,26 @@ fn engine() -> (Problem, Truth) {
     (problem, [mean, sigma, skewness, kurtosis, 1.0 - upper_tail])
 }
 
+/// The lognormal's kurtosis is decided by sixth powers, which shorter samples do not know enough of: two standard errors of it
+/// hold 89 % at 20 000 random points and 82 % at 16 384 of Sobol'. Its yield needs no more than these.
 #[test]
 fn random_standard_errors_cover_the_truth() {
-    for (problem, truth) in [engine(), lognormal(0.15)] {
-        let hits = covered(&problem, truth, 20_000, Sampler::Random);
-        assert!(hits.iter().all(|hits| COVERED.contains(hits)), "{hits:?} of {SEEDS}");
-    }
+    let (problem, truth) = engine();
+    holds(&covered(&problem, truth, 20_000, Sampler::Random));
+    let (problem, truth) = lognormal(0.15);
+    holds(&covered(&problem, truth, 20_000, Sampler::Random)[4..]);
+    let unlimited = problem.asking([Characteristic::new("y")]).unwrap();
+    holds(&covered(&unlimited, truth, 100_000, Sampler::Random));
 }
 
 #[test]
 fn quasi_random_standard_errors_cover_the_truth() {
-    for (problem, truth) in [engine(), lognormal(0.15)] {
-        let hits = covered(&problem, truth, 16_384, Sampler::Sobol);
-        assert!(hits.iter().all(|hits| COVERED.contains(hits)), "{hits:?} of {SEEDS}");
-    }
+    let (problem, truth) = engine();
+    holds(&covered(&problem, truth, 16_384, Sampler::Sobol));
+    let (problem, truth) = lognormal(0.15);
+    holds(&covered(&problem, truth, 16_384, Sampler::Sobol)[4..]);
+    let unlimited = problem.asking([Characteristic::new("y")]).unwrap();
+    holds(&covered(&unlimited, truth, 262_144, Sampler::Sobol));
 }
 
 /// The plain standard error of sigma by the controlled one, at the same number of evaluations, of every characteristic.
@@ -332,11 +348,16 @@ fn the_command_reports_it() {
     let surrogate = report["surrogate_evaluations"].as_u64().unwrap();
     assert_eq!(report["evaluations"].as_u64().unwrap(), 2000 + surrogate);
     let control = &report["characteristics"][0]["control"];
-    assert_eq!((control["method"].as_str(), control["evaluations"].as_u64()), (Some("full"), Some(surrogate)));
-    assert!(control["reduction"]["sigma"].as_f64().unwrap() > 100.0, "{control}");
-    assert!(control["reduction"]["mean"].as_f64().unwrap() > 100.0, "{control}");
-    let text = run(&["--surrogate-control", "--method", "six-n"]).success().get_output().stdout.clone();
-    assert!(String::from_utf8(text).unwrap().contains("control: six-n surrogate"));
+    assert_eq!((control["method"].as_str(), control["evaluations"].as_u64()), (Some("six-n"), Some(surrogate)));
+    // The study's method, whose interactions are the strongest ten; every one of them explains more.
+    let strongest = control["reduction"]["sigma"].as_f64().unwrap();
+    let json = run(&["--surrogate-control", "--method", "full", "--json"]).success().get_output().stdout.clone();
+    let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let control = &report["characteristics"][0]["control"];
+    assert_eq!(control["evaluations"], 111);
+    assert!(control["reduction"]["sigma"].as_f64().unwrap() > strongest && strongest > 10.0, "{control} {strongest}");
+    let text = run(&["--surrogate-control", "--method", "full"]).success().get_output().stdout.clone();
+    assert!(String::from_utf8(text).unwrap().contains("control: full surrogate, 111 evaluations"));
     let plain = run(&["--json"]).success().get_output().stdout.clone();
     let plain: serde_json::Value = serde_json::from_slice(&plain).unwrap();
     assert!(plain["surrogate_evaluations"].is_null() && plain["characteristics"][0]["control"].is_null());
