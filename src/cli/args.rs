@@ -196,6 +196,14 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(super) until_yield: Option<f64>,
 
+    /// Sample only what the surrogate of an analysis leaves unexplained: the same standard errors with fewer points
+    #[arg(long)]
+    pub(super) surrogate_control: bool,
+
+    /// The method of that analysis [default: that of the study, or full to 20 dimensions and six-n beyond]
+    #[arg(short, long, value_name = "METHOD", requires = "surrogate_control")]
+    pub(super) method: Option<MethodArg>,
+
     /// Exit with 1 unless the sample shows that every target_yield is met
     #[arg(long)]
     pub(super) check: bool,

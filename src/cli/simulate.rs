@@ -11,7 +11,7 @@ use super::progress::Samples;
 use super::running::{Clock, on_threads};
 use super::{interrupt, study};
 use crate::assembly::Run;
-use crate::method::Options;
+use crate::method::{Method, Options};
 use crate::report::{SimulationReport, simulation_csv, simulation_text};
 use crate::sampling::Sampler;
 use crate::simulation::{Pace, Simulation, SimulationOptions, simulate_within};
@@ -41,6 +41,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         seed: asked.of.seed.or(study.seed).unwrap_or(Options::SEED),
         until: asked.until,
         until_yield: asked.until_yield,
+        control: asked.surrogate_control.then(|| surrogate(&study, asked)),
     };
     let clock = Clock::start(asked.of.time);
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look)?;
@@ -70,6 +71,19 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     }
     let missed = report.characteristics.iter().any(|one| one.target_yield.is_some() && one.met != Some(true));
     Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
+}
+
+/// How the surrogate is analysed: as the study says, but for the method that is asked for.
+fn surrogate(study: &Study, asked: &SimulateArgs) -> Options {
+    let mut options = study.options.clone();
+    if let Some(method) = asked.method {
+        options.method = method.0;
+        // The study's choice of pairs was made for its own method.
+        if method.0 != Method::SixN {
+            (options.pairs, options.stencil) = (None, None);
+        }
+    }
+    options
 }
 
 fn simulate(

@@ -30,6 +30,8 @@ pub struct SimulationReport {
     pub samples: u64,
     /// Every point sent to the model.
     pub evaluations: u64,
+    /// Those of the surrogate that stands beside the model; null where there is none.
+    pub surrogate_evaluations: Option<u64>,
     /// Answers taken from an earlier run.
     pub reused: u64,
     /// Points that lost at least one asked characteristic.
@@ -100,6 +102,28 @@ pub struct SimulatedReport {
     pub cpk: Option<f64>,
     /// The sample in intervals.
     pub histogram: Option<HistogramReport>,
+    /// The surrogate as control variate; null where there is none.
+    pub control: Option<ControlReport>,
+}
+
+/// What a surrogate as control variate has done.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ControlReport {
+    /// The method that it comes from.
+    pub method: &'static str,
+    /// The evaluations that it took, of all characteristics together.
+    pub evaluations: usize,
+    /// By how much standard errors have shrunk.
+    pub reduction: Reduction,
+}
+
+/// The standard error without the surrogate by that with it; null where that is unknown or 0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Reduction {
+    /// Of the mean.
+    pub mean: Option<f64>,
+    /// Of sigma.
+    pub sigma: Option<f64>,
 }
 
 /// Standard errors, and the 95 % interval of the yield.
@@ -153,6 +177,7 @@ impl SimulationReport {
             sampler,
             samples: simulation.samples,
             evaluations: simulation.evaluations,
+            surrogate_evaluations: simulation.surrogate_evaluations,
             reused: simulation.reused,
             failed: simulation.failed,
             stopped: simulation.stopped,
@@ -233,6 +258,11 @@ impl SimulatedReport {
             cp: index(lower.zip(upper).map(|(lower, upper)| 0.5 * (upper - lower))),
             cpk: index(sides.into_iter().flatten().reduce(f64::min)),
             histogram: one.histogram.clone().map(|Histogram { edges, counts }| HistogramReport { edges, counts }),
+            control: one.control.map(|control| ControlReport {
+                method: control.method.name(),
+                evaluations: control.evaluations,
+                reduction: Reduction { mean: control.mean, sigma: control.sigma },
+            }),
         }
     }
 }

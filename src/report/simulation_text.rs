@@ -43,6 +43,19 @@ fn characteristic(page: &mut Page, one: &SimulatedReport) {
         table.row([format!("quantile {p}"), digits(*value, *error), uncertainty(*error)]);
     }
     page.print(&table);
+    if let Some(control) = &one.control {
+        let times = |value: Option<f64>, name: &str| value.map(|value| format!("{name} {}", significant(value, 3)));
+        let shrunk: Vec<String> = [times(control.reduction.mean, "mean"), times(control.reduction.sigma, "sigma")]
+            .into_iter()
+            .flatten()
+            .collect();
+        let shrunk = if shrunk.is_empty() {
+            String::new()
+        } else {
+            format!(": standard errors shrunk by {}", shrunk.join(", "))
+        };
+        page.line(&format!("  control: {} surrogate, {} evaluations{shrunk}", control.method, control.evaluations));
+    }
     if let Some(yield_) = one.yield_ {
         limits(page, one, yield_);
     }

@@ -4,6 +4,7 @@ mod analysis;
 mod architecture;
 mod capability;
 mod cli;
+mod control;
 mod correlation;
 mod derivatives;
 mod distributions;
