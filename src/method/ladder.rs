@@ -1,5 +1,6 @@
 //! What the derivative methods share: a difference plan, evaluated and fitted.
 
+use super::auto::Climbed;
 use super::exact::{ExactDerivatives, fits, known};
 use super::{DerivativeSource, Method, MethodError, Options, Pairs, Procedure};
 use crate::assembly::Run;
@@ -63,6 +64,8 @@ pub struct Outcome {
     pub pairs: Vec<(usize, usize)>,
     /// Whether the moments come from exact derivatives rather than differences.
     pub exact: bool,
+    /// How `auto` came to its result; None for any other method.
+    pub climbed: Option<Climbed>,
 }
 
 /// What is known of one characteristic.
@@ -132,7 +135,17 @@ impl Procedure for Ladder {
         let (pairs, derivatives) = self.derivatives(problem, options, &plan, &evaluated)?;
         let fit = |(c, derivatives)| self.fit(&plan, &evaluated, c, &pairs, derivatives, exact);
         let fitted = derivatives.into_iter().enumerate().map(fit).collect();
-        Ok(Outcome { asked: self.method, method: self.runs, plan, evaluated, order: self.order, fitted, pairs, exact })
+        Ok(Outcome {
+            asked: self.method,
+            method: self.runs,
+            plan,
+            evaluated,
+            order: self.order,
+            fitted,
+            pairs,
+            exact,
+            climbed: None,
+        })
     }
 }
 
@@ -220,7 +233,7 @@ impl Ladder {
 }
 
 /// The method with the most evaluations that the budget allows.
-fn fitting(problem: &Problem, budget: usize) -> Option<(&'static str, usize)> {
+pub(super) fn fitting(problem: &Problem, budget: usize) -> Option<(&'static str, usize)> {
     [Method::Full, Method::SixN, Method::SecondOrder]
         .into_iter()
         .filter_map(|method| {

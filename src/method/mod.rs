@@ -5,9 +5,12 @@
 //! the documentation of the command line iterate the registry.
 
 mod auto;
+mod check;
 mod classic;
+mod estimate;
 mod exact;
 mod full;
+mod hidden;
 mod ladder;
 mod options;
 mod rss;
@@ -15,6 +18,9 @@ mod second_order;
 mod six_n;
 mod worst_case;
 
+pub use auto::{ACCURACY, Climbed, Rest};
+pub use check::Check;
+pub use estimate::{ErrorEstimate, Source, estimate};
 pub use exact::ExactDerivatives;
 pub use ladder::{Fitted, Order, Outcome};
 pub use options::{DerivativeSource, Options, Pairs};

@@ -83,6 +83,53 @@ impl DifferencePlan {
         Self { nominal: Point::of(&nominal), layout, axes, varying, fixed, inputs, depends }
     }
 
+    /// Two nodes more on the axis of a dimension that has a pair; whether there are such nodes. `dimension` is the one
+    /// with this index in the problem.
+    pub fn refine(&mut self, dimension: &Dimension, index: usize) -> bool {
+        let refined = self.axes[index].refine(dimension, self.layout.step);
+        let rule = self.axes[index].tail.as_ref().and_then(|tail| tail.rule.as_ref());
+        if let (true, Some(rule), Ok(position)) = (refined, rule, self.varying.binary_search(&index)) {
+            self.inputs = self.inputs.clone().with_rule(position, Arc::new(rule.clone()));
+        }
+        refined
+    }
+
+    /// Examines these pairs of positions too.
+    pub fn examine(&mut self, pairs: impl IntoIterator<Item = (usize, usize)>) {
+        let pairs = pairs.into_iter().map(|(j, k)| (self.varying[j], self.varying[k]));
+        match &mut self.layout.pairs {
+            PairChoice::Listed(listed) => listed.extend(pairs),
+            choice => *choice = PairChoice::Listed(pairs.collect()),
+        }
+    }
+
+    /// The point with these values of dimensions, every other one at its mean.
+    pub fn point_at(&mut self, values: impl IntoIterator<Item = (usize, f64)>) -> Point {
+        let at = values.into_iter().filter_map(|(d, x)| {
+            let node = self.axes[d].at_value(x)?;
+            Some(At { dimension: d as u32, node })
+        });
+        Point::of(&at.collect::<Vec<At>>())
+    }
+
+    /// For every position its nodes on the left and on the right at which pairs stand, with their places in sigmas.
+    pub fn corners(&self, known: &Known) -> Vec<[Option<(At, f64)>; 2]> {
+        let place = |(d, node): (usize, u32)| (At { dimension: d as u32, node }, self.axes[d].nodes[node as usize].u);
+        let both = |(&d, nodes): (&usize, &PairNodes)| [nodes.left, nodes.right].map(|node| Some(place((d, node?))));
+        self.varying.iter().zip(&self.pair_nodes(known)).map(both).collect()
+    }
+
+    /// Where a point lies, in sigmas: a value for every position.
+    pub fn standardised(&self, point: &Point) -> Vec<f64> {
+        let mut u = vec![0.0; self.varying.len()];
+        for at in point.at() {
+            if let Ok(position) = self.varying.binary_search(&(at.dimension as usize)) {
+                u[position] = self.axes[at.dimension as usize].nodes[at.node as usize].u;
+            }
+        }
+        u
+    }
+
     /// What it evaluates.
     pub fn layout(&self) -> &Layout {
         &self.layout
@@ -276,6 +323,12 @@ impl DifferencePlan {
         if !self.depends[characteristic][dimension] {
             return Some(Univariate::of_coefficients(&[0.0, 0.0]));
         }
+        Univariate::through(&self.samples(known, characteristic, dimension)?)
+    }
+
+    /// How far a characteristic lies above its centre at the nodes of one dimension, by their places in sigmas, ascending;
+    /// None without a value at the means.
+    pub fn samples(&self, known: &Known, characteristic: usize, dimension: usize) -> Option<Vec<(f64, f64)>> {
         let centre = known.value(&Point::Centre, characteristic)?;
         let axis = &self.axes[dimension];
         let value = |node: u32| known.value(&self.on_axis(dimension, node), characteristic);
@@ -287,7 +340,7 @@ impl DifferencePlan {
                 samples.push((axis.nodes[node as usize].u, value - centre));
             }
         }
-        Univariate::through(&samples)
+        Some(samples)
     }
 
     /// Where pairs stand: the nodes next to the mean, or the replacement at which most characteristics have a value.
@@ -304,11 +357,10 @@ impl DifferencePlan {
             slot.iter().copied().find(|&node| answered(node) == best).expect("a slot is never empty")
         };
         let nodes = |&d: &usize| {
-            let axis = &self.axes[d];
-            let side = |slot: &&Vec<u32>, right: bool| (axis.nodes[slot[0] as usize].u > 0.0) == right;
+            let [left, right] = &self.axes[d].inner;
             PairNodes {
-                left: axis.slots.iter().rfind(|slot| side(slot, false)).map(|slot| of_slot(d, slot)),
-                right: axis.slots.iter().find(|slot| side(slot, true)).map(|slot| of_slot(d, slot)),
+                left: left.as_ref().map(|slot| of_slot(d, slot)),
+                right: right.as_ref().map(|slot| of_slot(d, slot)),
             }
         };
         self.varying.iter().map(nodes).collect()

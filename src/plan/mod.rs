@@ -5,6 +5,7 @@
 //! asks for what can replace it.
 
 mod axis;
+mod checks;
 mod difference;
 mod known;
 mod nodes;
@@ -13,6 +14,7 @@ mod point;
 mod stage;
 
 pub use axis::{Axis, Node};
+pub use checks::scattered;
 pub use difference::{DifferencePlan, Layout, Mixed};
 pub use known::Known;
 pub use nodes::{Moved, Nodes, Spread, Tail};

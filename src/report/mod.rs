@@ -6,6 +6,7 @@ mod compare_svg;
 mod compare_text;
 mod csv;
 mod distribution;
+mod estimate;
 mod extremes;
 mod limits;
 pub(crate) mod number;
@@ -25,6 +26,7 @@ pub use compare_svg::compare_svg;
 pub use compare_text::compare_text;
 pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
+pub use estimate::{ErrorEstimateReport, ModelSamplingReport};
 pub use limits::law_text;
 pub use page::{Detail, Style};
 pub use sampling::SamplingReport;
@@ -63,6 +65,8 @@ pub struct Report {
     pub method: &'static str,
     /// Dimensions that vary and matter, N.
     pub varying: usize,
+    /// What `auto` found and bought, in words; null for any other method.
+    pub account: Option<String>,
     /// Where the derivatives that the moments rest on come from: `exact` or `difference`.
     pub derivatives: &'static str,
     /// Every point sent to the model.
@@ -147,8 +151,10 @@ pub struct CharacteristicReport {
     pub kurtosis: Option<f64>,
     /// What sampling left uncertain of these; null where they are exact for the surrogate.
     pub surrogate_sampling: Option<SurrogateSamplingReport>,
-    /// How far the results may be off; not estimated yet.
-    pub error_estimate: Option<()>,
+    /// How far the results may be off, by what the method did not see; null without moments.
+    pub error_estimate: Option<ErrorEstimateReport>,
+    /// Points of the model that the moments rest on, where `auto` did not trust its surrogate.
+    pub model_sampling: Option<ModelSamplingReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
     /// Intervals that no assembly leaves.
@@ -331,6 +337,7 @@ impl Report {
             command: "analyze",
             method: analysis.method.name(),
             varying: analysis.varying,
+            account: analysis.account.clone(),
             derivatives: analysis.derivatives.name(),
             evaluations: analysis.evaluations,
             reused: analysis.reused,
@@ -394,7 +401,8 @@ impl CharacteristicReport {
                 skewness: sampled.skewness,
                 kurtosis: sampled.kurtosis,
             }),
-            error_estimate: None,
+            error_estimate: analysis.error_estimate.as_ref().map(ErrorEstimateReport::of),
+            model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
             worst_case: WorstCaseReport::of(analysis),
             middle: analysis.middle,

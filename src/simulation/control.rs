@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use super::{ROWS, SimulationError, SimulationOptions};
 use crate::assembly::{Points, Run};
 use crate::characteristic::SpecLimits;
+use crate::evaluation::Evaluated;
 use crate::method::{Method, Options, Outcome};
 use crate::moments::Sampled;
 use crate::problem::Problem;
@@ -80,6 +81,20 @@ impl<'p> Control<'p> {
         }
         let twins = (0..problem.characteristics().len()).map(|c| control.twin(c));
         control.twins = twins.collect::<Result<_, _>>()?;
+        control.count_outside(options)?;
+        Ok(control)
+    }
+
+    /// Of an analysis that has been made, whose points are not counted again.
+    pub(super) fn beside_of(
+        problem: &'p Problem,
+        outcome: &Outcome,
+        options: &SimulationOptions,
+    ) -> Result<Self, SimulationError> {
+        let mut outcome = outcome.clone();
+        outcome.evaluated = Evaluated::nothing(problem);
+        let mut control = Self { problem, twins: Vec::new(), outcome };
+        control.twins = (0..problem.characteristics().len()).map(|c| control.twin(c).ok().flatten()).collect();
         control.count_outside(options)?;
         Ok(control)
     }

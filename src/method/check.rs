@@ -1,0 +1,109 @@
+//! Model against surrogate at points that no fit has seen.
+
+use crate::moments::Moments;
+use crate::plan::{DifferencePlan, Known, Point};
+use crate::surrogate::Surrogate;
+
+/// How model and surrogate differ at points of the dimensions' own distribution.
+///
+/// With `d` the model minus the surrogate and `z` the standardised surrogate, moments of the model are those of the surrogate plus,
+/// to first order in `d`,
+///
+/// ```text
+/// mean      E d
+/// sigma     E [z d]
+/// skewness  E [(3 z^2 - 3 - 3 g z) d] / sigma            g: skewness
+/// kurtosis  E [(4 z^3 - 4 g - 4 k z) d] / sigma          k: kurtosis
+/// ```
+///
+/// What is left out and has no part in these, as an interaction that was not examined, adds its own variance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    /// Points with a value.
+    pub points: usize,
+    /// Points without one.
+    pub failed: usize,
+    /// Mean of the differences.
+    pub mean: f64,
+    /// Their variance.
+    pub variance: f64,
+    /// Mean square of what two mirrored points have in common, about the mean: interactions, even powers.
+    pub even: f64,
+    /// Mean square of what they differ by: odd powers.
+    pub odd: f64,
+    /// The largest difference in size, with its point among those checked.
+    pub largest: f64,
+    /// First-order effects on mean, sigma, skewness and kurtosis, each with its standard error.
+    pub effects: [(f64, f64); 4],
+}
+
+impl Check {
+    /// At these pairs of mirrored points; None where none has a value, or the surrogate has none.
+    pub(super) fn of(
+        plan: &DifferencePlan,
+        known: &Known,
+        characteristic: usize,
+        pairs: &[[Point; 2]],
+        (surrogate, moments): (&Surrogate, &Moments),
+    ) -> Option<Self> {
+        let points: Vec<&Point> = pairs.iter().flatten().collect();
+        let places: Vec<Vec<f64>> = points.iter().map(|point| plan.standardised(point)).collect();
+        let column = |position: usize| places.iter().map(|place| place[position]).collect::<Vec<f64>>();
+        let inputs: Vec<Vec<f64>> = (0..plan.varying().len()).map(column).collect();
+        let rises = surrogate.rises(&inputs)?;
+        let sigma = moments.sigma();
+        let [skewness, kurtosis] = [moments.skewness(), moments.kurtosis()].map(|moment| moment.unwrap_or(0.0));
+        let off = moments.mean() - surrogate.centre;
+        let mut differences: Vec<Option<f64>> = Vec::with_capacity(points.len());
+        let mut rows: Vec<[f64; 4]> = Vec::with_capacity(points.len());
+        for (point, rise) in points.iter().zip(&rises) {
+            let difference = known.value(point, characteristic).map(|value| (value - surrogate.centre) - rise);
+            differences.push(difference);
+            let Some(d) = difference else { continue };
+            let z = if sigma > 0.0 { (rise - off) / sigma } else { 0.0 };
+            let per_sigma = if sigma > 0.0 { d / sigma } else { 0.0 };
+            rows.push([
+                d,
+                z * d,
+                (3.0 * z * z - 3.0 - 3.0 * skewness * z) * per_sigma,
+                (4.0 * z.powi(3) - 4.0 * skewness - 4.0 * kurtosis * z) * per_sigma,
+            ]);
+        }
+        if rows.is_empty() {
+            return None;
+        }
+        let n = rows.len() as f64;
+        let effects = [0, 1, 2, 3].map(|i| {
+            let mean = rows.iter().map(|row| row[i]).sum::<f64>() / n;
+            let square = rows.iter().map(|row| (row[i] - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+            (mean, (square / n).sqrt())
+        });
+        let mean = effects[0].0;
+        let both: Vec<[f64; 2]> = differences.chunks(2).filter_map(|pair| Some([pair[0]?, pair[1]?])).collect();
+        let share = |part: &dyn Fn(&[f64; 2]) -> f64| {
+            both.iter().map(|pair| part(pair).powi(2)).sum::<f64>() / both.len().max(1) as f64
+        };
+        Some(Self {
+            points: rows.len(),
+            failed: points.len() - rows.len(),
+            mean,
+            variance: rows.iter().map(|row| (row[0] - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0),
+            even: share(&|[a, b]| 0.5 * (a + b) - mean),
+            odd: share(&|[a, b]| 0.5 * (a - b)),
+            largest: rows.iter().map(|row| row[0].abs()).fold(0.0, f64::max),
+            effects,
+        })
+    }
+
+    /// An effect as far as it can be told from none, and what cannot be told: two thirds of its standard error.
+    pub(super) fn effect(&self, moment: usize) -> f64 {
+        let (value, error) = self.effects[moment];
+        (value.abs() - error).max(0.0) + 2.0 / 3.0 * error
+    }
+
+    /// The same, without what cannot be told: for an effect that what is left out has not, unless shown otherwise.
+    pub(super) fn shown(&self, moment: usize) -> f64 {
+        let (value, error) = self.effects[moment];
+        (value.abs() - 2.0 * error).max(0.0)
+    }
+}
