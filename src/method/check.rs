@@ -2,7 +2,10 @@
 
 use crate::moments::Moments;
 use crate::plan::{DifferencePlan, Known, Point};
-use crate::surrogate::Surrogate;
+use crate::surrogate::{InputShape, Surrogate, Univariate};
+
+/// A difference three sigma out that does not matter: higher powers have that, and the other points see them.
+const FAR: f64 = 0.1;
 
 /// How model and surrogate differ at points of the dimensions' own distribution.
 ///
@@ -31,8 +34,10 @@ pub struct Check {
     pub even: f64,
     /// Mean square of what they differ by: odd powers.
     pub odd: f64,
-    /// The largest difference in size, with its point among those checked.
+    /// The largest difference in size.
     pub largest: f64,
+    /// The share of the surrogate's own variance that is curved.
+    pub curved: f64,
     /// First-order effects on mean, sigma, skewness and kurtosis, each with its standard error.
     pub effects: [(f64, f64); 4],
 }
@@ -72,6 +77,9 @@ impl Check {
         if rows.is_empty() {
             return None;
         }
+        let curved =
+            |(part, shape): (&Option<Univariate>, &InputShape)| part.map(|part| part.term(shape).part(1.0).curved);
+        let curved: f64 = surrogate.parts.iter().zip(plan.inputs().shapes()).filter_map(curved).sum();
         let n = rows.len() as f64;
         let effects = [0, 1, 2, 3].map(|i| {
             let mean = rows.iter().map(|row| row[i]).sum::<f64>() / n;
@@ -91,6 +99,7 @@ impl Check {
             even: share(&|[a, b]| 0.5 * (a + b) - mean),
             odd: share(&|[a, b]| 0.5 * (a - b)),
             largest: rows.iter().map(|row| row[0].abs()).fold(0.0, f64::max),
+            curved: if sigma > 0.0 { (curved / (sigma * sigma)).min(1.0) } else { 0.0 },
             effects,
         })
     }
@@ -99,6 +108,19 @@ impl Check {
     pub(super) fn effect(&self, moment: usize) -> f64 {
         let (value, error) = self.effects[moment];
         (value.abs() - error).max(0.0) + 2.0 / 3.0 * error
+    }
+
+    /// The relative error of sigma by what happens three sigma out only, where the surrogate is off by so many: a bend that begins
+    /// two sigma out and comes to 1 sigma at three takes 6 % of the variance along a line, and more across it.
+    pub(super) fn far_out(off: f64) -> f64 {
+        if off > FAR { 0.08 * off.min(1.0) } else { 0.0 }
+    }
+
+    /// The relative error of sigma by slopes and curvatures that were not seen: what is odd may go along with the surrogate's lines,
+    /// what is even with its curves, and so many points do not tell.
+    pub(super) fn unseen(&self, variance: f64) -> f64 {
+        let along = self.odd * (1.0 - self.curved) + self.even * self.curved;
+        if variance > 0.0 { (along / variance / self.points as f64).sqrt() } else { 0.0 }
     }
 
     /// The same, without what cannot be told: for an effect that what is left out has not, unless shown otherwise.

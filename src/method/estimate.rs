@@ -208,11 +208,13 @@ impl Estimate<'_> {
             &mut self.errors,
             [
                 mean.min(root * sigma) + check.effect(0),
-                spread.min(1.5 * root * sigma) + left * sigma + check.shown(1),
+                spread.min(1.5 * root * sigma) + (left + check.unseen(moments.variance())) * sigma + check.shown(1),
                 skewness.min(3.0 * root) + check.effect(2) + 1.5 * left,
                 kurtosis.min(6.0 * root) + check.effect(3) + 6.0 * left,
             ],
         );
+        let far = climbed.tails[self.c].map_or(0.0, Check::far_out);
+        add(&mut self.errors, [far * sigma, far * sigma, 6.0 * far, 20.0 * far]);
         self.sources.push(Source::Checked { points: check.points });
         self.powers();
         let scatter = climbed.noise[self.c].unwrap_or(0.0);

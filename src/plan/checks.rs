@@ -12,6 +12,12 @@ use crate::distribution::{Probability, standard_normal};
 /// The points are the same for every study of as many dimensions, and no seed of anybody's.
 const KEY: u64 = 0x5e_75_17_01;
 
+/// Orders of a dimension's levels of which the best is taken, beside so many dimensions before it.
+const CANDIDATES: usize = 24;
+const NEIGHBOURS: usize = 32;
+/// Where in the outermost interval, counted from the end, a normal variable has the square that it has there on average.
+const OUTERMOST: f64 = 0.36;
+
 /// Pairs of points of the joint distribution, the second of each at the mirrored probabilities of the first.
 ///
 /// A Latin hypercube: along every dimension the `2 pairs` points fall into `2 pairs` different intervals of equal
@@ -20,18 +26,7 @@ const KEY: u64 = 0x5e_75_17_01;
 /// Dimensions known by moments alone stand at the nodes of their rule. `set` tells one such set from another.
 pub fn scattered(plan: &mut DifferencePlan, dimensions: &[Dimension], set: u64, pairs: usize) -> Vec<[Point; 2]> {
     let varying = plan.varying().to_vec();
-    let mut levels: Vec<Vec<f64>> = Vec::with_capacity(varying.len());
-    for position in 0..varying.len() {
-        // A dimension's levels do not depend on how many follow it.
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(KEY ^ (set << 48) ^ ((position as u64) << 16));
-        let mut strata: Vec<usize> = (0..pairs).collect();
-        strata.shuffle(&mut rng);
-        let level = |stratum: usize| {
-            let low = (stratum as f64 + rng.random::<f64>().clamp(1e-3, 1.0 - 1e-3)) / (2 * pairs) as f64;
-            if rng.random() { low } else { 1.0 - low }
-        };
-        levels.push(strata.into_iter().map(level).collect());
-    }
+    let levels = spread(varying.len(), set, pairs);
     let correlation = plan.inputs().correlation().cloned();
     let place = |plan: &mut DifferencePlan, pair: usize, mirrored: bool| {
         let level = |position: usize| if mirrored { 1.0 - levels[position][pair] } else { levels[position][pair] };
@@ -40,6 +35,52 @@ pub fn scattered(plan: &mut DifferencePlan, dimensions: &[Dimension], set: u64, 
         plan.point_at(varying.iter().copied().zip(x))
     };
     (0..pairs).map(|pair| [place(plan, pair, false), place(plan, pair, true)]).collect()
+}
+
+/// For every position the levels of the first point of each pair.
+fn spread(positions: usize, set: u64, pairs: usize) -> Vec<Vec<f64>> {
+    let mut levels: Vec<Vec<f64>> = Vec::with_capacity(positions);
+    let mut places: Vec<Vec<f64>> = Vec::with_capacity(positions);
+    for position in 0..positions {
+        // A dimension's levels do not depend on how many follow it.
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(KEY ^ (set << 48) ^ ((position as u64) << 16));
+        let mut best: Option<(f64, Vec<f64>, Vec<f64>)> = None;
+        for _ in 0..CANDIDATES {
+            let mut strata: Vec<usize> = (0..pairs).collect();
+            strata.shuffle(&mut rng);
+            let level = |stratum: usize| {
+                // In the first set at the root mean square of a normal's interval, so that squares have the right mean.
+                let within = match (set, stratum) {
+                    (0, 0) => OUTERMOST,
+                    (0, _) => 0.5,
+                    _ => rng.random::<f64>().clamp(1e-3, 1.0 - 1e-3),
+                };
+                let low = (stratum as f64 + within) / (2 * pairs) as f64;
+                if rng.random() { low } else { 1.0 - low }
+            };
+            let own: Vec<f64> = strata.into_iter().map(level).collect();
+            let place: Vec<f64> = own.iter().map(|&level| standard_normal::quantile(level)).collect();
+            let score = crowding(&place, &places[position.saturating_sub(NEIGHBOURS)..]);
+            if best.as_ref().is_none_or(|(least, ..)| score < *least) {
+                best = Some((score, own, place));
+            }
+        }
+        if let Some((_, own, place)) = best {
+            levels.push(own);
+            places.push(place);
+        }
+    }
+    levels
+}
+
+/// How far the products with other dimensions are from what they are on average: mean 0, mean square 1.
+fn crowding(place: &[f64], others: &[Vec<f64>]) -> f64 {
+    let n = place.len() as f64;
+    let of = |other: &Vec<f64>| {
+        let product = |power: i32| place.iter().zip(other).map(|(a, b)| (a * b).powi(power)).sum::<f64>() / n;
+        product(1).powi(2) + (product(2) - 1.0).powi(2)
+    };
+    others.iter().map(of).sum()
 }
 
 /// The dimensions' values at these levels of their own distribution, those that vary together made to do so.

@@ -103,6 +103,11 @@ impl DifferencePlan {
         }
     }
 
+    /// Evaluates every pair at all four corners from now on.
+    pub fn use_four_corners(&mut self) {
+        self.layout.stencil = Stencil::FourPoint;
+    }
+
     /// The point with these values of dimensions, every other one at its mean.
     pub fn point_at(&mut self, values: impl IntoIterator<Item = (usize, f64)>) -> Point {
         let at = values.into_iter().filter_map(|(d, x)| {
@@ -403,6 +408,24 @@ impl DifferencePlan {
         pairs.iter().map(mixed).collect()
     }
 
+    /// For every pair its corners, where they have values, both up and both down first, then up and down, down and up: the two
+    /// places in sigmas, and the difference of which [`mixed`](Self::mixed) is made.
+    pub fn twists(&self, known: &Known, characteristic: usize, pairs: &[(usize, usize)]) -> Vec<[Option<Corner>; 4]> {
+        let nodes = self.pair_nodes(known);
+        let centre = known.value(&Point::Centre, characteristic);
+        let twist = |&(j, k): &(usize, usize)| {
+            let corners = Stencil::FourPoint.corners();
+            std::array::from_fn(|i| {
+                let (of_j, of_k) = corners[i];
+                let at = known.value(&self.corner(&nodes, j, k, (of_j, of_k))?, characteristic)?;
+                let (u, at_j) = self.axis_value(known, characteristic, j, nodes[j].on(of_j)?)?;
+                let (v, at_k) = self.axis_value(known, characteristic, k, nodes[k].on(of_k)?)?;
+                Some((u, v, at - at_j - at_k + centre?))
+            })
+        };
+        pairs.iter().map(twist).collect()
+    }
+
     /// The node in sigmas and the value there.
     fn axis_value(&self, known: &Known, characteristic: usize, position: usize, node: u32) -> Option<(f64, f64)> {
         let d = self.varying[position];
@@ -410,6 +433,9 @@ impl DifferencePlan {
         Some((self.axes[d].nodes[node as usize].u, value))
     }
 }
+
+/// A corner of a pair: both places in sigmas, and `f(j, k) - f(j) - f(k) + f(centre)`.
+pub type Corner = (f64, f64, f64);
 
 /// A mixed derivative in sigma units.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,7 +15,7 @@ mod stage;
 
 pub use axis::{Axis, Node};
 pub use checks::scattered;
-pub use difference::{DifferencePlan, Layout, Mixed};
+pub use difference::{Corner, DifferencePlan, Layout, Mixed};
 pub use known::Known;
 pub use nodes::{Moved, Nodes, Spread, Tail};
 pub use pairs::{PairChoice, Stencil};

@@ -12,6 +12,13 @@ const CHECKS: usize = 6;
 /// An estimated error above this part of what is wanted is worth a second set, where there are so many dimensions.
 const CONFIRM: f64 = 0.1;
 const CONFIRM_FROM: usize = 5;
+/// Sets that may sharpen an estimate which is no more than so many times what is wanted.
+const SETS: usize = 3;
+const NEAR: f64 = 2.0;
+/// Characteristics that are looked at three sigma out along their steepest line, and how far within the support.
+const LINES: usize = 4;
+const FAR_OUT: f64 = 3.0;
+const WITHIN: f64 = 0.98;
 /// Points next to the means stand this far off, in sigmas of every dimension.
 const NEXT_TO: f64 = 1e-3;
 /// Up to so many dimensions pairs are bought one by one: 2 x 18 probes would cost as much.
@@ -20,7 +27,7 @@ const DIRECT: usize = 12;
 const JUDGING: usize = 12;
 const FITTED: usize = 6;
 /// By how much the probes that are fitted grow.
-const GROWTH: f64 = 1.4;
+const GROWTH: f64 = 1.25;
 /// Evaluations beyond which nothing is worth its price any more: so many times those of every second derivative, and these.
 const OVER_FULL: f64 = 1.3;
 const ON_TOP: usize = 16;
@@ -50,6 +57,9 @@ pub(super) struct Climb<'p> {
     /// Positions with five points, and those that have no five.
     pub(super) refined: Vec<bool>,
     sets: usize,
+    looked_out: bool,
+    /// Pairs are bought with all four corners.
+    squares: bool,
     /// Every interaction is bought one by one.
     pub(super) dense: bool,
     short_of_budget: bool,
@@ -69,6 +79,8 @@ impl<'p> Climb<'p> {
             spent: 0,
             refined,
             sets: 0,
+            looked_out: false,
+            squares: false,
             dense: false,
             short_of_budget: false,
             rest: None,
@@ -113,10 +125,11 @@ impl<'p> Climb<'p> {
         let mut stage = self.plan.next(known).unwrap_or_default();
         let checks = self.bought.checks.iter().flatten().map(|point| (point, Purpose::Check));
         let noise = self.bought.noise.iter().flatten().map(|point| (point, Purpose::Noise));
+        let tails = self.bought.tails.iter().flat_map(|(_, points)| points).map(|point| (point, Purpose::Check));
         let probes = self.bought.judging.iter().chain(&self.bought.fitted).flat_map(|probe| &probe.points);
         let probes = probes.map(|point| (point, Purpose::Probe));
         let mut seen: std::collections::HashSet<Point> = stage.points.iter().map(|(point, _)| point.clone()).collect();
-        for (point, purpose) in checks.chain(noise).chain(probes) {
+        for (point, purpose) in checks.chain(noise).chain(tails).chain(probes) {
             if !known.tried(point) && seen.insert(point.clone()) {
                 stage.points.push((point.clone(), purpose));
             }
@@ -140,6 +153,12 @@ impl<'p> Climb<'p> {
     fn choose(&mut self, known: &Known) -> bool {
         self.short_of_budget = false;
         let views: Vec<View> = self.views(known).into_iter().flatten().collect();
+        if !self.looked_out {
+            self.looked_out = true;
+            if self.look_out(&views) {
+                return true;
+            }
+        }
         let short: Vec<&View> = views.iter().filter(|view| view.error() > self.accuracy).collect();
         if short.is_empty() {
             let doubtful = views.iter().any(|view| view.error() > CONFIRM * self.accuracy);
@@ -150,7 +169,11 @@ impl<'p> Climb<'p> {
             return false;
         }
         let curved = self.refine_hidden(&short);
-        let found = self.examine(&short, known) || curved || self.refine_rest(&short);
+        let near = short.iter().all(|view| view.error() < NEAR * self.accuracy);
+        let found = self.examine(&short, known)
+            || curved
+            || self.refine_rest(&short)
+            || near && self.sets < SETS && self.check();
         if !found {
             self.rest = Some(if self.short_of_budget { Rest::Budget } else { Rest::Exhausted });
         }
@@ -168,6 +191,30 @@ impl<'p> Climb<'p> {
         let points = scattered(&mut self.plan, self.problem.dimensions(), set, pairs);
         self.bought.checks.extend(points);
         true
+    }
+
+    /// Two points far out along the steepest line of every characteristic.
+    fn look_out(&mut self, views: &[View]) -> bool {
+        for view in views.iter().take(LINES) {
+            let slopes: Vec<f64> = (0..self.positions()).map(|j| view.bends.slope(j)).collect();
+            let size = slopes.iter().fold(0.0, |size: f64, slope| size.hypot(*slope));
+            if size == 0.0 || self.afford(1, 2) == 0 {
+                continue;
+            }
+            let points = [1.0, -1.0].map(|side| {
+                let at = self.plan.varying().iter().zip(&slopes).map(|(&d, slope)| {
+                    let dimension = &self.problem.dimensions()[d];
+                    let (mean, sigma) = (dimension.mean(), dimension.sigma());
+                    let [lower, upper] = dimension.distribution().map_or([mean; 2], |law| law.support());
+                    let edge = |edge: f64| mean + WITHIN * (edge - mean);
+                    (d, (mean + side * FAR_OUT * slope / size * sigma).clamp(edge(lower), edge(upper)))
+                });
+                let at: Vec<(usize, f64)> = at.collect();
+                self.plan.point_at(at)
+            });
+            self.bought.tails.push((view.characteristic, points));
+        }
+        !self.bought.tails.is_empty()
     }
 
     /// Two points next to the means.
@@ -198,12 +245,30 @@ impl<'p> Climb<'p> {
         [view.share(check.even), view.share(check.odd)]
     }
 
+    /// Whether odd powers are left that may be slopes unseen: some twelve points see a third of that.
+    fn too_odd(&self, odd: f64) -> bool {
+        odd > 4.0 * self.accuracy * self.accuracy
+    }
+
+    /// The same of even powers, as far as the surrogate is even itself.
+    fn too_even(&self, view: &View) -> bool {
+        let curved = view.check.as_ref().map_or(0.0, |check| check.curved);
+        self.too_odd(self.left(view)[0] * curved)
+    }
+
+    /// Whether odd powers are left that no axis can have, but the corners of pairs.
+    fn twisted(&self, view: &View) -> bool {
+        let strong = |j: usize| view.shares[j][0] > 0.01;
+        let axes = (0..self.positions()).all(|j| self.refined[j] || !strong(j));
+        self.positions() <= DIRECT && axes && self.too_odd(self.left(view)[1])
+    }
+
     /// Five points where three hide too much.
     fn refine_hidden(&mut self, short: &[&View]) -> bool {
         let mut wanted = vec![false; self.positions()];
         for view in short {
             let [_, odd] = self.left(view);
-            if view.truncation() <= self.accuracy / 3.0 && odd <= 0.5 * self.accuracy {
+            if view.truncation() <= self.accuracy / 3.0 && !self.too_odd(odd) {
                 continue;
             }
             let mut order: Vec<(f64, usize)> = (0..self.positions())
@@ -254,8 +319,11 @@ impl<'p> Climb<'p> {
 
     /// Interactions where even powers are left.
     fn examine(&mut self, short: &[&View], known: &Known) -> bool {
-        let lacking: Vec<&View> =
-            short.iter().copied().filter(|view| self.left(view)[0] > 0.5 * self.accuracy).collect();
+        let lacking: Vec<&View> = short
+            .iter()
+            .copied()
+            .filter(|view| self.left(view)[0] > 0.5 * self.accuracy || self.too_even(view) || self.twisted(view))
+            .collect();
         if lacking.is_empty() || self.positions() < 2 {
             return false;
         }
@@ -283,7 +351,18 @@ impl<'p> Climb<'p> {
             }
         }
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-        let count = self.afford(ranked.len().min(most), 2);
+        ranked.truncate(most);
+        let square = |&(_, j, k): &(f64, usize, usize)| {
+            lacking.iter().any(|view| view.bends.square(j, k) && self.plan.joint(view.characteristic, j, k))
+        };
+        if !self.dense && !self.squares && ranked.iter().any(square) {
+            // The pairs that there are get their other corners too.
+            self.squares = self.afford(self.bought.direct.len().max(1), 2) >= self.bought.direct.len();
+            if self.squares {
+                self.plan.use_four_corners();
+            }
+        }
+        let count = self.afford(ranked.len(), if self.squares { 4 } else { 2 });
         let pairs: Vec<(usize, usize)> = ranked.into_iter().take(count).map(|(_, j, k)| (j, k)).collect();
         self.plan.examine(pairs.iter().copied());
         self.bought.direct.extend(pairs);

@@ -12,6 +12,7 @@
 //! What is left in the end adds to the variance as the unexplained part that it is, and is the estimate of the error. All points
 //! are those of a fixed design: the same study gives the same numbers, whatever the seed.
 
+mod atoms;
 mod climb;
 mod screening;
 mod view;
@@ -74,6 +75,9 @@ pub struct Climbed {
     pub checked: Vec<Option<Check>>,
     /// What answers next to the means scatter by.
     pub noise: Vec<Option<f64>>,
+    /// How many sigmas model and surrogate differ by three sigma out along the steepest line, infinite where the model has no
+    /// value there; None where nobody looked.
+    pub tails: Vec<Option<f64>>,
     /// The share of the variance that interactions have which the screening did not find, where it was needed.
     pub unscreened: Vec<Option<f64>>,
 }
@@ -174,6 +178,7 @@ fn outcome(problem: &Problem, options: &Options, climb: Climb<'_>, evaluated: Ev
         checks: 2 * climb.bought.checks.len(),
         all_pairs: climb.bought.direct.len() == plan.possible_pairs(),
         noise: of(|view| view.noise),
+        tails: of(|view| view.tail),
         unscreened: of(|view| view.unscreened),
         checked: views.iter().map(|view| view.as_ref()?.check.clone()).collect(),
     };

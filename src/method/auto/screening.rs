@@ -81,7 +81,7 @@ fn pursued(fitted: &Probed<'_>, judging: &Probed<'_>, slopes: &[f64], most: usiz
             .filter(|(_, j, k)| !chosen.contains(&(*j, *k)))
             .collect();
         // Several at a time where there are many to come.
-        let batch = (rows / 64).max(1).min(most - chosen.len()).min(ranked.len());
+        let batch = (rows / 256).max(1).min(most - chosen.len()).min(ranked.len());
         if batch == 0 {
             break;
         }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::atoms::{Bends, atoms};
 use super::screening::{self, Fit, Probed};
 use crate::distribution::StandardMoments;
 use crate::method::check::Check;
@@ -24,6 +25,8 @@ pub(super) struct Bought {
     pub(super) checks: Vec<[Point; 2]>,
     /// Two points next to the means, opposite to each other.
     pub(super) noise: Option<[Point; 2]>,
+    /// For every characteristic that is looked at so, points far out along its steepest line.
+    pub(super) tails: Vec<(usize, [Point; 2])>,
     /// Pairs with two evaluations of their own.
     pub(super) direct: Vec<(usize, usize)>,
     /// Probes that judge, and probes that are fitted.
@@ -48,33 +51,80 @@ pub(super) struct View {
     pub(super) unscreened: Option<f64>,
     /// What answers scatter by.
     pub(super) noise: Option<f64>,
+    /// The largest difference of model and surrogate along the steepest line, in sigmas; infinite where the model fails.
+    pub(super) tail: Option<f64>,
+    pub(super) bends: Bends,
 }
 
 impl View {
     /// None without a value at the means, or where a part is unknown.
     pub(super) fn of(plan: &DifferencePlan, known: &Known, bought: &Bought, c: usize, accuracy: f64) -> Option<Self> {
         let centre = known.value(&Point::Centre, c)?;
-        let parts: Vec<Option<Univariate>> = plan.varying().iter().map(|&d| plan.part(known, c, d)).collect();
+        let mut parts: Vec<Option<Univariate>> = plan.varying().iter().map(|&d| plan.part(known, c, d)).collect();
         let n = parts.len();
+        let bends = Bends::of(&parts);
         let mut products: BTreeMap<(usize, usize), Mixed> = BTreeMap::new();
-        for (&pair, mixed) in bought.direct.iter().zip(plan.mixed(known, c, &bought.direct)) {
+        let mixed = plan.mixed(known, c, &bought.direct);
+        for (&pair, mixed) in bought.direct.iter().zip(mixed) {
             if let Some(mixed) = mixed {
                 products.insert(pair, mixed);
+            }
+        }
+        let mut base = centre;
+        let left_by = |base: f64, parts: &[Option<Univariate>], products: &BTreeMap<(usize, usize), Mixed>| {
+            let left = left_at(plan, known, c, bought, &surrogate_of(base, parts, products))?;
+            Some(left.into_iter().flatten().map(|left| left * left).sum::<f64>())
+        };
+        if !bought.direct.is_empty() {
+            // What corners say beside products is taken where the points that check agree.
+            let (mut other, mut twisted, mut lower) = (parts.clone(), products.clone(), centre);
+            for (&(j, k), corners) in bought.direct.iter().zip(plan.twists(known, c, &bought.direct)) {
+                let Some(twist) = bends.twist((j, k), &corners) else { continue };
+                if let Some(mixed) = twisted.get_mut(&(j, k)) {
+                    mixed.value = twist.product;
+                }
+                for (position, slope) in [(j, twist.slopes[0]), (k, twist.slopes[1])] {
+                    other[position] = other[position].map(|part| part.with_slope(slope).with_curvature(twist.square));
+                }
+                lower -= twist.square;
+            }
+            let agree = left_by(lower, &other, &twisted).zip(left_by(centre, &parts, &products));
+            if agree.is_some_and(|(twisted, plain)| twisted < plain) {
+                (parts, products, base) = (other, twisted, lower);
             }
         }
         let own = |j: usize| parts[j].map_or(0.0, |part| part.term(&plan.inputs().shapes()[j]).variance(1.0));
         let own: Vec<f64> = (0..n).map(own).collect();
         let alone: f64 = own.iter().sum::<f64>() + products.values().map(|mixed| mixed.value.powi(2)).sum::<f64>();
         let screened = Screened::of(plan, known, bought, c, (centre, &parts, &products));
-        let mut unscreened = None;
+        let (mut unscreened, mut together) = (None, None);
         if let Some(screened) = screened {
             let fit = screened.fit(0.5 * accuracy * alone);
             screened.add(&fit, &mut products);
             unscreened = Some(fit.left / screened.unit);
+            together = Some(fit.together);
         }
-        let pairs = products.iter().map(|(&(j, k), mixed)| (j, k, mixed.value)).filter(|&(.., value)| value != 0.0);
-        let interactions = Interactions::of_pairs(n, pairs.collect::<Vec<_>>());
-        let surrogate = Surrogate { centre, parts, interactions };
+        let surrogate = surrogate_of(base, &parts, &products);
+        let left = left_at(plan, known, c, bought, &surrogate)?;
+        let atoms = atoms(plan, bought, &bends, &left, together);
+        if let Some(together) = atoms.together {
+            let slope = |j: usize| bends.slope(j);
+            for j in 0..n {
+                for k in j + 1..n {
+                    let value = together * slope(j) * slope(k);
+                    if value != 0.0 && plan.joint(c, j, k) {
+                        products.entry((j, k)).or_insert(Mixed { value, complete: true });
+                    }
+                }
+            }
+        }
+        if let Some(slopes) = &atoms.slopes {
+            add_slopes(&mut parts, slopes);
+        }
+        let surrogate = match (atoms.together, &atoms.slopes) {
+            (None, None) => surrogate,
+            _ => surrogate_of(base, &parts, &products),
+        };
         let moments = surrogate.contributions(plan.inputs())?.moments;
         let variance = moments.variance();
         let share = |value: f64| if variance > 0.0 { value / variance } else { 0.0 };
@@ -89,9 +139,22 @@ impl View {
         };
         let (hidden, shares) = (0..n).map(part).unzip();
         let check = Check::of(plan, known, c, &bought.checks, (&surrogate, &moments));
+        let tail = tail(plan, known, c, bought, (&surrogate, moments.sigma()));
         let noise = bought.noise.as_ref().and_then(|points| scatter(plan, known, c, points, &surrogate));
         let unscreened = unscreened.map(share);
-        Some(Self { characteristic: c, surrogate, moments, check, hidden, shares, products, unscreened, noise })
+        Some(Self {
+            characteristic: c,
+            surrogate,
+            moments,
+            check,
+            hidden,
+            shares,
+            products,
+            unscreened,
+            noise,
+            tail,
+            bends,
+        })
     }
 
     pub(super) fn variance(&self) -> f64 {
@@ -122,10 +185,40 @@ impl View {
 
     /// The estimated relative error of sigma.
     pub(super) fn error(&self) -> f64 {
-        let shown =
-            self.check.as_ref().map_or(0.0, |check| check.shown(1) / self.moments.sigma().max(f64::MIN_POSITIVE));
-        self.truncation() + self.left().unwrap_or(0.0) + shown
+        let sigma = self.moments.sigma().max(f64::MIN_POSITIVE);
+        let unseen = |check: &Check| check.unseen(self.variance()) + check.shown(1) / sigma;
+        let tail = self.tail.map_or(0.0, Check::far_out);
+        self.truncation() + self.left().unwrap_or(0.0) + self.check.as_ref().map_or(0.0, unseen) + tail
     }
+}
+
+fn surrogate_of(centre: f64, parts: &[Option<Univariate>], products: &BTreeMap<(usize, usize), Mixed>) -> Surrogate {
+    let pairs = products.iter().map(|(&(j, k), mixed)| (j, k, mixed.value)).filter(|&(.., value)| value != 0.0);
+    let interactions = Interactions::of_pairs(parts.len(), pairs.collect::<Vec<_>>());
+    Surrogate { centre, parts: parts.to_vec(), interactions }
+}
+
+fn add_slopes(parts: &mut [Option<Univariate>], more: &[f64]) {
+    for (part, &more) in parts.iter_mut().zip(more).filter(|(_, more)| **more != 0.0) {
+        *part = part.map(|part| part.with_slope(more));
+    }
+}
+
+/// What the surrogate leaves at the points that check.
+fn left_at(
+    plan: &DifferencePlan,
+    known: &Known,
+    c: usize,
+    bought: &Bought,
+    surrogate: &Surrogate,
+) -> Option<Vec<Option<f64>>> {
+    let points: Vec<&Point> = bought.checks.iter().flatten().collect();
+    let places: Vec<Vec<f64>> = points.iter().map(|point| plan.standardised(point)).collect();
+    let column = |position: usize| places.iter().map(|place| place[position]).collect::<Vec<f64>>();
+    let inputs: Vec<Vec<f64>> = (0..plan.varying().len()).map(column).collect();
+    let rises = surrogate.rises(&inputs)?;
+    let left = |(point, rise): (&&Point, &f64)| Some((known.value(point, c)? - surrogate.centre) - rise);
+    Some(points.iter().zip(&rises).map(left).collect())
 }
 
 /// What answers next to the means scatter by, beyond what the surrogate says of them.
@@ -136,6 +229,25 @@ fn scatter(plan: &DifferencePlan, known: &Known, c: usize, points: &[Point; 2], 
     let rise = |i: usize| Some((known.value(&points[i], c)? - surrogate.centre) - rises[i]);
     // The second difference of three values of one scatter has six times its square.
     Some((rise(0)? + rise(1)?).abs() / 6f64.sqrt())
+}
+
+/// What model and surrogate differ by far out along the steepest line.
+fn tail(
+    plan: &DifferencePlan,
+    known: &Known,
+    c: usize,
+    bought: &Bought,
+    (surrogate, sigma): (&Surrogate, f64),
+) -> Option<f64> {
+    let (_, points) = bought.tails.iter().find(|(of, _)| *of == c)?;
+    let places = [0, 1].map(|i| plan.standardised(&points[i]));
+    let inputs: Vec<[f64; 2]> = (0..plan.varying().len()).map(|j| [places[0][j], places[1][j]]).collect();
+    let rises = surrogate.rises(&inputs)?;
+    let off = |i: usize| match known.value(&points[i], c) {
+        Some(value) => ((value - surrogate.centre) - rises[i]).abs() / sigma,
+        None => f64::INFINITY,
+    };
+    (sigma > 0.0 && points.iter().all(|point| known.tried(point))).then(|| off(0).max(off(1)))
 }
 
 /// The probes as one characteristic has answered them.

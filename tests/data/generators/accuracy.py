@@ -386,7 +386,7 @@ def main():
         lines += [f"{k} = {toml(d)}" for k, d in case["dims"].items()]
         if case["extra"]:
             lines += [case["extra"].strip("\n")]
-        lines += ["", "[characteristics]", f'y = {{ formula = "{case["formula"]}" }}', ""]
+        lines += ["", "[characteristics]", f'kc = {{ formula = "{case["formula"]}" }}', ""]
         with open(os.path.join(OUT, case["name"] + ".toml"), "w") as out:
             out.write("\n".join(lines))
         references[case["name"]] = dict(case["reference"], source=case["source"], dimensions=len(case["dims"]), smooth=case["smooth"],
