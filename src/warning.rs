@@ -40,6 +40,37 @@ pub enum Warning {
         /// Why, of the first.
         error: String,
     },
+    /// Most of a small probability rests on one drawn point.
+    HeavyPoint {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit that it lies beyond.
+        limit: f64,
+        /// The part of the estimate that is this point's.
+        part: f64,
+    },
+    /// No drawn point lies beyond a limit.
+    NothingBeyond {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit.
+        limit: f64,
+        /// Points drawn.
+        points: u64,
+        /// What the probability may be at most.
+        most: f64,
+    },
+    /// What importance sampling found, plain sampling would have found with fewer points.
+    PlainSampling {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit.
+        limit: f64,
+        /// Points that a plain sample would have taken.
+        plain: f64,
+        /// Points that were evaluated.
+        evaluations: u64,
+    },
     /// A derivative could not be had.
     LostDerivative {
         /// The characteristic.
@@ -283,6 +314,9 @@ impl Warning {
             Self::UnusedDimension { .. } => "unused-dimension",
             Self::UnusedName { .. } => "unused-name",
             Self::FailedPoints { .. } | Self::FailedSamples { .. } => "failed-points",
+            Self::HeavyPoint { .. } => "untrusted-surrogate",
+            Self::NothingBeyond { .. } => "under-resolved",
+            Self::PlainSampling { .. } => "plain-sampling",
             Self::LostDerivative { .. } => "lost-derivative",
             Self::DomainEdge { .. } => "domain-edge",
             Self::SupportEdge { .. } => "support-edge",
@@ -313,6 +347,9 @@ impl Warning {
         match self {
             Self::FailedPoints { characteristic, .. }
             | Self::FailedSamples { characteristic, .. }
+            | Self::HeavyPoint { characteristic, .. }
+            | Self::NothingBeyond { characteristic, .. }
+            | Self::PlainSampling { characteristic, .. }
             | Self::LostDerivative { characteristic, .. }
             | Self::DomainEdge { characteristic, .. }
             | Self::LongTail { characteristic, .. }
@@ -359,6 +396,20 @@ impl Warning {
             Self::FailedSamples { characteristic, failed, samples, error } => format!(
                 "`{characteristic}` has no value at {failed} of {samples} points, and everything said of it is about the \
                  others; the first: {error}"
+            ),
+            Self::HeavyPoint { characteristic, limit, part } => format!(
+                "`{characteristic}` beyond {limit}: one point bears {:.0} % of the probability, so that the surrogate does not \
+                 know where rejects are, and there may be more than the interval says; more --samples, or a method that knows \
+                 more (--method full)",
+                100.0 * part
+            ),
+            Self::NothingBeyond { characteristic, limit, points, most } => format!(
+                "`{characteristic}` beyond {limit}: not one of {points} points lies there, neither where the surrogate has the \
+                 limit nor elsewhere; all that is known without the surrogate is a probability below {most:.1e}"
+            ),
+            Self::PlainSampling { characteristic, limit, plain, evaluations } => format!(
+                "`{characteristic}` beyond {limit}: {plain:.0} points of a plain sample would have told as much as these \
+                 {evaluations}; leave out --rare"
             ),
             Self::LostDerivative { characteristic, dimensions, loss } => {
                 let to = dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");

@@ -23,6 +23,7 @@ mod plans;
 mod probe;
 mod process;
 mod published;
+mod rare;
 mod sampled_cli;
 mod sampling;
 mod schema;
