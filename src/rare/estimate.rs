@@ -7,13 +7,13 @@ use crate::sampling::Estimate;
 /// Fewer effective points beyond the limit have an interval of counts, not of sums.
 const MANY: f64 = 30.0;
 /// A greatest weight above so many times the average of those beyond says that there are greater ones.
-const HEAVY: f64 = 4.0;
+const HEAVY: f64 = 3.0;
 /// The 97.5 % quantile of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 /// No hit leaves room for so many, with 97.5 %: `-ln 0.025`.
 const UNSEEN: f64 = 3.688_879_454_113_936;
-/// Points of a weight up to so many times the greatest of those beyond the limit lie next to these, or as many times as that
-/// is greater than their average: where weights differ, those not seen differ more.
+/// Points of a weight up to so many times the greatest of those beyond the limit lie next to these; farther
+/// where weights differ widely: those not seen differ more.
 const NEXT: f64 = 3.0;
 
 /// Points as they were weighed, and whether each lies beyond the limit.
@@ -155,7 +155,7 @@ impl Weighed {
     /// beyond; of the nearest of them where none is near.
     fn next(&self) -> f64 {
         let before = |weight: &&f64| **weight > self.greatest;
-        let times = self.spread().max(NEXT);
+        let times = NEXT * (if self.spread() > HEAVY { self.spread() } else { 1.0 });
         let near = |weight: &&f64| **weight <= times * self.greatest;
         let (sum, count) =
             self.others.iter().filter(before).filter(near).fold((0.0, 0.0), |(sum, n), weight| (sum + weight, n + 1.0));
