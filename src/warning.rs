@@ -40,6 +40,20 @@ pub enum Warning {
         /// Why, of the first.
         error: String,
     },
+    /// Moments could not be had by a method that is no difference plan.
+    LostMoments {
+        /// The characteristic.
+        characteristic: String,
+        /// Why not, in words.
+        because: String,
+    },
+    /// A surface of least squares misses the values that it was fitted to.
+    PoorFit {
+        /// The characteristic.
+        characteristic: String,
+        /// The residual standard error, in sigmas.
+        residual: f64,
+    },
     /// A derivative could not be had.
     LostDerivative {
         /// The characteristic.
@@ -196,6 +210,8 @@ pub enum Warning {
     NoSamplingInterval {
         /// The dimension.
         dimension: String,
+        /// Whether because dimensions are correlated; else because the method has no surrogate.
+        correlated: bool,
     },
     /// Measured values that are rounded too coarsely.
     CoarseResolution {
@@ -283,6 +299,8 @@ impl Warning {
             Self::UnusedDimension { .. } => "unused-dimension",
             Self::UnusedName { .. } => "unused-name",
             Self::FailedPoints { .. } | Self::FailedSamples { .. } => "failed-points",
+            Self::LostMoments { .. } => "lost-moments",
+            Self::PoorFit { .. } => "untrusted-surrogate",
             Self::LostDerivative { .. } => "lost-derivative",
             Self::DomainEdge { .. } => "domain-edge",
             Self::SupportEdge { .. } => "support-edge",
@@ -313,6 +331,8 @@ impl Warning {
         match self {
             Self::FailedPoints { characteristic, .. }
             | Self::FailedSamples { characteristic, .. }
+            | Self::LostMoments { characteristic, .. }
+            | Self::PoorFit { characteristic, .. }
             | Self::LostDerivative { characteristic, .. }
             | Self::DomainEdge { characteristic, .. }
             | Self::LongTail { characteristic, .. }
@@ -337,7 +357,7 @@ impl Warning {
             | Self::MissingValues { dimension, .. }
             | Self::Outliers { dimension, .. }
             | Self::SmallSample { dimension, .. }
-            | Self::NoSamplingInterval { dimension }
+            | Self::NoSamplingInterval { dimension, .. }
             | Self::CoarseResolution { dimension, .. }
             | Self::OutsideBand { dimension, .. }
             | Self::SupportEdge { dimension, .. } => Some(dimension),
@@ -359,6 +379,15 @@ impl Warning {
             Self::FailedSamples { characteristic, failed, samples, error } => format!(
                 "`{characteristic}` has no value at {failed} of {samples} points, and everything said of it is about the \
                  others; the first: {error}"
+            ),
+            Self::LostMoments { characteristic, because } => format!(
+                "mean, sigma and all that follows from them are unknown of `{characteristic}`: {because}; a derivative \
+                 method goes around lost points, --method second-order with the fewest"
+            ),
+            Self::PoorFit { characteristic, residual } => format!(
+                "the fitted surface misses the values of `{characteristic}` by {:.1} % of sigma (residual standard error): it is \
+                 no quadratic; --method six-n follows more bends, bivariate-dimension-reduction all of two dimensions",
+                100.0 * residual
             ),
             Self::LostDerivative { characteristic, dimensions, loss } => {
                 let to = dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
@@ -467,9 +496,13 @@ impl Warning {
                 "`{dimension}` is known by {values} values: its skewness and everything beyond are guesses below {enough}; \
                  mind the sampling interval"
             ),
-            Self::NoSamplingInterval { dimension } => format!(
+            Self::NoSamplingInterval { dimension, correlated: true } => format!(
                 "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed where dimensions are \
                  correlated; leave [[correlation]] out to see it"
+            ),
+            Self::NoSamplingInterval { dimension, correlated: false } => format!(
+                "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed by methods without a \
+                 surrogate; --method six-n shows it"
             ),
             Self::CoarseResolution { dimension, resolution, sigma, distinct } => format!(
                 "the {distinct} different values of `{dimension}` lie {:.2} sigma apart or more: rounding has a part in sigma; \
