@@ -132,6 +132,10 @@ pub struct Residual {
     /// `sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None where there are no more points
     /// than coefficients.
     pub standard_error: Option<f64>,
+    /// What that leaves uncertain of the mean, as a standard error; None where it is unknown or inputs are correlated.
+    pub mean: Option<f64>,
+    /// The same of sigma.
+    pub sigma: Option<f64>,
     /// Points that were fitted.
     pub points: usize,
     /// Coefficients.

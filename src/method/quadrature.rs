@@ -330,7 +330,7 @@ impl<'p> Quadrature<'p> {
         options: &Options,
         evaluated: Evaluated,
         pairs: Vec<(usize, usize)>,
-        mut found: Vec<(Result<Integrated, Lacking>, Vec<Option<Mixed>>)>,
+        found: Vec<(Result<Integrated, Lacking>, Vec<Option<Mixed>>)>,
     ) -> Outcome {
         let Self { variables, design, reference } = self;
         let problem = variables.problem;
@@ -343,7 +343,7 @@ impl<'p> Quadrature<'p> {
             }
         };
         let at_means = reference == Point::Centre;
-        let fitted = found.drain(..).zip(exact).enumerate().map(|(c, ((integrated, mixed), exact))| {
+        let fitted = found.into_iter().zip(exact).enumerate().map(|(c, ((integrated, mixed), exact))| {
             let part = |d: usize| part(&design, &evaluated.known, c, d, at_means);
             Fitted {
                 nominal: evaluated.known.value(design.nominal(), c),

@@ -16,7 +16,8 @@
 //!
 //! The surface is fitted in sigmas, by a QR decomposition with column pivoting. Its moments are exact, as those of the derivative
 //! methods, whatever the distributions, and sampled where correlated inputs are not normal. What it misses of the values is the
-//! residual standard error, from as many degrees of freedom as there are more points than coefficients. A point that is lost is
+//! residual standard error, from as many degrees of freedom as there are more points than coefficients; what follows from it for
+//! mean and sigma takes the misses for random, which those of a smooth function are not: it is a scale, and no bound. A point that is lost is
 //! left out of the fit, and there is none where the rest do not determine it.
 //!
 //! Evaluations: `2^r + 2N + 1`; r is N up to four dimensions, and then 4, 5, 6 for N of 5, 6, 7 and 8, 7 up to 11, 8 up to 17.
@@ -187,14 +188,66 @@ fn fitted(design: &Design, points: &[Point], known: &Known, c: usize, pairs: &[(
             products.iter().zip(of_products).map(|(&(j, k), &value)| (j, k, value)).filter(|pair| pair.2 != 0.0),
         ),
     };
-    let residual = Residual { standard_error: solution.residual, points: values.len(), coefficients };
+    let [mean, sigma] = match design.inputs().correlation() {
+        None => uncertain(design, &solution, &mine),
+        Some(_) => [None; 2],
+    };
+    let residual = Residual { standard_error: solution.residual, mean, sigma, points: values.len(), coefficients };
     Fitted { mixed: mixed.collect(), parts, surrogate: Some(surrogate), residual: Some(residual), ..found }
+}
+
+/// Standard errors of mean and sigma of independent inputs: `s sqrt(g'(X'X)^-1 g)` with the gradient `g` by the coefficients of
+/// `mean = c + sum_j a_j` and `var = sum_j b_j^2 + 2 a_j b_j s_j + a_j^2 (f_j - 1) + sum_{j<k} A_jk^2`, skewness `s_j` and kurtosis
+/// `f_j`.
+fn uncertain(design: &Design, solution: &Solution, mine: &[usize]) -> [Option<f64>; 2] {
+    let coefficients = &solution.coefficients;
+    let products = 1 + 2 * mine.len();
+    let (mut of_mean, mut of_variance) = (vec![0.0; coefficients.len()], vec![0.0; coefficients.len()]);
+    of_mean[0] = 1.0;
+    let mut variance: f64 = coefficients[products..].iter().map(|product| product * product).sum();
+    for (place, &j) in mine.iter().enumerate() {
+        let at = 1 + 2 * place;
+        let (b, a) = (coefficients[at], coefficients[at + 1]);
+        let moments = &design.inputs().shapes()[j].moments;
+        let (skewness, bent) = (moments.skewness, moments.excess + 2.0);
+        of_mean[at + 1] = 1.0;
+        of_variance[at] = 2.0 * (b + a * skewness);
+        of_variance[at + 1] = 2.0 * (b * skewness + a * bent);
+        variance += b * b + 2.0 * a * b * skewness + a * a * bent;
+    }
+    for (gradient, product) in of_variance[products..].iter_mut().zip(&coefficients[products..]) {
+        *gradient = 2.0 * product;
+    }
+    let sigma = variance.sqrt();
+    let of = |gradient: &[f64]| Some(solution.residual? * solution.factor.as_ref()?.spread(gradient));
+    [of(&of_mean), of(&of_variance).filter(|_| sigma > 0.0).map(|error| error / (2.0 * sigma))]
 }
 
 /// Coefficients in the order constant, slope and curvature of every dimension, products.
 struct Solution {
     coefficients: Vec<f64>,
     residual: Option<f64>,
+    /// None where all values are the same.
+    factor: Option<Factor>,
+}
+
+/// `X = Q R` with the columns of `X` divided by their lengths and in this order.
+struct Factor {
+    r: Mat<f64>,
+    order: Vec<usize>,
+    lengths: Vec<f64>,
+}
+
+impl Factor {
+    /// `sqrt(g'(X'X)^-1 g) = |R'^-1 g|`
+    fn spread(&self, gradient: &[f64]) -> f64 {
+        let mut solved: Vec<f64> = Vec::with_capacity(gradient.len());
+        for (i, &k) in self.order.iter().enumerate() {
+            let before: f64 = solved.iter().enumerate().map(|(row, value)| self.r[(row, i)] * value).sum();
+            solved.push((gradient[k] / self.lengths[k] - before) / self.r[(i, i)]);
+        }
+        solved.iter().map(|value| value * value).sum::<f64>().sqrt()
+    }
 }
 
 /// None where the points do not determine the coefficients.
@@ -236,7 +289,7 @@ fn solve(
         let mut constant = vec![0.0; coefficients];
         constant[0] = base;
         let residual = (values.len() > coefficients).then_some(0.0);
-        return Some(Solution { coefficients: constant, residual });
+        return Some(Solution { coefficients: constant, residual, factor: None });
     }
     let right = Mat::from_fn(values.len(), 1, |row, _| (values[row].1 - base) / largest);
     let decomposed = scaled.col_piv_qr();
@@ -250,5 +303,6 @@ fn solve(
     let residual = (freedom > 0).then(|| largest * missed.norm_l2() / (freedom as f64).sqrt());
     let mut coefficients: Vec<f64> = (0..coefficients).map(|k| largest * solved[(k, 0)] / lengths[k]).collect();
     coefficients[0] += base;
-    Some(Solution { coefficients, residual })
+    let factor = Factor { r: decomposed.thin_R().to_owned(), order: decomposed.P().arrays().0.to_vec(), lengths };
+    Some(Solution { coefficients, residual, factor: Some(factor) })
 }

@@ -63,7 +63,8 @@ impl Design {
         };
         let nominal: Vec<(usize, f64)> = dimensions.iter().map(Dimension::nominal).enumerate().collect();
         design.nominal = design.point(&nominal);
-        design.want(design.nominal.clone(), Purpose::Nominal);
+        let purpose = if design.nominal == Point::Centre { Purpose::Centre } else { Purpose::Nominal };
+        design.want(design.nominal.clone(), purpose);
         for d in design.fixed.clone() {
             for slot in design.axes[d].slots.clone() {
                 design.want(Point::of(&[At { dimension: d as u32, node: slot[0] }]), Purpose::Sensitivity);

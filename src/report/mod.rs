@@ -137,6 +137,10 @@ pub struct SurrogateSamplingReport {
 pub struct LeastSquaresReport {
     /// What it misses of the values, in the characteristic's unit; null without degrees of freedom.
     pub residual_standard_error: Option<f64>,
+    /// Standard error of the mean that follows from it; null where it is unknown.
+    pub mean_standard_error: Option<f64>,
+    /// Standard error of sigma that follows from it.
+    pub sigma_standard_error: Option<f64>,
     /// Points that it was fitted to.
     pub points: usize,
     /// Coefficients.
@@ -418,6 +422,8 @@ impl CharacteristicReport {
             }),
             least_squares: analysis.residual.map(|residual| LeastSquaresReport {
                 residual_standard_error: residual.standard_error,
+                mean_standard_error: residual.mean,
+                sigma_standard_error: residual.sigma,
                 points: residual.points,
                 coefficients: residual.coefficients,
             }),

@@ -103,10 +103,14 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
     }
     page.print(&table);
     if let Some(fit) = &one.least_squares {
-        let residual = fit.residual_standard_error.map_or(UNKNOWN.to_owned(), |residual| significant(residual, 2));
+        let error = |error: Option<f64>| error.map_or(UNKNOWN.to_owned(), |error| significant(error, 2));
         page.line(&format!(
-            "  {} coefficients fitted to {} points: residual standard error {residual}",
-            fit.coefficients, fit.points
+            "  {} coefficients fitted to {} points: residual standard error {}, of the mean {}, of sigma {}",
+            fit.coefficients,
+            fit.points,
+            error(fit.residual_standard_error),
+            error(fit.mean_standard_error),
+            error(fit.sigma_standard_error)
         ));
     }
     if let Some(sampled) = &one.surrogate_sampling {

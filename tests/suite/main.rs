@@ -22,6 +22,8 @@ mod plans;
 mod probe;
 mod process;
 mod published;
+mod quadratures;
+mod response_surface;
 mod sampled_cli;
 mod sampling;
 mod schema;

@@ -37,7 +37,13 @@ fn counts_are_exact() {
     }
     insta::assert_snapshot!(
         [1, 2, 3, 10, 30].map(|n| {
-            let counts = sensitol::method::ALL.iter().map(|method| count(n, &method.method().into()).to_string());
+            let counts = sensitol::method::ALL.iter().map(|method| {
+                let problem = Problem::new(standard(n), Closure::scalar("y", |x| x[0])).unwrap();
+                match method.fits(&problem, &method.method().into()) {
+                    Ok(_) => count(n, &method.method().into()).to_string(),
+                    Err(error) => format!("({})", error.needed().unwrap()),
+                }
+            });
             format!("N = {n:2}: {}", counts.collect::<Vec<_>>().join(" "))
         }).join("\n"),
         @r"
