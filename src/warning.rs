@@ -47,6 +47,13 @@ pub enum Warning {
         /// Why not, in words.
         because: String,
     },
+    /// Rules of three nodes do not integrate high powers of what is curved.
+    ShallowRules {
+        /// The characteristic.
+        characteristic: String,
+        /// The share of its variance that curvature adds.
+        share: f64,
+    },
     /// A surface of least squares misses the values that it was fitted to.
     PoorFit {
         /// The characteristic.
@@ -300,6 +307,7 @@ impl Warning {
             Self::UnusedName { .. } => "unused-name",
             Self::FailedPoints { .. } | Self::FailedSamples { .. } => "failed-points",
             Self::LostMoments { .. } => "lost-moments",
+            Self::ShallowRules { .. } => "higher-order",
             Self::PoorFit { .. } => "untrusted-surrogate",
             Self::LostDerivative { .. } => "lost-derivative",
             Self::DomainEdge { .. } => "domain-edge",
@@ -332,6 +340,7 @@ impl Warning {
             Self::FailedPoints { characteristic, .. }
             | Self::FailedSamples { characteristic, .. }
             | Self::LostMoments { characteristic, .. }
+            | Self::ShallowRules { characteristic, .. }
             | Self::PoorFit { characteristic, .. }
             | Self::LostDerivative { characteristic, .. }
             | Self::DomainEdge { characteristic, .. }
@@ -383,6 +392,12 @@ impl Warning {
             Self::LostMoments { characteristic, because } => format!(
                 "mean, sigma and all that follows from them are unknown of `{characteristic}`: {because}; a derivative \
                  method goes around lost points, --method second-order with the fewest"
+            ),
+            Self::ShallowRules { characteristic, share } => format!(
+                "curvature adds {:.1} % of the variance of `{characteristic}`, and rules of three nodes do not integrate its third \
+                 and fourth powers: do not trust skewness, kurtosis and yield; --method dimension-reduction or \
+                 bivariate-dimension-reduction has five nodes",
+                100.0 * share
             ),
             Self::PoorFit { characteristic, residual } => format!(
                 "the fitted surface misses the values of `{characteristic}` by {:.1} % of sigma (residual standard error): it is \

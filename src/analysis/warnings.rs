@@ -17,6 +17,10 @@ const CURVED: f64 = 0.05;
 
 /// A change of the nominal value by more than this part of what a characteristic varies by is another solution of the model.
 const FLIP: f64 = 0.01;
+/// Rules of so many nodes are exact to the fifth degree, and the fourth power of a parabola is of the eighth: curvature that adds
+/// more than this part of the variance shows in the kurtosis.
+const SHALLOW: usize = 3;
+const SHALLOW_CURVED: f64 = 1e-2;
 /// A fitted surface that misses its values by more than this part of sigma is not to be trusted.
 const POOR: f64 = 0.05;
 /// Points in doubt that are named.
@@ -248,6 +252,10 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
         warnings.push(Warning::Noise { characteristic: characteristic.clone(), rounding });
     }
     warnings.extend(law(analysis, &characteristic));
+    let curved: f64 = analysis.sensitivities.iter().filter_map(|row| row.curvature_share).sum();
+    if fitted.integrated.as_ref().is_some_and(|integrated| integrated.nodes == SHALLOW) && curved > SHALLOW_CURVED {
+        warnings.push(Warning::ShallowRules { characteristic: characteristic.clone(), share: curved });
+    }
     let residual = fitted.residual.and_then(|residual| residual.standard_error).map(|residual| residual / sigma);
     if let Some(residual) = residual.filter(|&residual| residual > POOR) {
         warnings.push(Warning::PoorFit { characteristic: characteristic.clone(), residual });

@@ -187,7 +187,7 @@ impl Decomposed {
         };
         let joints: Vec<Option<Joint>> = pairs.iter().map(joint).collect();
         let left_out = own.iter().all(Option::is_some).then_some(0.0);
-        Integrated { moments: found.moments, own, pairs: joints, left_out }
+        Integrated { moments: found.moments, own, pairs: joints, left_out, nodes: quadrature.variables.longest() }
     }
 
     /// The place of a pair of dimensions among those of variables; None where the characteristic does not depend on both.

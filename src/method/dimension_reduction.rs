@@ -122,5 +122,6 @@ fn integrated(
         }
     }
     let alone = (0..n).all(|j| (j + 1..n).all(|k| !quadrature.design.joint(c, j, k)));
-    Ok(Integrated { moments: all.moments, own, pairs: Vec::new(), left_out: alone.then_some(0.0) })
+    let (left_out, nodes) = (alone.then_some(0.0), quadrature.variables.longest());
+    Ok(Integrated { moments: all.moments, own, pairs: Vec::new(), left_out, nodes })
 }

@@ -85,6 +85,8 @@ pub struct Integrated {
     pub pairs: Vec<Option<Joint>>,
     /// The share of the variance that no contribution accounts for.
     pub left_out: Option<f64>,
+    /// Nodes of the longest rule.
+    pub nodes: usize,
 }
 
 /// What one dimension does by itself.

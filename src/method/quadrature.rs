@@ -128,6 +128,11 @@ impl<'p> Variables<'p> {
         }
     }
 
+    /// Nodes of the longest rule.
+    pub(super) fn longest(&self) -> usize {
+        self.all.iter().map(|variable| variable.rule.nodes.len()).max().unwrap_or(0)
+    }
+
     /// Nodes beside the reference.
     pub(super) fn nodes_elsewhere(&self, variable: usize) -> usize {
         self.all[variable].rule.nodes.iter().filter(|&&u| u != 0.0).count()

@@ -15,14 +15,17 @@ use sensitol::{Analysis, Closure, DerivativeSource, Dimension, Method, Moments, 
 use super::support::{Asked, close, data, normals, refusing, relative, standard};
 
 const REDUCTIONS: [Method; 2] = [Method::DimensionReduction, Method::BivariateDimensionReduction];
-const QUADRATURES: [Method; 3] =
-    [Method::DimensionReduction, Method::BivariateDimensionReduction, Method::ThreePoint];
+const QUADRATURES: [Method; 3] = [Method::DimensionReduction, Method::BivariateDimensionReduction, Method::ThreePoint];
 
 fn with_nodes(method: Method, nodes: usize) -> Options {
     Options { nodes: Some(nodes), ..method.into() }
 }
 
-fn analysis(dimensions: Vec<Dimension>, options: &Options, f: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Analysis {
+fn analysis(
+    dimensions: Vec<Dimension>,
+    options: &Options,
+    f: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
+) -> Analysis {
     analyze(&Problem::new(dimensions, Closure::scalar("y", f)).unwrap(), options).unwrap()
 }
 
@@ -144,7 +147,9 @@ fn shares_sum_to_one() {
 /// Functions of whose terms each has two dimensions, in closed form: forms of normals by their eigenvalues.
 #[test]
 fn products_of_two_are_exact() {
-    let bivariate = |n: usize, f: fn(&[f64]) -> f64| moments(&analysis(standard(n), &Method::BivariateDimensionReduction.into(), f));
+    let bivariate = |n: usize, f: fn(&[f64]) -> f64| {
+        moments(&analysis(standard(n), &Method::BivariateDimensionReduction.into(), f))
+    };
     // A triangle: eigenvalues 1, -1/2, -1/2.
     cumulants(bivariate(3, |x| x[0] * x[1] + x[1] * x[2] + x[0] * x[2]), [0.0, 3.0, 6.0, 54.0], 1e-13);
     // Two that do not meet.
@@ -264,7 +269,8 @@ proptest! {
 /// exact for.
 #[test]
 fn three_levels_are_exact_where_they_claim_it() {
-    let found = moments(&analysis(standard(3), &Method::ThreePoint.into(), |x| (1.0 + x[0]) * (2.0 + x[1]) * (3.0 + x[2])));
+    let found =
+        moments(&analysis(standard(3), &Method::ThreePoint.into(), |x| (1.0 + x[0]) * (2.0 + x[1]) * (3.0 + x[2])));
     let raw = |order: i32, about: f64| match order {
         1 => about,
         2 => 1.0 + about * about,
@@ -279,6 +285,22 @@ fn three_levels_are_exact_where_they_claim_it() {
     // At a mean of 1e6 sigmas a raw fourth moment would have no digit left; 1e-9: the function itself has ten.
     let far = analysis(standard(2), &Method::ThreePoint.into(), |x| 1e6 + x[0] * x[1]);
     cumulants(moments(&far), [1e6, 1.0, 0.0, 6.0], 1e-9);
+}
+
+/// Skewness and kurtosis of a parabola take powers beyond a rule of three nodes: it says so, and one of five is exact.
+#[test]
+fn shallow_rules_are_named() {
+    let of = |options: &Options| analysis(standard(2), options, |x| x[0] + 0.2 * x[0] * x[0] + x[1]);
+    let warns = |options: &Options| of(options).warnings.iter().any(|warning| warning.code() == "higher-order");
+    let shallow = [with_nodes(Method::DimensionReduction, 3), Method::ThreePoint.into()];
+    assert!(shallow.iter().all(warns));
+    assert!(!warns(&Method::DimensionReduction.into()));
+    // b^2 (1 + 1) + 2 a^2; 6 a b^2 + 8 a^3.
+    let expected = (6.0 * 0.2 + 8.0 * 0.008) / 2.08f64.powf(1.5);
+    relative(moments(&of(&Method::DimensionReduction.into())).skewness().unwrap(), expected, 1e-12);
+    assert!((moments(&of(&shallow[1])).skewness().unwrap() - expected).abs() > 1e-3, "the warning is needed");
+    let straight = analysis(standard(2), &Method::ThreePoint.into(), |x| x[0] + 3.0 * x[1] + 0.5 * x[0] * x[1]);
+    assert!(straight.warnings.iter().all(|warning| warning.code() != "higher-order"));
 }
 
 /// Along the eigenvectors of correlated normals: a line, and a parabola along one of them.
@@ -385,7 +407,10 @@ fn counts_are_stated() {
             let (m, pairs) = (nodes - 1, n * (n - 1) / 2);
             assert_eq!(count(standard(n), &with_nodes(Method::DimensionReduction, nodes)), m * n + 1);
             assert_eq!(count(skewed(n), &with_nodes(Method::DimensionReduction, nodes)), nodes * n + 1);
-            assert_eq!(count(standard(n), &with_nodes(Method::BivariateDimensionReduction, nodes)), 1 + m * n + m * m * pairs);
+            assert_eq!(
+                count(standard(n), &with_nodes(Method::BivariateDimensionReduction, nodes)),
+                1 + m * n + m * m * pairs
+            );
         }
         assert_eq!(count(standard(n), &Method::ThreePoint.into()), 3usize.pow(n as u32));
         // Without the mean among its levels the nominal is one more.
