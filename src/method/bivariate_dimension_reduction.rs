@@ -36,6 +36,13 @@ struct Plane {
     points: Vec<Point>,
 }
 
+/// The points of all axes and planes.
+struct Planes<'p> {
+    quadrature: Quadrature<'p>,
+    cuts: Vec<Vec<Point>>,
+    planes: Vec<Plane>,
+}
+
 impl Procedure for BivariateDimensionReduction {
     fn method(&self) -> Method {
         Method::BivariateDimensionReduction
@@ -58,11 +65,11 @@ impl Procedure for BivariateDimensionReduction {
     }
 
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {
-        Ok(Arc::new(self.planes(problem, options)?.0.design))
+        Ok(Arc::new(self.planes(problem, options)?.quadrature.design))
     }
 
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
-        let (quadrature, cuts, planes) = self.planes(problem, options)?;
+        let Planes { quadrature, cuts, planes } = self.planes(problem, options)?;
         let evaluated = quadrature.evaluated(self.name(), problem, options, run)?;
         let n = quadrature.design.varying().len();
         let all = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k)));
@@ -85,11 +92,7 @@ impl Procedure for BivariateDimensionReduction {
 }
 
 impl BivariateDimensionReduction {
-    fn planes<'p>(
-        &self,
-        problem: &'p Problem,
-        options: &Options,
-    ) -> Result<(Quadrature<'p>, Vec<Vec<Point>>, Vec<Plane>), MethodError> {
+    fn planes<'p>(&self, problem: &'p Problem, options: &Options) -> Result<Planes<'p>, MethodError> {
         self.check(problem, options)?;
         let mut quadrature = univariate(problem, options);
         let variables = quadrature.variables.all.len();
@@ -115,7 +118,7 @@ impl BivariateDimensionReduction {
                 Plane { v, w, points }
             })
             .collect();
-        Ok((quadrature, cuts, planes))
+        Ok(Planes { quadrature, cuts, planes })
     }
 }
 

@@ -256,6 +256,9 @@ pub(super) fn affordable(
     }
 }
 
+/// What is known of one characteristic: its moments, or why there are none, and the mixed derivatives of the pairs examined.
+pub(super) type Found = (Result<Integrated, Lacking>, Vec<Option<Mixed>>);
+
 /// A design over the variables of a problem.
 #[derive(Debug, Clone)]
 pub(super) struct Quadrature<'p> {
@@ -335,7 +338,7 @@ impl<'p> Quadrature<'p> {
         options: &Options,
         evaluated: Evaluated,
         pairs: Vec<(usize, usize)>,
-        found: Vec<(Result<Integrated, Lacking>, Vec<Option<Mixed>>)>,
+        found: Vec<Found>,
     ) -> Outcome {
         let Self { variables, design, reference } = self;
         let problem = variables.problem;
