@@ -71,6 +71,27 @@ pub enum Warning {
         /// Points that were evaluated.
         evaluations: u64,
     },
+    /// Moments could not be had by a method that is no difference plan.
+    LostMoments {
+        /// The characteristic.
+        characteristic: String,
+        /// Why not, in words.
+        because: String,
+    },
+    /// Rules of three nodes do not integrate high powers of what is curved.
+    ShallowRules {
+        /// The characteristic.
+        characteristic: String,
+        /// The share of its variance that curvature adds.
+        share: f64,
+    },
+    /// A surface of least squares misses the values that it was fitted to.
+    PoorFit {
+        /// The characteristic.
+        characteristic: String,
+        /// The residual standard error, in sigmas.
+        residual: f64,
+    },
     /// A derivative could not be had.
     LostDerivative {
         /// The characteristic.
@@ -227,6 +248,8 @@ pub enum Warning {
     NoSamplingInterval {
         /// The dimension.
         dimension: String,
+        /// Whether because dimensions are correlated; else because the method has no surrogate.
+        correlated: bool,
     },
     /// Measured values that are rounded too coarsely.
     CoarseResolution {
@@ -317,6 +340,9 @@ impl Warning {
             Self::HeavyPoint { .. } => "untrusted-surrogate",
             Self::NothingBeyond { .. } => "under-resolved",
             Self::PlainSampling { .. } => "plain-sampling",
+            Self::LostMoments { .. } => "lost-moments",
+            Self::ShallowRules { .. } => "higher-order",
+            Self::PoorFit { .. } => "untrusted-surrogate",
             Self::LostDerivative { .. } => "lost-derivative",
             Self::DomainEdge { .. } => "domain-edge",
             Self::SupportEdge { .. } => "support-edge",
@@ -350,6 +376,9 @@ impl Warning {
             | Self::HeavyPoint { characteristic, .. }
             | Self::NothingBeyond { characteristic, .. }
             | Self::PlainSampling { characteristic, .. }
+            | Self::LostMoments { characteristic, .. }
+            | Self::ShallowRules { characteristic, .. }
+            | Self::PoorFit { characteristic, .. }
             | Self::LostDerivative { characteristic, .. }
             | Self::DomainEdge { characteristic, .. }
             | Self::LongTail { characteristic, .. }
@@ -374,7 +403,7 @@ impl Warning {
             | Self::MissingValues { dimension, .. }
             | Self::Outliers { dimension, .. }
             | Self::SmallSample { dimension, .. }
-            | Self::NoSamplingInterval { dimension }
+            | Self::NoSamplingInterval { dimension, .. }
             | Self::CoarseResolution { dimension, .. }
             | Self::OutsideBand { dimension, .. }
             | Self::SupportEdge { dimension, .. } => Some(dimension),
@@ -410,6 +439,21 @@ impl Warning {
             Self::PlainSampling { characteristic, limit, plain, evaluations } => format!(
                 "`{characteristic}` beyond {limit}: {plain:.0} points of a plain sample would have told as much as these \
                  {evaluations}; leave out --rare"
+            ),
+            Self::LostMoments { characteristic, because } => format!(
+                "mean, sigma and all that follows from them are unknown of `{characteristic}`: {because}; a derivative \
+                 method goes around lost points, --method second-order with the fewest"
+            ),
+            Self::ShallowRules { characteristic, share } => format!(
+                "curvature adds {:.1} % of the variance of `{characteristic}`, and rules of three nodes do not integrate its third \
+                 and fourth powers: do not trust skewness, kurtosis and yield; --method dimension-reduction or \
+                 bivariate-dimension-reduction has five nodes",
+                100.0 * share
+            ),
+            Self::PoorFit { characteristic, residual } => format!(
+                "the fitted surface misses the values of `{characteristic}` by {:.1} % of sigma (residual standard error): it is \
+                 no quadratic; --method six-n follows more bends, bivariate-dimension-reduction all of two dimensions",
+                100.0 * residual
             ),
             Self::LostDerivative { characteristic, dimensions, loss } => {
                 let to = dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
@@ -518,9 +562,13 @@ impl Warning {
                 "`{dimension}` is known by {values} values: its skewness and everything beyond are guesses below {enough}; \
                  mind the sampling interval"
             ),
-            Self::NoSamplingInterval { dimension } => format!(
+            Self::NoSamplingInterval { dimension, correlated: true } => format!(
                 "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed where dimensions are \
                  correlated; leave [[correlation]] out to see it"
+            ),
+            Self::NoSamplingInterval { dimension, correlated: false } => format!(
+                "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed by methods without a \
+                 surrogate; --method six-n shows it"
             ),
             Self::CoarseResolution { dimension, resolution, sigma, distinct } => format!(
                 "the {distinct} different values of `{dimension}` lie {:.2} sigma apart or more: rounding has a part in sigma; \

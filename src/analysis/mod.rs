@@ -4,6 +4,7 @@ mod bootstrap;
 mod characteristic;
 mod interval;
 mod linear;
+mod shares;
 mod warnings;
 
 pub use bootstrap::SamplingInterval;
@@ -13,7 +14,7 @@ use std::time::Duration;
 
 use crate::assembly::Run;
 use crate::extremes::{Found, search};
-use crate::method::{DerivativeSource, Method, MethodError, Options};
+use crate::method::{Basis, Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -40,8 +41,8 @@ pub struct Analysis {
     pub seed: Option<u64>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<CharacteristicAnalysis>,
-    /// Where the derivatives that the moments rest on come from.
-    pub derivatives: DerivativeSource,
+    /// What the moments rest on.
+    pub basis: Basis,
     /// Where an assumption fails.
     pub warnings: Vec<Warning>,
 }
@@ -95,7 +96,7 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         in_model: outcome.evaluated.in_model + found.spent.in_model,
         seed: drawn.then_some(seed),
         characteristics,
-        derivatives: if outcome.exact { DerivativeSource::Exact } else { DerivativeSource::Difference },
+        basis: outcome.basis,
         warnings,
     })
 }

@@ -95,6 +95,10 @@ pub(super) struct StudyArgs {
     #[arg(long, value_name = "STENCIL")]
     pub(super) stencil: Option<StencilArg>,
 
+    /// Nodes of the quadrature rules of dimension-reduction, univariate or bivariate: 3, 5 or 7 [default: 5]
+    #[arg(long, value_name = "M")]
+    pub(super) nodes: Option<usize>,
+
     /// Sensitivities of varying dimensions, or of all: two evaluations each for those without tolerance
     #[arg(long, value_name = "WHICH")]
     pub(super) sensitivities: Option<SensitivitiesArg>,

@@ -25,11 +25,30 @@ pub enum Purpose {
     Sensitivity,
     /// A shorter step in place of one at which the model failed.
     Repair,
+    /// One input at a node of its quadrature rule, along its own axis or along an eigenvector.
+    Cut,
+    /// Two inputs at nodes of their quadrature rules.
+    Plane,
+    /// All inputs at nodes of their quadrature rules.
+    Grid,
+    /// All dimensions off their means: a corner of a factorial design.
+    Corner,
 }
 
 impl Purpose {
     /// All of them, in the order in which they are listed.
-    pub const ALL: [Self; 6] = [Self::Centre, Self::Nominal, Self::Axis, Self::Pair, Self::Sensitivity, Self::Repair];
+    pub const ALL: [Self; 10] = [
+        Self::Centre,
+        Self::Nominal,
+        Self::Axis,
+        Self::Pair,
+        Self::Sensitivity,
+        Self::Repair,
+        Self::Cut,
+        Self::Plane,
+        Self::Grid,
+        Self::Corner,
+    ];
 
     /// In words.
     pub fn words(self) -> &'static str {
@@ -40,6 +59,10 @@ impl Purpose {
             Self::Pair => "two dimensions at nodes: mixed derivatives",
             Self::Sensitivity => "a dimension without tolerance, moved a little: its sensitivity",
             Self::Repair => "a shorter step where the model failed",
+            Self::Cut => "one input at a node of its quadrature rule",
+            Self::Plane => "two inputs at nodes of their quadrature rules",
+            Self::Grid => "all inputs at nodes of their quadrature rules",
+            Self::Corner => "all dimensions off their means: a corner of the factorial design",
         }
     }
 }

@@ -46,6 +46,7 @@ use crate::analysis::{Analysis, CharacteristicAnalysis};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
 use crate::extremes::{Extreme, Extremes};
+use crate::method::{Basis, DerivativeSource};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -69,8 +70,11 @@ pub struct Report {
     pub method: &'static str,
     /// Dimensions that vary and matter, N.
     pub varying: usize,
-    /// Where the derivatives that the moments rest on come from: `exact` or `difference`.
-    pub derivatives: &'static str,
+    /// Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on none.
+    pub derivatives: Option<&'static str>,
+    /// What the moments rest on, to be printed.
+    #[serde(skip)]
+    pub basis: Basis,
     /// Every point sent to the model.
     pub evaluations: usize,
     /// Answers taken from an earlier run.
@@ -134,6 +138,21 @@ pub struct SurrogateSamplingReport {
     pub kurtosis: f64,
 }
 
+/// How well a surface of least squares fits.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LeastSquaresReport {
+    /// What it misses of the values, in the characteristic's unit; null without degrees of freedom.
+    pub residual_standard_error: Option<f64>,
+    /// Standard error of the mean that follows from it; null where it is unknown.
+    pub mean_standard_error: Option<f64>,
+    /// Standard error of sigma that follows from it.
+    pub sigma_standard_error: Option<f64>,
+    /// Points that it was fitted to.
+    pub points: usize,
+    /// Coefficients.
+    pub coefficients: usize,
+}
+
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CharacteristicReport {
@@ -153,6 +172,8 @@ pub struct CharacteristicReport {
     pub kurtosis: Option<f64>,
     /// What sampling left uncertain of these; null where they are exact for the surrogate.
     pub surrogate_sampling: Option<SurrogateSamplingReport>,
+    /// How well a surface of least squares fits; null where none was fitted.
+    pub least_squares: Option<LeastSquaresReport>,
     /// How far the results may be off; not estimated yet.
     pub error_estimate: Option<()>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
@@ -337,7 +358,12 @@ impl Report {
             command: "analyze",
             method: analysis.method.name(),
             varying: analysis.varying,
-            derivatives: analysis.derivatives.name(),
+            derivatives: match analysis.basis {
+                Basis::Exact => Some(DerivativeSource::Exact.name()),
+                Basis::Differences => Some(DerivativeSource::Difference.name()),
+                Basis::LeastSquares | Basis::Quadrature => None,
+            },
+            basis: analysis.basis,
             evaluations: analysis.evaluations,
             reused: analysis.reused,
             failed: analysis.failed,
@@ -399,6 +425,13 @@ impl CharacteristicReport {
                 sigma: sampled.sigma,
                 skewness: sampled.skewness,
                 kurtosis: sampled.kurtosis,
+            }),
+            least_squares: analysis.residual.map(|residual| LeastSquaresReport {
+                residual_standard_error: residual.standard_error,
+                mean_standard_error: residual.mean,
+                sigma_standard_error: residual.sigma,
+                points: residual.points,
+                coefficients: residual.coefficients,
             }),
             error_estimate: None,
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),

@@ -38,6 +38,13 @@ impl Surrogates {
     /// Analyses the problem.
     pub(crate) fn of(problem: &Problem, asked: &Options, run: &Run<'_>) -> Result<Self, SimulationError> {
         let asked = chosen(problem, asked);
+        if let Some(first) = problem.characteristics().first().filter(|_| !asked.method.has_surrogate()) {
+            return Err(SimulationError::NoSurrogate {
+                characteristic: first.name().to_owned(),
+                method: asked.method.name(),
+                reason: "the method integrates without one, --method full and the like have one".to_owned(),
+            });
+        }
         let outcome = asked.method.procedure().run(problem, &asked, run)?;
         let mut surrogates = Self { known: Vec::new(), outcome };
         if !surrogates.outcome.evaluated.stopped {

@@ -316,6 +316,7 @@ fn the_command_reports_it() {
         &["simulate", blocks, "--rare", "--samples", "20"],
         &["simulate", "examples/engine-balance/study.toml", "--rare"],
         &["simulate", blocks, "--method", "full"],
+        &["simulate", blocks, "--rare", "--method", "three-point"],
     ] {
         all += &format!("$ {}\n{}", wrong.join(" "), run(wrong));
     }
