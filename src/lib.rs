@@ -24,6 +24,7 @@ pub mod pearson;
 pub mod plan;
 pub mod probe;
 pub mod problem;
+pub mod rare;
 pub mod report;
 pub mod sampling;
 pub mod simulation;

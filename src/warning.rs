@@ -40,6 +40,58 @@ pub enum Warning {
         /// Why, of the first.
         error: String,
     },
+    /// Most of a small probability rests on one drawn point.
+    HeavyPoint {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit that it lies beyond.
+        limit: f64,
+        /// The part of the estimate that is this point's.
+        part: f64,
+    },
+    /// No drawn point lies beyond a limit.
+    NothingBeyond {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit.
+        limit: f64,
+        /// Points drawn.
+        points: u64,
+        /// What the probability may be at most.
+        most: f64,
+    },
+    /// What importance sampling found, plain sampling would have found with fewer points.
+    PlainSampling {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit.
+        limit: f64,
+        /// Points that a plain sample would have taken.
+        plain: f64,
+        /// Points that were evaluated.
+        evaluations: u64,
+    },
+    /// Moments could not be had by a method that is no difference plan.
+    LostMoments {
+        /// The characteristic.
+        characteristic: String,
+        /// Why not, in words.
+        because: String,
+    },
+    /// Rules of three nodes do not integrate high powers of what is curved.
+    ShallowRules {
+        /// The characteristic.
+        characteristic: String,
+        /// The share of its variance that curvature adds.
+        share: f64,
+    },
+    /// A surface of least squares misses the values that it was fitted to.
+    PoorFit {
+        /// The characteristic.
+        characteristic: String,
+        /// The residual standard error, in sigmas.
+        residual: f64,
+    },
     /// A derivative could not be had.
     LostDerivative {
         /// The characteristic.
@@ -196,6 +248,8 @@ pub enum Warning {
     NoSamplingInterval {
         /// The dimension.
         dimension: String,
+        /// Whether because dimensions are correlated; else because the method has no surrogate.
+        correlated: bool,
     },
     /// Measured values that are rounded too coarsely.
     CoarseResolution {
@@ -370,6 +424,12 @@ impl Warning {
             Self::UnusedDimension { .. } => "unused-dimension",
             Self::UnusedName { .. } => "unused-name",
             Self::FailedPoints { .. } | Self::FailedSamples { .. } => "failed-points",
+            Self::HeavyPoint { .. } => "untrusted-surrogate",
+            Self::NothingBeyond { .. } => "under-resolved",
+            Self::PlainSampling { .. } => "plain-sampling",
+            Self::LostMoments { .. } => "lost-moments",
+            Self::ShallowRules { .. } => "higher-order",
+            Self::PoorFit { .. } => "untrusted-surrogate",
             Self::LostDerivative { .. } => "lost-derivative",
             Self::DomainEdge { .. } => "domain-edge",
             Self::SupportEdge { .. } => "support-edge",
@@ -408,6 +468,12 @@ impl Warning {
         match self {
             Self::FailedPoints { characteristic, .. }
             | Self::FailedSamples { characteristic, .. }
+            | Self::HeavyPoint { characteristic, .. }
+            | Self::NothingBeyond { characteristic, .. }
+            | Self::PlainSampling { characteristic, .. }
+            | Self::LostMoments { characteristic, .. }
+            | Self::ShallowRules { characteristic, .. }
+            | Self::PoorFit { characteristic, .. }
             | Self::LostDerivative { characteristic, .. }
             | Self::DomainEdge { characteristic, .. }
             | Self::LongTail { characteristic, .. }
@@ -441,7 +507,7 @@ impl Warning {
             | Self::MissingValues { dimension, .. }
             | Self::Outliers { dimension, .. }
             | Self::SmallSample { dimension, .. }
-            | Self::NoSamplingInterval { dimension }
+            | Self::NoSamplingInterval { dimension, .. }
             | Self::CoarseResolution { dimension, .. }
             | Self::OutsideBand { dimension, .. }
             | Self::Kink { dimension, .. }
@@ -466,6 +532,35 @@ impl Warning {
             Self::FailedSamples { characteristic, failed, samples, error } => format!(
                 "`{characteristic}` has no value at {failed} of {samples} points, and everything said of it is about the \
                  others; the first: {error}"
+            ),
+            Self::HeavyPoint { characteristic, limit, part } => format!(
+                "`{characteristic}` beyond {limit}: one point bears {:.0} % of the probability, so that the surrogate does not \
+                 know where rejects are, and there may be more than the interval says; more --samples, or a method that knows \
+                 more (--method full)",
+                100.0 * part
+            ),
+            Self::NothingBeyond { characteristic, limit, points, most } => format!(
+                "`{characteristic}` beyond {limit}: not one of {points} points lies there, neither where the surrogate has the \
+                 limit nor elsewhere; all that is known without the surrogate is a probability below {most:.1e}"
+            ),
+            Self::PlainSampling { characteristic, limit, plain, evaluations } => format!(
+                "`{characteristic}` beyond {limit}: {plain:.0} points of a plain sample would have told as much as these \
+                 {evaluations}; leave out --rare"
+            ),
+            Self::LostMoments { characteristic, because } => format!(
+                "mean, sigma and all that follows from them are unknown of `{characteristic}`: {because}; a derivative \
+                 method goes around lost points, --method second-order with the fewest"
+            ),
+            Self::ShallowRules { characteristic, share } => format!(
+                "curvature adds {:.1} % of the variance of `{characteristic}`, and rules of three nodes do not integrate its third \
+                 and fourth powers: do not trust skewness, kurtosis and yield; --method dimension-reduction or \
+                 bivariate-dimension-reduction has five nodes",
+                100.0 * share
+            ),
+            Self::PoorFit { characteristic, residual } => format!(
+                "the fitted surface misses the values of `{characteristic}` by {:.1} % of sigma (residual standard error): it is \
+                 no quadratic; --method six-n follows more bends, bivariate-dimension-reduction all of two dimensions",
+                100.0 * residual
             ),
             Self::LostDerivative { characteristic, dimensions, loss } => {
                 let to = dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
@@ -574,9 +669,13 @@ impl Warning {
                 "`{dimension}` is known by {values} values: its skewness and everything beyond are guesses below {enough}; \
                  mind the sampling interval"
             ),
-            Self::NoSamplingInterval { dimension } => format!(
+            Self::NoSamplingInterval { dimension, correlated: true } => format!(
                 "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed where dimensions are \
                  correlated; leave [[correlation]] out to see it"
+            ),
+            Self::NoSamplingInterval { dimension, correlated: false } => format!(
+                "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed by methods without a \
+                 surrogate; --method six-n shows it"
             ),
             Self::CoarseResolution { dimension, resolution, sigma, distinct } => format!(
                 "the {distinct} different values of `{dimension}` lie {:.2} sigma apart or more: rounding has a part in sigma; \

@@ -8,6 +8,7 @@ mod fallback;
 mod interval;
 mod linear;
 mod shapes;
+mod shares;
 mod trust;
 mod warnings;
 
@@ -19,7 +20,7 @@ use std::time::Duration;
 
 use crate::assembly::Run;
 use crate::extremes::{Found, search};
-use crate::method::{DerivativeSource, Method, MethodError, Options};
+use crate::method::{Basis, Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -48,8 +49,8 @@ pub struct Analysis {
     pub characteristics: Vec<CharacteristicAnalysis>,
     /// What `auto` found and bought, in words; None for any other method.
     pub account: Option<String>,
-    /// Where the derivatives that the moments rest on come from.
-    pub derivatives: DerivativeSource,
+    /// What the moments rest on.
+    pub basis: Basis,
     /// Where an assumption fails.
     pub warnings: Vec<Warning>,
 }
@@ -107,7 +108,7 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         seed: drawn.then_some(seed),
         characteristics,
         account,
-        derivatives: if outcome.exact { DerivativeSource::Exact } else { DerivativeSource::Difference },
+        basis: outcome.basis,
         warnings,
     })
 }

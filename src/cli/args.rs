@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
 /// The heading of the options that say what is printed, and where.
 const OUTPUT: &str = "Output";
@@ -95,6 +95,10 @@ pub(super) struct StudyArgs {
     #[arg(long, value_name = "STENCIL")]
     pub(super) stencil: Option<StencilArg>,
 
+    /// Nodes of the quadrature rules of dimension-reduction, univariate or bivariate: 3, 5 or 7 [default: 5]
+    #[arg(long, value_name = "M")]
+    pub(super) nodes: Option<usize>,
+
     /// Sensitivities of varying dimensions, or of all: two evaluations each for those without tolerance
     #[arg(long, value_name = "WHICH")]
     pub(super) sensitivities: Option<SensitivitiesArg>,
@@ -176,11 +180,13 @@ pub(super) struct SampledArgs {
 }
 
 #[derive(Debug, Args)]
+#[group(skip)]
+#[command(group = ArgGroup::new("surrogate").args(["surrogate_control", "rare"]))]
 pub(super) struct SimulateArgs {
     #[command(flatten)]
     pub(super) of: SampledArgs,
 
-    /// Points [default: 100000, or as many as --until takes]; Sobol' takes 16 times a power of two, at least as many
+    /// Points [default: 100000, or as many as --until takes; with --rare 10000, of an external model 1000]; Sobol' takes 16 times a power of two, at least as many
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
     pub(super) samples: Option<u64>,
 
@@ -188,7 +194,7 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "SAMPLER", default_value = "random")]
     pub(super) sampler: SamplerArg,
 
-    /// Go on until the standard error of every sigma is below this part of it
+    /// Go on until the standard error of every sigma (with --rare: of every probability) is below this part of it
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(super) until: Option<f64>,
 
@@ -200,8 +206,12 @@ pub(super) struct SimulateArgs {
     #[arg(long)]
     pub(super) surrogate_control: bool,
 
-    /// The method of that analysis [default: that of the study, or full to 20 dimensions and six-n beyond]
-    #[arg(short, long, value_name = "METHOD", requires = "surrogate_control")]
+    /// Seek what is rare: the probability beyond each limit, by importance sampling that is placed with the surrogate
+    #[arg(long, conflicts_with_all = ["surrogate_control", "until_yield", "sampler"])]
+    pub(super) rare: bool,
+
+    /// The method of the surrogate [default: that of the study, or full to 20 dimensions and six-n beyond]
+    #[arg(short, long, value_name = "METHOD", requires = "surrogate")]
     pub(super) method: Option<MethodArg>,
 
     /// Exit with 1 unless the sample shows that every target_yield is met

@@ -10,6 +10,7 @@ use crate::journal::JournalError;
 use crate::method::MethodError;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
+use crate::rare::RareError;
 use crate::simulation::SimulationError;
 use crate::study::StudyError;
 
@@ -45,6 +46,8 @@ pub(super) enum Failure {
     Method(#[from] MethodError),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    #[error(transparent)]
+    Rare(#[from] RareError),
     #[error(transparent)]
     Compare(#[from] CompareError),
     #[error(transparent)]

@@ -18,6 +18,7 @@ mod plan;
 mod points;
 mod probe;
 mod progress;
+mod rare;
 mod running;
 mod schema;
 mod simulate;

@@ -8,7 +8,8 @@ use super::args::PlanArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use super::study;
-use crate::plan::{DifferencePlan, Known, Purpose, Spread, Stage};
+use crate::method::DerivativeSource;
+use crate::plan::{Known, Plan, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
 
@@ -67,12 +68,12 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         command: "plan",
         method: procedure.name(),
         about: procedure.about(),
-        count: if plan.layout().spread == Spread::Bare { EXACT } else { procedure.count() },
+        count: if study.options.derivatives == Some(DerivativeSource::Exact) { EXACT } else { procedure.count() },
         varying: plan.varying().len(),
         evaluations,
         stages: vec![of_stage(&first)],
         extremes: study.options.extremes,
-        dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &plan, d)).collect(),
+        dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &*plan, d)).collect(),
     };
     if stages > 1 {
         let left = evaluations - first.points.len();
@@ -80,7 +81,7 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         report.stages.push(StageReport { evaluations: left, known_beforehand: false, purposes });
     }
     if let Some(points) = points {
-        points.write(&csv(&study.problem, &plan, &first))?;
+        points.write(&csv(&study.problem, &*plan, &first))?;
         if stages > 1 {
             look.warn("first-stage-only", "the points of later stages depend on the answers to those of the first");
         }
@@ -100,7 +101,7 @@ fn of_stage(stage: &Stage) -> StageReport {
     StageReport { evaluations: stage.points.len(), known_beforehand: true, purposes }
 }
 
-fn axis(problem: &Problem, plan: &DifferencePlan, d: usize) -> AxisReport {
+fn axis(problem: &Problem, plan: &dyn Plan, d: usize) -> AxisReport {
     let (dimension, axis) = (&problem.dimensions()[d], plan.axis(d));
     let nodes: Vec<_> = axis.slots.iter().map(|slot| axis.nodes[slot[0] as usize]).collect();
     AxisReport {
@@ -148,7 +149,7 @@ fn text(report: &PlanReport) -> String {
 }
 
 /// A column per dimension, a row per point, every number to its last digit.
-fn csv(problem: &Problem, plan: &DifferencePlan, stage: &Stage) -> String {
+fn csv(problem: &Problem, plan: &dyn Plan, stage: &Stage) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let names = problem.dimensions().iter().map(|dimension| dimension.name());
     writer.write_record(names).expect("memory takes any record");

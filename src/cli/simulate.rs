@@ -9,7 +9,7 @@ use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use super::progress::Samples;
 use super::running::{Clock, on_threads};
-use super::{interrupt, study};
+use super::{interrupt, rare, study};
 use crate::assembly::Run;
 use crate::method::{Method, Options};
 use crate::report::{SimulationReport, simulation_csv, simulation_text};
@@ -27,6 +27,9 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
+    }
+    if asked.rare {
+        return rare::run(asked, &study, look);
     }
     let destination = Destination::open(&asked.output)?;
     let names = ["estimates.csv", "histogram.csv"].map(str::to_owned);
@@ -74,7 +77,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
 }
 
 /// How the surrogate is analysed: as the study says, but for the method that is asked for.
-fn surrogate(study: &Study, asked: &SimulateArgs) -> Options {
+pub(super) fn surrogate(study: &Study, asked: &SimulateArgs) -> Options {
     let mut options = study.options.clone();
     if let Some(method) = asked.method {
         options.method = method.0;
@@ -93,6 +96,16 @@ fn simulate(
     clock: &Clock,
     look: Look,
 ) -> Result<Simulation, Failure> {
+    Ok(sampling(threads, clock, look, |run, pace| simulate_within(&study.problem, options, run, pace))??)
+}
+
+/// Draws points, showing how far it is, and telling once when that will be long.
+pub(super) fn sampling<T: Send>(
+    threads: Option<u16>,
+    clock: &Clock,
+    look: Look,
+    work: impl FnOnce(&Run<'_>, &(dyn Fn(Pace) + Sync)) -> T + Send,
+) -> Result<T, Failure> {
     let bar = Samples::new(look.quiet);
     let told = Mutex::new(false);
     let pace = |pace: Pace| {
@@ -107,9 +120,9 @@ fn simulate(
     };
     let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
-    let result = on_threads(threads, || simulate_within(&study.problem, options, &run, &pace));
+    let result = on_threads(threads, || work(&run, &pace));
     bar.clear();
-    Ok(result??)
+    result
 }
 
 /// A time in the unit that people would use.

@@ -4,7 +4,7 @@
 //! of different sources add. What nothing is known of makes the estimate None.
 
 use super::hidden::{hidden, ratio};
-use super::{Check, Climbed, Order, Outcome};
+use super::{Basis, Check, Climbed, Order, Outcome};
 use crate::assembly::Directions;
 use crate::moments::{Interactions, Moments, Term, contributions};
 use crate::problem::Problem;
@@ -122,6 +122,9 @@ fn add(sum: &mut Errors, more: Errors) {
 
 /// Estimates for the moments of a characteristic, as the method gives them; None where it has none.
 pub fn estimate(problem: &Problem, outcome: &Outcome, c: usize, moments: &Moments) -> Option<ErrorEstimate> {
+    if !matches!(outcome.basis, Basis::Exact | Basis::Differences) {
+        return None;
+    }
     let surrogate = outcome.fitted[c].surrogate.as_ref()?;
     let mut of = Estimate { problem, outcome, c, surrogate, errors: [0.0; 4], known: [true; 4], sources: Vec::new() };
     let checked = outcome.climbed.as_ref().and_then(|climbed| Some((climbed, climbed.checked[c].as_ref()?)));
@@ -169,7 +172,7 @@ impl Estimate<'_> {
         let parts = self.parts()?;
         let mut values = Vec::with_capacity(parts.len());
         for ((part, shape), &d) in parts.iter().zip(plan.inputs().shapes()).zip(plan.varying()) {
-            let samples = match self.outcome.exact {
+            let samples = match self.outcome.basis == Basis::Exact {
                 // Exact derivatives are differences over no distance.
                 true => vec![(0.0, 0.0); 2],
                 false => plan.samples(&self.outcome.evaluated.known, self.c, d)?,
@@ -231,7 +234,11 @@ impl Estimate<'_> {
     fn powers(&mut self) {
         let nodes = |&d: &usize| Some(self.outcome.fitted[self.c].parts[d]?.degree() + 1);
         let fewest = self.outcome.plan.varying().iter().filter_map(nodes).min().unwrap_or(1);
-        self.sources.push(if self.outcome.exact { Source::Taylor } else { Source::Powers { nodes: fewest } });
+        self.sources.push(if self.outcome.basis == Basis::Exact {
+            Source::Taylor
+        } else {
+            Source::Powers { nodes: fewest }
+        });
     }
 
     fn unchecked(&mut self, hidden: Errors, moments: &Moments) {

@@ -2,7 +2,7 @@
 
 use super::{DerivativeSource, MethodError, Order};
 use crate::assembly::{Derivatives, Directions};
-use crate::plan::{DifferencePlan, Mixed};
+use crate::plan::{DifferencePlan, Mixed, Plan};
 use crate::problem::Problem;
 use crate::surrogate::Univariate;
 
@@ -19,7 +19,7 @@ pub struct ExactDerivatives {
 
 impl ExactDerivatives {
     /// Of every characteristic; None for those of which the function does not know them.
-    pub(super) fn of(problem: &Problem, plan: &DifferencePlan) -> Vec<Option<Self>> {
+    pub(super) fn of(problem: &Problem, plan: &dyn Plan) -> Vec<Option<Self>> {
         let (inputs, point) = (plan.moved(), plan.centre());
         let directions = Directions { point: &point, inputs: &inputs, pairs: &[] };
         let known = |derivatives: Derivatives| {
@@ -36,12 +36,7 @@ impl ExactDerivatives {
     }
 
     /// Adds the mixed ones of these pairs of positions.
-    pub(super) fn add_pairs(
-        all: &mut [Option<Self>],
-        problem: &Problem,
-        plan: &DifferencePlan,
-        pairs: &[(usize, usize)],
-    ) {
+    pub(super) fn add_pairs(all: &mut [Option<Self>], problem: &Problem, plan: &dyn Plan, pairs: &[(usize, usize)]) {
         let dimensions: Vec<(usize, usize)> =
             pairs.iter().map(|&(j, k)| (plan.varying()[j], plan.varying()[k])).collect();
         let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &dimensions };

@@ -17,11 +17,14 @@
 
 mod assemble;
 mod interactions;
+mod pairwise;
 mod part;
 mod sum;
 
 pub use interactions::Interactions;
+pub use pairwise::{Pairwise, Tables};
 pub use part::{Part, Term};
+pub(crate) use sum::exact;
 
 use std::collections::BTreeMap;
 

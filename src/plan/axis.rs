@@ -38,7 +38,7 @@ const SENSITIVITY_STEP: f64 = 1e-4;
 
 impl Axis {
     /// The axis of a dimension that varies.
-    pub(super) fn varying(dimension: &Dimension, spread: Spread, step: Option<f64>) -> Self {
+    pub(crate) fn varying(dimension: &Dimension, spread: Spread, step: Option<f64>) -> Self {
         let distribution = dimension.distribution().expect("a dimension that varies");
         let nodes = match dimension.step().or(step) {
             Some(step) => Nodes::stepped(step, spread),
@@ -135,12 +135,17 @@ impl Axis {
     }
 
     fn node(&mut self, x: f64) -> u32 {
-        let known = self.nodes.iter().position(|node| node.x == x);
-        let index = known.unwrap_or_else(|| {
-            self.nodes.push(Node { x, u: (x - self.mean) / self.scale });
-            self.nodes.len() - 1
-        });
-        u32::try_from(index).expect("few nodes on an axis")
+        match self.nodes.iter().position(|node| node.x == x) {
+            Some(index) => u32::try_from(index).expect("few nodes on an axis"),
+            None => self.open_node(x),
+        }
+    }
+
+    /// A node of a value that is no node yet.
+    pub(super) fn open_node(&mut self, x: f64) -> u32 {
+        let index = u32::try_from(self.nodes.len()).expect("fewer than four billion nodes on an axis");
+        self.nodes.push(Node { x, u: (x - self.mean) / self.scale });
+        index
     }
 }
 

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use super::Plan;
 use super::axis::Axis;
 use super::known::Known;
 use super::nodes::Spread;
@@ -329,23 +330,6 @@ impl DifferencePlan {
             return Some(Univariate::of_coefficients(&[0.0, 0.0]));
         }
         Univariate::through(&self.samples(known, characteristic, dimension)?)
-    }
-
-    /// How far a characteristic lies above its centre at the nodes of one dimension, by their places in sigmas, ascending;
-    /// None without a value at the means.
-    pub fn samples(&self, known: &Known, characteristic: usize, dimension: usize) -> Option<Vec<(f64, f64)>> {
-        let centre = known.value(&Point::Centre, characteristic)?;
-        let axis = &self.axes[dimension];
-        let value = |node: u32| known.value(&self.on_axis(dimension, node), characteristic);
-        let mut used = HashSet::new();
-        let mut samples = Vec::new();
-        for slot in &axis.slots {
-            let answered = slot.iter().find_map(|&node| Some((node, value(node)?)));
-            if let Some((node, value)) = answered.filter(|&(node, _)| used.insert(node)) {
-                samples.push((axis.nodes[node as usize].u, value - centre));
-            }
-        }
-        Some(samples)
     }
 
     /// Where pairs stand: the nodes next to the mean, or the replacement at which most characteristics have a value.

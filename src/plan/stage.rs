@@ -31,11 +31,19 @@ pub enum Purpose {
     Sensitivity,
     /// A shorter step in place of one at which the model failed.
     Repair,
+    /// One input at a node of its quadrature rule, along its own axis or along an eigenvector.
+    Cut,
+    /// Two inputs at nodes of their quadrature rules.
+    Plane,
+    /// All inputs at nodes of their quadrature rules.
+    Grid,
+    /// All dimensions off their means: a corner of a factorial design.
+    Corner,
 }
 
 impl Purpose {
     /// All of them, in the order in which they are listed.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 13] = [
         Self::Centre,
         Self::Nominal,
         Self::Axis,
@@ -45,6 +53,10 @@ impl Purpose {
         Self::Noise,
         Self::Sensitivity,
         Self::Repair,
+        Self::Cut,
+        Self::Plane,
+        Self::Grid,
+        Self::Corner,
     ];
 
     /// In words.
@@ -59,6 +71,10 @@ impl Purpose {
             Self::Noise => "next to the means: what answers scatter by",
             Self::Sensitivity => "a dimension without tolerance, moved a little: its sensitivity",
             Self::Repair => "a shorter step where the model failed",
+            Self::Cut => "one input at a node of its quadrature rule",
+            Self::Plane => "two inputs at nodes of their quadrature rules",
+            Self::Grid => "all inputs at nodes of their quadrature rules",
+            Self::Corner => "all dimensions off their means: a corner of the factorial design",
         }
     }
 }

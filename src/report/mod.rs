@@ -11,6 +11,9 @@ mod extremes;
 mod limits;
 pub(crate) mod number;
 mod page;
+mod rare;
+mod rare_csv;
+mod rare_text;
 mod sampling;
 mod simulation;
 mod simulation_csv;
@@ -29,6 +32,9 @@ pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
 pub use estimate::{ErrorEstimateReport, ModelSamplingReport};
 pub use limits::law_text;
 pub use page::{Detail, Style};
+pub use rare::{BeyondReport, DesignPointReport, RareCharacteristicReport, RareReport};
+pub use rare_csv::rare_csv;
+pub use rare_text::rare_text;
 pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
 pub use simulation_csv::simulation_csv;
@@ -42,6 +48,7 @@ use crate::analysis::{Analysis, CharacteristicAnalysis};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
 use crate::extremes::{Extreme, Extremes};
+use crate::method::{Basis, DerivativeSource};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -67,8 +74,11 @@ pub struct Report {
     pub varying: usize,
     /// What `auto` found and bought, in words; null for any other method.
     pub account: Option<String>,
-    /// Where the derivatives that the moments rest on come from: `exact` or `difference`.
-    pub derivatives: &'static str,
+    /// Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on none.
+    pub derivatives: Option<&'static str>,
+    /// What the moments rest on, to be printed.
+    #[serde(skip)]
+    pub basis: Basis,
     /// Every point sent to the model.
     pub evaluations: usize,
     /// Answers taken from an earlier run.
@@ -132,6 +142,21 @@ pub struct SurrogateSamplingReport {
     pub kurtosis: f64,
 }
 
+/// How well a surface of least squares fits.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LeastSquaresReport {
+    /// What it misses of the values, in the characteristic's unit; null without degrees of freedom.
+    pub residual_standard_error: Option<f64>,
+    /// Standard error of the mean that follows from it; null where it is unknown.
+    pub mean_standard_error: Option<f64>,
+    /// Standard error of sigma that follows from it.
+    pub sigma_standard_error: Option<f64>,
+    /// Points that it was fitted to.
+    pub points: usize,
+    /// Coefficients.
+    pub coefficients: usize,
+}
+
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CharacteristicReport {
@@ -151,6 +176,8 @@ pub struct CharacteristicReport {
     pub kurtosis: Option<f64>,
     /// What sampling left uncertain of these; null where they are exact for the surrogate.
     pub surrogate_sampling: Option<SurrogateSamplingReport>,
+    /// How well a surface of least squares fits; null where none was fitted.
+    pub least_squares: Option<LeastSquaresReport>,
     /// How far the results may be off, by what the method did not see; null without moments.
     pub error_estimate: Option<ErrorEstimateReport>,
     /// Points of the model that the moments rest on, where `auto` did not trust its surrogate.
@@ -338,7 +365,12 @@ impl Report {
             method: analysis.method.name(),
             varying: analysis.varying,
             account: analysis.account.clone(),
-            derivatives: analysis.derivatives.name(),
+            derivatives: match analysis.basis {
+                Basis::Exact => Some(DerivativeSource::Exact.name()),
+                Basis::Differences => Some(DerivativeSource::Difference.name()),
+                Basis::LeastSquares | Basis::Quadrature => None,
+            },
+            basis: analysis.basis,
             evaluations: analysis.evaluations,
             reused: analysis.reused,
             failed: analysis.failed,
@@ -400,6 +432,13 @@ impl CharacteristicReport {
                 sigma: sampled.sigma,
                 skewness: sampled.skewness,
                 kurtosis: sampled.kurtosis,
+            }),
+            least_squares: analysis.residual.map(|residual| LeastSquaresReport {
+                residual_standard_error: residual.standard_error,
+                mean_standard_error: residual.mean,
+                sigma_standard_error: residual.sigma,
+                points: residual.points,
+                coefficients: residual.coefficients,
             }),
             error_estimate: analysis.error_estimate.as_ref().map(ErrorEstimateReport::of),
             model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),

@@ -6,6 +6,7 @@ use super::number::{UNKNOWN, beside, percent, plain, significant, unsigned_zero}
 use super::page::{Detail, Grid, Page, Style, clean, short};
 use super::sampling::sampling;
 use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
+use crate::method::Basis;
 
 /// Contributions and interactions that are shown unless all are asked for.
 const CONTRIBUTIONS: usize = 30;
@@ -104,6 +105,17 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
         table.row([name, value, other, text].map(str::to_owned));
     }
     page.print(&table);
+    if let Some(fit) = &one.least_squares {
+        let error = |error: Option<f64>| error.map_or(UNKNOWN.to_owned(), |error| significant(error, 2));
+        page.line(&format!(
+            "  {} coefficients fitted to {} points: residual standard error {}, of the mean {}, of sigma {}",
+            fit.coefficients,
+            fit.points,
+            error(fit.residual_standard_error),
+            error(fit.mean_standard_error),
+            error(fit.sigma_standard_error)
+        ));
+    }
     estimate(page, one);
     if let Some(sampled) = &one.surrogate_sampling {
         page.line(&format!(
@@ -216,8 +228,12 @@ fn source(report: &Report, rows: &[(&SensitivityReport, &DimensionReport)]) -> O
         1..=8 => format!(", but by differences for {}", differences.join(", ")),
         many => format!(", but by differences for {many} dimensions"),
     };
-    let rest =
-        if report.derivatives == "exact" { "everything rests on them" } else { "the rest comes from differences" };
+    let rest = match report.basis {
+        Basis::Exact => "everything rests on them",
+        Basis::Differences => "the rest comes from differences",
+        Basis::LeastSquares => "the rest comes from the fitted surface",
+        Basis::Quadrature => "the moments come from quadrature",
+    };
     Some(format!("slopes and curvatures are exact{but}; {rest}"))
 }
 

@@ -11,9 +11,10 @@
 
 use rayon::prelude::*;
 
+use super::surrogates::{Known, Shape, Surrogates};
 use super::{ROWS, SimulationError, SimulationOptions};
 use crate::assembly::{Points, Run};
-use crate::characteristic::SpecLimits;
+use crate::characteristic::{Characteristic, SpecLimits};
 use crate::evaluation::Evaluated;
 use crate::method::{Method, Options, Outcome};
 use crate::moments::Sampled;
@@ -21,8 +22,6 @@ use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler};
 use crate::surrogate::Surrogate;
 
-/// Varying dimensions up to which every interaction is examined.
-const FULL: usize = 20;
 /// Points of the surrogate for every point of the model, by which its own share within the limits is known,
 const MORE: u64 = 32;
 /// never fewer or more than these,
@@ -45,11 +44,8 @@ pub(super) struct Twin {
     pub(super) method: Method,
     pub(super) evaluations: usize,
     pub(super) centre: f64,
-    pub(super) mean: f64,
-    pub(super) sigma: f64,
-    /// `E[t^3]` and `E[t^4]`.
-    pub(super) skewness: f64,
-    pub(super) kurtosis: f64,
+    /// `E[t^3]` and `E[t^4]` are its skewness and kurtosis.
+    pub(super) moments: Shape,
     /// Their standard errors, where correlated inputs leave them no closed form.
     pub(super) sampled: Option<Sampled>,
     pub(super) limits: SpecLimits,
@@ -73,14 +69,9 @@ impl<'p> Control<'p> {
         options: &SimulationOptions,
         run: &Run<'_>,
     ) -> Result<Self, SimulationError> {
-        let asked = chosen(problem, asked);
-        let outcome = asked.method.procedure().run(problem, &asked, run)?;
-        let mut control = Self { problem, twins: Vec::new(), outcome };
-        if control.outcome.evaluated.stopped {
-            return Ok(control);
-        }
-        let twins = (0..problem.characteristics().len()).map(|c| control.twin(c));
-        control.twins = twins.collect::<Result<_, _>>()?;
+        let Surrogates { outcome, known } = Surrogates::of(problem, asked, run)?;
+        let twins = twins(problem, &outcome, known);
+        let mut control = Self { problem, twins, outcome };
         control.count_outside(options)?;
         Ok(control)
     }
@@ -91,47 +82,12 @@ impl<'p> Control<'p> {
         outcome: &Outcome,
         options: &SimulationOptions,
     ) -> Result<Self, SimulationError> {
+        let known = Surrogates::known_of(problem, outcome);
         let mut outcome = outcome.clone();
         outcome.evaluated = Evaluated::nothing(problem);
-        let mut control = Self { problem, twins: Vec::new(), outcome };
-        control.twins = (0..problem.characteristics().len()).map(|c| control.twin(c).ok().flatten()).collect();
+        let mut control = Self { problem, twins: twins(problem, &outcome, known), outcome };
         control.count_outside(options)?;
         Ok(control)
-    }
-
-    fn twin(&self, c: usize) -> Result<Option<Twin>, SimulationError> {
-        let (outcome, characteristic) = (&self.outcome, &self.problem.characteristics()[c]);
-        let unknown = |reason: &str| SimulationError::NoSurrogate {
-            characteristic: characteristic.name().to_owned(),
-            method: outcome.method.name(),
-            reason: reason.to_owned(),
-        };
-        let lost = || {
-            let error = outcome.evaluated.known.errors().find(|&(_, of, _)| of == c);
-            unknown(&error.map_or_else(|| "a derivative is unknown".to_owned(), |(.., error)| error.to_string()))
-        };
-        let surrogate = outcome.fitted[c].surrogate.clone().ok_or_else(lost)?;
-        let found = surrogate.contributions(outcome.plan.inputs()).ok_or_else(lost)?;
-        let (mean, sigma) = (found.moments.mean(), found.moments.sigma());
-        let Some((skewness, kurtosis)) = found.moments.skewness().zip(found.moments.kurtosis()) else {
-            return Ok(None);
-        };
-        if ![mean, sigma, skewness, kurtosis].iter().all(|moment| moment.is_finite()) {
-            return Err(unknown("its moments are not finite"));
-        }
-        Ok(Some(Twin {
-            centre: surrogate.centre,
-            surrogate,
-            method: outcome.method,
-            evaluations: outcome.evaluated.evaluations,
-            mean,
-            sigma,
-            skewness,
-            kurtosis,
-            sampled: found.sampled,
-            limits: characteristic.limits(),
-            outside: None,
-        }))
     }
 
     /// Whether it was stopped before the surrogates were known.
@@ -194,6 +150,23 @@ impl<'p> Control<'p> {
     }
 }
 
+/// The surrogates as they stand beside the model.
+fn twins(problem: &Problem, outcome: &Outcome, known: Vec<Option<Known>>) -> Vec<Option<Twin>> {
+    let twin = |(known, characteristic): (Option<Known>, &Characteristic)| {
+        known.map(|Known { surrogate, moments, sampled }| Twin {
+            centre: surrogate.centre,
+            surrogate,
+            method: outcome.method,
+            evaluations: outcome.evaluated.evaluations,
+            moments,
+            sampled,
+            limits: characteristic.limits(),
+            outside: None,
+        })
+    };
+    known.into_iter().zip(problem.characteristics()).map(twin).collect()
+}
+
 impl Twin {
     /// Whether the surrogate lies below and above the limits, from its rise.
     pub(super) fn sides(&self, rise: f64) -> [bool; 2] {
@@ -204,18 +177,4 @@ impl Twin {
 /// Whether a value lies below and above the limits; on a limit it keeps it.
 pub(super) fn sides(limits: &SpecLimits, value: f64) -> [bool; 2] {
     [limits.lower().is_some_and(|lower| value < lower), limits.upper().is_some_and(|upper| value > upper)]
-}
-
-/// `auto` stands for every interaction of few dimensions, and the strongest of many.
-fn chosen(problem: &Problem, asked: &Options) -> Options {
-    if asked.method != Method::Auto {
-        return asked.clone();
-    }
-    let dependence = problem.dependence();
-    let varies = |&d: &usize| problem.dimensions()[d].sigma() > 0.0 && dependence.iter().any(|row| row[d]);
-    let few = (0..problem.dimensions().len()).filter(varies).count() <= FULL;
-    match few && asked.pairs.is_none() && asked.stencil.is_none() {
-        true => Options { method: Method::Full, ..asked.clone() },
-        false => Options { method: Method::SixN, ..asked.clone() },
-    }
 }

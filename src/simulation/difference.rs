@@ -21,8 +21,8 @@ impl Difference {
         let mut difference = Self::default();
         let mut rows = Vec::with_capacity(values.len());
         for (&value, &rise) in values.iter().zip(rises).filter(|(value, _)| !value.is_nan()) {
-            let t = (rise - (twin.mean - twin.centre)) / twin.sigma;
-            let d = ((value - twin.centre) - rise) / twin.sigma;
+            let t = (rise - (twin.moments.mean - twin.centre)) / twin.moments.sigma;
+            let d = ((value - twin.centre) - rise) / twin.moments.sigma;
             let v = t + d;
             // In factors, so that nothing large is subtracted.
             rows.push([d, d * (v + t), d * (v * v + v * t + t * t), d * (v + t) * (v * v + t * t)]);
@@ -57,8 +57,8 @@ impl Difference {
 /// came out as nothing.
 fn standardised(differences: &[f64; 4], twin: &Twin) -> [Option<(f64, [f64; 4])>; 4] {
     let [d1, d2, d3, d4] = *differences;
-    let (m, m2, m3, m4) = (d1, 1.0 + d2, twin.skewness + d3, twin.kurtosis + d4);
-    let mean = Some((twin.mean + twin.sigma * m, [twin.sigma, 0.0, 0.0, 0.0]));
+    let (m, m2, m3, m4) = (d1, 1.0 + d2, twin.moments.skewness + d3, twin.moments.kurtosis + d4);
+    let mean = Some((twin.moments.mean + twin.moments.sigma * m, [twin.moments.sigma, 0.0, 0.0, 0.0]));
     let c2 = m2 - m * m;
     let c3 = m3 - 3.0 * m * m2 + 2.0 * m.powi(3);
     let c4 = m4 - 4.0 * m * m3 + 6.0 * m * m * m2 - 3.0 * m.powi(4);
@@ -73,7 +73,7 @@ fn standardised(differences: &[f64; 4], twin: &Twin) -> [Option<(f64, [f64; 4])>
     let sum = |by: &[f64; 4], factor: f64, less: f64| std::array::from_fn(|i| by[i] * factor - by2[i] * less);
     [
         mean,
-        Some((twin.sigma * root, sum(&by2, 0.5 * twin.sigma / root, 0.0))),
+        Some((twin.moments.sigma * root, sum(&by2, 0.5 * twin.moments.sigma / root, 0.0))),
         Some((skewness, sum(&by3, 1.0 / (c2 * root), 1.5 * skewness / c2))),
         Some((kurtosis, sum(&by4, 1.0 / (c2 * c2), 2.0 * kurtosis / c2))),
     ]

@@ -3,6 +3,7 @@
 mod characteristic;
 mod control;
 mod difference;
+mod surrogates;
 mod tally;
 
 pub use characteristic::{Histogram, QUANTILES, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
@@ -16,6 +17,7 @@ use crate::method::{MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
 use control::Control;
+pub(crate) use surrogates::Surrogates;
 use tally::{Block, Lens, Tally};
 
 /// How a problem is simulated.

@@ -10,7 +10,7 @@ const LAYERS: &[&[&str]] = &[
     &["cli"],
     &["error"],
     &["study", "report"],
-    &["compare"],
+    &["compare", "rare"],
     &["analysis", "probe"],
     &["simulation"],
     &["extremes"],

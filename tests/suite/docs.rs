@@ -65,6 +65,10 @@ fn measured() -> String {
         ("`six-n`", Method::SixN.into()),
         ("`full`", Method::Full.into()),
         ("`classic`", Method::Classic.into()),
+        ("`dimension-reduction`", Method::DimensionReduction.into()),
+        ("`bivariate-dimension-reduction`", Method::BivariateDimensionReduction.into()),
+        ("`three-point`", Method::ThreePoint.into()),
+        ("`response-surface`", Method::ResponseSurface.into()),
     ];
     let (clearance, engine, blocks) =
         (data("shaft-and-bore.json"), data("engine-balance.json"), data("stacked-blocks.json"));

@@ -19,13 +19,15 @@ mod view;
 
 pub use climb::Rest;
 
+use std::sync::Arc;
+
 use super::check::Check;
 use super::exact::ExactDerivatives;
-use super::ladder::{Examined, Ladder, Order, fitting};
-use super::{DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
+use super::ladder::{Examined, Ladder, Order};
+use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::Evaluated;
-use crate::plan::{DifferencePlan, Mixed, Point, Spread};
+use crate::plan::{Mixed, Plan, Point, Spread};
 use crate::problem::Problem;
 use climb::Climb;
 use view::View;
@@ -106,7 +108,7 @@ impl Procedure for Auto {
         BASE.count
     }
 
-    fn plan(&self, problem: &Problem, options: &Options) -> Result<DifferencePlan, MethodError> {
+    fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {
         exactly(options).plan(problem, options)
     }
 
@@ -114,12 +116,8 @@ impl Procedure for Auto {
         if options.derivatives == Some(DerivativeSource::Exact) {
             return EXACT.run(problem, options, run);
         }
-        let plan = self.plan(problem, options)?;
-        let needed = plan.cost().0;
-        if let Some(budget) = options.budget.filter(|&budget| needed > budget) {
-            let fitting = fitting(problem, budget);
-            return Err(MethodError::OverBudget { method: BASE.name, needed, budget, fitting });
-        }
+        let plan = BASE.differences(problem, options)?;
+        Cost::of(&plan).within(BASE.name, problem, options)?;
         problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
         let mut climb = Climb::new(problem, plan, options.accuracy.unwrap_or(ACCURACY), options.budget);
         let mut evaluated = Evaluated::nothing(problem);
@@ -165,6 +163,7 @@ fn outcome(problem: &Problem, options: &Options, climb: Climb<'_>, evaluated: Ev
             parts: (0..problem.dimensions().len()).map(part).collect(),
             mixed: pairs.iter().map(mixed).collect(),
             surrogate: view.as_ref().map(|view| view.surrogate.clone()),
+            ..Fitted::default()
         }
     };
     let fitted = views.iter().zip(exact).enumerate().map(fit).collect();
@@ -185,12 +184,12 @@ fn outcome(problem: &Problem, options: &Options, climb: Climb<'_>, evaluated: Ev
     Outcome {
         asked: Method::Auto,
         method: Method::Auto,
-        plan: climb.plan,
+        basis: Basis::Differences,
+        plan: Arc::new(climb.plan),
         evaluated,
         order: Order::Second,
         fitted,
         pairs,
-        exact: false,
         climbed: Some(climbed),
     }
 }

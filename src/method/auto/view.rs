@@ -8,7 +8,7 @@ use crate::distribution::StandardMoments;
 use crate::method::check::Check;
 use crate::method::hidden::hidden;
 use crate::moments::{Interactions, Moments};
-use crate::plan::{DifferencePlan, Known, Mixed, Point};
+use crate::plan::{DifferencePlan, Known, Mixed, Plan, Point};
 use crate::surrogate::{Surrogate, Univariate};
 
 /// Every dimension up or down, and all turned round.
