@@ -1,11 +1,17 @@
 //! Model against surrogate at points that no fit has seen.
 
+use crate::assembly::EvaluationError;
 use crate::moments::Moments;
 use crate::plan::{DifferencePlan, Known, Point};
 use crate::surrogate::{InputShape, Surrogate, Univariate};
 
 /// A difference three sigma out that does not matter: higher powers have that, and the other points see them.
 const FAR: f64 = 0.1;
+
+/// Whether the model has no value at a point, rather than nobody an answer.
+pub(super) fn failed(known: &Known, point: &Point, characteristic: usize) -> bool {
+    known.error(point, characteristic).is_some_and(|error| !matches!(error, EvaluationError::NotGiven))
+}
 
 /// How model and surrogate differ at points of the dimensions' own distribution.
 ///
@@ -93,7 +99,7 @@ impl Check {
         };
         Some(Self {
             points: rows.len(),
-            failed: points.len() - rows.len(),
+            failed: points.iter().filter(|point| failed(known, point, characteristic)).count(),
             mean,
             variance: rows.iter().map(|row| (row[0] - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0),
             even: share(&|[a, b]| 0.5 * (a + b) - mean),

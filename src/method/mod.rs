@@ -112,6 +112,12 @@ pub trait Procedure: Sync {
         Cost::of(&*plan).within(self.name(), problem, options)
     }
 
+    /// The fewest and the most evaluations of a method that chooses as it goes; None for one whose plan says how many.
+    fn range(&self, problem: &Problem, options: &Options) -> Option<[usize; 2]> {
+        let _ = (problem, options);
+        None
+    }
+
     /// The plan that it would follow, whatever the budget.
     ///
     /// # Errors

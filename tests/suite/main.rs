@@ -3,6 +3,7 @@
 mod accuracy;
 mod analysis;
 mod architecture;
+mod auto;
 mod capability;
 mod cli;
 mod control;

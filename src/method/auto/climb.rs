@@ -15,6 +15,8 @@ const CONFIRM_FROM: usize = 5;
 /// Sets that may sharpen an estimate which is no more than so many times what is wanted.
 const SETS: usize = 3;
 const NEAR: f64 = 2.0;
+/// Even powers above this part of what is wanted may be interactions that count.
+const PAIRS: f64 = 0.1;
 /// Characteristics that are looked at three sigma out along their steepest line, and how far within the support.
 const LINES: usize = 4;
 const FAR_OUT: f64 = 3.0;
@@ -43,6 +45,11 @@ pub enum Rest {
     Budget,
     /// Nothing that could be bought is expected to help.
     Exhausted,
+}
+
+/// Evaluations of derivatives beyond which it does not go, failed points apart.
+pub(super) fn most(n: usize) -> usize {
+    (OVER_FULL * (n * n + 3 * n + 1) as f64) as usize + ON_TOP
 }
 
 /// The state of a climb.
@@ -121,7 +128,7 @@ impl<'p> Climb<'p> {
     }
 
     /// What has been chosen and is not known.
-    fn wanted(&self, known: &Known) -> Stage {
+    pub(super) fn wanted(&self, known: &Known) -> Stage {
         let mut stage = self.plan.next(known).unwrap_or_default();
         let checks = self.bought.checks.iter().flatten().map(|point| (point, Purpose::Check));
         let noise = self.bought.noise.iter().flatten().map(|point| (point, Purpose::Noise));
@@ -173,6 +180,7 @@ impl<'p> Climb<'p> {
         let found = self.examine(&short, known)
             || curved
             || self.refine_rest(&short)
+            || self.examine_rest(&short)
             || near && self.sets < SETS && self.check();
         if !found {
             self.rest = Some(if self.short_of_budget { Rest::Budget } else { Rest::Exhausted });
@@ -191,6 +199,13 @@ impl<'p> Climb<'p> {
         let points = scattered(&mut self.plan, self.problem.dimensions(), set, pairs);
         self.bought.checks.extend(points);
         true
+    }
+
+    /// How many points the look along the steepest lines takes, where the budget allows, and every characteristic has a slope.
+    pub(super) fn looks_out(&self, characteristics: usize) -> usize {
+        let wanted = if self.plan.varying().is_empty() { 0 } else { 2 * characteristics.min(LINES) };
+        let begun = self.wanted(&Known::nothing(characteristics)).points.len();
+        wanted.min(self.budget.saturating_sub(begun) / 2 * 2)
     }
 
     /// Two points far out along the steepest line of every characteristic.
@@ -334,6 +349,13 @@ impl<'p> Climb<'p> {
         self.screen(&lacking, known)
     }
 
+    /// Further pairs of few dimensions, where nothing else is left to buy.
+    fn examine_rest(&mut self, short: &[&View]) -> bool {
+        let left = |view: &&View| self.left(view)[0] > PAIRS * self.accuracy;
+        let lacking: Vec<&View> = short.iter().copied().filter(left).collect();
+        !lacking.is_empty() && self.positions() <= DIRECT && self.examine_strongest(&lacking, self.positions().max(3))
+    }
+
     /// The pairs with the largest product of two shares that have not been bought.
     fn examine_strongest(&mut self, lacking: &[&View], most: usize) -> bool {
         let mut ranked: Vec<(f64, usize, usize)> = Vec::new();
@@ -385,8 +407,7 @@ impl<'p> Climb<'p> {
             return false;
         }
         let (n, m) = (self.positions(), self.bought.fitted.len());
-        let full = n * n + 3 * n + 1;
-        let most = (OVER_FULL * full as f64) as usize + ON_TOP;
+        let most = most(n);
         let more = (m as f64 * GROWTH).ceil() as usize + 1 - m;
         let pairs = n * (n - 1);
         let within = self.spent + 2 * more + pairs <= most;

@@ -15,6 +15,7 @@
 mod atoms;
 mod climb;
 mod screening;
+mod start;
 mod view;
 
 pub use climb::Rest;
@@ -30,6 +31,7 @@ use crate::evaluation::Evaluated;
 use crate::plan::{Mixed, Plan, Point, Spread};
 use crate::problem::Problem;
 use climb::Climb;
+use start::Start;
 use view::View;
 
 /// The relative error of sigma that is wanted unless said otherwise.
@@ -47,7 +49,7 @@ const BASE: Ladder = Ladder {
     runs: Method::Auto,
     name: "auto",
     about: "the default: buys evaluations where they lower the error of sigma most, until it is known well enough",
-    count: "2N+1 and 14 at least",
+    count: "2N+17 for what is linear or a parabola",
     spread: Spread::Pair,
     interactions: Examined::None,
     order: Order::Second,
@@ -109,17 +111,38 @@ impl Procedure for Auto {
     }
 
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {
-        exactly(options).plan(problem, options)
+        if options.derivatives == Some(DerivativeSource::Exact) {
+            return EXACT.plan(problem, options);
+        }
+        let climb = climb(problem, options)?;
+        Ok(Arc::new(Start::of(climb, problem.characteristics().len())))
+    }
+
+    fn fits(&self, problem: &Problem, options: &Options) -> Result<Cost, MethodError> {
+        if options.derivatives == Some(DerivativeSource::Exact) {
+            return EXACT.fits(problem, options);
+        }
+        // It makes do with less than it would like.
+        Cost::of(&BASE.differences(problem, options)?).within(BASE.name, problem, options)?;
+        Ok(Cost::of(&*self.plan(problem, options)?))
+    }
+
+    fn range(&self, problem: &Problem, options: &Options) -> Option<[usize; 2]> {
+        if options.derivatives == Some(DerivativeSource::Exact) {
+            return None;
+        }
+        let plan = self.plan(problem, options).ok()?;
+        let least = plan.cost().0;
+        Some([least, climb::most(plan.varying().len()).max(least).min(options.budget.unwrap_or(usize::MAX))])
     }
 
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
         if options.derivatives == Some(DerivativeSource::Exact) {
             return EXACT.run(problem, options, run);
         }
-        let plan = BASE.differences(problem, options)?;
-        Cost::of(&plan).within(BASE.name, problem, options)?;
+        self.fits(problem, options)?;
         problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
-        let mut climb = Climb::new(problem, plan, options.accuracy.unwrap_or(ACCURACY), options.budget);
+        let mut climb = climb(problem, options)?;
         let mut evaluated = Evaluated::nothing(problem);
         while let Some(stage) = climb.next(&evaluated.known, evaluated.evaluations) {
             evaluated.add(problem, &climb.plan, &stage, run);
@@ -131,8 +154,9 @@ impl Procedure for Auto {
     }
 }
 
-fn exactly(options: &Options) -> &'static Ladder {
-    if options.derivatives == Some(DerivativeSource::Exact) { &EXACT } else { &BASE }
+fn climb<'p>(problem: &'p Problem, options: &Options) -> Result<Climb<'p>, MethodError> {
+    let accuracy = options.accuracy.unwrap_or(ACCURACY);
+    Ok(Climb::new(problem, BASE.differences(problem, options)?, accuracy, options.budget))
 }
 
 /// What the climb has found out.

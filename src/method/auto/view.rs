@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::atoms::{Bends, atoms};
 use super::screening::{self, Fit, Probed};
 use crate::distribution::StandardMoments;
-use crate::method::check::Check;
+use crate::method::check::{Check, failed};
 use crate::method::hidden::hidden;
 use crate::moments::{Interactions, Moments};
 use crate::plan::{DifferencePlan, Known, Mixed, Plan, Point};
@@ -244,10 +244,10 @@ fn tail(
     let inputs: Vec<[f64; 2]> = (0..plan.varying().len()).map(|j| [places[0][j], places[1][j]]).collect();
     let rises = surrogate.rises(&inputs)?;
     let off = |i: usize| match known.value(&points[i], c) {
-        Some(value) => ((value - surrogate.centre) - rises[i]).abs() / sigma,
-        None => f64::INFINITY,
+        Some(value) => Some(((value - surrogate.centre) - rises[i]).abs() / sigma),
+        None => failed(known, &points[i], c).then_some(f64::INFINITY),
     };
-    (sigma > 0.0 && points.iter().all(|point| known.tried(point))).then(|| off(0).max(off(1)))
+    [off(0), off(1)].into_iter().flatten().filter(|_| sigma > 0.0).reduce(f64::max)
 }
 
 /// The probes as one characteristic has answered them.
