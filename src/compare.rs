@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::Run;
-use crate::method::{self, Method, Options};
+use crate::method::{self, Method, Options, Procedure};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_within};
@@ -190,7 +190,8 @@ pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>
     let samples = options.reference.unwrap_or(if costly { COSTLY_REFERENCE } else { REFERENCE });
     let mut comparison = Comparer { problem, options, run, ran: Vec::new(), not_run: Vec::new() };
     // The cheap ones first: should time run out, the most is known.
-    for procedure in method::ALL {
+    let adaptive = |procedure: &&&dyn Procedure| procedure.method() == Method::Auto;
+    for procedure in method::ALL.iter().filter(|one| !adaptive(one)).chain(method::ALL.iter().filter(adaptive)) {
         comparison.method(procedure.method(), costly.then_some(samples));
     }
     let drawn = SAMPLES.map(Contender::MonteCarlo).into_iter().chain(QUASI.map(Contender::QuasiMonteCarlo));

@@ -26,6 +26,10 @@ const MORE: u64 = 4;
 pub struct SampledModel {
     /// Points.
     pub samples: u64,
+    /// Points at which the model has no value, beside these.
+    pub failed: u64,
+    /// Why not, of the first.
+    pub error: Option<String>,
     /// The share of the variance that the surrogate left unexplained at the check.
     pub left: f64,
     /// Standard errors of mean, sigma, skewness and kurtosis, as far as they are known.
@@ -141,7 +145,14 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
     one.sampled = None;
     let left =
         climbed.checked[c].as_ref().map_or(0.0, |check| if before > 0.0 { check.variance / before } else { 1.0 });
-    one.model_sampled = Some(SampledModel { samples: found.samples, left: left.min(1.0), standard_errors, yield_ });
+    one.model_sampled = Some(SampledModel {
+        samples: found.samples,
+        failed: found.failed,
+        error: found.error.as_ref().map(ToString::to_string),
+        left: left.min(1.0),
+        standard_errors,
+        yield_,
+    });
 }
 
 impl Spent {

@@ -105,11 +105,20 @@ fn climb(
         warnings.push(Warning::Scatter { characteristic: characteristic(), scatter, drowned });
     }
     let Some(check) = &climbed.checked[c] else { return warnings };
-    if check.failed > 0 && outcome.evaluated.known.value(&Point::Centre, c).is_some() {
-        let (failed, points) = (check.failed, check.failed + check.points);
+    let beyond = usize::from(climbed.tails[c].is_some_and(f64::is_infinite));
+    if check.failed + beyond > 0 && outcome.evaluated.known.value(&Point::Centre, c).is_some() {
+        let (failed, points) = (check.failed + beyond, check.failed + check.points + beyond);
         warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points });
     }
     let sampled = analysis.model_sampled.as_ref();
+    if let Some((sampled, error)) = sampled.and_then(|sampled| Some((sampled, sampled.error.as_ref()?))) {
+        warnings.push(Warning::FailedSamples {
+            characteristic: characteristic(),
+            failed: sampled.failed,
+            samples: sampled.samples + sampled.failed,
+            error: error.clone(),
+        });
+    }
     let share = sampled.map_or(check.variance / (sigma * sigma), |sampled| sampled.left);
     if share > UNTRUSTED {
         let sampled = sampled.map(|sampled| sampled.samples);

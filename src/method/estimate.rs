@@ -12,6 +12,9 @@ use crate::surrogate::{Inputs, Surrogate, Univariate};
 
 /// Interactions of which the exact derivatives are worth their time.
 const EXACT: usize = 2000;
+/// The factor `t` of terms that twist an interaction, and a curvature beside which a slope is none.
+const TWIST: f64 = 1.5;
+const BENT: f64 = 0.3;
 /// Interactions of three are estimated up to this part of those of two.
 const MOST: f64 = 0.5;
 
@@ -102,6 +105,24 @@ impl ErrorEstimate {
     pub fn basis(&self) -> String {
         self.sources.iter().map(|source| source.words()).collect::<Vec<_>>().join("; ")
     }
+}
+
+/// What terms `u_j^2 u_k` may add to half the variance: in a product of functions, and in a function of a sum, they are `t a_j A_jk/b_j`
+/// with slopes `b` and curvatures `a` and `t` from 1 to 3, and a slope of `k` by their mean. Where two dimensions act by their
+/// squares, two corners cannot tell `u_j^2 u_k^2` from the product, and all of that is in doubt. And what `u_j^2 u_k^2`, in such
+/// functions `a_j a_k A_jk/(b_j b_k)`, may move the mean by.
+fn twists(parts: &[Univariate], products: &[(usize, usize, f64)]) -> [f64; 2] {
+    let [slopes, curvatures]: [Vec<f64>; 2] =
+        [0, 1].map(|i| parts.iter().map(|part| part.coefficients()[i].abs()).collect());
+    let bend = |j: usize| if slopes[j] > 0.0 { (curvatures[j] / slopes[j]).min(BENT) } else { BENT };
+    let term = |&(j, k, value): &(usize, usize, f64)| {
+        let value = value.abs();
+        let squares = curvatures[j] * curvatures[k] > BENT * slopes[j] * slopes[k];
+        let doubt = if squares { 0.5 * value * value + value * (curvatures[j] + curvatures[k]) / 1.5 } else { 0.0 };
+        let lines = TWIST * value * (bend(j) * slopes[k] + bend(k) * slopes[j]) + doubt;
+        [lines, value * if squares { 1.0 / 3.0 } else { bend(j) * bend(k) }]
+    };
+    products.iter().map(term).fold([0.0; 2], |sum, more| [sum[0] + more[0], sum[1] + more[1]])
 }
 
 /// Parts of the errors of mean, sigma, skewness and kurtosis.
@@ -266,10 +287,19 @@ impl Estimate<'_> {
             .flat_map(|j| (j + 1..n).map(move |k| (j, k)))
             .filter(|&(j, k)| plan.joint(self.c, j, k) && !examined(&(j, k)))
             .collect();
-        let mut share = 0.5 * self.interactions_squared(&curved.interactions) / variance;
+        let examined = 0.5 * self.interactions_squared(&curved.interactions) / variance;
+        let mut share = examined;
+        let mut products = curved.interactions.pairs();
         if !left.is_empty() {
-            share += self.unexamined(&left, (&curved, &independent, second), variance);
+            share += self.unexamined(&left, (&curved, &independent, second), variance, &mut products);
         }
+        // Those that are taken to be like others twist as these do.
+        let seen: f64 = products.iter().map(|(.., value)| value * value).sum::<f64>() / variance;
+        let times = if seen > 0.0 { (share / seen).max(1.0) } else { 1.0 };
+        let known: Vec<Univariate> = parts.iter().flatten().copied().collect();
+        let [lines, mean] = twists(&known, &products);
+        let twisted = times * lines / variance;
+        add(&mut self.errors, [times.sqrt() * mean, twisted * moments.sigma(), 3.0 * twisted, 6.0 * twisted]);
         let ratios: f64 = parts.iter().flatten().map(|part| ratio(part, self.surrogate.centre)).sum();
         let factor = (5.0 * ratios).max(share).min(MOST);
         let triples = share * factor;
@@ -293,6 +323,7 @@ impl Estimate<'_> {
         left: &[(usize, usize)],
         (surrogate, independent, moments): (&Surrogate, &Inputs, Option<Moments>),
         variance: f64,
+        products: &mut Vec<(usize, usize, f64)>,
     ) -> f64 {
         let pairs = left.len();
         if let Some(exact) = self.exact_pairs(left) {
@@ -303,6 +334,7 @@ impl Estimate<'_> {
             if let Some((whole, without)) = whole.contributions(independent).map(|found| found.moments).zip(moments) {
                 add(&mut self.errors, apart(&whole, &without));
             }
+            products.extend(left.iter().zip(&exact).map(|(&(j, k), &value)| (j, k, value)));
             self.sources.push(Source::ExactPairs { pairs });
             return exact.iter().map(|value| value * value).sum::<f64>() / variance;
         }

@@ -62,5 +62,11 @@ pub(super) fn hidden(part: &Univariate, nodes: &[(f64, f64)], centre: f64, shape
     // A rule at the nodes themselves sees nothing of what vanishes there.
     let blind = part.degree() >= 4 && rule.nodes.iter().all(|u| *u == 0.0 || nodes.iter().any(|(node, _)| node == u));
     let tail = if blind { LONG_TAIL * known.part(1.0).curved } else { 0.0 };
-    Some(Hidden { mean: term.mean() - known.mean(), variance: (other - variance).abs() + tail, values })
+    // Matched nodes integrate what vanishes at them: the power after that moves the mean.
+    let sixth = if part.degree() >= 4 { c4 * ratio } else { 4.0 * c2 * ratio * ratio };
+    Some(Hidden {
+        mean: (term.mean() - known.mean()).abs() + 6.0 * sixth.abs(),
+        variance: (other - variance).abs() + tail,
+        values,
+    })
 }

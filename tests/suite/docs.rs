@@ -125,6 +125,7 @@ fn documents() -> Vec<String> {
         "CONTRIBUTING.md",
         "CHANGELOG.md",
         "benches/README.md",
+        "docs/accuracy.md",
         "adapters/PROTOCOL.md",
         "adapters/python/README.md",
     ];

@@ -48,6 +48,11 @@ impl Bends {
         self.slopes[j]
     }
 
+    /// Of the line along which a function of a sum is bent: its curvatures go like the squares of the terms.
+    pub(super) fn bend(&self, j: usize) -> f64 {
+        self.curvatures[j].abs().sqrt().copysign(self.slopes[j])
+    }
+
     /// `sum of b_j b_k u_j u_k` over all pairs but these.
     fn products(&self, u: &[f64], but: &[(usize, usize)]) -> f64 {
         let term = |j: usize| self.slopes[j] * u[j];

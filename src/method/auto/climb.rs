@@ -21,6 +21,9 @@ const PAIRS: f64 = 0.1;
 const LINES: usize = 4;
 const FAR_OUT: f64 = 3.0;
 const WITHIN: f64 = 0.98;
+/// Curvature of this share of the variance has a line of its own, unless the cosine between the two is above that.
+const BENT: f64 = 1e-6;
+const PARALLEL: f64 = 0.9;
 /// Points next to the means stand this far off, in sigmas of every dimension.
 const NEXT_TO: f64 = 1e-3;
 /// Up to so many dimensions pairs are bought one by one: 2 x 18 probes would cost as much.
@@ -181,7 +184,7 @@ impl<'p> Climb<'p> {
             || curved
             || self.refine_rest(&short)
             || self.examine_rest(&short)
-            || near && self.sets < SETS && self.check();
+            || near && self.sets < SETS && self.spent + 2 * CHECKS <= most(self.positions()) && self.check();
         if !found {
             self.rest = Some(if self.short_of_budget { Rest::Budget } else { Rest::Exhausted });
         }
@@ -208,26 +211,35 @@ impl<'p> Climb<'p> {
         wanted.min(self.budget.saturating_sub(begun) / 2 * 2)
     }
 
-    /// Two points far out along the steepest line of every characteristic.
+    /// Two points far out along the steepest line of every characteristic, and two along the one that bends it, where that is
+    /// another.
     fn look_out(&mut self, views: &[View]) -> bool {
         for view in views.iter().take(LINES) {
-            let slopes: Vec<f64> = (0..self.positions()).map(|j| view.bends.slope(j)).collect();
-            let size = slopes.iter().fold(0.0, |size: f64, slope| size.hypot(*slope));
-            if size == 0.0 || self.afford(1, 2) == 0 {
-                continue;
-            }
-            let points = [1.0, -1.0].map(|side| {
-                let at = self.plan.varying().iter().zip(&slopes).map(|(&d, slope)| {
-                    let dimension = &self.problem.dimensions()[d];
-                    let (mean, sigma) = (dimension.mean(), dimension.sigma());
-                    let [lower, upper] = dimension.distribution().map_or([mean; 2], |law| law.support());
-                    let edge = |edge: f64| mean + WITHIN * (edge - mean);
-                    (d, (mean + side * FAR_OUT * slope / size * sigma).clamp(edge(lower), edge(upper)))
+            let steepest: Vec<f64> = (0..self.positions()).map(|j| view.bends.slope(j)).collect();
+            let bent: Vec<f64> = (0..self.positions()).map(|j| view.bends.bend(j)).collect();
+            let size = |line: &[f64]| line.iter().fold(0.0, |size: f64, part| size.hypot(*part));
+            let along = steepest.iter().zip(&bent).map(|(a, b)| a * b).sum::<f64>().abs();
+            let apart =
+                size(&bent).powi(4) > BENT * view.variance() && along < PARALLEL * size(&steepest) * size(&bent);
+            let lines = [(steepest, true), (bent, apart)];
+            for (line, _) in lines.into_iter().filter(|(line, wanted)| *wanted && size(line) > 0.0) {
+                if self.afford(1, 2) == 0 {
+                    continue;
+                }
+                let size = size(&line);
+                let points = [1.0, -1.0].map(|side| {
+                    let at = self.plan.varying().iter().zip(&line).map(|(&d, part)| {
+                        let dimension = &self.problem.dimensions()[d];
+                        let (mean, sigma) = (dimension.mean(), dimension.sigma());
+                        let [lower, upper] = dimension.distribution().map_or([mean; 2], |law| law.support());
+                        let edge = |edge: f64| mean + WITHIN * (edge - mean);
+                        (d, (mean + side * FAR_OUT * part / size * sigma).clamp(edge(lower), edge(upper)))
+                    });
+                    let at: Vec<(usize, f64)> = at.collect();
+                    self.plan.point_at(at)
                 });
-                let at: Vec<(usize, f64)> = at.collect();
-                self.plan.point_at(at)
-            });
-            self.bought.tails.push((view.characteristic, points));
+                self.bought.tails.push((view.characteristic, points));
+            }
         }
         !self.bought.tails.is_empty()
     }

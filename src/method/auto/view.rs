@@ -231,7 +231,7 @@ fn scatter(plan: &DifferencePlan, known: &Known, c: usize, points: &[Point; 2], 
     Some((rise(0)? + rise(1)?).abs() / 6f64.sqrt())
 }
 
-/// What model and surrogate differ by far out along the steepest line.
+/// What model and surrogate differ by far out along the lines on which it was looked.
 fn tail(
     plan: &DifferencePlan,
     known: &Known,
@@ -239,15 +239,16 @@ fn tail(
     bought: &Bought,
     (surrogate, sigma): (&Surrogate, f64),
 ) -> Option<f64> {
-    let (_, points) = bought.tails.iter().find(|(of, _)| *of == c)?;
-    let places = [0, 1].map(|i| plan.standardised(&points[i]));
-    let inputs: Vec<[f64; 2]> = (0..plan.varying().len()).map(|j| [places[0][j], places[1][j]]).collect();
-    let rises = surrogate.rises(&inputs)?;
-    let off = |i: usize| match known.value(&points[i], c) {
-        Some(value) => Some(((value - surrogate.centre) - rises[i]).abs() / sigma),
-        None => failed(known, &points[i], c).then_some(f64::INFINITY),
+    let off = |point: &Point| {
+        let place = plan.standardised(point);
+        let rise = surrogate.rises(&place.iter().map(std::slice::from_ref).collect::<Vec<_>>())?[0];
+        match known.value(point, c) {
+            Some(value) => Some(((value - surrogate.centre) - rise).abs() / sigma),
+            None => failed(known, point, c).then_some(f64::INFINITY),
+        }
     };
-    [off(0), off(1)].into_iter().flatten().filter(|_| sigma > 0.0).reduce(f64::max)
+    let points = bought.tails.iter().filter(|(of, _)| *of == c).flat_map(|(_, points)| points);
+    points.filter_map(off).filter(|_| sigma > 0.0).reduce(f64::max)
 }
 
 /// The probes as one characteristic has answered them.
