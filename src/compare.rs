@@ -190,7 +190,7 @@ pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>
     let samples = options.reference.unwrap_or(if costly { COSTLY_REFERENCE } else { REFERENCE });
     let mut comparison = Comparer { problem, options, run, ran: Vec::new(), not_run: Vec::new() };
     // The cheap ones first: should time run out, the most is known.
-    for procedure in method::ALL.iter().filter(|procedure| procedure.method() != Method::Auto) {
+    for procedure in method::ALL {
         comparison.method(procedure.method(), costly.then_some(samples));
     }
     let drawn = SAMPLES.map(Contender::MonteCarlo).into_iter().chain(QUASI.map(Contender::QuasiMonteCarlo));

@@ -290,8 +290,95 @@ pub enum Warning {
         /// An interval that no assembly leaves, and the boxes of interval arithmetic that it took; for formulas.
         bounds: Option<([f64; 2], usize)>,
     },
-    /// `auto` was asked for.
-    AutoIsSecondOrder,
+    /// Two slopes of a characteristic meet within reach.
+    Kink {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which they do.
+        dimension: String,
+        /// On the left and on the right, per sigma of the dimension, in sigmas of the characteristic.
+        slopes: [f64; 2],
+        /// Between which places, in sigmas off the mean.
+        between: [f64; 2],
+    },
+    /// A characteristic jumps within reach.
+    Discontinuity {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which it does.
+        dimension: String,
+        /// By how many of its sigmas.
+        by: f64,
+        /// Between which places, in sigmas off the mean.
+        between: [f64; 2],
+    },
+    /// Powers beyond the second have a visible part.
+    HigherOrder {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which they have.
+        dimension: String,
+        /// Third and fourth coefficient, in sigmas of the characteristic.
+        coefficients: [f64; 2],
+        /// Whether the surrogate has them.
+        held: bool,
+    },
+    /// Answers next to the means scatter.
+    Scatter {
+        /// The characteristic.
+        characteristic: String,
+        /// What they scatter by, in sigmas of the characteristic.
+        scatter: f64,
+        /// Dimensions whose second difference is no more than that makes.
+        drowned: usize,
+    },
+    /// The model has no value at points of the distribution, though it has one wherever differences were taken.
+    DomainEdgeWithin {
+        /// The characteristic.
+        characteristic: String,
+        /// At how many points.
+        failed: usize,
+        /// Of how many that check.
+        points: usize,
+    },
+    /// Interactions, or what else the surrogate does not have, are in the variance as an unexplained part.
+    InteractionsLeftOut {
+        /// The characteristic.
+        characteristic: String,
+        /// Their share of the variance.
+        share: f64,
+    },
+    /// Model and surrogate differ at the points that check.
+    UntrustedSurrogate {
+        /// The characteristic.
+        characteristic: String,
+        /// The share of the variance that the surrogate does not have.
+        share: f64,
+        /// Points of the model on which the moments rest instead; None where there was no money for them.
+        sampled: Option<u64>,
+    },
+    /// The estimated error is larger than wanted.
+    UnderResolved {
+        /// The characteristic.
+        characteristic: String,
+        /// The relative error of sigma, as estimated.
+        error: f64,
+        /// As wanted.
+        wanted: f64,
+        /// Whether the budget was the reason.
+        budget: bool,
+    },
+    /// Four moments that a distribution with several peaks has.
+    SeveralModes {
+        /// The characteristic.
+        characteristic: String,
+        /// `(skewness^2 + 1)/kurtosis`: 5/9 for a uniform distribution, 1 for one with two values.
+        coefficient: f64,
+    },
+}
+
+fn places([from, to]: [f64; 2]) -> String {
+    format!("between {from:+.2} and {to:+.2} sigma")
 }
 
 fn lie(count: usize) -> &'static str {
@@ -364,7 +451,15 @@ impl Warning {
             Self::CoarseResolution { .. } => "coarse-resolution",
             Self::OutsideBand { .. } => "outside-band",
             Self::NotProven { .. } => "not-proven",
-            Self::AutoIsSecondOrder => "auto-is-second-order",
+            Self::Kink { .. } => "kink",
+            Self::Discontinuity { .. } => "discontinuity",
+            Self::HigherOrder { .. } => "higher-order",
+            Self::Scatter { .. } => "noise",
+            Self::DomainEdgeWithin { .. } => "domain-edge",
+            Self::InteractionsLeftOut { .. } => "interactions-left-out",
+            Self::UntrustedSurrogate { .. } => "untrusted-surrogate",
+            Self::UnderResolved { .. } => "under-resolved",
+            Self::SeveralModes { .. } => "several-modes",
         }
     }
 
@@ -389,6 +484,15 @@ impl Warning {
             | Self::InfeasibleMoments { characteristic, .. }
             | Self::NearInfeasibleMoments { characteristic, .. }
             | Self::NotProven { characteristic, .. }
+            | Self::Kink { characteristic, .. }
+            | Self::Discontinuity { characteristic, .. }
+            | Self::HigherOrder { characteristic, .. }
+            | Self::Scatter { characteristic, .. }
+            | Self::DomainEdgeWithin { characteristic, .. }
+            | Self::InteractionsLeftOut { characteristic, .. }
+            | Self::UntrustedSurrogate { characteristic, .. }
+            | Self::UnderResolved { characteristic, .. }
+            | Self::SeveralModes { characteristic, .. }
             | Self::RssInvalid { characteristic, .. } => Some(characteristic),
             _ => None,
         }
@@ -406,6 +510,9 @@ impl Warning {
             | Self::NoSamplingInterval { dimension, .. }
             | Self::CoarseResolution { dimension, .. }
             | Self::OutsideBand { dimension, .. }
+            | Self::Kink { dimension, .. }
+            | Self::Discontinuity { dimension, .. }
+            | Self::HigherOrder { dimension, .. }
             | Self::SupportEdge { dimension, .. } => Some(dimension),
             Self::LostDerivative { dimensions, .. } => dimensions.first().map(String::as_str),
             _ => None,
@@ -602,9 +709,59 @@ impl Warning {
                      {cut}{lost}"
                 )
             }
-            Self::AutoIsSecondOrder => {
-                "method auto is not built yet and stands for second-order; --method full adds every interaction".into()
-            }
+            Self::Kink { characteristic, dimension, slopes: [left, right], between } => format!(
+                "`{characteristic}` bends along `{dimension}` {}, from a slope of {left:.3} to {right:.3} sigma a sigma: no polynomial                  follows a kink, and moments of one are wrong; use sensitol simulate, or give each branch a characteristic of                  its own",
+                places(*between)
+            ),
+            Self::Discontinuity { characteristic, dimension, by, between } => format!(
+                "`{characteristic}` jumps along `{dimension}` {} by {by:.2} sigma: derivatives mean nothing there; check whether the                  model changes its configuration, and use sensitol simulate",
+                places(*between)
+            ),
+            Self::HigherOrder { characteristic, dimension, coefficients: [third, fourth], held } => format!(
+                "`{characteristic}` is more than a parabola along `{dimension}`: {third:+.2e} u^3 {fourth:+.2e} u^4 sigma; {}",
+                match held {
+                    true => "the moments have that part, and what comes beyond is in the error estimate",
+                    false => "this method leaves it out: use --method six-n or auto",
+                }
+            ),
+            Self::Scatter { characteristic, scatter, drowned } => format!(
+                "answers of `{characteristic}` next to the means scatter by {scatter:.1e} of its sigma{}: no accuracy beyond that                  can be had; solve the model more tightly",
+                match drowned {
+                    0 => String::new(),
+                    1 => ", as much as its curvature along one dimension".to_owned(),
+                    many => format!(", as much as its curvature along {many} dimensions"),
+                }
+            ),
+            Self::DomainEdgeWithin { characteristic, failed, points } => format!(
+                "`{characteristic}` has no value at {failed} of {points} points of the distribution, though it has one wherever                  differences were taken: that part of the assemblies is in no moment and no yield; sensitol simulate counts them"
+            ),
+            Self::InteractionsLeftOut { characteristic, share } => format!(
+                "{:.2} % of the variance of `{characteristic}` is none of what was examined, by comparison with the model: it is                  in sigma, and not in skewness and kurtosis; allow more evaluations, or use --method full",
+                100.0 * share
+            ),
+            Self::UntrustedSurrogate { characteristic, share, sampled } => format!(
+                "the surface through the evaluated points leaves {:.1} % of the variance of `{characteristic}` unexplained; {}",
+                100.0 * share,
+                match sampled {
+                    Some(points) => format!(
+                        "its moments come from {points} points of the model, with the surface as control variate, and carry their                          standard errors"
+                    ),
+                    None =>
+                        "its moments are a guess: allow a sample with --budget, or use sensitol simulate".to_owned(),
+                }
+            ),
+            Self::UnderResolved { characteristic, error, wanted, budget } => format!(
+                "sigma of `{characteristic}` is known to {:.2} % by the estimate, and {:.2} % was wanted; {}",
+                100.0 * error,
+                100.0 * wanted,
+                match budget {
+                    true => "the budget ended before: allow more evaluations",
+                    false => "no further derivative would help: allow a sample with --budget, or use sensitol simulate",
+                }
+            ),
+            Self::SeveralModes { characteristic, coefficient } => format!(
+                "skewness and kurtosis of `{characteristic}` are those of a distribution with two peaks ((skewness^2 + 1)/kurtosis =                  {coefficient:.2}): the Pearson law has one or a trough; look at the histogram of sensitol simulate"
+            ),
         }
     }
 }

@@ -1,12 +1,13 @@
 //! What is known of one characteristic.
 
-use super::SamplingInterval;
+use super::errors::of_yield;
 use super::linear::Linear;
 use super::shares::Shares;
+use super::{SampledModel, SamplingInterval};
 use crate::capability::{Capability, Law};
 use crate::characteristic::Characteristic;
 use crate::extremes::Extremes;
-use crate::method::{Order, Outcome, Residual};
+use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
 use crate::moments::{Moments, Sampled};
 use crate::pearson::PearsonError;
 use crate::problem::Problem;
@@ -22,6 +23,10 @@ pub struct CharacteristicAnalysis {
     pub moments: Option<Moments>,
     /// What sampling the surrogate of correlated inputs leaves uncertain of them; None where they are exact.
     pub sampled: Option<Sampled>,
+    /// Points of the model that the moments rest on, in place of a surrogate that was not trusted.
+    pub model_sampled: Option<SampledModel>,
+    /// How far these results may be off; None without moments.
+    pub error_estimate: Option<ErrorEstimate>,
     /// How far a fitted surface misses the values that it was fitted to; None where nothing was fitted.
     pub residual: Option<Residual>,
     /// The distribution that has these moments, or why none has.
@@ -112,7 +117,8 @@ impl CharacteristicAnalysis {
     pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> Self {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;
-        let shares = Shares::of(fitted, plan.inputs());
+        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+        let shares = Shares::of(fitted, plan.inputs()).map(|shares| shares.beside(unexplained));
         let sensitivities: Vec<Sensitivity> =
             (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
         let interactions = interactions(problem, outcome, c, shares.as_ref());
@@ -130,7 +136,25 @@ impl CharacteristicAnalysis {
             moments.map(|moments| Capability::of(law, moments.mean(), moments.sigma(), characteristic.limits()))
         };
         let normal = moments.and_then(|moments| capability(&Law::normal(&moments).ok()?));
+        let error_estimate = moments.and_then(|moments| {
+            let estimate = estimate(problem, outcome, c, &moments)?;
+            let yield_ = of_yield(&estimate, &moments, characteristic.limits());
+            Some(ErrorEstimate { yield_, ..estimate })
+        });
         let linear = linear(problem, plan.varying(), &sensitivities);
+        let explained = || {
+            let own =
+                sensitivities.iter().flat_map(|one| [one.linear_share, one.curvature_share]).flatten().sum::<f64>();
+            own + interactions.iter().filter_map(|one| one.share).sum::<f64>()
+        };
+        let left_out_share = match (&shares, unexplained) {
+            (Some(Shares::Integrated(integrated)), _) => integrated.left_out,
+            (Some(_), Some(_)) if moments.is_some_and(|moments| moments.sigma() > 0.0) => {
+                Some(1.0 - explained()).map(|share| if share.abs() < 1e-12 { 0.0 } else { share })
+            }
+            (Some(_), _) if complete => Some(0.0),
+            _ => None,
+        };
         let middle = fitted.nominal.zip(linear).map(|(nominal, linear)| nominal + linear.middle);
         Self {
             nominal: fitted.nominal,
@@ -153,10 +177,9 @@ impl CharacteristicAnalysis {
             sensitivities,
             interactions,
             possible_interactions,
-            left_out_share: match &shares {
-                Some(Shares::Integrated(integrated)) => integrated.left_out,
-                shares => (complete && shares.is_some()).then_some(0.0),
-            },
+            left_out_share,
+            error_estimate,
+            model_sampled: None,
         }
     }
 }

@@ -18,6 +18,14 @@ impl Shares {
         }
     }
 
+    /// Beside an independent part with this variance.
+    pub(super) fn beside(self, variance: Option<f64>) -> Self {
+        match (self, variance) {
+            (Self::Surrogate(contributions), Some(variance)) => Self::Surrogate(contributions.beside(variance)),
+            (shares, _) => shares,
+        }
+    }
+
     pub(super) fn moments(&self) -> Moments {
         match self {
             Self::Surrogate(contributions) => contributions.moments,

@@ -1,8 +1,8 @@
 //! Where the results of an analysis rest on something that does not hold.
 
-use super::CharacteristicAnalysis;
+use super::{CharacteristicAnalysis, trust};
 use crate::capability::Law;
-use crate::method::{Basis, Lacking, Method, Order, Outcome};
+use crate::method::{Basis, Lacking, Order, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::surrogate::Surrogate;
@@ -31,12 +31,11 @@ const ATOM: usize = 2;
 const LONG_TAIL: f64 = 1e-3;
 /// A kurtosis that exceeds the least possible by no more than this part is worth one too.
 const MARGIN: f64 = 0.1;
+/// From here on there are more likely two peaks than one: an arc sine law, which has its mass at both ends, has 2/3.
+const MODES: f64 = 0.68;
 
 pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[CharacteristicAnalysis]) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    if outcome.asked == Method::Auto {
-        warnings.push(Warning::AutoIsSecondOrder);
-    }
     warnings.extend(unused(problem));
     for &d in outcome.plan.varying() {
         let moved = |moved: &crate::plan::Moved| Warning::SupportEdge {
@@ -58,10 +57,12 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         warnings.extend(atom(problem, outcome, c));
         warnings.extend(long_tails(problem, outcome, analysis));
         warnings.extend(doubtful(outcome, c, analysis));
+        warnings.extend(trust::of(problem, outcome, c, analysis));
         warnings.extend(not_proven(analysis));
     }
     let possible = outcome.plan.possible_pairs();
-    if outcome.order == Order::Second && outcome.pairs.len() < possible {
+    // What `auto` did not examine stands in its comparison with the model.
+    if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
     warnings
@@ -295,6 +296,10 @@ fn law(analysis: &CharacteristicAnalysis, characteristic: &str) -> Option<Warnin
         Err(error) => Some(Warning::InfeasibleMoments { characteristic, reason: error.to_string() }),
         Ok(Law::Pearson(law)) if law.margin() < MARGIN => {
             Some(Warning::NearInfeasibleMoments { characteristic, skewness: law.skewness(), kurtosis: law.kurtosis() })
+        }
+        Ok(Law::Pearson(law)) => {
+            let coefficient = (law.skewness().powi(2) + 1.0) / law.kurtosis();
+            (coefficient > MODES).then_some(Warning::SeveralModes { characteristic, coefficient })
         }
         Ok(_) => None,
     }

@@ -23,6 +23,8 @@ struct PlanReport {
     count: &'static str,
     varying: usize,
     evaluations: usize,
+    /// The fewest and the most, of a method that chooses as it goes.
+    range: Option<[usize; 2]>,
     stages: Vec<StageReport>,
     /// Whether a search of the extremes follows, whose points nobody knows beforehand.
     extremes: bool,
@@ -71,13 +73,15 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         count: if study.options.derivatives == Some(DerivativeSource::Exact) { EXACT } else { procedure.count() },
         varying: plan.varying().len(),
         evaluations,
+        range: procedure.range(&study.problem, &study.options),
         stages: vec![of_stage(&first)],
         extremes: study.options.extremes,
         dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &*plan, d)).collect(),
     };
     if stages > 1 {
         let left = evaluations - first.points.len();
-        let purposes = vec![PurposeReport { points: left, purpose: Purpose::Pair.words() }];
+        let purpose = if report.range.is_some() { Purpose::Check } else { Purpose::Pair };
+        let purposes = vec![PurposeReport { points: left, purpose: purpose.words() }];
         report.stages.push(StageReport { evaluations: left, known_beforehand: false, purposes });
     }
     if let Some(points) = points {
@@ -121,6 +125,15 @@ fn text(report: &PlanReport) -> String {
         let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };
         lines.push(format!("stage {}: {} points{chosen}", index + 1, stage.evaluations));
         lines.extend(stage.purposes.iter().map(|purpose| format!("  {:>6}  {}", purpose.points, purpose.purpose)));
+    }
+    if let Some([least, most]) = report.range {
+        lines.push(format!(
+            "then more nodes, interactions and probes where they lower the error of sigma: {least} to {most} evaluations in all,"
+        ));
+        lines.push(
+            "and points of the model itself where no surrogate is to be trusted and --budget, or a cheap model, allows"
+                .into(),
+        );
     }
     if report.extremes {
         let search = "then the search of the extremes: 4 points for a linear characteristic, some 2N or more for either side \

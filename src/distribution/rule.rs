@@ -167,6 +167,19 @@ impl Rule {
         self.nodes.iter().zip(&self.weights).map(|(&u, &weight)| weight * f(u)).sum()
     }
 
+    /// The node at this level of the distribution: a rule that integrates every power that is asked of it is as good as the
+    /// distribution itself.
+    pub(crate) fn at_level(&self, level: f64) -> f64 {
+        let mut below = 0.0;
+        for (node, weight) in self.nodes.iter().zip(&self.weights) {
+            below += weight;
+            if level < below {
+                return *node;
+            }
+        }
+        self.nodes[self.nodes.len() - 1]
+    }
+
     fn of_matrix(diagonal: &[f64], squared_off_diagonal: &[f64]) -> Self {
         let n = diagonal.len();
         let matrix = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {

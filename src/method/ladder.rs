@@ -73,13 +73,13 @@ impl Procedure for Ladder {
         let fitted = derivatives.into_iter().enumerate().map(fit).collect();
         let basis = if exact { Basis::Exact } else { Basis::Differences };
         let (asked, method, plan) = (self.method, self.runs, Arc::new(plan) as _);
-        Ok(Outcome { asked, method, basis, plan, evaluated, order: self.order, fitted, pairs })
+        Ok(Outcome { asked, method, basis, plan, evaluated, order: self.order, fitted, pairs, climbed: None })
     }
 }
 
 impl Ladder {
     /// The plan that it would follow.
-    fn differences(&self, problem: &Problem, options: &Options) -> Result<DifferencePlan, MethodError> {
+    pub(super) fn differences(&self, problem: &Problem, options: &Options) -> Result<DifferencePlan, MethodError> {
         if let Some(step) = options.step.filter(|step| !(step.is_finite() && *step > 0.0)) {
             return Err(MethodError::BadStep { step });
         }

@@ -6,11 +6,14 @@
 
 mod auto;
 mod bivariate_dimension_reduction;
+mod check;
 mod classic;
 mod cost;
 mod dimension_reduction;
+mod estimate;
 mod exact;
 mod full;
+mod hidden;
 mod ladder;
 mod options;
 mod outcome;
@@ -22,7 +25,10 @@ mod six_n;
 mod three_point;
 mod worst_case;
 
+pub use auto::{ACCURACY, Climbed, Rest};
+pub use check::Check;
 pub use cost::Cost;
+pub use estimate::{ErrorEstimate, Source, estimate};
 pub use exact::ExactDerivatives;
 pub use options::{DerivativeSource, Options, Pairs};
 pub use outcome::{Basis, Fitted, Integrated, Joint, Lacking, Order, Outcome, Own, Residual};
@@ -104,6 +110,12 @@ pub trait Procedure: Sync {
     fn fits(&self, problem: &Problem, options: &Options) -> Result<Cost, MethodError> {
         let plan = self.plan(problem, options)?;
         Cost::of(&*plan).within(self.name(), problem, options)
+    }
+
+    /// The fewest and the most evaluations of a method that chooses as it goes; None for one whose plan says how many.
+    fn range(&self, problem: &Problem, options: &Options) -> Option<[usize; 2]> {
+        let _ = (problem, options);
+        None
     }
 
     /// The plan that it would follow, whatever the budget.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{ExactDerivatives, Method};
+use super::{Climbed, ExactDerivatives, Method};
 use crate::evaluation::Evaluated;
 use crate::moments::Moments;
 use crate::plan::{Mixed, Plan};
@@ -49,6 +49,8 @@ pub struct Outcome {
     pub fitted: Vec<Fitted>,
     /// The pairs that were examined, as positions among the varying dimensions.
     pub pairs: Vec<(usize, usize)>,
+    /// How `auto` came to its result; None for any other method.
+    pub climbed: Option<Climbed>,
 }
 
 /// What is known of one characteristic.

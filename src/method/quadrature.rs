@@ -375,6 +375,7 @@ impl<'p> Quadrature<'p> {
             order: Order::Second,
             fitted,
             pairs,
+            climbed: None,
         }
     }
 }

@@ -97,7 +97,7 @@ impl Procedure for ResponseSurface {
         let fitted = exact.into_iter().enumerate().map(fit).collect();
         let (method, plan) = (self.method(), Arc::new(design));
         let (basis, order) = (Basis::LeastSquares, Order::Second);
-        Ok(Outcome { asked: method, method, basis, plan, evaluated, order, fitted, pairs })
+        Ok(Outcome { asked: method, method, basis, plan, evaluated, order, fitted, pairs, climbed: None })
     }
 }
 

@@ -5,6 +5,7 @@
 //! asks for what can replace it.
 
 mod axis;
+mod checks;
 mod design;
 mod difference;
 mod factorial;
@@ -15,8 +16,9 @@ mod point;
 mod stage;
 
 pub use axis::{Axis, Node};
+pub use checks::scattered;
 pub use design::Design;
-pub use difference::{DifferencePlan, Layout, Mixed};
+pub use difference::{Corner, DifferencePlan, Layout, Mixed};
 pub use factorial::corners;
 pub use known::Known;
 pub use nodes::{Moved, Nodes, Spread, Tail};
@@ -61,6 +63,24 @@ pub trait Plan: Debug + Send + Sync {
 
     /// The next points, or None when nothing is left that could help.
     fn next(&self, known: &Known) -> Option<Stage>;
+
+    /// How far a characteristic lies above its centre at the nodes of one dimension, by their places in sigmas, ascending;
+    /// None without a value at the means.
+    fn samples(&self, known: &Known, characteristic: usize, dimension: usize) -> Option<Vec<(f64, f64)>> {
+        let centre = known.value(&Point::Centre, characteristic)?;
+        let axis = self.axis(dimension);
+        let on_axis = |node: u32| Point::of(&[At { dimension: dimension as u32, node }]);
+        let fresh = |samples: &[(u32, f64)], node: u32| samples.iter().all(|&(used, _)| used != node);
+        let mut samples: Vec<(u32, f64)> = Vec::new();
+        for slot in &axis.slots {
+            let value = |node: u32| Some((node, known.value(&on_axis(node), characteristic)? - centre));
+            if let Some(answered) = slot.iter().find_map(|&node| value(node)).filter(|(node, _)| fresh(&samples, *node))
+            {
+                samples.push(answered);
+            }
+        }
+        Some(samples.into_iter().map(|(node, rise)| (axis.nodes[node as usize].u, rise)).collect())
+    }
 
     /// Whether a characteristic can depend on the pair of dimensions at these positions.
     fn joint(&self, characteristic: usize, j: usize, k: usize) -> bool {

@@ -6,6 +6,7 @@ mod compare_svg;
 mod compare_text;
 mod csv;
 mod distribution;
+mod estimate;
 mod extremes;
 mod limits;
 pub(crate) mod number;
@@ -28,6 +29,7 @@ pub use compare_svg::compare_svg;
 pub use compare_text::compare_text;
 pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
+pub use estimate::{ErrorEstimateReport, ModelSamplingReport};
 pub use limits::law_text;
 pub use page::{Detail, Style};
 pub use rare::{BeyondReport, DesignPointReport, RareCharacteristicReport, RareReport};
@@ -70,6 +72,8 @@ pub struct Report {
     pub method: &'static str,
     /// Dimensions that vary and matter, N.
     pub varying: usize,
+    /// What `auto` found and bought, in words; null for any other method.
+    pub account: Option<String>,
     /// Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on none.
     pub derivatives: Option<&'static str>,
     /// What the moments rest on, to be printed.
@@ -174,8 +178,10 @@ pub struct CharacteristicReport {
     pub surrogate_sampling: Option<SurrogateSamplingReport>,
     /// How well a surface of least squares fits; null where none was fitted.
     pub least_squares: Option<LeastSquaresReport>,
-    /// How far the results may be off; not estimated yet.
-    pub error_estimate: Option<()>,
+    /// How far the results may be off, by what the method did not see; null without moments.
+    pub error_estimate: Option<ErrorEstimateReport>,
+    /// Points of the model that the moments rest on, where `auto` did not trust its surrogate.
+    pub model_sampling: Option<ModelSamplingReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
     /// Intervals that no assembly leaves.
@@ -358,6 +364,7 @@ impl Report {
             command: "analyze",
             method: analysis.method.name(),
             varying: analysis.varying,
+            account: analysis.account.clone(),
             derivatives: match analysis.basis {
                 Basis::Exact => Some(DerivativeSource::Exact.name()),
                 Basis::Differences => Some(DerivativeSource::Difference.name()),
@@ -433,7 +440,8 @@ impl CharacteristicReport {
                 points: residual.points,
                 coefficients: residual.coefficients,
             }),
-            error_estimate: None,
+            error_estimate: analysis.error_estimate.as_ref().map(ErrorEstimateReport::of),
+            model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
             worst_case: WorstCaseReport::of(analysis),
             middle: analysis.middle,

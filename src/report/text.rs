@@ -21,6 +21,9 @@ pub fn text(report: &Report, style: Style) -> String {
         page.line(&clean(title));
     }
     page.line(&summary(report));
+    if let Some(account) = &report.account {
+        page.wrapped(account);
+    }
     page.line("");
     verdicts(&mut page, report);
     for characteristic in &report.characteristics {
@@ -113,6 +116,7 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
             error(fit.sigma_standard_error)
         ));
     }
+    estimate(page, one);
     if let Some(sampled) = &one.surrogate_sampling {
         page.line(&format!(
             "  sampled from the surrogate, {} points: standard error of sigma {}, skewness {}, kurtosis {}",
@@ -120,6 +124,37 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
             significant(sampled.sigma, 2),
             significant(sampled.skewness, 2),
             significant(sampled.kurtosis, 2)
+        ));
+    }
+}
+
+/// How far all that may be off.
+fn estimate(page: &mut Page, one: &CharacteristicReport) {
+    let Some(estimate) = &one.error_estimate else { return };
+    let part = |name: &str, value: Option<f64>| match value {
+        Some(value) => format!("{name} {}", significant(value, 2)),
+        None => format!("{name} {UNKNOWN}"),
+    };
+    let sigma = match (estimate.sigma, one.sigma) {
+        (Some(error), Some(sigma)) if sigma > 0.0 => {
+            format!("sigma {} ({} %)", significant(error, 2), percent(error / sigma))
+        }
+        (error, _) => part("sigma", error),
+    };
+    let mut parts = vec![part("mean", estimate.mean), sigma];
+    parts.extend([part("skewness", estimate.skewness), part("kurtosis", estimate.kurtosis)]);
+    if one.yield_.is_some() {
+        parts.push(match estimate.yield_ {
+            Some(error) => format!("yield {} %", significant(100.0 * error, 2)),
+            None => part("yield", None),
+        });
+    }
+    page.wrapped(&format!("  estimated errors: {}", parts.join(", ")));
+    page.wrapped(&format!("  they rest on: {}", estimate.basis));
+    if let Some(sampled) = &one.model_sampling {
+        page.wrapped(&format!(
+            "  the surrogate was not trusted: mean to kurtosis from {} points of the model, with it as control variate",
+            sampled.samples
         ));
     }
 }

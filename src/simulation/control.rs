@@ -15,6 +15,7 @@ use super::surrogates::{Known, Shape, Surrogates};
 use super::{ROWS, SimulationError, SimulationOptions};
 use crate::assembly::{Points, Run};
 use crate::characteristic::{Characteristic, SpecLimits};
+use crate::evaluation::Evaluated;
 use crate::method::{Method, Options, Outcome};
 use crate::moments::Sampled;
 use crate::problem::Problem;
@@ -69,20 +70,22 @@ impl<'p> Control<'p> {
         run: &Run<'_>,
     ) -> Result<Self, SimulationError> {
         let Surrogates { outcome, known } = Surrogates::of(problem, asked, run)?;
-        let twin = |(known, characteristic): (Option<Known>, &Characteristic)| {
-            known.map(|Known { surrogate, moments, sampled }| Twin {
-                centre: surrogate.centre,
-                surrogate,
-                method: outcome.method,
-                evaluations: outcome.evaluated.evaluations,
-                moments,
-                sampled,
-                limits: characteristic.limits(),
-                outside: None,
-            })
-        };
-        let twins = known.into_iter().zip(problem.characteristics()).map(twin).collect();
+        let twins = twins(problem, &outcome, known);
         let mut control = Self { problem, twins, outcome };
+        control.count_outside(options)?;
+        Ok(control)
+    }
+
+    /// Of an analysis that has been made, whose points are not counted again.
+    pub(super) fn beside_of(
+        problem: &'p Problem,
+        outcome: &Outcome,
+        options: &SimulationOptions,
+    ) -> Result<Self, SimulationError> {
+        let known = Surrogates::known_of(problem, outcome);
+        let mut outcome = outcome.clone();
+        outcome.evaluated = Evaluated::nothing(problem);
+        let mut control = Self { problem, twins: twins(problem, &outcome, known), outcome };
         control.count_outside(options)?;
         Ok(control)
     }
@@ -145,6 +148,23 @@ impl<'p> Control<'p> {
         }
         Ok(())
     }
+}
+
+/// The surrogates as they stand beside the model.
+fn twins(problem: &Problem, outcome: &Outcome, known: Vec<Option<Known>>) -> Vec<Option<Twin>> {
+    let twin = |(known, characteristic): (Option<Known>, &Characteristic)| {
+        known.map(|Known { surrogate, moments, sampled }| Twin {
+            centre: surrogate.centre,
+            surrogate,
+            method: outcome.method,
+            evaluations: outcome.evaluated.evaluations,
+            moments,
+            sampled,
+            limits: characteristic.limits(),
+            outside: None,
+        })
+    };
+    known.into_iter().zip(problem.characteristics()).map(twin).collect()
 }
 
 impl Twin {

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::assembly::{Ask, EvaluationError, Responses, Run};
-use crate::method::{MethodError, Options};
+use crate::method::{MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
 use control::Control;
@@ -199,9 +199,31 @@ pub fn simulate_within(
     }
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
-    let begun = Instant::now();
     let control = options.control.as_ref().map(|asked| Control::of(problem, asked, options, run)).transpose()?;
-    let control = control.as_ref();
+    Ok(drawn(problem, options, (&draws, control.as_ref()), run, pace))
+}
+
+/// Samples the model beside the surrogates of an analysis that has been made; those that it has not stand beside nothing.
+/// Counts what is evaluated now only.
+pub(crate) fn simulate_beside(
+    problem: &Problem,
+    options: &SimulationOptions,
+    outcome: &Outcome,
+    run: &Run<'_>,
+) -> Result<Simulation, SimulationError> {
+    let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
+    let control = Control::beside_of(problem, outcome, options)?;
+    Ok(drawn(problem, options, (&draws, Some(&control)), run, &|_| {}))
+}
+
+fn drawn(
+    problem: &Problem,
+    options: &SimulationOptions,
+    (draws, control): (&Draws<'_>, Option<&Control<'_>>),
+    run: &Run<'_>,
+    pace: &dyn Fn(Pace),
+) -> Simulation {
+    let begun = Instant::now();
     let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly);
     let (mut reached, mut expected) = (None, portions.total as f64);
@@ -210,7 +232,7 @@ pub fn simulate_within(
         if batch.is_empty() {
             break;
         }
-        let one = |portion: &Portion| block(problem, &draws, *portion, run, (tally.lenses(), control));
+        let one = |portion: &Portion| block(problem, draws, *portion, run, (tally.lenses(), control));
         let blocks: Vec<Block> = match portions.costly {
             true => batch.iter().map(one).collect(),
             false => batch.par_iter().map(one).collect(),
@@ -227,7 +249,7 @@ pub fn simulate_within(
         }
     }
     let stopped = tally.stopped || control.is_some_and(Control::stopped) || reached != Some(true) && !portions.done();
-    Ok(tally.finish(options, stopped, reached))
+    tally.finish(options, stopped, reached)
 }
 
 /// Evaluates one portion.

@@ -48,14 +48,18 @@ impl Surrogates {
         let outcome = asked.method.procedure().run(problem, &asked, run)?;
         let mut surrogates = Self { known: Vec::new(), outcome };
         if !surrogates.outcome.evaluated.stopped {
-            let known = (0..problem.characteristics().len()).map(|c| surrogates.of_one(problem, c));
+            let known = (0..problem.characteristics().len()).map(|c| Self::of_one(problem, &surrogates.outcome, c));
             surrogates.known = known.collect::<Result<_, _>>()?;
         }
         Ok(surrogates)
     }
 
-    fn of_one(&self, problem: &Problem, c: usize) -> Result<Option<Known>, SimulationError> {
-        let outcome = &self.outcome;
+    /// Those that an analysis has, for every characteristic; None where it has none.
+    pub(super) fn known_of(problem: &Problem, outcome: &Outcome) -> Vec<Option<Known>> {
+        (0..problem.characteristics().len()).map(|c| Self::of_one(problem, outcome, c).ok().flatten()).collect()
+    }
+
+    fn of_one(problem: &Problem, outcome: &Outcome, c: usize) -> Result<Option<Known>, SimulationError> {
         let unknown = |reason: &str| SimulationError::NoSurrogate {
             characteristic: problem.characteristics()[c].name().to_owned(),
             method: outcome.method.name(),

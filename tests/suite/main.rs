@@ -1,7 +1,9 @@
 //! Every test of the project, a module per theme; `cargo test --test suite moments::` runs one theme.
 
+mod accuracy;
 mod analysis;
 mod architecture;
+mod auto;
 mod capability;
 mod cli;
 mod control;
