@@ -26,6 +26,13 @@ impl Points {
         Self { rows, dimensions: point.len(), values }
     }
 
+    /// Columns that `column` writes, given their place.
+    pub(crate) fn written(rows: usize, dimensions: usize, mut column: impl FnMut(usize, &mut [f64])) -> Self {
+        let mut points = Self { rows, dimensions, values: vec![0.0; rows * dimensions] };
+        (0..dimensions).for_each(|dimension| column(dimension, points.column_mut(dimension)));
+        points
+    }
+
     /// A point per row; every row must have the same length.
     pub fn from_rows<R: AsRef<[f64]>>(rows: &[R]) -> Self {
         let dimensions = rows.first().map_or(0, |row| row.as_ref().len());
