@@ -33,6 +33,12 @@ impl Points {
         points
     }
 
+    /// From all values, a column after the other.
+    pub(crate) fn of_values(rows: usize, dimensions: usize, values: Vec<f64>) -> Self {
+        assert_eq!(values.len(), rows * dimensions, "columns of different length");
+        Self { rows, dimensions, values }
+    }
+
     /// A point per row; every row must have the same length.
     pub fn from_rows<R: AsRef<[f64]>>(rows: &[R]) -> Self {
         let dimensions = rows.first().map_or(0, |row| row.as_ref().len());

@@ -254,10 +254,14 @@ impl Composite {
         let rows = points.rows();
         let mut answers = Responses::open(rows, needed.len());
         if let (Some(model), false) = (&self.model, needed.is_empty()) {
-            let points = Points::written(rows, model.inputs.len(), |input, column| match model.inputs[input] {
-                Source::Dimension(dimension) => column.copy_from_slice(points.column(dimension)),
-                Source::Fixed(value) => column.fill(value),
-            });
+            let mut values = Vec::with_capacity(rows * model.inputs.len());
+            for source in &model.inputs {
+                match *source {
+                    Source::Dimension(dimension) => values.extend_from_slice(points.column(dimension)),
+                    Source::Fixed(value) => values.resize(values.len() + rows, value),
+                }
+            }
+            let points = Points::of_values(rows, model.inputs.len(), values);
             model.function.evaluate(&Ask::values(&points, needed), run, &mut answers);
         }
         answers

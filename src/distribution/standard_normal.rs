@@ -57,11 +57,12 @@ impl Work for Quantiles<'_> {
     fn work(self) {
         let (mut places, mut outer, mut found) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
         let mut count = 0;
-        for (place, value) in self.0.iter_mut().enumerate() {
+        for (place, value) in self.0.iter().enumerate() {
             (places[count], outer[count]) = (place, *value);
-            let q = value.abs() - 0.5;
-            count += usize::from(q < -CENTRAL);
-            *value = central(q).copysign(-*value);
+            count += usize::from(value.abs() - 0.5 < -CENTRAL);
+        }
+        for value in self.0.iter_mut() {
+            *value = central(value.abs() - 0.5).copysign(-*value);
         }
         let mut far = false;
         for (z, tail) in found[..count].iter_mut().zip(&outer) {

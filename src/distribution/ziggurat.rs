@@ -5,10 +5,14 @@ use std::sync::LazyLock;
 use rand::{Rng, RngExt};
 use rand_distr::Open01;
 
+use crate::elementary::{Elementary, Exp, Ln, Work, on_this_processor};
+
 /// Layers: the density is cut into as many pieces of one area.
 const LAYERS: usize = 256;
 /// Where the tail begins, which with its rectangle is the first piece.
-const TAIL: f64 = 3.654_152_885_361_008_8;
+const TAIL: f64 = 3.654_152_885_361_009;
+/// Fewer values than this are not worth a block.
+const FEW: usize = 8;
 /// Random words that are drawn at once.
 const WORDS: usize = 64;
 
@@ -19,14 +23,14 @@ struct Layers {
 }
 
 static NORMAL: LazyLock<Layers> = LazyLock::new(|| {
-    let density = |x: f64| libm::exp(-0.5 * x * x);
+    let density = |x: f64| Exp::of(-0.5 * x * x);
     let beyond = (0.5 * std::f64::consts::PI).sqrt() * libm::erfc(TAIL * std::f64::consts::FRAC_1_SQRT_2);
     let area = TAIL * density(TAIL) + beyond;
     let mut width = [0.0; LAYERS + 1];
     (width[0], width[1]) = (area / density(TAIL), TAIL);
     for layer in 2..LAYERS {
         let height = area / width[layer - 1] + density(width[layer - 1]);
-        width[layer] = (-2.0 * libm::log(height)).sqrt();
+        width[layer] = (-2.0 * Ln::of(height)).sqrt();
     }
     Layers { width, height: width.map(density) }
 });
@@ -38,21 +42,50 @@ static NORMAL: LazyLock<Layers> = LazyLock::new(|| {
 /// and a comparison, and comes after the block.
 pub(crate) fn normals(rng: &mut dyn Rng, out: &mut [f64]) {
     let layers = &*NORMAL;
-    let mut bytes = [[0; 8]; WORDS];
-    let mut doubtful = [0; WORDS];
+    if out.len() < FEW {
+        return out.iter_mut().for_each(|value| *value = layers.draw(rng));
+    }
+    let (mut words, mut doubtful) = ([[0; 8]; WORDS], [false; WORDS]);
     for out in out.chunks_mut(WORDS) {
-        let bytes = &mut bytes[..out.len()];
-        rng.fill_bytes(bytes.as_flattened_mut());
-        let mut doubts = 0;
-        for (place, (value, bytes)) in out.iter_mut().zip(bytes.iter()).enumerate() {
-            let (layer, x) = layers.place(u64::from_le_bytes(*bytes));
-            *value = x;
-            doubtful[doubts % WORDS] = place;
-            doubts += usize::from(x.abs() >= layers.width[layer + 1]);
+        let (words, doubtful) = (&mut words[..out.len()], &mut doubtful[..out.len()]);
+        rng.fill_bytes(words.as_flattened_mut());
+        on_this_processor(Inner { layers, words: &*words, out: &mut *out, doubtful: &mut *doubtful });
+        for (eighth, doubtful) in doubtful.chunks(8).enumerate() {
+            if doubtful.iter().fold(false, |any, one| any | one) {
+                for place in (8 * eighth..).take(doubtful.len()).filter(|place| doubtful[place - 8 * eighth]) {
+                    let settled = layers.settled(u64::from_le_bytes(words[place]), rng);
+                    out[place] = settled.unwrap_or_else(|| layers.draw(rng));
+                }
+            }
         }
-        for &place in &doubtful[..doubts] {
-            let word = u64::from_le_bytes(bytes[place]);
-            out[place] = layers.settled(word, rng).unwrap_or_else(|| layers.draw(rng));
+    }
+}
+
+/// The values of words that lie in the inner part of their layer, and which do not.
+struct Inner<'a> {
+    layers: &'a Layers,
+    words: &'a [[u8; 8]],
+    out: &'a mut [f64],
+    doubtful: &'a mut [bool],
+}
+
+impl Work for Inner<'_> {
+    type Output = ();
+
+    /// Tables first, one by one; then what goes side by side.
+    #[inline(always)]
+    fn work(self) {
+        let Self { layers, words, out, doubtful } = self;
+        let (mut outer, mut inner) = ([0.0; WORDS], [0.0; WORDS]);
+        for ((outer, inner), word) in outer.iter_mut().zip(&mut inner).zip(words) {
+            let layer = usize::from(word[0]);
+            (*outer, *inner) = (layers.width[layer], layers.width[layer + 1]);
+        }
+        for ((out, word), outer) in out.iter_mut().zip(words).zip(&outer) {
+            *out = symmetric(u64::from_le_bytes(*word)) * outer;
+        }
+        for ((doubtful, x), inner) in doubtful.iter_mut().zip(&*out).zip(&inner) {
+            *doubtful = x.abs() >= *inner;
         }
     }
 }
@@ -84,12 +117,12 @@ impl Layers {
         if layer > 0 {
             let [low, high] = [self.height[layer], self.height[layer + 1]];
             let height = low + (high - low) * rng.random::<f64>();
-            return (height < libm::exp(-0.5 * x * x)).then_some(x);
+            return (height < Exp::of(-0.5 * x * x)).then_some(x);
         }
         loop {
             // Marsaglia's (1964) tail.
-            let beyond = -libm::log(rng.sample::<f64, _>(Open01)) / TAIL;
-            if -2.0 * libm::log(rng.sample::<f64, _>(Open01)) >= beyond * beyond {
+            let beyond = -Ln::of(rng.sample(Open01)) / TAIL;
+            if -2.0 * Ln::of(rng.sample(Open01)) >= beyond * beyond {
                 return Some((TAIL + beyond).copysign(x));
             }
         }

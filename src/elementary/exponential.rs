@@ -3,7 +3,7 @@
 use super::Elementary;
 
 /// `ln 2`, its first 32 bits and the rest.
-const LN_2: [f64; 2] = [6.931_471_803_691_238_164_90e-1, 1.908_214_929_270_587_700_02e-10];
+const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
 
 /// `exp(x)`.
 pub(crate) struct Exp;
@@ -12,11 +12,11 @@ pub(crate) struct Exp;
 pub(crate) struct Ln;
 
 const P: [f64; 5] = [
-    1.666_666_666_666_660_190_37e-1,
-    -2.777_777_777_701_559_338_42e-3,
-    6.613_756_321_437_934_361_17e-5,
-    -1.653_390_220_546_525_153_90e-6,
-    4.138_136_797_057_238_460_39e-8,
+    0.166_666_666_666_666_02,
+    -0.002_777_777_777_701_559_3,
+    6.613_756_321_437_934e-5,
+    -1.653_390_220_546_525_2e-6,
+    4.138_136_797_057_238_5e-8,
 ];
 
 impl Elementary for Exp {
@@ -33,7 +33,7 @@ impl Elementary for Exp {
         let value = 1.0 + (r * c / (2.0 - c) - low + high);
         // The whole number, twice negative or not, moves into the exponent.
         let power = rounding.to_bits().wrapping_add(1023) << 52;
-        (value * f64::from_bits(power), !(x.abs() <= 708.0))
+        (value * f64::from_bits(power), (x.abs() > 708.0) | x.is_nan())
     }
 
     fn apart(x: f64) -> f64 {
@@ -42,13 +42,13 @@ impl Elementary for Exp {
 }
 
 const L: [f64; 7] = [
-    6.666_666_666_666_735_130e-1,
-    3.999_999_999_940_941_908e-1,
-    2.857_142_874_366_239_149e-1,
-    2.222_219_843_214_978_396e-1,
-    1.818_357_216_161_805_012e-1,
-    1.531_383_769_920_937_332e-1,
-    1.479_819_860_511_658_591e-1,
+    0.666_666_666_666_673_5,
+    0.399_999_999_994_094_2,
+    0.285_714_287_436_623_9,
+    0.222_221_984_321_497_84,
+    0.181_835_721_616_180_5,
+    0.153_138_376_992_093_73,
+    0.147_981_986_051_165_86,
 ];
 
 /// `ln` of a normal number above 0.
@@ -72,7 +72,7 @@ fn logarithm(x: f64) -> f64 {
 impl Elementary for Ln {
     #[inline(always)]
     fn lane(x: f64) -> (f64, bool) {
-        (logarithm(x), !((f64::MIN_POSITIVE..=f64::MAX).contains(&x)))
+        (logarithm(x), !(f64::MIN_POSITIVE..=f64::MAX).contains(&x))
     }
 
     fn apart(x: f64) -> f64 {

@@ -5,25 +5,21 @@ use std::f64::consts::FRAC_PI_2;
 use super::{Elementary, choose, mask};
 
 /// What the double `pi/2` lacks.
-const LACKS: f64 = 6.123_233_995_736_766_035_87e-17;
+const LACKS: f64 = 6.123_233_995_736_766e-17;
 
 /// `acos(x)`, in radians.
 pub(crate) struct Acos;
 
 const P: [f64; 6] = [
-    1.666_666_666_666_666_574_15e-1,
-    -3.255_658_186_224_009_154_05e-1,
-    2.012_125_321_348_629_258_81e-1,
-    -4.005_553_450_067_941_140_27e-2,
-    7.915_349_942_898_145_321_76e-4,
-    3.479_331_075_960_211_675_70e-5,
+    0.166_666_666_666_666_66,
+    -0.325_565_818_622_400_9,
+    0.201_212_532_134_862_93,
+    -0.040_055_534_500_679_41,
+    0.000_791_534_994_289_814_5,
+    3.479_331_075_960_212e-5,
 ];
-const Q: [f64; 4] = [
-    -2.403_394_911_734_414_218_78,
-    2.020_945_760_233_505_694_71,
-    -6.882_839_716_054_532_930_30e-1,
-    7.703_815_055_590_193_527_91e-2,
-];
+const Q: [f64; 4] =
+    [-2.403_394_911_734_414, 2.020_945_760_233_505_7, -0.688_283_971_605_453_3, 0.077_038_150_555_901_94];
 
 impl Elementary for Acos {
     /// In the middle by the arc sine, towards the ends by that of half the angle.
@@ -43,7 +39,7 @@ impl Elementary for Acos {
         let low = (z - high * high) / (s + high);
         let right = 2.0 * (high + (r * s + low));
         let outer = choose(mask(x < 0.0), left, right);
-        (choose(middle, inner, outer), !(size < 1.0))
+        (choose(middle, inner, outer), (size >= 1.0) | x.is_nan())
     }
 
     fn apart(x: f64) -> f64 {

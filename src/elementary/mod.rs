@@ -9,9 +9,10 @@
 //! processor or the system's library. Therefore there is no fused multiply-add here, which some processors have and others
 //! imitate slowly, and the compiler makes none by itself.
 //!
-//! **Accuracy.** `sin`, `cos`, `exp`, `ln` and `acos` are within one unit in the last place, `tan` within two and a half: the
-//! tests compare with values of 60 digits. Polynomials and their order are those of fdlibm (Sun Microsystems 1993); angles
-//! are reduced by parts of pi/2 (Cody and Waite 1980) with the rounding of the difference carried along.
+//! **Accuracy.** At 2200 arguments whose values are known to 60 digits `ln` is off by at most 0.50 units in the last place,
+//! `cos` 0.58, `sin` 0.65, `exp` 0.70, `acos` 0.83 and `tan` 1.40. Arguments of any size are good: the largest are left to
+//! `libm`. Polynomials and their order are those of fdlibm (Sun Microsystems 1993); angles are reduced by parts of pi/2 (Cody
+//! and Waite 1980) with the rounding of the difference carried along.
 //!
 //! **Why no library.** `sleef` wants an unstable compiler; `wide` takes the instructions from the compiler's command line and
 //! fuses where those can, so that its values change from build to build. What runs on which processor is chosen by `pulp`,
@@ -20,6 +21,9 @@
 mod exponential;
 mod inverse;
 mod trigonometric;
+
+#[cfg(test)]
+mod tests;
 
 use std::marker::PhantomData;
 

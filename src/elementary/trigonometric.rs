@@ -44,31 +44,30 @@ fn reduced(x: f64) -> Reduced {
     let first = x - n * PARTS[0];
     let part = n * PARTS[1];
     let second = first - part;
-    // What the second difference has lost (Knuth 1969), less the third part.
-    let back = second - first;
-    let lost = (first - (second - back)) - (part + back);
-    let less = n * PARTS[2] - lost;
+    // What the second difference has lost, without a comparison since the first is a multiple of the last digit of the part
+    // (Boldo, Graillat and Muller 2017), against the third part.
+    let less = n * PARTS[2] - ((first - second) - part);
     let rest = second - less;
     let tail = (second - rest) - less;
     let near = (rest.abs() < NEAREST) & (n != 0.0);
-    Reduced { quarters: rounding.to_bits(), rest, tail, apart: !(x.abs() <= FARTHEST) | near }
+    Reduced { quarters: rounding.to_bits(), rest, tail, apart: (x.abs() > FARTHEST) | x.is_nan() | near }
 }
 
 const S: [f64; 6] = [
-    -1.666_666_666_666_663_243_48e-1,
-    8.333_333_333_322_489_461_24e-3,
-    -1.984_126_982_985_794_931_34e-4,
-    2.755_731_370_707_006_767_89e-6,
-    -2.505_076_025_340_686_341_95e-8,
-    1.589_690_995_211_550_102_21e-10,
+    -0.166_666_666_666_666_32,
+    0.008_333_333_333_322_49,
+    -0.000_198_412_698_298_579_5,
+    2.755_731_370_707_006_8e-6,
+    -2.505_076_025_340_686_3e-8,
+    1.589_690_995_211_55e-10,
 ];
 const C: [f64; 6] = [
-    4.166_666_666_666_660_190_37e-2,
-    -1.388_888_888_887_410_957_49e-3,
-    2.480_158_728_947_672_941_78e-5,
-    -2.755_731_435_139_066_330_35e-7,
-    2.087_572_321_298_174_827_90e-9,
-    -1.135_964_755_778_819_482_65e-11,
+    0.041_666_666_666_666_6,
+    -0.001_388_888_888_887_411,
+    2.480_158_728_947_673e-5,
+    -2.755_731_435_139_066_3e-7,
+    2.087_572_321_298_175e-9,
+    -1.135_964_755_778_819_5e-11,
 ];
 
 /// `sin` between `-pi/4` and `pi/4`.

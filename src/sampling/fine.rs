@@ -37,7 +37,7 @@ impl Scale {
         /// Added, it leaves the nearest whole number, which stands in its last bits.
         const ROUNDING: f64 = (1u64 << 52) as f64;
         let u = ((value - self.middle) / self.spread).clamp(-FAR, FAR);
-        let place = (arsinh(u) / WIDTH + SIDE as f64).clamp(0.0, (2 * SIDE - 1) as f64);
+        let place = (arsinh(u) * (1.0 / WIDTH) + SIDE as f64).clamp(0.0, (2 * SIDE - 1) as f64);
         let rounded = place + ROUNDING;
         let down = u32::from(rounded - ROUNDING > place);
         (rounded.to_bits() as u32).wrapping_sub(down).min(2 * SIDE as u32 - 1)
