@@ -10,6 +10,7 @@ pub mod compare;
 pub mod correlation;
 pub mod dimension;
 pub mod distribution;
+mod elementary;
 pub mod error;
 pub mod evaluation;
 pub mod extremes;

@@ -33,6 +33,7 @@ mod triangular;
 mod truncated_normal;
 mod uniform;
 mod weibull;
+pub(crate) mod ziggurat;
 
 pub use beta::Beta;
 pub use central_moments::CentralMoments;

@@ -35,6 +35,13 @@ pub trait Probability: Send + Sync {
     /// The value above which the probability is `p`, with the digits of a small `p`; NaN where `p` is no probability.
     fn upper_quantile(&self, p: f64) -> f64;
 
+    /// Puts quantiles in the place of probabilities above 0, counted from the nearer end: `p` from below, `-p` from above.
+    fn quantiles(&self, tails: &mut [f64]) {
+        for tail in tails {
+            *tail = if *tail < 0.0 { self.upper_quantile(-*tail) } else { self.quantile(*tail) };
+        }
+    }
+
     /// Fills `out` with independent random values.
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
         for value in out {

@@ -57,7 +57,7 @@ impl Procedure for BivariateDimensionReduction {
     }
 
     fn count(&self) -> &'static str {
-        "8N^2-4N+1"
+        "8N^2-4N+1 with 5 nodes"
     }
 
     fn check(&self, _: &Problem, options: &Options) -> Result<(), MethodError> {

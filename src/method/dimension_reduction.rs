@@ -48,7 +48,7 @@ impl Procedure for DimensionReduction {
     }
 
     fn count(&self) -> &'static str {
-        "4N+1"
+        "4N+1 with 5 nodes"
     }
 
     fn check(&self, _: &Problem, options: &Options) -> Result<(), MethodError> {

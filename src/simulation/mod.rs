@@ -149,7 +149,7 @@ pub enum SimulationError {
     #[error(transparent)]
     Method(#[from] MethodError),
     /// There is no surrogate to stand beside a characteristic.
-    #[error("`{characteristic}` has no surrogate by {method} to control with: {reason}; simulate it by itself")]
+    #[error("`{characteristic}` has no surrogate by {method}: {reason}; simulate it by itself")]
     NoSurrogate {
         /// The characteristic.
         characteristic: String,

@@ -1,5 +1,6 @@
 //! What comes in, counted: the same whatever the order in which threads finish.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use super::characteristic::{Evidence, SimulatedCharacteristic};
@@ -50,7 +51,11 @@ impl Block {
     /// `beside` has for every output the surrogate and its rises at the same points, where there is one.
     pub(super) fn of(out: &Responses, took: Duration, lenses: &[Lens], beside: &[Option<(&Twin, Vec<f64>)>]) -> Self {
         let open = |row: usize| (0..out.outputs()).all(|output| out.is_open(row, output));
-        let answered = (0..out.rows()).filter(|&row| !open(row)).count();
+        let full = |output: usize| out.column(output).iter().fold(true, |all, value| all & !value.is_nan());
+        let answered = match (0..out.outputs()).any(full) {
+            true => out.rows(),
+            false => (0..out.rows()).filter(|&row| !open(row)).count(),
+        };
         let mut lost: Vec<usize> = out.errors().map(|(row, ..)| row).collect();
         lost.dedup();
         Self {
@@ -69,7 +74,10 @@ impl Block {
 
 impl Column {
     fn of(out: &Responses, output: usize, lens: &Lens, beside: Option<&(&Twin, Vec<f64>)>) -> Self {
-        let values: Vec<f64> = out.column(output).iter().copied().filter(|value| !value.is_nan()).collect();
+        let mut values = Cow::Borrowed(out.column(output));
+        if values.iter().fold(false, |any, value| any | value.is_nan()) {
+            values.to_mut().retain(|value| !value.is_nan());
+        }
         let count = |beyond: &dyn Fn(f64) -> bool| values.iter().filter(|&&value| beyond(value)).count() as u64;
         let mut errors = out.errors().filter(|&(_, of, _)| of == output).map(|(_, _, error)| error);
         let error = errors.next().cloned();
@@ -85,8 +93,8 @@ impl Column {
             failed: u64::from(error.is_some()) + errors.count() as u64,
             error,
             values: match lens.scale {
-                None => Values::Plain(values),
-                Some(scale) => Values::Binned(values.into_iter().map(|value| scale.bin(value)).collect()),
+                None => Values::Plain(values.into_owned()),
+                Some(scale) => Values::Binned(scale.bins(&values)),
             },
         }
     }
@@ -186,7 +194,7 @@ impl<'a> Tally<'a> {
                 let Some(scale) = lens.scale else { continue };
                 let fine = replicate.fine.get_or_insert_with(|| Fine::new(scale));
                 match column.values {
-                    Values::Plain(values) => values.into_iter().for_each(|value| fine.count(scale.bin(value))),
+                    Values::Plain(values) => scale.bins(&values).into_iter().for_each(|bin| fine.count(bin)),
                     Values::Binned(bins) => bins.into_iter().for_each(|bin| fine.count(bin)),
                 }
             }

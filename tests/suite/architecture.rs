@@ -29,7 +29,7 @@ const LAYERS: &[&[&str]] = &[
     &["dimension", "characteristic"],
     &["distribution", "fits"],
     &["pearson"],
-    &["names"],
+    &["names", "elementary"],
 ];
 
 fn layer(module: &str) -> usize {
