@@ -255,6 +255,12 @@ pub enum MethodError {
         /// The number given.
         nodes: usize,
     },
+    /// An accuracy that is no positive number.
+    #[error("the accuracy is the relative error of sigma that is wanted, a number above 0, not {accuracy}")]
+    BadAccuracy {
+        /// The accuracy given.
+        accuracy: f64,
+    },
     /// A step that is no positive number.
     #[error("the step must be a number of sigmas above 0, not {step}")]
     BadStep {

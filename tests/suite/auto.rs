@@ -248,6 +248,14 @@ fn other_methods_say_what_they_did_not_see() {
     close(six.mean.unwrap(), 0.0, 1e-12, 1.0);
 }
 
+#[test]
+fn an_accuracy_is_a_positive_number() {
+    for accuracy in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let problem = Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
+        assert!(analyze(&problem, &auto(accuracy)).unwrap_err().to_string().starts_with("the accuracy is"));
+    }
+}
+
 /// Points of one set are the same for everybody; no coordinate is out of its distribution.
 #[test]
 fn points_that_check_are_of_the_distribution() {

@@ -66,6 +66,8 @@ fn analyze_prints_json() {
 fn plan_says_what_would_be_evaluated() {
     insta::assert_snapshot!("plan-six-n", run(&["plan", ENGINE]));
     insta::assert_snapshot!("plan-full", run(&["plan", "examples/shaft-and-bore/study.toml", "-m", "full", "--json"]));
+    insta::assert_snapshot!("plan-auto", run(&["plan", ENGINE, "-m", "auto"]));
+    insta::assert_snapshot!("analyze-auto", run(&["analyze", "examples/stacked-blocks/study.toml", "-m", "auto"]));
     insta::assert_snapshot!("plan-dimension-reduction", run(&["plan", ENGINE, "-m", "dimension-reduction"]));
     insta::assert_snapshot!("plan-response-surface", run(&["plan", ENGINE, "-m", "response-surface"]));
     let matched = "examples/matched-pair/study.toml";
@@ -144,6 +146,9 @@ fn wrong_input() {
         &["analyze", ENGINE, "--step", "0"],
         &["analyze", ENGINE, "--step", "nan"],
         &["analyze", ENGINE, "--accuracy", "much"],
+        &["analyze", ENGINE, "--accuracy", "0"],
+        &["analyze", ENGINE, "--method", "auto", "--budget", "18"],
+        &["analyze", ENGINE, "--method", "auto", "--pairs", "adjacent"],
         &["analyze", ENGINE, "--threads", "0"],
         &["analyze", ENGINE, "--pairs", "R"],
         &["analyze", ENGINE, "--pairs", "R:Q"],

@@ -156,6 +156,9 @@ impl Procedure for Auto {
 
 fn climb<'p>(problem: &'p Problem, options: &Options) -> Result<Climb<'p>, MethodError> {
     let accuracy = options.accuracy.unwrap_or(ACCURACY);
+    if !(accuracy.is_finite() && accuracy > 0.0) {
+        return Err(MethodError::BadAccuracy { accuracy });
+    }
     Ok(Climb::new(problem, BASE.differences(problem, options)?, accuracy, options.budget))
 }
 
