@@ -135,7 +135,7 @@ impl Weighed {
         };
         let unseen = UNSEEN * self.next() / n;
         Some(Found {
-            probability: Some(Estimate { value, standard_error: (self.points > 1).then(|| error) }),
+            probability: Some(Estimate { value, standard_error: (self.points > 1).then_some(error) }),
             interval: [low, (value + (high - value).hypot(unseen)).min(1.0)],
             bounds: [value, value + self.unknown / n].map(|bound| bound.min(1.0)),
             hits: self.hits,

@@ -1,7 +1,7 @@
 //! Rare events: the probability beyond each limit, by importance sampling that is placed with the surrogate.
 //!
 //! A yield of 0.999997 is out of the reach of plain sampling: a million evaluations see three rejects. The surrogate of a few
-//! hundred evaluations knows nearly where these lie. Points are drawn there, from a [mixture](mixture) of densities beyond the
+//! hundred evaluations knows nearly where these lie. Points are drawn there, from a mixture of densities beyond the
 //! surrogate's limit, near it, and the inputs' own, and the model itself says which of them are rejects. With `h_k` the
 //! height of component k relative to the inputs' density and `a_k` its part of the n points,
 //!

@@ -81,9 +81,11 @@ mod tests {
         for cut in 0..=rows.len() {
             let mut joint = Joint::of(&rows[..cut]);
             joint.merge(&Joint::of(&rows[cut..]));
-            assert_eq!((joint.count(), joint.means()), (4, &[2.0, 1.5]));
+            assert_eq!(joint.count(), 4);
             // A few roundings of sums near 20.
             let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-13, "{found} for {expected}");
+            near(joint.means()[0], 2.0);
+            near(joint.means()[1], 1.5);
             near(joint.products[0][0], 10.0);
             near(joint.products[1][1], 21.0);
             near(joint.products[0][1], 1.0);

@@ -88,8 +88,9 @@ fn random_standard_errors_cover_the_truth() {
 
 #[test]
 fn quasi_random_standard_errors_cover_the_truth() {
-    for (problem, truth) in [engine(), lognormal()] {
-        let hits = covered(&problem, truth, 65_536, Sampler::Sobol);
+    // The lognormal's kurtosis wants more points before its replicates say how uncertain it is.
+    for ((problem, truth), samples) in [(engine(), 65_536), (lognormal(), 262_144)] {
+        let hits = covered(&problem, truth, samples, Sampler::Sobol);
         assert!(hits.iter().all(|hits| COVERED.contains(hits)), "{hits:?} of {SEEDS}");
     }
 }

@@ -66,12 +66,12 @@ impl Bends {
         let line = |j: usize| self.slopes[j] * u[j];
         let bend = |j: usize| self.curvatures[j] * u[j] * u[j];
         let [mut p1, mut p2, mut p3, mut bends, mut own, mut cubes] = [0.0; 6];
-        for j in 0..u.len() {
+        for (j, &at) in u.iter().enumerate() {
             let term = line(j);
             (p1, p2, p3) = (p1 + term, p2 + term * term, p3 + term.powi(3));
             (bends, own) = (bends + bend(j), own + bend(j) * term);
             if self.parabola[j] && self.slopes[j] != 0.0 {
-                cubes += 2.0 / 3.0 * self.curvatures[j].powi(2) / self.slopes[j] * (u[j].powi(3) - 3.0 * u[j]);
+                cubes += 2.0 / 3.0 * self.curvatures[j].powi(2) / self.slopes[j] * (at.powi(3) - 3.0 * at);
             }
         }
         let direct: f64 = but.iter().map(|&(j, k)| bend(j) * line(k) + bend(k) * line(j)).sum();

@@ -333,8 +333,8 @@ impl<'p> Climb<'p> {
 
     fn refine(&mut self, wanted: &[bool]) -> bool {
         let mut found = false;
-        for j in 0..wanted.len() {
-            if !wanted[j] || self.refined[j] || self.afford(1, 2) == 0 {
+        for (j, &wanted) in wanted.iter().enumerate() {
+            if !wanted || self.refined[j] || self.afford(1, 2) == 0 {
                 continue;
             }
             self.refined[j] = true;

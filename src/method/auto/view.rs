@@ -11,6 +11,9 @@ use crate::moments::{Interactions, Moments};
 use crate::plan::{DifferencePlan, Known, Mixed, Plan, Point};
 use crate::surrogate::{Surrogate, Univariate};
 
+/// Mixed derivatives by pair.
+type Products = BTreeMap<(usize, usize), Mixed>;
+
 /// Every dimension up or down, and all turned round.
 #[derive(Debug, Clone)]
 pub(super) struct Probe {
@@ -268,7 +271,7 @@ impl<'a> Screened<'a> {
         known: &Known,
         bought: &'a Bought,
         c: usize,
-        (centre, parts, products): (f64, &[Option<Univariate>], &BTreeMap<(usize, usize), Mixed>),
+        (centre, parts, products): (f64, &[Option<Univariate>], &Products),
     ) -> Option<Self> {
         if bought.judging.is_empty() {
             return None;
