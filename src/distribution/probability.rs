@@ -2,6 +2,8 @@
 
 use rand::{Rng, RngExt};
 
+use super::standard_normal;
+
 /// Density, probabilities, quantiles and samples, in the dimension's own unit.
 ///
 /// Both tails are asked for by name, because `1 - cdf` and `quantile(1 - p)` have lost the digits that a small tail needs.
@@ -49,6 +51,11 @@ pub trait Probability: Send + Sync {
             *value = if upper { self.upper_quantile(p) } else { self.quantile(p) };
         }
     }
+}
+
+/// The value that stands where `z` stands in a standard normal distribution, with the digits of the nearer tail.
+pub(crate) fn behind_normal(law: &dyn Probability, z: f64) -> f64 {
+    if z < 0.0 { law.quantile(standard_normal::cdf(z)) } else { law.upper_quantile(standard_normal::sf(z)) }
 }
 
 /// A random probability of at most one half and the end that it is counted from, so that both tails are as fine.

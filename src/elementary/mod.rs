@@ -14,8 +14,7 @@
 //! `libm`. Polynomials and their order are those of fdlibm (Sun Microsystems 1993); angles are reduced by parts of pi/2 (Cody
 //! and Waite 1980) with the rounding of the difference carried along.
 //!
-//! **Why no library.** `sleef` wants an unstable compiler; `wide` takes the instructions from the compiler's command line and
-//! fuses where those can, so that its values change from build to build. What runs on which processor is chosen by `pulp`,
+//! **Why no library.** `sleef` wants an unstable compiler, and `wide` takes the instructions from the compiler's command line. What runs on which processor is chosen by `pulp`,
 //! which the linear algebra brings along and which needs no unsafe code here.
 
 mod exponential;

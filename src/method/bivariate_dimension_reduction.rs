@@ -71,11 +71,7 @@ impl Procedure for BivariateDimensionReduction {
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
         let Planes { quadrature, cuts, planes } = self.planes(problem, options)?;
         let evaluated = quadrature.evaluated(self.name(), problem, options, run)?;
-        let n = quadrature.design.varying().len();
-        let all = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k)));
-        let joint =
-            |&(j, k): &(usize, usize)| (0..problem.characteristics().len()).any(|c| quadrature.design.joint(c, j, k));
-        let pairs: Vec<(usize, usize)> = all.filter(joint).collect();
+        let pairs = quadrature.design.pairs();
         let found = (0..problem.characteristics().len())
             .map(|c| {
                 let known = &evaluated.known;

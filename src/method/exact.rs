@@ -1,6 +1,6 @@
 //! Exact derivatives in the place of differences.
 
-use super::{DerivativeSource, MethodError, Order};
+use super::{DerivativeSource, MethodError, Options, Order};
 use crate::assembly::{Derivatives, Directions};
 use crate::plan::{DifferencePlan, Mixed, Plan};
 use crate::problem::Problem;
@@ -33,6 +33,22 @@ impl ExactDerivatives {
         };
         let derivatives = problem.function().derivatives(problem.outputs(), &directions);
         derivatives.into_iter().map(|derivatives| derivatives.map(known)).collect()
+    }
+
+    /// Those that a report shows beside what was evaluated, with the mixed ones of these pairs of positions; none where only
+    /// differences are wanted.
+    pub(super) fn beside(
+        problem: &Problem,
+        plan: &dyn Plan,
+        options: &Options,
+        pairs: &[(usize, usize)],
+    ) -> Vec<Option<Self>> {
+        if options.derivatives == Some(DerivativeSource::Difference) {
+            return vec![None; problem.characteristics().len()];
+        }
+        let mut all = Self::of(problem, plan);
+        Self::add_pairs(&mut all, problem, plan, pairs);
+        all
     }
 
     /// Adds the mixed ones of these pairs of positions.

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::assembly::Run;
 use crate::correlation::Correlation;
-use crate::distribution::{Distribution, Normal, Rule, StandardMoments, standard_normal};
+use crate::distribution::{Distribution, Normal, Rule, StandardMoments, behind_normal};
 use crate::evaluation::{Evaluated, evaluate};
 use crate::plan::{At, Design, Known, Mixed, Plan, Point, Purpose};
 use crate::problem::Problem;
@@ -171,8 +171,7 @@ impl<'p> Variables<'p> {
         let law = distribution.probability().expect("a correlated dimension is known whole");
         let x = match distribution.name() == Normal::NAME {
             true => mean + sigma * z,
-            false if z < 0.0 => law.quantile(standard_normal::cdf(z)),
-            false => law.upper_quantile(standard_normal::sf(z)),
+            false => behind_normal(law, z),
         };
         (d, if (x - mean).abs() <= SAME * sigma { mean } else { x })
     }
@@ -342,14 +341,7 @@ impl<'p> Quadrature<'p> {
     ) -> Outcome {
         let Self { variables, design, reference } = self;
         let problem = variables.problem;
-        let exact = match options.derivatives {
-            Some(DerivativeSource::Difference) => vec![None; problem.characteristics().len()],
-            _ => {
-                let mut all = ExactDerivatives::of(problem, &design);
-                ExactDerivatives::add_pairs(&mut all, problem, &design, &pairs);
-                all
-            }
-        };
+        let exact = ExactDerivatives::beside(problem, &design, options, &pairs);
         let at_means = reference == Point::Centre;
         let fitted = found.into_iter().zip(exact).enumerate().map(|(c, ((integrated, mixed), exact))| {
             let part = |d: usize| part(&design, &evaluated.known, c, d, at_means);

@@ -28,8 +28,8 @@ use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
 use super::{
-    Basis, Cost, DerivativeSource, ExactDerivatives, Fitted, Lacking, Method, MethodError, Options, Order, Outcome,
-    Procedure, Residual, cost,
+    Basis, Cost, ExactDerivatives, Fitted, Lacking, Method, MethodError, Options, Order, Outcome, Procedure, Residual,
+    cost,
 };
 use crate::assembly::Run;
 use crate::evaluation::evaluate;
@@ -80,19 +80,8 @@ impl Procedure for ResponseSurface {
         Cost::of(&design).within(self.name(), problem, options)?;
         problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
         let evaluated = evaluate(problem, &design, run);
-        let n = design.varying().len();
-        let all = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k)));
-        let characteristics = 0..problem.characteristics().len();
-        let joint = |&(j, k): &(usize, usize)| characteristics.clone().any(|c| design.joint(c, j, k));
-        let pairs: Vec<(usize, usize)> = all.filter(joint).collect();
-        let exact = match options.derivatives {
-            Some(DerivativeSource::Difference) => vec![None; problem.characteristics().len()],
-            _ => {
-                let mut all = ExactDerivatives::of(problem, &design);
-                ExactDerivatives::add_pairs(&mut all, problem, &design, &pairs);
-                all
-            }
-        };
+        let pairs = design.pairs();
+        let exact = ExactDerivatives::beside(problem, &design, options, &pairs);
         let fit = |(c, exact)| Fitted { exact, ..fitted(&design, &places, &evaluated.known, c, &pairs) };
         let fitted = exact.into_iter().enumerate().map(fit).collect();
         let (method, plan) = (self.method(), Arc::new(design));

@@ -75,11 +75,7 @@ impl Procedure for ThreePoint {
         Cost { evaluations: grid.len(), stages: 1 }.within(self.name(), problem, options)?;
         let points = grid.points(&mut quadrature);
         let evaluated = quadrature.evaluated(self.name(), problem, options, run)?;
-        let n = quadrature.design.varying().len();
-        let all = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k)));
-        let joint =
-            |&(j, k): &(usize, usize)| (0..problem.characteristics().len()).any(|c| quadrature.design.joint(c, j, k));
-        let pairs: Vec<(usize, usize)> = all.filter(joint).collect();
+        let pairs = quadrature.design.pairs();
         let found = (0..problem.characteristics().len())
             .map(|c| {
                 let values = grid.values(&points, &evaluated.known, c);

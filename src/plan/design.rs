@@ -101,6 +101,13 @@ impl Design {
         }
     }
 
+    /// The pairs of positions on which some characteristic can depend.
+    pub fn pairs(&self) -> Vec<(usize, usize)> {
+        let n = self.varying.len();
+        let matters = |&(j, k): &(usize, usize)| (0..self.depends.len()).any(|c| self.joint(c, j, k));
+        (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k))).filter(matters).collect()
+    }
+
     /// Takes over what an axis of a difference plan knows beside its nodes: what was moved into the support, and a tail.
     pub(crate) fn take_notes(&mut self, dimension: usize, axis: Axis) {
         (self.axes[dimension].moved, self.axes[dimension].tail) = (axis.moved, axis.tail);
@@ -146,9 +153,7 @@ impl Plan for Design {
     }
 
     fn possible_pairs(&self) -> usize {
-        let n = self.varying.len();
-        let matters = |j: usize, k: usize| (0..self.depends.len()).any(|c| self.joint(c, j, k));
-        (0..n).map(|j| (j + 1..n).filter(|&k| matters(j, k)).count()).sum()
+        self.pairs().len()
     }
 
     fn cost(&self) -> (usize, usize) {

@@ -16,7 +16,7 @@ use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
-use super::place::{Place, dot};
+use super::place::Place;
 use super::space::Columns;
 use super::target::Target;
 use crate::distribution::standard_normal;
@@ -134,12 +134,10 @@ impl<'a> Mixture<'a> {
             (0..self.dimensions).map(|_| (0..rows).map(|_| rng.sample(StandardNormal)).collect()).collect();
         let Some(Beyond { place, shift }) = component else { return columns };
         let place = &self.places[place];
-        for row in 0..rows {
-            for (direction, spread) in &place.spreads {
-                let along: f64 = columns.iter().zip(direction).map(|(column, part)| column[row] * part).sum();
-                for (column, part) in columns.iter_mut().zip(direction) {
-                    column[row] += (spread - 1.0) * along * part;
-                }
+        for (direction, spread) in &place.spreads {
+            let across = along(&columns, direction);
+            for (column, part) in columns.iter_mut().zip(direction) {
+                column.iter_mut().zip(&across).for_each(|(z, across)| *z += (spread - 1.0) * across * part);
             }
         }
         let Crossing { along, crossing, .. } = self.crossing(place, &columns);
@@ -175,23 +173,18 @@ impl<'a> Mixture<'a> {
     /// does so at the place itself.
     fn crossing(&self, place: &Place, points: &Columns) -> Crossing {
         let rows = points.first().map_or(0, Vec::len);
-        let mut along = vec![0.0; rows];
-        for (column, part) in points.iter().zip(&place.direction) {
-            along.iter_mut().zip(column).for_each(|(along, z)| *along += part * z);
-        }
+        let along_it = along(points, &place.direction);
         let mut spread = vec![1.0; rows];
         for (direction, by) in &place.spreads {
-            for (row, spread) in spread.iter_mut().enumerate() {
-                let at: Vec<f64> = points.iter().map(|column| column[row]).collect();
-                let across = dot(&at, direction);
+            for (spread, across) in spread.iter_mut().zip(along(points, direction)) {
                 *spread *= (-0.5 * across * across * (1.0 / (by * by) - 1.0)).exp() / by;
             }
         }
         let crossing = match place.crossed {
-            true => self.secant(place, points, &along),
+            true => self.secant(place, points, &along_it),
             false => vec![place.distance; rows],
         };
-        Crossing { along, crossing, spread }
+        Crossing { along: along_it, crossing, spread }
     }
 
     /// Six steps of the secant method; where they lead nowhere, the distance of the place.
@@ -225,4 +218,13 @@ impl<'a> Mixture<'a> {
         }
         now
     }
+}
+
+/// How far every point lies in a direction.
+fn along(points: &Columns, direction: &[f64]) -> Vec<f64> {
+    let mut along = vec![0.0; points.first().map_or(0, Vec::len)];
+    for (column, part) in points.iter().zip(direction) {
+        along.iter_mut().zip(column).for_each(|(along, z)| *along += part * z);
+    }
+    along
 }

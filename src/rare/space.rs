@@ -7,7 +7,7 @@ use faer::Mat;
 
 use crate::correlation::Transform;
 use crate::dimension::Dimension;
-use crate::distribution::{Probability, standard_normal};
+use crate::distribution::{Probability, behind_normal};
 use crate::method::Outcome;
 use crate::problem::Problem;
 use crate::sampling::SamplingError;
@@ -76,12 +76,9 @@ impl<'p> Space<'p> {
     pub(super) fn values(&self, normals: &Columns) -> Columns {
         let mut columns = self.together(normals);
         for (input, column) in self.inputs.iter().zip(&mut columns) {
+            let normal = input.transform.is_normal();
             for z in column {
-                *z = match (input.transform.is_normal(), *z < 0.0) {
-                    (true, _) => input.mean + input.sigma * *z,
-                    (false, true) => input.law.quantile(standard_normal::cdf(*z)),
-                    (false, false) => input.law.upper_quantile(standard_normal::sf(*z)),
-                };
+                *z = if normal { input.mean + input.sigma * *z } else { behind_normal(input.law, *z) };
             }
         }
         columns

@@ -8,6 +8,7 @@ mod csv;
 mod distribution;
 mod estimate;
 mod extremes;
+mod head;
 mod limits;
 pub(crate) mod number;
 mod page;
@@ -30,6 +31,7 @@ pub use compare_text::compare_text;
 pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
 pub use estimate::{ErrorEstimateReport, ModelSamplingReport};
+pub use head::Head;
 pub use limits::law_text;
 pub use page::{Detail, Style};
 pub use rare::{BeyondReport, DesignPointReport, RareCharacteristicReport, RareReport};
@@ -58,16 +60,9 @@ pub const SCHEMA: u32 = 1;
 /// The report of an analysis, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
-    /// The version of this shape.
-    pub schema: u32,
-    /// The version of the program.
-    pub sensitol: &'static str,
-    /// The study's title.
-    pub title: Option<String>,
-    /// SHA-256 of the study file and the files of measured values that it reads.
-    pub study_sha256: String,
-    /// The command that made the report.
-    pub command: &'static str,
+    /// What every report begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// The method that was run.
     pub method: &'static str,
     /// Dimensions that vary and matter, N.
@@ -357,11 +352,7 @@ impl Report {
     /// The report of an analysis.
     pub fn of(problem: &Problem, analysis: &Analysis, about: About) -> Self {
         Self {
-            schema: SCHEMA,
-            sensitol: env!("CARGO_PKG_VERSION"),
-            title: about.title,
-            study_sha256: about.sha256,
-            command: "analyze",
+            head: Head::of("analyze", &about),
             method: analysis.method.name(),
             varying: analysis.varying,
             account: analysis.account.clone(),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{About, CorrelationReport, DimensionReport, SCHEMA, WarningReport, correlation};
+use super::{About, CorrelationReport, DimensionReport, Head, WarningReport, correlation};
 use crate::problem::Problem;
 use crate::rare::{Beyond, RareCharacteristic, RareEvents};
 use crate::warning::Warning;
@@ -13,16 +13,9 @@ const HEAVY: f64 = 0.25;
 /// The report of rare events, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RareReport {
-    /// The version of this shape.
-    pub schema: u32,
-    /// The version of the program.
-    pub sensitol: &'static str,
-    /// The study's title.
-    pub title: Option<String>,
-    /// SHA-256 of the study file.
-    pub study_sha256: String,
-    /// The command that made the report.
-    pub command: &'static str,
+    /// What every report begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// `importance-sampling`.
     pub method: &'static str,
     /// The method of the surrogate that it was placed with.
@@ -122,11 +115,7 @@ impl RareReport {
     pub fn of(problem: &Problem, found: &RareEvents, about: About) -> Self {
         let warnings: Vec<Warning> = found.characteristics.iter().flat_map(|one| warnings(one, found)).collect();
         Self {
-            schema: SCHEMA,
-            sensitol: env!("CARGO_PKG_VERSION"),
-            title: about.title,
-            study_sha256: about.sha256,
-            command: "simulate",
+            head: Head::of("simulate", &about),
             method: "importance-sampling",
             surrogate: found.method.name(),
             samples: found.samples,

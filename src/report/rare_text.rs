@@ -4,6 +4,7 @@ use super::limits::share;
 use super::number::{UNKNOWN, plain, significant};
 use super::page::{Grid, Page, Style, clean, short};
 use super::rare::{BeyondReport, RareCharacteristicReport, RareReport};
+use super::simulation_text::judged;
 
 /// Dimensions of a design point that are shown: those that move farthest.
 const SHOWN: usize = 6;
@@ -11,7 +12,7 @@ const SHOWN: usize = 6;
 /// Rare events as text: every probability with its interval, and the assembly in which it most likely comes about.
 pub fn rare_text(report: &RareReport, style: Style) -> String {
     let mut page = Page::new(style);
-    if let Some(title) = &report.title {
+    if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
     let failed = if report.failed > 0 { format!(", {} failed", report.failed) } else { String::new() };
@@ -64,12 +65,7 @@ fn characteristic(page: &mut Page, one: &RareCharacteristicReport, report: &Rare
         }
     }
     if let Some([low, high]) = one.yield_interval {
-        let target = match (one.target_yield, one.met) {
-            (Some(target), Some(true)) => format!(", target {}: met", share(1.0 - target)),
-            (Some(target), Some(false)) => format!(", target {}: MISSED", share(1.0 - target)),
-            (Some(target), None) => format!(", target {}: the sample does not tell", share(1.0 - target)),
-            (None, _) => String::new(),
-        };
+        let target = judged(one.target_yield, one.met);
         let value = one.yield_.map_or(UNKNOWN.to_owned(), |value| share(1.0 - value));
         page.line(&format!("  yield {value}, 95 % interval {} to {}{target}", share(1.0 - low), share(1.0 - high)));
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::distribution::{NAMES, OptionalQuantiles};
-use super::{About, CorrelationReport, DimensionReport, SCHEMA, WarningReport, correlation};
+use super::{About, CorrelationReport, DimensionReport, Head, WarningReport, correlation};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation};
@@ -12,16 +12,9 @@ use crate::warning::Warning;
 /// The report of a simulation, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SimulationReport {
-    /// The version of this shape.
-    pub schema: u32,
-    /// The version of the program.
-    pub sensitol: &'static str,
-    /// The study's title.
-    pub title: Option<String>,
-    /// SHA-256 of the study file.
-    pub study_sha256: String,
-    /// The command that made the report.
-    pub command: &'static str,
+    /// What every report begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// `monte-carlo` or `quasi-monte-carlo`.
     pub method: &'static str,
     /// `random` or `sobol`.
@@ -168,11 +161,7 @@ impl SimulationReport {
         let (method, sampler) = names(simulation.sampler);
         let found: Vec<Warning> = simulation.characteristics.iter().filter_map(failed).collect();
         Self {
-            schema: SCHEMA,
-            sensitol: env!("CARGO_PKG_VERSION"),
-            title: about.title,
-            study_sha256: about.sha256,
-            command: "simulate",
+            head: Head::of("simulate", &about),
             method,
             sampler,
             samples: simulation.samples,

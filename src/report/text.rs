@@ -17,7 +17,7 @@ const NEWS: f64 = 1e-4;
 /// The report as text, without its warnings.
 pub fn text(report: &Report, style: Style) -> String {
     let mut page = Page::new(style);
-    if let Some(title) = &report.title {
+    if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
     page.line(&summary(report));

@@ -8,7 +8,7 @@ use super::sobol::{SOBOL_DIMENSIONS, Sobol, mixed, scrambled};
 use crate::assembly::Points;
 use crate::correlation::Correlation;
 use crate::dimension::Dimension;
-use crate::distribution::{Probability, standard_normal, ziggurat};
+use crate::distribution::{Probability, behind_normal, standard_normal, ziggurat};
 use crate::elementary::{Work, on_this_processor};
 
 /// How points are drawn.
@@ -178,12 +178,7 @@ impl<'a> Draws<'a> {
                 }
             }
             for value in column {
-                let z = *value;
-                *value = match (transform.is_normal(), z < 0.0) {
-                    (true, _) => mean + sigma * z,
-                    (false, true) => law.quantile(standard_normal::cdf(z)),
-                    (false, false) => law.upper_quantile(standard_normal::sf(z)),
-                };
+                *value = if transform.is_normal() { mean + sigma * *value } else { behind_normal(law, *value) };
             }
         }
     }

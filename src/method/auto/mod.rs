@@ -168,11 +168,7 @@ fn outcome(problem: &Problem, options: &Options, climb: Climb<'_>, evaluated: Ev
     let views = climb.views(known);
     let plan = &climb.plan;
     let pairs = listed(&climb, &views);
-    let mut exact = match options.derivatives {
-        None => ExactDerivatives::of(problem, plan),
-        Some(_) => vec![None; views.len()],
-    };
-    ExactDerivatives::add_pairs(&mut exact, problem, plan, &pairs);
+    let exact = ExactDerivatives::beside(problem, plan, options, &pairs);
     let fit = |(c, (view, exact)): (usize, (&Option<View>, Option<ExactDerivatives>))| {
         let part = |d: usize| plan.part(known, c, d);
         let mixed = |pair: &(usize, usize)| {
