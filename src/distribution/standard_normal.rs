@@ -28,7 +28,7 @@ pub(crate) fn quantile(p: f64) -> f64 {
     if p < 0.5 { lower_tail(p) } else { -lower_tail(1.0 - p) }
 }
 
-/// Puts quantiles in the place of probabilities to one half, as [`Probability::quantiles`](super::Probability::quantiles).
+/// Puts quantiles in the place of probabilities, as [`Probability::quantiles`](super::Probability::quantiles).
 pub(crate) fn quantiles(tails: &mut [f64]) {
     for tails in tails.chunks_mut(LANES) {
         on_this_processor(Quantiles(tails));
@@ -59,21 +59,27 @@ impl Work for Quantiles<'_> {
         let mut count = 0;
         for (place, value) in self.0.iter().enumerate() {
             (places[count], outer[count]) = (place, *value);
-            count += usize::from(value.abs() - 0.5 < -CENTRAL);
+            count += usize::from((value.abs() - 0.5).abs() > CENTRAL);
         }
         for value in self.0.iter_mut() {
-            *value = central(value.abs() - 0.5).copysign(-*value);
+            *value = from_end(*value, central(value.abs() - 0.5));
         }
         let mut far = false;
         for (z, tail) in found[..count].iter_mut().zip(&outer) {
             let (value, beyond) = near_tail(tail.abs());
-            far |= beyond;
-            *z = value.copysign(-tail);
+            far |= beyond | (tail.abs() > 0.5);
+            *z = from_end(*tail, value);
         }
-        for ((&place, z), tail) in places[..count].iter().zip(&found).zip(&outer) {
-            self.0[place] = if far { lower_tail(tail.abs()).copysign(-tail) } else { *z };
+        for ((&place, z), &tail) in places[..count].iter().zip(&found).zip(&outer) {
+            self.0[place] = if far { from_end(tail, quantile(tail.abs())) } else { *z };
         }
     }
+}
+
+/// A quantile counted from below where the probability was, and from above where that was negative.
+#[inline(always)]
+fn from_end(tail: f64, quantile: f64) -> f64 {
+    if tail < 0.0 { -quantile } else { quantile }
 }
 
 /// Above which the probability is `p`.
