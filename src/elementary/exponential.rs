@@ -79,10 +79,3 @@ impl Elementary for Ln {
         libm::log(x)
     }
 }
-
-/// `ln(u + sqrt(u^2 + 1))`, to a few ulp of 1 or of itself, whichever is more; for `|u|` to 1e150.
-#[inline(always)]
-pub(crate) fn arsinh(u: f64) -> f64 {
-    let size = u.abs();
-    logarithm(size + (size * size + 1.0).sqrt()).copysign(u)
-}

@@ -28,7 +28,7 @@ use std::marker::PhantomData;
 
 use pulp::{Arch, Simd, WithSimd};
 
-pub(crate) use exponential::{Exp, Ln, arsinh};
+pub(crate) use exponential::{Exp, Ln};
 pub(crate) use inverse::Acos;
 pub(crate) use trigonometric::{Cos, Sin, Tan};
 

@@ -1,9 +1,9 @@
 //! Counts in fine bins: quantiles of any number of values in flat memory.
 
-use crate::elementary::{Work, arsinh, on_this_processor};
+use crate::elementary::{Work, on_this_processor};
 
-/// The bins: equal on the scale of `asinh(u)`, `u` in units of a spread about a middle, so that they are fine in the
-/// centre, wider far out, and reach as far as anything goes.
+/// The bins: even from each power of two to the next of `1 + |u|`, `u` in units of a spread about a middle, so that they are
+/// fine in the centre, wider far out, and reach as far as anything goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     middle: f64,
@@ -18,10 +18,12 @@ pub struct Fine {
     total: u64,
 }
 
-/// Width of a bin on the scale of `asinh(u)`; a quantile is interpolated within it, which errs by its square.
-const WIDTH: f64 = 1e-3;
-/// Bins on either side: to `asinh` of a million spreads; what is farther out counts in the last one.
-const SIDE: usize = 14_600;
+/// Bins between two powers of two, as a power of two: 1/1024 of a spread at the middle.
+const EVEN: u32 = 10;
+/// Powers of two on either side; what is farther out than a million spreads counts in the last bin.
+const OCTAVES: usize = 20;
+/// Bins on either side.
+const SIDE: usize = OCTAVES << EVEN;
 
 impl Scale {
     /// About a middle with a spread, as a first look at the values gave them; where nothing is spread, 1 stands for it.
@@ -29,18 +31,16 @@ impl Scale {
         Self { middle, spread: if spread > 0.0 && spread.is_finite() { spread } else { 1.0 } }
     }
 
-    /// The bin of a value.
+    /// The bin of a value: exponent and first digits of `1 + |u|` as they stand in the double. A value on an edge lies above it.
     #[inline(always)]
     pub fn bin(&self, value: f64) -> u32 {
-        /// Beyond the last bin.
-        const FAR: f64 = 2e6;
-        /// Added, it leaves the nearest whole number, which stands in its last bits.
-        const ROUNDING: f64 = (1u64 << 52) as f64;
-        let u = ((value - self.middle) / self.spread).clamp(-FAR, FAR);
-        let place = (arsinh(u) * (1.0 / WIDTH) + SIDE as f64).clamp(0.0, (2 * SIDE - 1) as f64);
-        let rounded = place + ROUNDING;
-        let down = u32::from(rounded - ROUNDING > place);
-        (rounded.to_bits() as u32).wrapping_sub(down).min(2 * SIDE as u32 - 1)
+        const UNUSED: u32 = f64::MANTISSA_DIGITS - 1 - EVEN;
+        const ONE: i64 = (1.0f64.to_bits() >> UNUSED) as i64;
+        let u = (value - self.middle) / self.spread;
+        let below = u < 0.0;
+        let place = (((1.0 + u.abs()).to_bits() - u64::from(below)) >> UNUSED) as i64 - ONE;
+        let place = if below { -1 - place } else { place } as i32;
+        (SIDE as i32 + place).clamp(0, 2 * SIDE as i32 - 1) as u32
     }
 
     /// The bins of some values.
@@ -50,7 +50,15 @@ impl Scale {
 
     /// The lower end of a bin, or a place within one.
     fn edge(&self, place: f64) -> f64 {
-        self.middle + self.spread * ((place - SIDE as f64) * WIDTH).sinh()
+        let even = f64::from(1u32 << EVEN);
+        let from_middle = place - SIDE as f64;
+        let octave = (from_middle.abs() / even).floor();
+        let u = octave.exp2() * (1.0 + from_middle.abs() / even - octave) - 1.0;
+        self.middle + self.spread * u.copysign(from_middle)
+    }
+
+    fn width(&self, bin: usize) -> f64 {
+        self.edge(bin as f64 + 1.0) - self.edge(bin as f64)
     }
 }
 
@@ -119,9 +127,9 @@ impl Fine {
     /// one neighbour to the other, and less as it changes less.
     pub fn blur(&self, rank: f64) -> f64 {
         let Some((bin, _)) = self.bin_of_rank(rank) else { return 0.0 };
-        let count = |bin: Option<usize>| bin.and_then(|bin| self.counts.get(bin)).map_or(0.0, |&count| count as f64);
-        let [before, own, after] = [bin.checked_sub(1), Some(bin), Some(bin + 1)].map(count);
-        let width = self.scale.edge(bin as f64 + 1.0) - self.scale.edge(bin as f64);
+        let density = |bin: usize| self.counts.get(bin).map_or(0.0, |&count| count as f64 / self.scale.width(bin));
+        let [before, own, after] = [bin.checked_sub(1).map_or(0.0, density), density(bin), density(bin + 1)];
+        let width = self.scale.width(bin);
         match before + after == 0.0 {
             true => width,
             false => width * 0.125 * ((after - before).abs() / own).min(8.0),

@@ -45,7 +45,7 @@ pub struct SimulationOptions {
     ///
     /// Where the model fails at some points, their differences are taken to be like the others'. The kurtosis of what is far
     /// from the surrogate wants more points than a plain one before its standard error is right: of a lognormal with log-sd
-    /// 0.15 two of them hold 89 % at 20 000 random points and 94 % at 100 000.
+    /// 0.15 two of them hold 88 % at 20 000 random points and 94 % at 100 000.
     pub control: Option<Options>,
 }
 
@@ -111,8 +111,8 @@ impl Pace {
 
 /// Simulates a problem.
 ///
-/// Evaluations: as many as samples. Memory: flat in the number of samples: a quarter of a megabyte of counts for each
-/// characteristic, four for Sobol's points. The numbers are the same for any number of threads.
+/// Evaluations: as many as samples. Memory: flat in the number of samples: a third of a megabyte of counts for each
+/// characteristic, five for Sobol's points. The numbers are the same for any number of threads.
 ///
 /// # Errors
 /// When a dimension cannot be sampled, or the model cannot be used at all; nothing is evaluated then.

@@ -78,8 +78,8 @@ fn engine() -> (Problem, Truth) {
     (problem, [mean, sigma, skewness, kurtosis, share])
 }
 
-/// The lognormal's kurtosis is decided by sixth powers, which shorter samples do not know enough of: two standard errors of it
-/// hold 89 % at 20 000 random points and 82 % at 16 384 of Sobol'. Its yield needs no more than these.
+/// The lognormal's kurtosis is decided by sixth powers, which shorter samples do not know enough of: of a log-sd of 0.15 two
+/// standard errors of it hold 88 % at 20 000 random points. Its yield needs no more than these.
 #[test]
 fn random_standard_errors_cover_the_truth() {
     let (problem, truth) = engine();
@@ -96,11 +96,10 @@ fn quasi_random_standard_errors_cover_the_truth() {
     holds(&covered(&problem, truth, 16_384, Sampler::Sobol));
     let (problem, truth) = lognormal(0.15);
     holds(&covered(&problem, truth, 16_384, Sampler::Sobol)[4..]);
+    // 16 replicates that are none too normal: 600 seeds hold the kurtosis in 91 %, and of a log-sd of 0.15 in 90 %.
+    let (problem, truth) = lognormal(0.1);
     let unlimited = problem.asking([Characteristic::new("y")]).unwrap();
-    let hits = covered(&unlimited, truth, 262_144, Sampler::Sobol);
-    holds(&hits[..3]);
-    // Of 800 runs with other seeds 708 held the kurtosis: 88.5 %, from which 200 runs are four of their 4.5 away at most.
-    assert!((159..=195).contains(&hits[3]), "{hits:?}");
+    holds(&covered(&unlimited, truth, 262_144, Sampler::Sobol));
 }
 
 /// The plain standard error of sigma by the controlled one, at the same number of evaluations, of every characteristic.

@@ -306,6 +306,10 @@ fn ctrl_c_keeps_everything() {
 fn ctrl_c_twice_gives_up_what_is_under_way() {
     let study = Slow::new(3, 60.0, 1, 1);
     let engine = study.command(&[]).spawn().unwrap();
+    let started = Instant::now();
+    while !study.path("study.journal.sqlite").exists() && started.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
     std::thread::sleep(Duration::from_millis(500));
     let begun = Instant::now();
     interrupt(engine.id());

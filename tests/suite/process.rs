@@ -27,10 +27,14 @@ fn model(settings: Settings) -> Process {
 
 /// Both outputs at these values of `a`, where b is 2.
 fn at(model: &Process, a: &[f64]) -> Responses {
+    at_within(model, a, &Run::to_the_end())
+}
+
+fn at_within(model: &Process, a: &[f64], run: &Run<'_>) -> Responses {
     let rows: Vec<[f64; 2]> = a.iter().map(|&a| [a, 2.0]).collect();
     let points = Points::from_rows(&rows);
     let mut out = Responses::open(rows.len(), 2);
-    model.evaluate(&Ask::values(&points, &[0, 1]), &Run::to_the_end(), &mut out);
+    model.evaluate(&Ask::values(&points, &[0, 1]), run, &mut out);
     out
 }
 
@@ -328,6 +332,13 @@ fn alive(text: &str) -> Vec<String> {
     found
 }
 
+/// The process whose command line has this text; no zombie of another test.
+#[cfg(target_os = "linux")]
+fn living(text: &str) -> Option<String> {
+    let entry = alive(text).into_iter().find(|entry| entry.contains(text))?;
+    entry.split(' ').next().map(str::to_owned)
+}
+
 /// Whatever a child started ends with the model.
 #[test]
 #[cfg(target_os = "linux")]
@@ -359,8 +370,7 @@ fn many_points_through_one_child() {
     let model = model(settings("echo", &["one-child-for-many-points", "64"]));
     let a: Vec<f64> = (100..10_100).map(f64::from).collect();
     right_but(&a, &at(&model, &a), &[]);
-    let child = alive("one-child-for-many-points");
-    let pid = child[0].split(' ').next().unwrap();
+    let pid = &living("one-child-for-many-points").unwrap();
     let before = [resident("self"), resident(pid)];
     for _ in 0..9 {
         right_but(&a, &at(&model, &a), &[]);
@@ -397,22 +407,30 @@ fn killed_children_lose_nothing() {
     // A model whose very first start fails is no model.
     model.prepare(&[0, 1]).unwrap();
     let a: Vec<f64> = (0..200).map(f64::from).collect();
-    let done = AtomicUsize::new(0);
+    let (done, answered) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let out = std::thread::scope(|scope| {
         scope.spawn(|| {
-            // Not faster than a child starts: where none ever does, the model is given up.
+            let mut before = 0;
             for round in 0..6 {
-                std::thread::sleep(Duration::from_millis(250 + 17 * round));
-                if done.load(Ordering::Relaxed) > 0 {
+                // Not faster than children start, however busy the machine: where none ever does, the model is given up.
+                let ended = || done.load(Ordering::Relaxed) > 0;
+                while answered.load(Ordering::Relaxed) < before + 12 && !ended() {
+                    std::thread::sleep(Duration::from_millis(17));
+                }
+                std::thread::sleep(Duration::from_millis(17 * round));
+                before = answered.load(Ordering::Relaxed);
+                if ended() {
                     break;
                 }
-                if let Some(victim) = alive("killed-children").first() {
-                    let pid = victim.split(' ').next().unwrap();
-                    let _ = Command::new("kill").args(["-9", pid]).status();
+                if let Some(pid) = living("killed-children") {
+                    let _ = Command::new("kill").args(["-9", &pid]).status();
                 }
             }
         });
-        let out = at(&model, &a);
+        let finished = |rows: &[usize], _: &Responses| {
+            answered.fetch_add(rows.len(), Ordering::Relaxed);
+        };
+        let out = at_within(&model, &a, &Run::to_the_end().telling(&finished));
         done.store(1, Ordering::Relaxed);
         out
     });

@@ -181,6 +181,16 @@ fn quantiles_by_the_block_are_those_one_by_one() {
     let law = one.distribution().unwrap().probability().unwrap();
     let p = (1..700).map(|i| if i < 500 { f64::from(i) / 1000.0 } else { 10f64.powi(-(i - 480)) });
     let tails: Vec<f64> = p.flat_map(|p| [p, -p]).collect();
+    // Beyond the middle, and what is no probability: alone, and among others.
+    let beyond = [0.6, 0.95, 0.99, 1.0 - 1e-12, 1.0, 0.0, 1.5, f64::NAN].map(|p| [p, -p]).concat();
+    for tails in beyond.chunks(1).chain([&beyond[..], &[&beyond[..], &tails].concat()]) {
+        let mut found = tails.to_vec();
+        law.quantiles(&mut found);
+        for (&tail, found) in tails.iter().zip(found) {
+            let expected = if tail < 0.0 { law.upper_quantile(-tail) } else { law.quantile(tail) };
+            assert!(found == expected || (found.is_nan() && expected.is_nan()), "{tail}: {found}, not {expected}");
+        }
+    }
     for length in [1, 2, 255, 256, 257, tails.len()] {
         let mut found = tails[..length].to_vec();
         law.quantiles(&mut found);
