@@ -77,6 +77,9 @@ pub struct Sensitivity {
     /// What a rounding error of the characteristic's own size may make of the two derivatives: at the steps taken, over a
     /// sigma where they are exact.
     pub rounding: Option<[f64; 2]>,
+    /// Where the model was evaluated along it, off its mean and in its unit, ascending: the nodes that answered; empty where none
+    /// was asked.
+    pub steps: Vec<f64>,
     /// Share of the variance that the best straight line through its own part explains.
     pub linear_share: Option<f64>,
     /// Share of the variance that its curvature adds.
@@ -221,6 +224,13 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
         second: exact.map(|exact| exact.1).or_else(|| Some(per_unit(per_unit(part?.second()?)))),
         exact: exact.is_some(),
         rounding,
+        steps: match plan.depends(c, d) {
+            true => plan.samples(&outcome.evaluated.known, c, d).unwrap_or_default(),
+            false => Vec::new(),
+        }
+        .into_iter()
+        .map(|(u, _)| u * scale)
+        .collect(),
         linear_share: of(Shares::linear),
         curvature_share: curved(of(Shares::curvature)),
         mean_shift: curved(of(Shares::mean_shift)),

@@ -1,7 +1,7 @@
 //! Where a surrogate is not trusted: points of the model itself, with the surrogate as control variate.
 
 use super::CharacteristicAnalysis;
-use super::errors::of_yield;
+use super::errors::{excess, of_yield};
 use crate::assembly::Run;
 use crate::capability::{Capability, Law};
 use crate::method::{Climbed, ErrorEstimate, Options, Outcome, Source};
@@ -9,6 +9,7 @@ use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler};
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
+use crate::warning::Figure;
 
 /// Points of a cheap model, at most;
 const MOST: u64 = 1 << 18;
@@ -49,11 +50,12 @@ pub(super) struct Spent {
     pub(super) in_model: std::time::Duration,
 }
 
-/// Replaces moments that are not known as well as they were wanted, where that can be paid.
+/// Replaces moments that are not known as well as they were wanted, where that can be paid: `left` is what the budget, where
+/// there is one, still allows.
 pub(super) fn fall_back(
     problem: &Problem,
     outcome: &Outcome,
-    options: &Options,
+    left: Option<usize>,
     characteristics: &mut [CharacteristicAnalysis],
     run: &Run<'_>,
 ) -> Spent {
@@ -65,9 +67,8 @@ pub(super) fn fall_back(
         return spent;
     }
     let costly = problem.function().signature().costly;
-    let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations) as u64);
     // A model whose evaluations cost something is sampled only from what was allowed for it.
-    let most = match (costly, left) {
+    let most = match (costly, left.map(|left| left as u64)) {
         (true, None) => 0,
         (true, Some(left)) => left,
         (false, left) => left.unwrap_or(MOST).min(MOST),
@@ -75,11 +76,12 @@ pub(super) fn fall_back(
     if most < FEWEST {
         return spent;
     }
-    let wanted = PART * climbed.accuracy;
     let needed = short.iter().filter_map(|&c| shortfall(&characteristics[c], climbed, c)).fold(0.0, f64::max);
+    let finest =
+        climbed.accuracies.wanted().into_iter().filter_map(|(_, wanted)| wanted).fold(climbed.accuracy, f64::min);
     let few = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count() <= SOBOL_DIMENSIONS;
     let sampler = if costly || !few { Sampler::Random } else { Sampler::Sobol };
-    let mut samples = ((needed / wanted).powi(2) as u64).clamp(FIRST, MOST).min(most);
+    let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
     while spent.evaluations as u64 + samples <= most {
         // Sobol's points come in powers of two: not more of them than may be.
         let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
@@ -90,7 +92,7 @@ pub(super) fn fall_back(
         if found.stopped {
             return spent;
         }
-        let enough = short.iter().all(|&c| known(&found.characteristics[c]).is_some_and(|error| error <= wanted));
+        let enough = short.iter().all(|&c| known(&found.characteristics[c], climbed));
         let last = enough || spent.evaluations as u64 + MORE * samples > most;
         if last {
             for &c in &short {
@@ -108,14 +110,30 @@ fn shortfall(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> Optio
     let (moments, check) = (one.moments?, climbed.checked[c].as_ref()?);
     let error = one.error_estimate.as_ref()?.sigma?;
     let variance = moments.variance();
+    let short = error > climbed.accuracy * moments.sigma() || excess(one, &climbed.accuracies) > 1.0;
     // What is left alone decides how many points a control variate takes.
-    (error > climbed.accuracy * moments.sigma()).then(|| (check.variance / variance).sqrt().clamp(0.01, 1.0))
+    short.then(|| (check.variance / variance).sqrt().clamp(0.01, 1.0))
 }
 
-/// The relative standard error of sigma.
-fn known(found: &SimulatedCharacteristic) -> Option<f64> {
-    let sigma = found.sigma?;
-    Some(sigma.standard_error? / sigma.value)
+/// Whether two standard errors are within what is wanted, of sigma and of whatever else.
+fn known(found: &SimulatedCharacteristic, climbed: &Climbed) -> bool {
+    let within = |error: Option<f64>, wanted: f64| error.is_some_and(|error| error <= PART * wanted);
+    let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
+    let sigma = error(found.sigma).zip(found.sigma).map(|(error, sigma)| error / sigma.value);
+    let each = |(figure, wanted): (Figure, Option<f64>)| {
+        let Some(wanted) = wanted else { return true };
+        match figure {
+            Figure::Sigma => true,
+            Figure::Skewness => within(error(found.skewness), wanted),
+            Figure::Kurtosis => within(error(found.kurtosis), wanted),
+            // Half of a 95 % interval is two standard errors.
+            Figure::Yield => found.yield_.is_none_or(|share| {
+                let [low, high] = share.interval;
+                within(Some(0.25 * (high - low)), wanted)
+            }),
+        }
+    };
+    within(sigma, climbed.accuracy) && climbed.accuracies.wanted().into_iter().all(each)
 }
 
 fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found: &SimulatedCharacteristic) {

@@ -20,7 +20,7 @@ use std::time::Duration;
 
 use crate::assembly::Run;
 use crate::extremes::{Found, search};
-use crate::method::{Basis, Method, MethodError, Options};
+use crate::method::{Basis, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -81,13 +81,13 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
-    let mut outcome = options.method.procedure().run(problem, options, run)?;
+    let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
     let found = if options.extremes { search(problem, &outcome, left, run) } else { Found::default() };
     outcome.evaluated.doubts.extend(found.spent.doubts);
-    let mut characteristics: Vec<CharacteristicAnalysis> =
-        (0..problem.characteristics().len()).map(|c| CharacteristicAnalysis::of(problem, &outcome, c)).collect();
-    let fallback = fallback::fall_back(problem, &outcome, options, &mut characteristics, run);
+    let mut characteristics = of_all(problem, &outcome);
+    let left = left.map(|left| left.saturating_sub(found.spent.evaluations));
+    let fallback = fallback::fall_back(problem, &outcome, left, &mut characteristics, run);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
@@ -111,4 +111,20 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         basis: outcome.basis,
         warnings,
     })
+}
+
+/// Runs the method, `auto` until the errors of other results than sigma are what is wanted too.
+fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
+    let climbs = options.method == Method::Auto && options.derivatives != Some(DerivativeSource::Exact);
+    if !climbs || !options.accuracies.any() {
+        return options.method.procedure().run(problem, options, run);
+    }
+    climb_until(problem, options, run, &|outcome| {
+        let excess = |one: &CharacteristicAnalysis| errors::excess(one, &options.accuracies);
+        of_all(problem, outcome).iter().map(excess).fold(0.0, f64::max)
+    })
+}
+
+fn of_all(problem: &Problem, outcome: &Outcome) -> Vec<CharacteristicAnalysis> {
+    (0..problem.characteristics().len()).map(|c| CharacteristicAnalysis::of(problem, outcome, c)).collect()
 }

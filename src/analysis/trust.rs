@@ -1,11 +1,12 @@
 //! Where a surrogate does not do what the moments take it to do.
 
 use super::CharacteristicAnalysis;
+use super::errors::beside_sigma;
 use super::shapes::{Shape, higher, shape};
 use crate::method::{Climbed, Outcome, Rest};
 use crate::plan::Point;
 use crate::problem::Problem;
-use crate::warning::Warning;
+use crate::warning::{Figure, Warning};
 
 /// A second difference below this part of sigma does not matter: what it bends is far below what anybody wants to know.
 const BEND: f64 = 1e-3;
@@ -127,9 +128,12 @@ fn climb(
         warnings.push(Warning::InteractionsLeftOut { characteristic: characteristic(), share });
     }
     let error = analysis.error_estimate.as_ref().and_then(|estimate| Some(estimate.sigma? / sigma));
-    if let Some(error) = error.filter(|&error| error > climbed.accuracy) {
-        let (wanted, budget) = (climbed.accuracy, climbed.rest == Rest::Budget);
-        warnings.push(Warning::UnderResolved { characteristic: characteristic(), error, wanted, budget });
+    let sigma = error.map(|error| (Figure::Sigma, error, climbed.accuracy));
+    for (figure, error, wanted) in sigma.into_iter().chain(beside_sigma(analysis, &climbed.accuracies)) {
+        if error > wanted {
+            let (error, budget) = (Some(error).filter(|error| error.is_finite()), climbed.rest == Rest::Budget);
+            warnings.push(Warning::UnderResolved { characteristic: characteristic(), figure, error, wanted, budget });
+        }
     }
     warnings
 }

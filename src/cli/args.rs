@@ -79,6 +79,18 @@ pub(super) struct StudyArgs {
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(super) accuracy: Option<f64>,
 
+    /// Wanted error of the skewness, for auto
+    #[arg(long, value_name = "E", value_parser = positive)]
+    pub(super) accuracy_skewness: Option<f64>,
+
+    /// Wanted error of the kurtosis, for auto
+    #[arg(long, value_name = "E", value_parser = positive)]
+    pub(super) accuracy_kurtosis: Option<f64>,
+
+    /// Wanted error of the yield, a share such as 1e-5, for auto
+    #[arg(long, value_name = "E", value_parser = positive)]
+    pub(super) accuracy_yield: Option<f64>,
+
     /// Most evaluations that may be spent
     #[arg(long, value_name = "N")]
     pub(super) budget: Option<usize>,

@@ -58,6 +58,10 @@ pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Fai
         options.all_sensitivities = which == SensitivitiesArg::All;
     }
     options.accuracy = asked.accuracy.or(options.accuracy);
+    let wanted = &mut options.accuracies;
+    wanted.skewness = asked.accuracy_skewness.or(wanted.skewness);
+    wanted.kurtosis = asked.accuracy_kurtosis.or(wanted.kurtosis);
+    wanted.yield_ = asked.accuracy_yield.or(wanted.yield_);
     options.budget = asked.budget.or(options.budget);
     options.step = asked.step.or(options.step);
     if let Some(derivatives) = asked.derivatives {

@@ -25,12 +25,13 @@ mod six_n;
 mod three_point;
 mod worst_case;
 
+pub(crate) use auto::climb_until;
 pub use auto::{ACCURACY, Climbed, Rest};
 pub use check::Check;
 pub use cost::Cost;
 pub use estimate::{ErrorEstimate, Source, estimate};
 pub use exact::ExactDerivatives;
-pub use options::{DerivativeSource, Options, Pairs};
+pub use options::{Accuracies, DerivativeSource, Options, Pairs};
 pub use outcome::{Basis, Fitted, Integrated, Joint, Lacking, Order, Outcome, Own, Residual};
 
 use std::sync::Arc;
@@ -38,6 +39,7 @@ use std::sync::Arc;
 use crate::assembly::{EvaluationError, Run};
 use crate::plan::Plan;
 use crate::problem::Problem;
+use crate::warning::Figure;
 
 /// A method by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -256,8 +258,10 @@ pub enum MethodError {
         nodes: usize,
     },
     /// An accuracy that is no positive number.
-    #[error("the accuracy is the relative error of sigma that is wanted, a number above 0, not {accuracy}")]
+    #[error("{}, a number above 0, not {accuracy}", accuracy_of(*figure))]
     BadAccuracy {
+        /// Of what.
+        figure: Figure,
         /// The accuracy given.
         accuracy: f64,
     },
@@ -291,5 +295,14 @@ fn advice(fitting: &Option<(&'static str, usize)>) -> String {
     match fitting {
         Some((name, evaluations)) => format!("; --method {name} needs {evaluations}"),
         None => "; no method does with so few".to_owned(),
+    }
+}
+
+fn accuracy_of(figure: Figure) -> &'static str {
+    match figure {
+        Figure::Sigma => "the accuracy is the relative error of sigma that is wanted",
+        Figure::Skewness => "the accuracy of the skewness is the error of it that is wanted",
+        Figure::Kurtosis => "the accuracy of the kurtosis is the error of it that is wanted",
+        Figure::Yield => "the accuracy of the yield is the share that it may be off",
     }
 }

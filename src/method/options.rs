@@ -2,6 +2,7 @@
 
 use super::Method;
 use crate::plan::Stencil;
+use crate::warning::Figure;
 
 /// How a problem is to be analysed.
 ///
@@ -16,6 +17,8 @@ pub struct Options {
     pub method: Method,
     /// The relative error of sigma that is wanted; for `auto`.
     pub accuracy: Option<f64>,
+    /// What is wanted of the other results; for `auto`.
+    pub accuracies: Accuracies,
     /// The most evaluations that may be spent.
     pub budget: Option<usize>,
     /// A step in sigmas in place of the matched nodes.
@@ -36,6 +39,31 @@ pub struct Options {
     /// Where derivatives come from. Unless said otherwise the reported sensitivities are exact where the assembly function
     /// knows its derivatives, and moments come from differences at nodes that suit each distribution.
     pub derivatives: Option<DerivativeSource>,
+}
+
+/// The errors that are wanted beside that of sigma, absolute; None where nothing is.
+///
+/// They are reached by the same means: the wanted error of sigma is tightened until these estimates are small enough too.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Accuracies {
+    /// Of the skewness.
+    pub skewness: Option<f64>,
+    /// Of the kurtosis.
+    pub kurtosis: Option<f64>,
+    /// Of the yield, as a share.
+    pub yield_: Option<f64>,
+}
+
+impl Accuracies {
+    /// Whether any is wanted.
+    pub fn any(&self) -> bool {
+        self.wanted().iter().any(|(_, wanted)| wanted.is_some())
+    }
+
+    /// Each with its figure.
+    pub fn wanted(&self) -> [(Figure, Option<f64>); 3] {
+        [(Figure::Skewness, self.skewness), (Figure::Kurtosis, self.kurtosis), (Figure::Yield, self.yield_)]
+    }
 }
 
 /// Where derivatives come from.
@@ -104,6 +132,7 @@ impl Default for Options {
         Self {
             method: Method::Auto,
             accuracy: None,
+            accuracies: Accuracies::default(),
             budget: None,
             step: None,
             pairs: None,

@@ -293,6 +293,8 @@ pub struct SensitivityReport {
     pub second: Option<f64>,
     /// Whether both are exact rather than differences.
     pub exact: bool,
+    /// Where the model was evaluated along it, off its mean and in its unit.
+    pub steps: Vec<f64>,
     /// What rounding in the model may make of the two derivatives.
     pub rounding: Option<[f64; 2]>,
     /// Share of the variance along the best straight line.
@@ -445,6 +447,7 @@ impl CharacteristicReport {
                     first: sensitivity.first,
                     second: sensitivity.second,
                     exact: sensitivity.exact,
+                    steps: sensitivity.steps.clone(),
                     rounding: sensitivity.rounding,
                     linear_share: sensitivity.linear_share,
                     curvature_share: sensitivity.curvature_share,

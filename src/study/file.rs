@@ -259,6 +259,12 @@ pub(super) struct AnalysisEntry {
     pub(super) method: Option<Spanned<String>>,
     /// Wanted relative error of sigma, for auto.
     pub(super) accuracy: Option<Spanned<f64>>,
+    /// Wanted error of the skewness, for auto.
+    pub(super) accuracy_skewness: Option<Spanned<f64>>,
+    /// Wanted error of the kurtosis, for auto.
+    pub(super) accuracy_kurtosis: Option<Spanned<f64>>,
+    /// Wanted error of the yield, a share such as 1e-5, for auto.
+    pub(super) accuracy_yield: Option<Spanned<f64>>,
     /// Most evaluations that may be spent.
     pub(super) budget: Option<Spanned<u64>>,
     /// Evaluate at so many sigma on either side, in place of the nodes that suit each distribution.

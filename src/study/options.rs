@@ -3,7 +3,7 @@
 use super::error::{Fault, StudyFault, fault};
 use super::file::{AnalysisEntry, PairsEntry};
 use super::spanned::Spanned;
-use crate::method::{ALL as METHODS, DerivativeSource, Method, MethodError, Options, Pairs};
+use crate::method::{ALL as METHODS, Accuracies, DerivativeSource, Method, MethodError, Options, Pairs};
 use crate::names::nearest;
 use crate::plan::Stencil;
 use crate::problem::Problem;
@@ -27,6 +27,11 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
     };
     let mut options = Options {
         accuracy: positive(&entry.accuracy, "accuracy")?,
+        accuracies: Accuracies {
+            skewness: positive(&entry.accuracy_skewness, "accuracy_skewness")?,
+            kurtosis: positive(&entry.accuracy_kurtosis, "accuracy_kurtosis")?,
+            yield_: positive(&entry.accuracy_yield, "accuracy_yield")?,
+        },
         step: positive(&entry.step, "step")?,
         seed: entry.seed.as_ref().map(|seed| *seed.get_ref()),
         extremes: entry.extremes.unwrap_or(false),

@@ -363,8 +363,10 @@ pub enum Warning {
     UnderResolved {
         /// The characteristic.
         characteristic: String,
-        /// The relative error of sigma, as estimated.
-        error: f64,
+        /// Which of its results.
+        figure: Figure,
+        /// Its error as estimated, that of sigma relative; None where nothing is known of it.
+        error: Option<f64>,
         /// As wanted.
         wanted: f64,
         /// Whether the budget was the reason.
@@ -403,6 +405,31 @@ pub enum Loss {
     Mixed,
     /// One side of the mixed derivative.
     OneSidedMixed,
+}
+
+/// What an accuracy can be wanted of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Figure {
+    /// Sigma, relative.
+    Sigma,
+    /// The skewness.
+    Skewness,
+    /// The kurtosis.
+    Kurtosis,
+    /// The share within the limits.
+    Yield,
+}
+
+impl Figure {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sigma => "sigma",
+            Self::Skewness => "skewness",
+            Self::Kurtosis => "kurtosis",
+            Self::Yield => "yield",
+        }
+    }
 }
 
 impl Warning {

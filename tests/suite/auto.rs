@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use sensitol::assembly::EvaluationError;
 use sensitol::distribution::Exponential;
+use sensitol::method::Accuracies;
 use sensitol::simulation::{SimulationOptions, simulate};
-use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, analyze};
+use sensitol::{Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, analyze};
 
 use super::support::{Asked, close, normals, refusing, relative, standard};
 
@@ -61,6 +62,89 @@ fn the_same_study_gives_the_same_numbers() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let alone = pool.install(|| of(standard(5), f, &auto(0.001)));
     assert_eq!(one.characteristics, alone.characteristics);
+}
+
+/// `y = a + b + c + d + ab/10` of standard normals: variance 4.01, third central moment 3 (2/10) and fourth cumulant
+/// 12 (2/100) + 3 (2/10^4), by those of a quadratic form with H = [[0, 1/10], [1/10, 0]] and b = (1, 1): 3 b'Hb + tr H^3 and
+/// 12 b'H^2 b + 3 tr H^4. One percent of sigma does without the interaction; a skewness does not.
+#[test]
+fn other_accuracies_are_reached_too() {
+    let f = |x: &[f64]| x[0] + x[1] + x[2] + x[3] + 0.1 * x[0] * x[1];
+    let variance: f64 = 4.01;
+    let skewness = 3.0 * 0.2 / variance.powf(1.5);
+    let kurtosis = 3.0 + (12.0 * 0.02 + 3.0 * 2e-4) / variance.powi(2);
+    let of_sigma = of(standard(4), f, &auto(0.05));
+    let found = |analysis: &Analysis| analysis.characteristics[0].moments.unwrap();
+    assert!((found(&of_sigma).skewness().unwrap() - skewness).abs() > 0.05);
+    for accuracies in [
+        Accuracies { skewness: Some(0.01), ..Accuracies::default() },
+        Accuracies { kurtosis: Some(0.01), ..Accuracies::default() },
+    ] {
+        let options = Options { accuracies, ..auto(0.05) };
+        let analysis = of(standard(4), f, &options);
+        assert!(analysis.evaluations > of_sigma.evaluations);
+        // A quadratic is exact once its interaction is known.
+        relative(found(&analysis).skewness().unwrap(), skewness, 1e-9);
+        relative(found(&analysis).kurtosis().unwrap(), kurtosis, 1e-9);
+        assert!(codes(&analysis).is_empty(), "{:?}", analysis.warnings);
+        // Too few evaluations for it: that is said, by the figure's name.
+        let short = of(standard(4), f, &Options { budget: Some(of_sigma.evaluations), ..options });
+        let said = short.warnings.iter().find(|warning| warning.code() == "under-resolved").unwrap().message();
+        let name = if accuracies.skewness.is_some() { "skewness" } else { "kurtosis" };
+        assert!(said.starts_with(&format!("{name} of `y` is known to")) && said.contains("the budget ended"), "{said}");
+    }
+}
+
+/// The share of a yield: two standard errors of a sample suffice where derivatives do not, and a characteristic without limits
+/// asks for nothing.
+#[test]
+fn a_yield_is_known_as_well_as_wanted() {
+    let accuracies = Accuracies { yield_: Some(1e-3), ..Accuracies::default() };
+    let options = Options { accuracies, ..auto(0.05) };
+    let f = |x: &[f64]| x[0] + x[1] + x[2] + x[3] + 0.1 * x[0] * x[1];
+    let limited = Characteristic::new("y").with_limits(SpecLimits::new(None, Some(4.0)).unwrap());
+    let problem = Problem::new(standard(4), Closure::scalar("y", f)).unwrap().asking([limited]).unwrap();
+    let analysis = analyze(&problem, &options).unwrap();
+    let one = &analysis.characteristics[0];
+    assert!(one.error_estimate.as_ref().unwrap().yield_.unwrap() <= 1e-3);
+    // a + b (1 + a/10) + c + d <= 4, a normal distribution for every a, integrated over a by the trapezoidal rule, which converges faster than any power here.
+    let normal = |z: f64| 0.5 * libm::erfc(-z / 2f64.sqrt());
+    let share: f64 = (-900..=900)
+        .map(|i| f64::from(i) * 0.01)
+        .map(|a| {
+            (-0.5 * a * a).exp() / (2.0 * std::f64::consts::PI).sqrt()
+                * normal((4.0 - a) / (1.0 + 0.1 * a).hypot(2f64.sqrt()))
+                * 0.01
+        })
+        .sum();
+    assert!((one.capability.unwrap().yield_().unwrap() - share).abs() < 1e-3);
+    let without = of(standard(4), f, &options);
+    assert_eq!(without.evaluations, of(standard(4), f, &auto(0.05)).evaluations);
+}
+
+#[test]
+fn accuracies_are_positive() {
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let accuracies = Accuracies { yield_: Some(bad), ..Accuracies::default() };
+        let problem = Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
+        let error = analyze(&problem, &Options { accuracies, ..auto(0.05) }).unwrap_err().to_string();
+        assert!(
+            error.starts_with("the accuracy of the yield is the share that it may be off, a number above 0"),
+            "{error}"
+        );
+    }
+}
+
+/// Where the model was evaluated, in the dimension's unit: at the matched nodes of a normal distribution, or where it answered.
+#[test]
+fn realised_steps_are_reported() {
+    let dimensions = vec![Dimension::normal("a", 10.0, 0.3).unwrap(), Dimension::normal("b", 0.0, 3.0).unwrap()];
+    let edge = |x: &[f64]| if x[1] > 1.0 { f64::NAN } else { x[0] + (1.2 - x[1]).sqrt() };
+    let analysis = of(dimensions, edge, &Method::SecondOrder.into());
+    let [a, b] = [0, 1].map(|d| &analysis.characteristics[0].sensitivities[d].steps);
+    let root = 0.1 * 3f64.sqrt();
+    assert!((a[0] + root).abs() < 1e-12 && (a[1] - root).abs() < 1e-12, "{a:?}");
+    assert!((b[0] + 3f64.sqrt()).abs() < 1e-12 && b[1] > 0.0 && b[1] <= 1.0, "{b:?}");
 }
 
 /// A budget is kept, and what it left out is said.

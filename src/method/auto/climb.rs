@@ -33,6 +33,8 @@ const JUDGING: usize = 12;
 const FITTED: usize = 6;
 /// By how much the probes that are fitted grow.
 const GROWTH: f64 = 1.25;
+/// The finest error of sigma that is asked for where that of another result is wanted.
+const FINEST: f64 = 1e-7;
 /// Evaluations beyond which nothing is worth its price any more: so many times those of every second derivative, and these.
 const OVER_FULL: f64 = 1.3;
 const ON_TOP: usize = 16;
@@ -102,6 +104,16 @@ impl<'p> Climb<'p> {
         }
         climb.spent = 0;
         climb
+    }
+
+    /// Wants more of sigma than it did, by a factor below 1, where that can lead on; whether it can.
+    pub(super) fn tighten(&mut self, factor: f64) -> bool {
+        let on = self.rest == Some(Rest::Reached) && self.accuracy > FINEST;
+        if on {
+            self.rest = None;
+            self.accuracy = (self.accuracy * factor.clamp(0.1, 0.5)).max(FINEST);
+        }
+        on
     }
 
     /// The next points, or None when the climb is over; `evaluated` counts the points so far.

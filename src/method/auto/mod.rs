@@ -25,11 +25,12 @@ use std::sync::Arc;
 use super::check::Check;
 use super::exact::ExactDerivatives;
 use super::ladder::{Examined, Ladder, Order};
-use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
+use super::{Accuracies, Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::Evaluated;
 use crate::plan::{Mixed, Plan, Point, Spread};
 use crate::problem::Problem;
+use crate::warning::Figure;
 use climb::Climb;
 use start::Start;
 use view::View;
@@ -63,6 +64,8 @@ const EXACT: Ladder = Ladder { interactions: Examined::All(crate::plan::Stencil:
 pub struct Climbed {
     /// The relative error of sigma that was wanted.
     pub accuracy: f64,
+    /// What was wanted of other results.
+    pub accuracies: Accuracies,
     /// Why it ended.
     pub rest: Rest,
     /// Positions of varying dimensions with five points.
@@ -140,34 +143,53 @@ impl Procedure for Auto {
         if options.derivatives == Some(DerivativeSource::Exact) {
             return EXACT.run(problem, options, run);
         }
-        self.fits(problem, options)?;
-        problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
-        let mut climb = climb(problem, options)?;
-        let mut evaluated = Evaluated::nothing(problem);
+        climb_until(problem, options, run, &|_| 1.0)
+    }
+}
+
+/// Climbs until `excess`, the largest estimated error of an outcome in parts of what is wanted of it, is no more than 1, as far as
+/// tightening the wanted error of sigma gets that.
+pub(crate) fn climb_until(
+    problem: &Problem,
+    options: &Options,
+    run: &Run<'_>,
+    excess: &dyn Fn(&Outcome) -> f64,
+) -> Result<Outcome, MethodError> {
+    AUTO.fits(problem, options)?;
+    problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
+    let mut climb = climb(problem, options)?;
+    let mut evaluated = Evaluated::nothing(problem);
+    loop {
         while let Some(stage) = climb.next(&evaluated.known, evaluated.evaluations) {
             evaluated.add(problem, &climb.plan, &stage, run);
             if evaluated.stopped {
                 break;
             }
         }
-        Ok(outcome(problem, options, climb, evaluated))
+        let found = outcome(problem, options, &climb, &evaluated);
+        let excess = excess(&found);
+        if evaluated.stopped || excess <= 1.0 || !climb.tighten(1.0 / excess) {
+            return Ok(found);
+        }
     }
 }
 
 fn climb<'p>(problem: &'p Problem, options: &Options) -> Result<Climb<'p>, MethodError> {
     let accuracy = options.accuracy.unwrap_or(ACCURACY);
-    if !(accuracy.is_finite() && accuracy > 0.0) {
-        return Err(MethodError::BadAccuracy { accuracy });
+    for (figure, wanted) in [(Figure::Sigma, Some(accuracy))].into_iter().chain(options.accuracies.wanted()) {
+        if let Some(accuracy) = wanted.filter(|wanted| !(wanted.is_finite() && *wanted > 0.0)) {
+            return Err(MethodError::BadAccuracy { figure, accuracy });
+        }
     }
     Ok(Climb::new(problem, BASE.differences(problem, options)?, accuracy, options.budget))
 }
 
 /// What the climb has found out.
-fn outcome(problem: &Problem, options: &Options, climb: Climb<'_>, evaluated: Evaluated) -> Outcome {
+fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &Evaluated) -> Outcome {
     let known = &evaluated.known;
     let views = climb.views(known);
     let plan = &climb.plan;
-    let pairs = listed(&climb, &views);
+    let pairs = listed(climb, &views);
     let exact = ExactDerivatives::beside(problem, plan, options, &pairs);
     let fit = |(c, (view, exact)): (usize, (&Option<View>, Option<ExactDerivatives>))| {
         let part = |d: usize| plan.part(known, c, d);
@@ -193,6 +215,7 @@ fn outcome(problem: &Problem, options: &Options, climb: Climb<'_>, evaluated: Ev
     let of = |what: fn(&View) -> Option<f64>| views.iter().map(|view| what(view.as_ref()?)).collect();
     let climbed = Climbed {
         accuracy: options.accuracy.unwrap_or(ACCURACY),
+        accuracies: options.accuracies,
         rest: climb.rest.unwrap_or(Rest::Budget),
         refined: (0..climb.refined.len()).filter(|&j| climb.refined[j]).collect(),
         direct: climb.bought.direct.len(),
@@ -208,8 +231,8 @@ fn outcome(problem: &Problem, options: &Options, climb: Climb<'_>, evaluated: Ev
         asked: Method::Auto,
         method: Method::Auto,
         basis: Basis::Differences,
-        plan: Arc::new(climb.plan),
-        evaluated,
+        plan: Arc::new(climb.plan.clone()),
+        evaluated: evaluated.clone(),
         order: Order::Second,
         fitted,
         pairs,
