@@ -206,7 +206,8 @@ class Model:
             return self._evaluate(values)
         except Exception:
             # Nothing of a failed point may reach the next one.
-            self.open(list(self.getters))
+            if self.reset:
+                self.open(list(self.getters))
             raise
 
     def _evaluate(self, values):
@@ -222,13 +223,16 @@ class Model:
                 owner.set(where, f"={value!r} {scale}".rstrip() if scale else f"={value!r}")
             else:
                 _set(owner, where, value * scale)
-        for name, (geometry, start) in self.sketches.items():
-            sketch = self.document.getObject(name)
-            if self.reset:
+        if self.reset:
+            for name, (geometry, start) in self.sketches.items():
+                sketch = self.document.getObject(name)
                 sketch.Geometry = geometry
-            # Those of the file too: the solver starts from the last value of a reference dimension as well.
-            before = start if self.reset else sketch.Constraints
-            sketch.Constraints = _changed(before, constraints.get(name, ()))
+                # Those of the file too: the solver starts from the last value of a reference dimension as well.
+                sketch.Constraints = _changed(start, constraints.get(name, ()))
+        else:
+            for name, pairs in constraints.items():
+                for index, value in pairs:
+                    self.document.getObject(name).setDatum(index, value)
         self.document.recompute()
         self._solved()
         for entry, measure in self.checks.items():
@@ -349,7 +353,7 @@ def main():
         version=version,
         inputs=list(model.dimensions) if model else [],
         outputs=list(model.characteristics) if model else None,
-        window=8,
+        window=1,
         setup=setup,
     )
     served.serve()
