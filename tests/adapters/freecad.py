@@ -239,4 +239,5 @@ if __name__ == "__main__":
         the_script_makes_the_document,
         cells_and_properties_are_set_and_read,
         what_is_declared_wrongly_is_said_once,
+        the_readme_shows_it,
     ])  # fmt: skip
