@@ -153,4 +153,5 @@ if __name__ == "__main__":
         a_pin_that_binds_has_negative_play,
         what_the_kernel_refuses_is_an_error_of_its_point,
         the_report_is_that_of_the_closed_form,
+        the_readme_shows_it,
     ])  # fmt: skip
