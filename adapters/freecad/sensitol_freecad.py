@@ -61,8 +61,8 @@ class Model:
             sketch.Name: (sketch.Geometry, sketch.Constraints)
             for sketch in self.document.findObjects("Sketcher::SketchObject")
         }
-        self.restored = [(self.object(path), names) for path, names in map(self._path, self.declared.table.get("restore", ()))]
-        self.start = [(owner, names, _copy(_get(owner, names))) for owner, names in self.restored]
+        restored = [self._path(text) for text in self.declared.table.get("restore", ())]
+        self.start = [(self.object(name), names, _copy(_get(self.object(name), names))) for name, names in restored]
         self.units = {}
         self.setters = {entry: self._setter(entry, table) for entry, table in self.dimensions.items()}
         self.getters = {
@@ -102,8 +102,7 @@ class Model:
             return ("constraint", sketch.Name, index, factor)
         if "cell" in table:
             sheet, cell = self._cell(entry, table["cell"])
-            # The cell keeps its unit: what the study states is in it.
-            unit = table.get("unit") or _unit_of(sheet.get(cell))
+            unit = self.units[entry] = table.get("unit") or self._unit_of(entry, sheet.get(cell))
             return ("cell", sheet, cell, unit)
         name, names = self._path(table["property"])
         owner = self.object(name)
@@ -162,6 +161,15 @@ class Model:
         except Exception:
             raise self.declared.fault(entry, f"spreadsheet `{name}` has no cell or alias `{cell}` with a value") from None
         return sheet, cell
+
+    def _unit_of(self, entry, value):
+        """What a number for this cell is in: mm or deg, None for plain numbers. How FreeCAD shows it says nothing."""
+        if not hasattr(value, "Unit") or value.Unit == FreeCAD.Units.Unit():
+            return None
+        for unit, kind in (("mm", FreeCAD.Units.Length), ("deg", FreeCAD.Units.Angle)):
+            if value.Unit == kind:
+                return unit
+        raise self.declared.fault(entry, f"the cell holds {value.UserString}; state the `unit` that the study uses")
 
     def _value(self, entry, owner, names):
         try:
@@ -292,10 +300,6 @@ def _set(owner, names, value):
 
 def _copy(value):
     return value.copy() if hasattr(value, "copy") else value
-
-
-def _unit_of(value):
-    return str(value.UserString).split()[-1] if hasattr(value, "UserString") and str(value.Unit) != "Unit: " else ""
 
 
 def _number(value, factor, what):

@@ -191,7 +191,8 @@ pole = { cell = "Sizes.pole" }
         nominal = {"wide": 20.0, "high": 10.0, "inch": 1.0, "away": 30.0}
         names = ["twice", "length", "volume", "gap", "pole"]
         with client(["python3", ADAPTER, path], folder, ["mm", "mm", "in", "mm"], nominal, names) as model:
-            for wide, away in ((20.0, 30.0), (7.0, 5.0), (20.0, 30.0)):
+            # 2 m is shown in other words than 20 mm.
+            for wide, away in ((20.0, 30.0), (2000.0, 5.0), (7.0, 5.0), (20.0, 30.0)):
                 answer = model.point(wide=wide, high=3.0, inch=1.0, away=away)["y"]
                 expected = [2 * wide, wide, wide * 3 * 25.4, away - wide, 1 / (wide - 5)]
                 # Faces are located by FreeCAD's integration of their area.
