@@ -91,7 +91,7 @@ class Adapter:
             try:
                 hello = json.loads(first)
                 if self.setup is not None:
-                    self.setup(*([hello] if inspect.signature(self.setup).parameters else []))
+                    self.setup(*([hello] if _takes_one(self.setup) else []))
                 session = _Session(self, hello)
             except Exception as error:
                 _write(answers, [{"error": _words(error)}])
@@ -107,6 +107,12 @@ class Adapter:
                     _write(answers, done)
         except (BrokenPipeError, KeyboardInterrupt):
             pass
+
+
+def _takes_one(function):
+    """Whether it cannot be called without an argument."""
+    parameters = inspect.signature(function).parameters.values()
+    return any(one.kind in _POSITIONAL and one.default is inspect.Parameter.empty for one in parameters)
 
 
 class _Session:
