@@ -218,7 +218,7 @@ def what_is_declared_wrongly_is_said_once():
             with freecad(copy(folder, change)) as model:
                 refused(model, *words)
     with freecad(units=["in"] + UNITS[1:]) as model:
-        refused(model, "`a` is in in in the study and in mm here")
+        refused(model, "`a` is in `in` in the study and in `mm` here")
     with freecad(characteristics=["flush"]) as model:
         refused(model, "`flush`", "gap, drawn")
 

@@ -134,7 +134,7 @@ class _Session:
         for name, unit in zip(dimensions, hello.get("units", ())):
             expected = adapter.units.get(name)
             if None not in (unit, expected) and unit != expected:
-                raise ValueError(f"`{name}` is in {unit} in the study and in {expected} here; state one of them otherwise")
+                raise ValueError(f"`{name}` is in `{unit}` in the study and in `{expected}` here; state one of them otherwise")
         self.dimensions = dimensions
         given = {*dimensions, *constants}
         missing = [
