@@ -13,7 +13,11 @@ const CASES: &[(&str, &[&str], usize)] = &[
     ("compression-clearance", &["clearance"], 1 << 16),
     ("quick-return", &["stroke", "ratio"], 1 << 16),
     ("spot-weld", &["gap", "flush1", "flush2"], 1 << 16),
-    ("dual-mass-flywheel", &["n_crit_DMF", "n_crit_SMF", "dW2_1000", "A_DMF_1500", "A_SMF_1500", "A_peak_DMF"], 1 << 16),
+    (
+        "dual-mass-flywheel",
+        &["n_crit_DMF", "n_crit_SMF", "dW2_1000", "A_DMF_1500", "A_SMF_1500", "A_peak_DMF"],
+        1 << 16,
+    ),
     ("dual-mass-flywheel", &["dW2_1000_multi"], 1 << 14),
     ("connecting-rod", &["F_comp_3000"], 1 << 12),
     ("connecting-rod", &["Fn_rod_3000"], 1 << 12),

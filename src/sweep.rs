@@ -84,7 +84,8 @@ pub enum SweepError {
 /// Analyses a problem with one dimension's nominal at each of `values`, its tolerance kept.
 ///
 /// Evaluations: those of the method at every value, each point once, in as many batches as the method has stages. A method that
-/// goes on and on, or asks for thousands of points at once, is given its answers as it asks from then on.
+/// goes on and on, or asks for thousands of points at once, is given its answers as it asks from then on. A budget is that of
+/// all values together, an equal part for each.
 ///
 /// # Errors
 /// When the dimension or the values cannot be, or the options do not fit the problem; nothing is evaluated then. A model that
@@ -131,6 +132,8 @@ pub fn sweep_within(
             Ok(problem.replacing(place, moved, Arc::clone(&gatherer) as _))
         })
         .collect::<Result<_, _>>()?;
+    // What may be spent is shared alike.
+    let options = &Options { budget: options.budget.map(|budget| budget / values.len()), ..options.clone() };
     for problem in &problems {
         options.method.procedure().fits(problem, options)?;
     }
@@ -282,8 +285,14 @@ impl AssemblyFunction for Gatherer {
 
     fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
         let rows = ask.points.rows();
-        let at_once = self.memory().at_once || rows >= MANY || ask.outputs != self.problem.outputs();
-        if at_once && !(0..rows).all(|row| self.memory().known.contains_key(&bits(&ask.points.row(row)))) {
+        // Others than all outputs are not what is kept in mind.
+        let foreign = ask.outputs != self.problem.outputs();
+        let at_once = {
+            let memory = self.memory();
+            let known = |row: usize| memory.known.contains_key(&bits(&ask.points.row(row)));
+            foreign || ((memory.at_once || rows >= MANY) && !(0..rows).all(known))
+        };
+        if at_once {
             self.function().evaluate(ask, run, out);
             self.memory().count(out);
             return;

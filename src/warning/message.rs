@@ -194,11 +194,11 @@ impl Warning {
                 )
             }
             Self::Kink { characteristic, dimension, slopes: [left, right], between } => format!(
-                "`{characteristic}` bends along `{dimension}` {}, from a slope of {left:.3} to {right:.3} sigma a sigma: no polynomial                  follows a kink, and moments of one are wrong; use sensitol simulate, or give each branch a characteristic of                  its own",
+                "`{characteristic}` bends along `{dimension}` {}, from a slope of {left:.3} to {right:.3} sigma a sigma: no polynomial follows a kink, and moments of one are wrong; use sensitol simulate, or give each branch a characteristic of its own",
                 places(*between)
             ),
             Self::Discontinuity { characteristic, dimension, by, between } => format!(
-                "`{characteristic}` jumps along `{dimension}` {} by {by:.2} sigma: derivatives mean nothing there; check whether the                  model changes its configuration, and use sensitol simulate",
+                "`{characteristic}` jumps along `{dimension}` {} by {by:.2} sigma: derivatives mean nothing there; check whether the model changes its configuration, and use sensitol simulate",
                 places(*between)
             ),
             Self::HigherOrder { characteristic, dimension, coefficients: [third, fourth], held } => format!(
@@ -209,7 +209,7 @@ impl Warning {
                 }
             ),
             Self::Scatter { characteristic, scatter, drowned } => format!(
-                "answers of `{characteristic}` next to the means scatter by {scatter:.1e} of its sigma{}: no accuracy beyond that                  can be had; solve the model more tightly",
+                "answers of `{characteristic}` next to the means scatter by {scatter:.1e} of its sigma{}: no accuracy beyond that can be had; solve the model more tightly",
                 match drowned {
                     0 => String::new(),
                     1 => ", as much as its curvature along one dimension".to_owned(),
@@ -217,10 +217,10 @@ impl Warning {
                 }
             ),
             Self::DomainEdgeWithin { characteristic, failed, points } => format!(
-                "`{characteristic}` has no value at {failed} of {points} points of the distribution, though it has one wherever                  differences were taken: that part of the assemblies is in no moment and no yield; sensitol simulate counts them"
+                "`{characteristic}` has no value at {failed} of {points} points of the distribution, though it has one wherever differences were taken: that part of the assemblies is in no moment and no yield; sensitol simulate counts them"
             ),
             Self::InteractionsLeftOut { characteristic, share } => format!(
-                "{:.2} % of the variance of `{characteristic}` is none of what was examined, by comparison with the model: it is                  in sigma, and not in skewness and kurtosis; allow more evaluations, or use --method full",
+                "{:.2} % of the variance of `{characteristic}` is none of what was examined, by comparison with the model: it is in sigma, and not in skewness and kurtosis; allow more evaluations, or use --method full",
                 100.0 * share
             ),
             Self::UntrustedSurrogate { characteristic, share, sampled } => format!(
@@ -228,7 +228,7 @@ impl Warning {
                 100.0 * share,
                 match sampled {
                     Some(points) => format!(
-                        "its moments come from {points} points of the model, with the surface as control variate, and carry their                          standard errors"
+                        "its moments come from {points} points of the model, with the surface as control variate, and carry their standard errors"
                     ),
                     None =>
                         "its moments are a guess: allow a sample with --budget, or use sensitol simulate".to_owned(),

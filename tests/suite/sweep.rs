@@ -106,6 +106,10 @@ fn what_cannot_be_swept() {
     assert_eq!(of("a", &[]), SweepError::NoValue);
     assert!(matches!(of("a", &[1.0, f64::NAN]), SweepError::NotFinite { .. }));
     assert!(matches!(of("a", &[1e300]), SweepError::Dimension(_)));
+    // Seven evaluations at each of two values.
+    let budget = |budget| Options { budget: Some(budget), ..Method::Rss.into() };
+    assert!(matches!(sweep(&problem, "a", &[1.0, 2.0], &budget(15)), Err(SweepError::Method(_))));
+    assert!(sweep(&problem, "a", &[1.0, 2.0], &budget(16)).is_ok());
     let study = Study::from_toml(
         "[dimensions]\noil = { nominal = 0.5, distribution = { kind = \"exponential\" }, sigma = 0.5 }\n\
          film = { nominal = 0.5, tolerance = 0.1, distribution = \"lognormal\" }\n\

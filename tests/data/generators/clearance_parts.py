@@ -1,7 +1,7 @@
 """Measured parts for the example compression-clearance: made up, for the paper gives no values of its own.
 
-Of every dimension 60 parts of a process that is off the middle by a fifth of the half band and as wide as the paper's measured
-engines suggest: their range, 0.7321 to 0.9499 mm of 328, is 6.0 sigma of 0.0363, where T/3 gives 0.0301.
+Of every dimension 60 parts of a process in the middle of its band, 1.2 times as wide as T/3: the paper's measured engines, 0.7321
+to 0.9499 mm of 328, are as wide as 6 sigma of 0.0363, where T/3 gives 0.0302.
 
     python3 tests/data/generators/clearance_parts.py > examples/compression-clearance/parts.csv
 """
@@ -15,8 +15,5 @@ TOLERANCE = [0.05, 0.0105, 0.05, 0.04, 0.0035, 0.003, 0.0075, 0.02, 0.0195, 0.00
 rng = random.Random(2022)
 print(",".join(NAMES))
 for _ in range(60):
-    parts = (
-        nominal + tolerance * (0.2 * (-1) ** index + rng.gauss(0.0, 1.2 / 3.0))
-        for index, (nominal, tolerance) in enumerate(zip(NOMINAL, TOLERANCE))
-    )
+    parts = (nominal + tolerance * rng.gauss(0.0, 1.2 / 3.0) for nominal, tolerance in zip(NOMINAL, TOLERANCE))
     print(",".join(f"{part:.4f}" for part in parts))
