@@ -212,6 +212,7 @@ fn documents() -> Vec<String> {
         "CHANGELOG.md",
         "benches/README.md",
         "docs/accuracy.md",
+        "docs/published-cases.md",
         "adapters/PROTOCOL.md",
         "adapters/python/README.md",
     ];

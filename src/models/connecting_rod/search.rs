@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::super::gas;
 use super::super::jet::{Jet, Peak, climb};
 use super::mechanics::{Angle, Curve, ROD_BY_CRANK, pressure};
-use super::section::{Root, Section};
+use super::section::Root;
 use super::{DEGREE, LANES, Rows, input};
 use crate::elementary::{Cos, Elementary, Exp, Sin, Work, on_this_processor};
 
