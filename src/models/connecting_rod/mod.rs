@@ -228,8 +228,8 @@ pub static CONNECTING_ROD: Model = Model {
         ModelOutput {
             name: "F_normal",
             unit: "N",
-            about: "normal force at theta",
-            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 25, 26],
+            about: "normal force at theta, to which piston and gas add nothing",
+            depends_on: &[0, 1, 2, 3, 5, 25, 26],
         },
         ModelOutput {
             name: "T_crank",
@@ -363,14 +363,15 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
                 output::THETA_F => compression[row].at / DEGREE,
                 output::THETA_H => height[row].at / DEGREE,
                 _ => {
-                    let effects = [Effect::Compression, Effect::Normal, Effect::Torque];
-                    let signs = [-1.0, 1.0, 1.0];
-                    let which = output - output::AT_THETA[0];
                     let (degrees, w) = (x(input::THETA), circular(x(input::SPEED)));
                     if (-360.0..=360.0).contains(&degrees) {
                         let pressure = pressure(degrees, x(input::P3), x(input::THS));
                         let angle = Angle::of(degrees * DEGREE, pressure);
-                        signs[which] * Loaded { rows, w, effect: effects[which] }.at(row, &angle)
+                        match output - output::AT_THETA[0] {
+                            0 => -Loaded { rows, w, effect: Effect::Compression }.at(row, &angle),
+                            1 => Alone { rows, w, centre: Centre::Given, effect: Effect::Normal }.at(row, &angle),
+                            _ => Loaded { rows, w, effect: Effect::Torque }.at(row, &angle),
+                        }
                     } else {
                         out.fail(first + row, column, EvaluationError::Refused { message: BEYOND.into() });
                         continue;
