@@ -1,7 +1,7 @@
 """Evaluations of the published models a second, one core, in numpy: the peer of `cargo bench --bench models`.
 
 Every model is transcribed as one who knows numpy would: blocks of rows, whole columns at a time. Where a maximum over the crank
-angle is asked for, numpy takes the largest of 49 (37) angles and the parabola through its neighbours, which is good to about 1e-4;
+angle is asked for, numpy takes the largest of 49 (37) angles and the parabola through its neighbours, which is good to about 1e-3;
 sensitol refines to rounding.
 
     OMP_NUM_THREADS=1 python3 benches/numpy/models.py
