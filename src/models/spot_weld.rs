@@ -132,7 +132,7 @@ impl Work for Tip<'_> {
     #[inline(always)]
     fn work(self) {
         let Self { inputs: [px, py, pz, tilt, yaw, close, rear, bend, skew, front, tip], sign, differences } = self;
-        let [tilt, yaw, close, bend, skew] = [tilt, yaw, close, bend, skew].map(|angle| Turn::of(angle));
+        let [tilt, yaw, close, bend, skew] = [tilt, yaw, close, bend, skew].map(Turn::of);
         let [gap, forward, sideways] = differences;
         for row in 0..px.len() {
             // The electrode hangs from the upper arm and stands on the lower one.

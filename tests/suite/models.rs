@@ -434,7 +434,7 @@ fn spot_weld_is_a_chain_of_rigid_bodies() {
         [all[0][3], all[1][3], all[2][3]]
     };
     let at = nominal(model);
-    let nominal = values(model, &[0, 1, 2], &[at.clone()]);
+    let nominal = values(model, &[0, 1, 2], std::slice::from_ref(&at));
     for (output, expected) in [10.0, 0.0, 0.0].into_iter().enumerate() {
         assert!((nominal.value(0, output).unwrap() - expected).abs() < 1e-12);
     }
@@ -512,7 +512,7 @@ fn a_value_belongs_to_its_point_alone() {
         let rows: Vec<Vec<f64>> = (0..1500).map(row).collect();
         let many = values(model, &all, &rows);
         for index in [0, 1, 127, 128, 300, 1023, 1024, 1499] {
-            let one = values(model, &all, &[rows[index].clone()]);
+            let one = values(model, &all, std::slice::from_ref(&rows[index]));
             for output in 0..all.len() {
                 assert_eq!(one.value(0, output), many.value(index, output), "{} {index} {output}", model.name);
             }
