@@ -31,6 +31,7 @@ pub mod sampling;
 pub mod simulation;
 pub mod study;
 pub mod surrogate;
+pub mod sweep;
 pub mod warning;
 
 pub use analysis::{Analysis, CharacteristicAnalysis, analyze, analyze_within};

@@ -148,6 +148,14 @@ impl Problem {
         self.checked()
     }
 
+    /// With another dimension of the same name and kind in one place, and another function of the same signature.
+    pub(crate) fn replacing(&self, place: usize, dimension: Dimension, function: Arc<dyn AssemblyFunction>) -> Self {
+        let mut problem = Self { function, ..self.clone() };
+        // Correlation is of standardised variables: it does not see where a dimension is.
+        problem.dimensions[place] = dimension;
+        problem
+    }
+
     fn checked(self) -> Result<Self, ProblemError> {
         if self.characteristics.is_empty() {
             return Err(ProblemError::NoCharacteristic);

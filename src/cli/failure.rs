@@ -13,6 +13,7 @@ use crate::problem::ProblemError;
 use crate::rare::RareError;
 use crate::simulation::SimulationError;
 use crate::study::StudyError;
+use crate::sweep::SweepError;
 
 /// The exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +51,8 @@ pub(super) enum Failure {
     Rare(#[from] RareError),
     #[error(transparent)]
     Compare(#[from] CompareError),
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     #[error(transparent)]
     Pearson(#[from] PearsonError),
     #[error(transparent)]

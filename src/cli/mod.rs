@@ -23,6 +23,7 @@ mod running;
 mod schema;
 mod simulate;
 mod study;
+mod sweep;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -48,6 +49,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Analyze(asked) => analyze::run(asked, style),
         Command::Simulate(asked) => simulate::run(asked, style),
         Command::Compare(asked) => compare::run(asked, style),
+        Command::Sweep(asked) => sweep::run(asked, style),
         Command::Plan(asked) => plan::run(asked, style),
         Command::Check(asked) => check::run(asked, style),
         Command::Models(asked) => models::run(asked, style),

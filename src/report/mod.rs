@@ -21,6 +21,11 @@ mod simulation_csv;
 mod simulation_text;
 mod sketch;
 mod stack;
+mod svg;
+mod sweep;
+mod sweep_csv;
+mod sweep_svg;
+mod sweep_text;
 mod table;
 mod text;
 
@@ -42,6 +47,10 @@ pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, Simulati
 pub use simulation_csv::simulation_csv;
 pub use simulation_text::simulation_text;
 pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_markdown, stack_text};
+pub use sweep::{ParameterReport, SweepReport, SweptPointReport, SweptReport};
+pub use sweep_csv::sweep_csv;
+pub use sweep_svg::sweep_svg;
+pub use sweep_text::sweep_text;
 pub use text::text;
 
 use serde::Serialize;

@@ -51,6 +51,7 @@ mod options;
 mod schema;
 mod source;
 mod spanned;
+mod sweep;
 mod tree;
 mod values;
 
@@ -106,6 +107,19 @@ impl Study {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn read_with(path: &Path, externals: Externals) -> Result<Self, StudyError> {
+        Self::read_as(path, externals, None)
+    }
+
+    /// [`read_with`](Self::read_with), for a [sweep](crate::sweep) over the parameter of this name: a constant, or an input of a
+    /// built-in model that the study leaves out, becomes a dimension without tolerance.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), and when there is no such parameter.
+    pub fn read_sweeping(path: &Path, externals: Externals, parameter: &str) -> Result<Self, StudyError> {
+        Self::read_as(path, externals, Some(parameter))
+    }
+
+    fn read_as(path: &Path, externals: Externals, parameter: Option<&str>) -> Result<Self, StudyError> {
         let name = path.display().to_string();
         let failed = |text: &str, fault: StudyFault| StudyError {
             file: name.clone(),
@@ -130,7 +144,7 @@ impl Study {
         match std::str::from_utf8(&bytes) {
             Ok(text) => {
                 let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-                Self::parse(text, format, &name, folder.to_owned(), externals)
+                Self::parse(text, format, &name, folder.to_owned(), externals, parameter)
             }
             Err(error) => {
                 let offset = error.valid_up_to();
@@ -156,12 +170,12 @@ impl Study {
     /// # Ok::<(), sensitol::Error>(())
     /// ```
     pub fn from_toml(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Toml, name, PathBuf::from("."), Externals::default())
+        Self::parse(text, Format::Toml, name, PathBuf::from("."), Externals::default(), None)
     }
 
     /// From JSON text; `name` stands for the file in errors.
     pub fn from_json(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Json, name, PathBuf::from("."), Externals::default())
+        Self::parse(text, Format::Json, name, PathBuf::from("."), Externals::default(), None)
     }
 
     fn parse(
@@ -170,6 +184,7 @@ impl Study {
         name: &str,
         folder: PathBuf,
         externals: Externals,
+        parameter: Option<&str>,
     ) -> Result<Self, StudyError> {
         let source = Source { name: name.to_owned(), text: Arc::from(text), folder, externals };
         let failed = |Fault { span, key, fault }| StudyError {
@@ -184,7 +199,10 @@ impl Study {
             Format::Json => Tree::of_json(text),
         };
         let tree = tree.map_err(failed)?;
-        let file = file::StudyFile::deserialize(&tree).map_err(|error| failed(error.into_fault()))?;
+        let mut file = file::StudyFile::deserialize(&tree).map_err(|error| failed(error.into_fault()))?;
+        if let Some(parameter) = parameter {
+            sweep::as_dimension(&mut file, parameter).map_err(failed)?;
+        }
         let built = build::build(&file, &source).map_err(failed)?;
         let mut hash = Sha256::new_with_prefix(text.as_bytes());
         built.data.iter().for_each(|bytes| hash.update(bytes));

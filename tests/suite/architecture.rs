@@ -10,7 +10,7 @@ const LAYERS: &[&[&str]] = &[
     &["cli"],
     &["error"],
     &["study", "report"],
-    &["compare", "rare"],
+    &["compare", "rare", "sweep"],
     &["analysis", "probe"],
     &["simulation"],
     &["extremes"],

@@ -39,7 +39,7 @@ fn analyze_prints_the_report() {
 }
 
 /// To twelve digits: the last ones are those of a machine's logarithm.
-fn rounded(value: &mut serde_json::Value) {
+pub fn rounded(value: &mut serde_json::Value) {
     match value {
         serde_json::Value::Number(number) if number.is_f64() => {
             *value = format!("{:.11e}", number.as_f64().unwrap()).parse::<f64>().unwrap().into();

@@ -225,6 +225,7 @@ fn documents() -> Vec<String> {
         "benches/README.md",
         "docs/accuracy.md",
         "docs/how-to/plug-in-your-cad.md",
+        "docs/published-cases.md",
         "adapters/PROTOCOL.md",
         "adapters/python/README.md",
         "adapters/freecad/README.md",
