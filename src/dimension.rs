@@ -166,6 +166,40 @@ impl Dimension {
         })
     }
 
+    /// The same dimension about a nominal value that lies `by` higher; None where its distribution does not go with the nominal:
+    /// one with a tail, whose origin stays, and one known by moments or by data.
+    ///
+    /// # Errors
+    /// When it cannot be told from one that does not vary there.
+    ///
+    /// ```
+    /// use sensitol::Dimension;
+    /// let higher = Dimension::normal_between("b", 30.0, [-0.1, 0.3])?.moved(0.5).expect("a normal dimension moves")?;
+    /// assert_eq!((higher.nominal(), higher.tolerance()), (30.5, Some([-0.1, 0.3])));
+    /// assert!((higher.mean() - 30.6).abs() < 1e-14);
+    /// # Ok::<(), sensitol::DimensionError>(())
+    /// ```
+    pub fn moved(&self, by: f64) -> Option<Result<Self, DimensionError>> {
+        let nominal = self.nominal + by;
+        let distribution = match self.distribution() {
+            None => Ok(None),
+            Some(law) => match law.scaled(1.0, by)? {
+                Ok(moved) => {
+                    let off = (moved.mean() - law.mean() - by).abs();
+                    if off > 8.0 * f64::EPSILON * (moved.mean().abs() + law.mean().abs()) {
+                        return None;
+                    }
+                    Ok(Some(moved))
+                }
+                Err(error) => Err(error.into()),
+            },
+        };
+        Some(match check(nominal, self.tolerance, distribution) {
+            Ok(distribution) => Ok(Self { nominal, distribution, ..self.clone() }),
+            Err(fault) => Err(DimensionError { name: self.name.clone(), fault }),
+        })
+    }
+
     /// As one coordinate of a point that a zone of this name keeps: with all other coordinates of the zone, its deviations from
     /// the bands' middles lie within one circle, or a sphere, rather than each within its own band.
     ///

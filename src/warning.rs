@@ -16,6 +16,13 @@ pub enum Warning {
         /// Its name.
         name: String,
     },
+    /// A tolerance that was found is no fit of ISO 286 any more.
+    FitReplaced {
+        /// The dimension.
+        dimension: String,
+    },
+    /// The model was not asked at the tolerances that were found.
+    NotConfirmed,
     /// The model failed at some points.
     FailedPoints {
         /// The characteristic that has no value there.
@@ -304,6 +311,8 @@ impl Warning {
             Self::CoarseResolution { .. } => "coarse-resolution",
             Self::OutsideBand { .. } => "outside-band",
             Self::NotProven { .. } => "not-proven",
+            Self::FitReplaced { .. } => "fit-replaced",
+            Self::NotConfirmed => "not-confirmed",
             Self::AutoIsSecondOrder => "auto-is-second-order",
         }
     }
@@ -340,6 +349,7 @@ impl Warning {
             | Self::NoSamplingInterval { dimension }
             | Self::CoarseResolution { dimension, .. }
             | Self::OutsideBand { dimension, .. }
+            | Self::FitReplaced { dimension }
             | Self::SupportEdge { dimension, .. } => Some(dimension),
             Self::LostDerivative { dimensions, .. } => dimensions.first().map(String::as_str),
             _ => None,
@@ -502,6 +512,15 @@ impl Warning {
                     "the extremes of `{characteristic}` are the best of {evaluations} evaluations and not proven: {doubt}\
                      {cut}{lost}"
                 )
+            }
+            Self::FitReplaced { dimension } => format!(
+                "`{dimension}` was a fit of ISO 286 and is a plain tolerance now: choose the class that is nearest, and require it \
+                 as a process, if it has to be one"
+            ),
+            Self::NotConfirmed => {
+                "the tolerances rest on derivatives at others: the budget or the time did not allow to ask the model there; \
+                 allow more, or analyze the study that --write writes"
+                    .into()
             }
             Self::AutoIsSecondOrder => {
                 "method auto is not built yet and stands for second-order; --method full adds every interaction".into()

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use crate::assembly::Run;
 use crate::extremes::{Found, search};
-use crate::method::{DerivativeSource, Method, MethodError, Options};
+use crate::method::{DerivativeSource, Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -72,6 +72,15 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
+    analyze_keeping(problem, options, run).map(|(analysis, _)| analysis)
+}
+
+/// [`analyze_within`], with what the method found out, for who goes on from there.
+pub(crate) fn analyze_keeping(
+    problem: &Problem,
+    options: &Options,
+    run: &Run<'_>,
+) -> Result<(Analysis, Outcome), MethodError> {
     let mut outcome = options.method.procedure().run(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
     let found = if options.extremes { search(problem, &outcome, left, run) } else { Found::default() };
@@ -84,7 +93,7 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
     let warnings = warnings::of(problem, &outcome, &characteristics);
     let seed = options.seed.unwrap_or(Options::SEED);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
-    Ok(Analysis {
+    let analysis = Analysis {
         method: outcome.method,
         varying: outcome.plan.varying().len(),
         evaluations: outcome.evaluated.evaluations + found.spent.evaluations,
@@ -97,5 +106,6 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         characteristics,
         derivatives: if outcome.exact { DerivativeSource::Exact } else { DerivativeSource::Difference },
         warnings,
-    })
+    };
+    Ok((analysis, outcome))
 }

@@ -5,13 +5,14 @@ use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
+use crate::allocation::AllocateError;
 use crate::compare::CompareError;
 use crate::journal::JournalError;
 use crate::method::MethodError;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
 use crate::simulation::SimulationError;
-use crate::study::StudyError;
+use crate::study::{RewriteError, StudyError};
 
 /// The exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +25,8 @@ pub(super) enum Exit {
     Usage = 2,
     /// The model gave some asked characteristic no result.
     NoResult = 3,
+    /// No tolerances keep what is required, or they were not found in time.
+    NotAllocated = 4,
     /// Ctrl-C.
     Interrupted = 130,
 }
@@ -47,6 +50,10 @@ pub(super) enum Failure {
     Simulation(#[from] SimulationError),
     #[error(transparent)]
     Compare(#[from] CompareError),
+    #[error(transparent)]
+    Allocate(#[from] AllocateError),
+    #[error(transparent)]
+    Rewrite(#[from] RewriteError),
     #[error(transparent)]
     Pearson(#[from] PearsonError),
     #[error(transparent)]

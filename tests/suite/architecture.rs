@@ -10,7 +10,7 @@ const LAYERS: &[&[&str]] = &[
     &["cli"],
     &["error"],
     &["study", "report"],
-    &["compare"],
+    &["compare", "allocation"],
     &["analysis", "probe", "simulation"],
     &["extremes"],
     &["method"],

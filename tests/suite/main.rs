@@ -1,5 +1,6 @@
 //! Every test of the project, a module per theme; `cargo test --test suite moments::` runs one theme.
 
+mod allocation;
 mod analysis;
 mod architecture;
 mod capability;

@@ -1,0 +1,73 @@
+//! The share of assemblies that keep the limits of all characteristics at once.
+
+use super::response::Responses;
+use crate::problem::Problem;
+use crate::sampling::{Draws, Portion, Sampler, wilson};
+
+/// A share of a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointYield {
+    /// The share of assemblies within all limits.
+    pub value: f64,
+    /// Its standard error; None where all or none are.
+    pub standard_error: Option<f64>,
+    /// 95 % interval.
+    pub interval: [f64; 2],
+    /// Points of the surrogates; none of them is evaluated by the model.
+    pub samples: usize,
+}
+
+const ROWS: usize = 1024;
+const PORTIONS: usize = 128;
+
+/// Of surrogates at the tolerances of the problem; None with fewer than two characteristics with limits, and where something cannot
+/// be sampled or is unknown.
+pub(super) fn joint(problem: &Problem, responses: &Responses, seed: u64) -> Option<JointYield> {
+    let limits: Vec<usize> =
+        (0..problem.characteristics().len()).filter(|&c| problem.characteristics()[c].limits().exist()).collect();
+    if limits.len() < 2 {
+        return None;
+    }
+    let draws = Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, seed).ok()?;
+    let ones = vec![1.0; problem.dimensions().len()];
+    let surrogates: Vec<_> = (limits.iter())
+        .map(|&c| responses.relocated(c, &ones, None).map(|(surrogate, _)| surrogate))
+        .collect::<Option<_>>()?;
+    let parts: Vec<Vec<_>> = (surrogates.iter())
+        .map(|surrogate| surrogate.parts.iter().copied().collect::<Option<Vec<_>>>())
+        .collect::<Option<_>>()?;
+    let pairs: Vec<_> = surrogates.iter().map(|surrogate| surrogate.interactions.pairs()).collect();
+    let varying = responses.varying();
+    let mut within = 0usize;
+    for portion in 0..PORTIONS {
+        let points = draws.points(Portion { replicate: 0, first: (portion * ROWS) as u64, rows: ROWS });
+        let columns: Vec<Vec<f64>> = (varying.iter())
+            .map(|&d| {
+                let (mean, sigma) = (problem.dimensions()[d].mean(), problem.dimensions()[d].sigma());
+                points.column(d).iter().map(|x| (x - mean) / sigma).collect()
+            })
+            .collect();
+        let mut keeps = vec![true; ROWS];
+        for (k, &c) in limits.iter().enumerate() {
+            let mut values = vec![surrogates[k].centre; ROWS];
+            for (part, column) in parts[k].iter().zip(&columns) {
+                values.iter_mut().zip(column).for_each(|(value, &u)| *value += part.value(u));
+            }
+            for &(a, b, product) in &pairs[k] {
+                let both = columns[a].iter().zip(&columns[b]);
+                values.iter_mut().zip(both).for_each(|(value, (u, v))| *value += product * u * v);
+            }
+            let limits = problem.characteristics()[c].limits();
+            keeps.iter_mut().zip(&values).for_each(|(keeps, &value)| *keeps &= limits.contains(value));
+        }
+        within += keeps.iter().filter(|keeps| **keeps).count();
+    }
+    let samples = ROWS * PORTIONS;
+    let value = within as f64 / samples as f64;
+    Some(JointYield {
+        value,
+        standard_error: (within > 0 && within < samples).then(|| (value * (1.0 - value) / samples as f64).sqrt()),
+        interval: wilson(within as f64, samples as f64),
+        samples,
+    })
+}

@@ -1,0 +1,267 @@
+//! The cheapest tolerances when every group has one offer.
+//!
+//! Each constraint is replaced by the sum of powers that has its value and slopes at the present tolerances
+//! ([`Linearised::row`](super::constraint::Linearised::row)); the separable convex problem that results is solved exactly, and so on from its solution. Worst
+//! cases and sums of squares are such sums, so that one step does; for second-order moments the steps shrink as the curvature's
+//! part of the variance. Where it stands still the true slopes fulfil the conditions of Karush, Kuhn and Tucker. Source: the
+//! idea of convex approximations, C. Fleury, "Structural optimization: a new dual method using mixed variables", Int. J. Numerical
+//! Methods in Engineering 23 (1986).
+
+use super::augmented::augmented;
+use super::closed_form::closed_form;
+use super::constraint::{Constraint, Linearised};
+use super::cost::Priced;
+use super::response::Responses;
+use super::separable::{Row, Separable};
+
+/// What is required of which tolerances.
+#[derive(Clone, Copy)]
+pub(super) struct Setting<'a> {
+    pub(super) responses: &'a Responses,
+    pub(super) priced: &'a [Priced],
+    pub(super) constraints: &'a [Constraint],
+    pub(super) stopped: &'a dyn Fn() -> bool,
+}
+
+/// Tolerances with what proves them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Solved {
+    /// Half bands of the groups.
+    pub(super) at: Vec<f64>,
+    pub(super) cost: f64,
+    /// One for every constraint: what it would save to have `1 + d` in place of 1, per d.
+    pub(super) multipliers: Vec<f64>,
+    /// The largest violation of the conditions of Karush, Kuhn and Tucker; stationarity relative to the largest slope of the cost.
+    pub(super) residual: f64,
+    /// The largest value of a constraint.
+    pub(super) value: f64,
+    /// Whether Lagrange's condition had this solution in closed form.
+    pub(super) closed: bool,
+    /// Whether it ended by itself.
+    pub(super) converged: bool,
+}
+
+/// Steps at most.
+const STEPS: usize = 60;
+/// Constraints are kept to this part.
+pub(super) const KEPT: f64 = 1e-12;
+/// It stands still.
+const STILL: f64 = 1e-11;
+/// Two ways to the same.
+const SAME: f64 = 1e-9;
+
+impl Setting<'_> {
+    /// The largest value of a constraint; kept where that is at most 1.
+    pub(super) fn value(&self, at: &[f64]) -> f64 {
+        let value = |constraint: &Constraint| constraint.value(self.responses, self.priced, at);
+        self.constraints.iter().map(value).fold(0.0, f64::max)
+    }
+
+    /// Cost of the groups at half bands that the first offer of each holds.
+    pub(super) fn cost(&self, at: &[f64]) -> f64 {
+        self.priced.iter().zip(at).map(|(group, &t)| group.parts * group.offers[0].curve.cost(t)).sum()
+    }
+
+    pub(super) fn linearised(&self, at: &[f64]) -> Option<Vec<Linearised>> {
+        self.constraints.iter().map(|constraint| constraint.linearised(self.responses, self.priced, at)).collect()
+    }
+
+    /// Whether sums of powers are exactly what is required.
+    pub(super) fn is_exact(&self) -> bool {
+        self.constraints
+            .iter()
+            .all(|one| one.requirement == super::Requirement::WorstCase || self.responses.is_plain(one.characteristic))
+    }
+
+    /// The tightest that there is, and the loosest.
+    pub(super) fn bounds(&self) -> Vec<[f64; 2]> {
+        self.priced.iter().map(|group| [group.tightest(), group.loosest()]).collect()
+    }
+
+    /// The cheapest tolerances that keep every constraint, from `start` and, where there may be several optima, from others. None
+    /// where none was found that keeps them all.
+    pub(super) fn solve(&self, start: &[f64]) -> Option<Solved> {
+        let bounds = self.bounds();
+        let within =
+            |at: &[f64]| -> Vec<f64> { at.iter().zip(&bounds).map(|(t, &[low, high])| t.clamp(low, high)).collect() };
+        let tight: Vec<f64> = bounds.iter().map(|&[low, _]| low).collect();
+        let mut starts = vec![within(start)];
+        if !self.is_exact() {
+            let loose: Vec<f64> = bounds.iter().map(|&[_, high]| high).collect();
+            starts.push(within(&start.iter().map(|t| 0.3 * t).collect::<Vec<_>>()));
+            starts.push(self.reached(&tight, &loose, 0.5));
+        }
+        let mut best: Option<Solved> = None;
+        for start in starts {
+            let found = self.descend(&self.usable(&start, &tight)?);
+            let better = |best: &Solved| {
+                (best.value > 1.0 && found.as_ref().is_some_and(|found| found.value < best.value))
+                    || found.as_ref().is_some_and(|found| found.value <= 1.0 && found.cost < best.cost * (1.0 - 1e-9))
+            };
+            if best.as_ref().is_none_or(better) {
+                best = found.or(best);
+            }
+            if (self.stopped)() {
+                break;
+            }
+        }
+        best.filter(|best| best.value <= 1.0 + KEPT)
+    }
+
+    /// Part of the way, in logarithms.
+    fn reached(&self, from: &[f64], to: &[f64], part: f64) -> Vec<f64> {
+        from.iter().zip(to).map(|(from, to)| from.powf(1.0 - part) * to.powf(part)).collect()
+    }
+
+    /// The start, or the first on the way to the tightest at which all constraints are finite.
+    fn usable(&self, start: &[f64], tight: &[f64]) -> Option<Vec<f64>> {
+        let parts = [0.0, 0.25, 0.5, 0.75, 0.9, 1.0];
+        parts.iter().map(|&part| self.reached(start, tight, part)).find(|at| self.linearised(at).is_some())
+    }
+
+    fn descend(&self, start: &[f64]) -> Option<Solved> {
+        let mut at = start.to_vec();
+        let mut multipliers: Option<Vec<f64>> = None;
+        let mut best: Option<Solved> = None;
+        let (mut part, mut last_step, mut converged, mut closed) = (1.0f64, f64::INFINITY, false, false);
+        let exact = self.is_exact();
+        for step in 0..STEPS {
+            let Some(linearised) = self.linearised(&at) else { break };
+            if let Some(multipliers) = &multipliers {
+                let now = self.judged(&at, &linearised, multipliers, closed);
+                let done = now.residual <= STILL;
+                keep(&mut best, now);
+                if done {
+                    converged = true;
+                    break;
+                }
+            }
+            if (self.stopped)() {
+                break;
+            }
+            let rows: Vec<Row> = linearised.iter().map(|one| one.row(&at)).collect();
+            let problem = Separable { priced: self.priced, rows: &rows };
+            if step == 0 {
+                let direct = closed_form(&problem);
+                closed = direct.is_some() && exact;
+                multipliers = Some(match direct {
+                    Some((_, multipliers)) => multipliers,
+                    None => augmented(&problem, &at).1,
+                });
+            }
+            let (found, next) = problem.solve(&multipliers.take().unwrap_or_default());
+            let length = at.iter().zip(&next).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f64::max);
+            // A surrogate that is not a sum of squares may need shorter steps.
+            if !exact && step > 3 && length > 0.7 * last_step {
+                part = (0.5 * part).max(0.1);
+            }
+            last_step = length;
+            at = if part == 1.0 { next } else { self.reached(&at, &next, part) };
+            multipliers = Some(found);
+            if exact && step > 0 && length <= 1e-14 {
+                converged = true;
+            }
+        }
+        if let (Some(multipliers), Some(linearised)) = (&multipliers, self.linearised(&at)) {
+            let now = self.judged(&at, &linearised, multipliers, closed);
+            converged |= now.residual <= 1e3 * STILL;
+            keep(&mut best, now);
+        }
+        let mut best = best?;
+        best.converged = converged;
+        self.tighten(&mut best);
+        if closed {
+            let rows: Vec<Row> = self.linearised(&best.at)?.iter().map(|one| one.row(&best.at)).collect();
+            let direct = closed_form(&Separable { priced: self.priced, rows: &rows });
+            let same = |direct: &Vec<f64>| direct.iter().zip(&best.at).all(|(a, b)| (a / b - 1.0).abs() <= SAME);
+            best.closed = direct.is_some_and(|(direct, _)| same(&direct));
+        }
+        Some(best)
+    }
+
+    /// Rounding may leave a constraint exceeded by a last digit: what is promised is kept.
+    fn tighten(&self, solved: &mut Solved) {
+        if solved.value > 1.0 + 1e-6 {
+            return;
+        }
+        for attempt in 0..20 {
+            let excess = self.value(&solved.at) - 1.0;
+            if excess <= 0.0 {
+                break;
+            }
+            let factor = 1.0 - excess * f64::from(1 << attempt.min(8)) - 1e-15;
+            solved.at.iter_mut().zip(self.priced).for_each(|(t, group)| *t = (*t * factor).max(group.tightest()));
+        }
+        solved.value = self.value(&solved.at);
+        solved.cost = self.cost(&solved.at);
+    }
+
+    /// How far these tolerances are from an optimum, with these multipliers.
+    fn judged(&self, at: &[f64], linearised: &[Linearised], multipliers: &[f64], closed: bool) -> Solved {
+        let slopes: Vec<f64> = (self.priced.iter().zip(at))
+            .map(|(group, &t)| group.parts * group.offers[0].curve.log_derivatives(t)[0])
+            .collect();
+        let scale = slopes.iter().fold(f64::MIN_POSITIVE, |scale, slope| scale.max(slope.abs()));
+        let mut residual: f64 = 0.0;
+        for (g, (group, &t)) in self.priced.iter().zip(at).enumerate() {
+            let uses = linearised.iter().zip(multipliers).map(|(one, multiplier)| multiplier * one.slopes[g]);
+            let slope = slopes[g] + uses.sum::<f64>();
+            let offer = &group.offers[0];
+            let violation = match (t <= offer.min * (1.0 + 1e-14), t >= offer.max * (1.0 - 1e-14)) {
+                (true, true) => 0.0,
+                (true, false) => (-slope).max(0.0),
+                (false, true) => slope.max(0.0),
+                (false, false) => slope.abs(),
+            };
+            residual = residual.max(violation / scale);
+        }
+        let mut value: f64 = 0.0;
+        for (one, &multiplier) in linearised.iter().zip(multipliers) {
+            value = value.max(one.value);
+            residual = residual
+                .max(one.value - 1.0)
+                .max((multiplier / scale * (one.value - 1.0)).abs().min((one.value - 1.0).abs()));
+        }
+        Solved {
+            at: at.to_vec(),
+            cost: self.cost(at),
+            multipliers: multipliers.to_vec(),
+            residual,
+            value,
+            closed,
+            converged: false,
+        }
+    }
+
+    /// The least value that a constraint can have by itself within the bounds, and where.
+    pub(super) fn attainable(&self, constraint: &Constraint) -> (f64, Vec<f64>) {
+        let bounds = self.bounds();
+        let mut at: Vec<f64> = bounds.iter().map(|&[low, _]| low).collect();
+        let mut least = constraint.value(self.responses, self.priced, &at);
+        // Tighter is better, but where a wide tolerance moves the mean the right way.
+        for _ in 0..3 {
+            let before = least;
+            for g in 0..at.len() {
+                let [low, high] = bounds[g];
+                for part in 1..=16 {
+                    let kept = at[g];
+                    at[g] = low.powf(1.0 - f64::from(part) / 16.0) * high.powf(f64::from(part) / 16.0);
+                    let value = constraint.value(self.responses, self.priced, &at);
+                    if value < least * (1.0 - 1e-9) { least = value } else { at[g] = kept }
+                }
+            }
+            if least >= before {
+                break;
+            }
+        }
+        (least, at)
+    }
+}
+
+/// The best: kept constraints first, then the smallest residual.
+fn keep(best: &mut Option<Solved>, found: Solved) {
+    let better = |old: &Solved| found.residual < old.residual;
+    if best.as_ref().is_none_or(better) {
+        *best = Some(found);
+    }
+}

@@ -1,0 +1,121 @@
+//! The front of cost against what is required, as a chart.
+
+use std::fmt::Write;
+
+use super::allocation::AllocationReport;
+use super::number::significant;
+
+const WIDTH: f64 = 720.0;
+const HEIGHT: f64 = 420.0;
+/// Left, right, above, below.
+const MARGIN: [f64; 4] = [80.0, 40.0, 48.0, 56.0];
+
+/// What is required across, by the sigmas that reject as many on both sides together, or the Cpk; cost upwards. The open circle is the
+/// present state's cost at what is required now.
+pub fn allocation_svg(report: &AllocationReport) -> String {
+    let points: Vec<(f64, f64, String)> = (report.front.iter())
+        .filter_map(|point| {
+            let wanted = point.required.first()?;
+            let (place, label) = scale(wanted.requirement, wanted.required);
+            Some((place, point.cost?, label))
+        })
+        .collect();
+    let [left, right, above, below] = MARGIN;
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
+         font-family=\"sans-serif\" font-size=\"12\" role=\"img\">\n<title>Cost against what is required</title>\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
+    );
+    let now = present(report);
+    let costs = points.iter().map(|point| point.1).chain(now.as_ref().map(|now| now.1));
+    let across = range(points.iter().map(|point| point.0).chain(now.as_ref().map(|now| now.0)));
+    let up = range(costs);
+    let x = |value: f64| left + (value - across[0]) / (across[1] - across[0]) * (WIDTH - left - right);
+    let y = |value: f64| HEIGHT - below - (value - up[0]) / (up[1] - up[0]) * (HEIGHT - above - below);
+    let first = report.front.first().and_then(|point| point.required.first());
+    let what = first.map_or("yield", |wanted| wanted.requirement);
+    let _ = writeln!(
+        svg,
+        "<text x=\"{left}\" y=\"24\" font-size=\"15\" font-weight=\"bold\">{}</text>",
+        escaped(report.title.as_deref().unwrap_or("Cost against what is required"))
+    );
+    for part in 0..=4 {
+        let value = up[0] + (up[1] - up[0]) * f64::from(part) / 4.0;
+        let at = y(value);
+        let _ = writeln!(svg, "<path d=\"M{left} {at:.1}H{}\" stroke=\"#ddd\"/>", WIDTH - right);
+        let _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+            left - 8.0,
+            at + 4.0,
+            significant(value, 4)
+        );
+    }
+    // Every label would stand in the next one's way.
+    let every = points.len().div_ceil(6).max(1);
+    for (place, _, label) in points.iter().step_by(every) {
+        let at = x(*place);
+        let _ = writeln!(svg, "<path d=\"M{at:.1} {above}V{}\" stroke=\"#ddd\"/>", HEIGHT - below);
+        let _ =
+            writeln!(svg, "<text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>", HEIGHT - below + 18.0);
+    }
+    let (middle, centre) = (0.5 * (left + WIDTH - right), 0.5 * (above + HEIGHT - below));
+    let _ = writeln!(svg, "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">{what} required</text>", HEIGHT - 12.0);
+    let _ = writeln!(
+        svg,
+        "<text x=\"18\" y=\"{centre}\" text-anchor=\"middle\" transform=\"rotate(-90 18 {centre})\">cost</text>"
+    );
+    let line: Vec<String> = points.iter().map(|point| format!("{:.1} {:.1}", x(point.0), y(point.1))).collect();
+    if line.len() > 1 {
+        let _ = writeln!(svg, "<path d=\"M{}\" fill=\"none\" stroke=\"#1f6feb\"/>", line.join("L"));
+    }
+    for (place, cost, label) in &points {
+        let _ = writeln!(
+            svg,
+            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4\" fill=\"#1f6feb\"><title>{label}: {}</title></circle>",
+            x(*place),
+            y(*cost),
+            significant(*cost, 6)
+        );
+    }
+    if let Some((place, cost)) = now {
+        let (at, height) = (x(place), y(cost));
+        let _ = writeln!(svg, "<circle cx=\"{at:.1}\" cy=\"{height:.1}\" r=\"4\" fill=\"#fff\" stroke=\"#666\"/>");
+        let _ = writeln!(svg, "<text x=\"{:.1}\" y=\"{:.1}\" fill=\"#666\">before</text>", at + 7.0, height - 5.0);
+    }
+    svg + "</svg>\n"
+}
+
+/// Where a requirement lies, and its label.
+fn scale(requirement: &str, required: f64) -> (f64, String) {
+    match requirement {
+        "yield" => {
+            let rejected = (1.0 - required).max(f64::MIN_POSITIVE);
+            (-rejected.log10(), format!("{} %", super::limits::share(rejected).trim_end_matches(" %")))
+        }
+        _ => (required, significant(required, 3)),
+    }
+}
+
+/// What the tolerances before gave, for what they cost.
+fn present(report: &AllocationReport) -> Option<(f64, f64)> {
+    let first = report.front.first()?.required.first()?;
+    let one = report.requirements.iter().find(|one| one.characteristic == first.characteristic)?;
+    let (had, cost) = (one.before?, report.cost_before?);
+    (had < 1.0 - 1e-12 || first.requirement != "yield").then(|| (scale(first.requirement, had).0, cost))
+}
+
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    values.filter(|value| value.is_finite()).for_each(|value| (low, high) = (low.min(value), high.max(value)));
+    match (low.is_finite(), high > low) {
+        (true, true) => [low - 0.05 * (high - low), high + 0.05 * (high - low)],
+        (true, false) => [low - 1.0, low + 1.0],
+        _ => [0.0, 1.0],
+    }
+}
+
+/// Titles come from studies: nothing in them is markup.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
