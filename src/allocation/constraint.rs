@@ -77,13 +77,17 @@ impl Constraint {
         let factors = responses.factors(priced, at);
         let ratio = self.ratio(responses, priced, at).filter(|ratio| ratio.is_finite())?;
         let value = ratio * ratio;
+        if value == 0.0 {
+            // Nothing varies here.
+            return Some(Linearised { value, slopes: vec![0.0; priced.len()], linear: false });
+        }
         let plain = responses.is_plain(k);
         // d ln(ratio) = d ln R - d ln s.
         let slopes = match self.requirement {
             Requirement::Rss => {
                 let (square, slopes) = responses.rss_squared(k, priced, &factors)?;
                 let own: Vec<f64> = slopes.iter().map(|slope| 0.5 * slope / square).collect();
-                if plain || square == 0.0 { own } else { self.with_room(responses, priced, &factors, Some(own))? }
+                if plain { own } else { self.with_room(responses, priced, &factors, Some(own))? }
             }
             _ if plain => {
                 // Sigma squared is the sum of the groups' squares.

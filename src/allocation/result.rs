@@ -89,10 +89,14 @@ pub struct Kept {
 }
 
 /// What a requirement costs: by how much the cost falls per unit by which something gives way.
+///
+/// Where both sides of a requirement hold the cost up, widening one of them alone saves nothing, and only `both` is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShadowPrice {
     /// Index of the characteristic in the problem.
     pub characteristic: usize,
+    /// Per unit by which both limits go outwards, or the only one.
+    pub both: Option<f64>,
     /// Per unit by which its lower limit goes down.
     pub lower: Option<f64>,
     /// Per unit by which its upper limit goes up.

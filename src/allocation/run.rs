@@ -595,16 +595,14 @@ fn prices(station: &Station, priced: &[Priced], constraints: &[Constraint], solv
         let Some([lower, upper, sigma]) = constraint.prices(&station.responses, priced, &solved.at, multiplier) else {
             continue;
         };
-        let add = |old: Option<f64>, more: Option<f64>| match (old, more) {
-            (Some(old), Some(more)) => Some(old + more),
-            (old, more) => old.or(more),
-        };
+        let both = [lower, upper].into_iter().flatten().reduce(|a, b| a + b);
         match prices.iter_mut().find(|price| price.characteristic == c) {
+            // The other side holds the cost up too.
             Some(price) => {
-                (price.lower, price.upper, price.sigma) =
-                    (add(price.lower, lower), add(price.upper, upper), add(price.sigma, sigma));
+                price.both = [price.both, both].into_iter().flatten().reduce(|a, b| a + b);
+                (price.lower, price.upper) = (None, None);
             }
-            None => prices.push(ShadowPrice { characteristic: c, lower, upper, sigma }),
+            None => prices.push(ShadowPrice { characteristic: c, both, lower, upper, sigma }),
         }
     }
     prices

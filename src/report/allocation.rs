@@ -160,7 +160,9 @@ pub struct KeptReport {
 pub struct PriceReport {
     /// The characteristic.
     pub characteristic: String,
-    /// Cost saved per unit by which its lower limit goes down.
+    /// Cost saved per unit by which both limits go outwards, or the only one.
+    pub both: Option<f64>,
+    /// Cost saved per unit by which its lower limit goes down; null where the upper one holds the cost up too.
     pub lower: Option<f64>,
     /// Cost saved per unit by which its upper limit goes up.
     pub upper: Option<f64>,
@@ -334,6 +336,7 @@ impl AllocationReport {
             shadow_prices: (allocation.prices.iter())
                 .map(|one| PriceReport {
                     characteristic: name(one.characteristic),
+                    both: one.both,
                     lower: one.lower,
                     upper: one.upper,
                     sigma: one.sigma,

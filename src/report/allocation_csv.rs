@@ -42,7 +42,7 @@ fn tolerances(report: &AllocationReport) -> Table {
 
 fn requirements(report: &AllocationReport) -> Table {
     let mut table = Table::new(
-        "characteristic,requirement,required,before,after,met_before,met,price_lower,price_upper,price_sigma",
+        "characteristic,requirement,required,before,after,met_before,met,price_both,price_lower,price_upper,price_sigma",
     );
     for one in &report.requirements {
         let price = report.shadow_prices.iter().find(|price| price.characteristic == one.characteristic);
@@ -54,6 +54,7 @@ fn requirements(report: &AllocationReport) -> Table {
             number(one.after),
             truth(Some(one.met_before)),
             truth(Some(one.met)),
+            number(price.and_then(|price| price.both)),
             number(price.and_then(|price| price.lower)),
             number(price.and_then(|price| price.upper)),
             number(price.and_then(|price| price.sigma)),

@@ -233,9 +233,11 @@ fn prices(page: &mut Page, report: &AllocationReport, price: &PriceReport) {
     let part = |what: &str, price: Option<f64>| {
         price.map(|price| format!("{what} by {by} saves {}", significant(price * step, 3)))
     };
+    let two = one.is_some_and(|one| one.before.lower.is_some() && one.before.upper.is_some());
     let all: Vec<String> = [
-        part("its lower limit lower", price.lower),
-        part("its upper limit higher", price.upper),
+        part("both limits wider", price.both.filter(|_| two)),
+        part("the lower limit lower", price.lower),
+        part("the upper limit higher", price.upper),
         part("a larger sigma", price.sigma),
     ]
     .into_iter()
