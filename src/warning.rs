@@ -23,6 +23,15 @@ pub enum Warning {
     },
     /// The model was not asked at the tolerances that were found.
     NotConfirmed,
+    /// Monte Carlo at the tolerances that were found says that a required yield is missed.
+    ConfirmationMisses {
+        /// The characteristic.
+        characteristic: String,
+        /// What is required.
+        required: f64,
+        /// 95 % interval of what there is.
+        interval: [f64; 2],
+    },
     /// The model failed at some points.
     FailedPoints {
         /// The characteristic that has no value there.
@@ -313,6 +322,7 @@ impl Warning {
             Self::NotProven { .. } => "not-proven",
             Self::FitReplaced { .. } => "fit-replaced",
             Self::NotConfirmed => "not-confirmed",
+            Self::ConfirmationMisses { .. } => "confirmation-misses",
             Self::AutoIsSecondOrder => "auto-is-second-order",
         }
     }
@@ -332,6 +342,7 @@ impl Warning {
             | Self::InfeasibleMoments { characteristic, .. }
             | Self::NearInfeasibleMoments { characteristic, .. }
             | Self::NotProven { characteristic, .. }
+            | Self::ConfirmationMisses { characteristic, .. }
             | Self::RssInvalid { characteristic, .. } => Some(characteristic),
             _ => None,
         }
@@ -516,6 +527,13 @@ impl Warning {
             Self::FitReplaced { dimension } => format!(
                 "`{dimension}` was a fit of ISO 286 and is a plain tolerance now: choose the class that is nearest, and require it \
                  as a process, if it has to be one"
+            ),
+            Self::ConfirmationMisses { characteristic, required, interval: [low, high] } => format!(
+                "`{characteristic}` keeps its limits in {:.4} .. {:.4} % of the model's own sample, and {:.4} % are required: four moments \
+                 do not say enough of its tails; require more, or a Cpk",
+                100.0 * low,
+                100.0 * high,
+                100.0 * required
             ),
             Self::NotConfirmed => {
                 "the tolerances rest on derivatives at others: the budget or the time did not allow to ask the model there; \

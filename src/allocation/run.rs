@@ -29,6 +29,8 @@ const MARGIN: f64 = 1e-7;
 const REST: f64 = 1e-3;
 /// A step of a nominal value, in sigmas, that derivatives are trusted for.
 const FAR: f64 = 30.0;
+/// A constraint that is so near its bound is at it.
+const BINDING: f64 = 1e-6;
 /// A residual up to which tolerances are called optimal.
 const OPTIMAL: f64 = 1e-7;
 /// A gap up to which a choice of processes is called optimal.
@@ -596,12 +598,13 @@ fn prices(station: &Station, priced: &[Priced], constraints: &[Constraint], solv
             continue;
         };
         let both = [lower, upper].into_iter().flatten().reduce(|a, b| a + b);
+        let same = |other: &&Constraint| other.characteristic == c && *other != constraint;
+        // The other side holds the cost up too, whichever of them the multipliers name.
+        let other = constraints.iter().find(same);
+        let binds = |other: &Constraint| other.value(&station.responses, priced, &solved.at) >= 1.0 - BINDING;
+        let [lower, upper] = if other.is_some_and(binds) { [None, None] } else { [lower, upper] };
         match prices.iter_mut().find(|price| price.characteristic == c) {
-            // The other side holds the cost up too.
-            Some(price) => {
-                price.both = [price.both, both].into_iter().flatten().reduce(|a, b| a + b);
-                (price.lower, price.upper) = (None, None);
-            }
+            Some(price) => price.both = [price.both, both].into_iter().flatten().reduce(|a, b| a + b),
             None => prices.push(ShadowPrice { characteristic: c, both, lower, upper, sigma }),
         }
     }

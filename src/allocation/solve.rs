@@ -45,6 +45,8 @@ pub(super) struct Solved {
 const STEPS: usize = 60;
 /// Constraints are kept to this part.
 pub(super) const KEPT: f64 = 1e-12;
+/// What other orders of the same sums may say differently.
+const RESERVE: f64 = 1e-13;
 /// It stands still.
 const STILL: f64 = 1e-11;
 /// Two ways to the same.
@@ -82,18 +84,16 @@ impl Setting<'_> {
     /// where none was found that keeps them all.
     pub(super) fn solve(&self, start: &[f64]) -> Option<Solved> {
         let bounds = self.bounds();
-        let within =
-            |at: &[f64]| -> Vec<f64> { at.iter().zip(&bounds).map(|(t, &[low, high])| t.clamp(low, high)).collect() };
         let tight: Vec<f64> = bounds.iter().map(|&[low, _]| low).collect();
-        let mut starts = vec![within(start)];
+        let mut starts = vec![self.within(start)];
         if !self.is_exact() {
             let loose: Vec<f64> = bounds.iter().map(|&[_, high]| high).collect();
-            starts.push(within(&start.iter().map(|t| 0.3 * t).collect::<Vec<_>>()));
+            starts.push(self.within(&start.iter().map(|t| 0.3 * t).collect::<Vec<_>>()));
             starts.push(self.reached(&tight, &loose, 0.5));
         }
         let mut best: Option<Solved> = None;
         for start in starts {
-            let found = self.descend(&self.usable(&start, &tight)?);
+            let found = self.usable(&start, &tight).and_then(|start| self.descend(&start));
             let better = |best: &Solved| {
                 (best.value > 1.0 && found.as_ref().is_some_and(|found| found.value < best.value))
                     || found.as_ref().is_some_and(|found| found.value <= 1.0 && found.cost < best.cost * (1.0 - 1e-9))
@@ -105,7 +105,31 @@ impl Setting<'_> {
                 break;
             }
         }
-        best.filter(|best| best.value <= 1.0 + KEPT)
+        best.filter(|best| best.value <= 1.0 + KEPT).or_else(|| self.kept_at_least(start, &tight))
+    }
+
+    /// Where the search found nothing that keeps all constraints and the tightest tolerances do: as far from these towards the start as they
+    /// are kept, with nothing proven.
+    fn kept_at_least(&self, start: &[f64], tight: &[f64]) -> Option<Solved> {
+        if self.value(tight) > 1.0 {
+            return None;
+        }
+        let (mut inside, mut outside) = (0.0, 1.0);
+        for _ in 0..40 {
+            let middle = 0.5 * (inside + outside);
+            if self.value(&self.reached(tight, start, middle)) <= 1.0 { inside = middle } else { outside = middle }
+        }
+        let at = self.within(&self.reached(tight, start, inside));
+        let (cost, value) = (self.cost(&at), self.value(&at));
+        let multipliers = vec![0.0; self.constraints.len()];
+        let residual = f64::INFINITY;
+        let solved = Solved { at, cost, multipliers, residual, value, closed: false, converged: false };
+        (value <= 1.0).then_some(solved)
+    }
+
+    /// The half bands within their bounds.
+    fn within(&self, at: &[f64]) -> Vec<f64> {
+        at.iter().zip(self.bounds()).map(|(t, [low, high])| t.clamp(low, high)).collect()
     }
 
     /// Part of the way, in logarithms.
@@ -179,13 +203,13 @@ impl Setting<'_> {
         Some(best)
     }
 
-    /// Rounding may leave a constraint exceeded by a last digit: what is promised is kept.
+    /// Rounding may leave a constraint exceeded by a last digit: what is promised is kept, however it is summed.
     fn tighten(&self, solved: &mut Solved) {
         if solved.value > 1.0 + 1e-6 {
             return;
         }
         for attempt in 0..20 {
-            let excess = self.value(&solved.at) - 1.0;
+            let excess = self.value(&solved.at) - (1.0 - RESERVE);
             if excess <= 0.0 {
                 break;
             }

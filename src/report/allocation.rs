@@ -297,6 +297,7 @@ impl AllocationReport {
         if !allocation.confirmed && matches!(allocation.status, Status::Optimal | Status::AlmostOptimal) {
             warnings.push(WarningReport::of(&Warning::NotConfirmed));
         }
+        warnings.extend(missed(problem, allocation).iter().map(WarningReport::of));
         Self {
             schema: SCHEMA,
             sensitol: env!("CARGO_PKG_VERSION"),
@@ -374,6 +375,18 @@ impl AllocationReport {
             warnings,
         }
     }
+}
+
+/// Required yields that a confirmation by Monte Carlo contradicts.
+fn missed(problem: &Problem, allocation: &Allocation) -> Vec<Warning> {
+    let of = |kept: &crate::allocation::Kept| {
+        let Requirement::Yield(required) = kept.requirement else { return None };
+        let simulated = &allocation.confirmation.as_ref()?.characteristics[kept.characteristic];
+        let interval = simulated.yield_?.interval;
+        let characteristic = problem.characteristics()[kept.characteristic].name().to_owned();
+        (interval[1] < required).then_some(Warning::ConfirmationMisses { characteristic, required, interval })
+    };
+    allocation.requirements.iter().filter_map(of).collect()
 }
 
 impl JointReport {

@@ -99,7 +99,7 @@ fn random_problems_with_a_closed_form_have_it() {
         let requirement = if worst { Requirement::WorstCase } else { Requirement::Rss };
         let task = AllocationTask { priced, requirements: vec![Some(requirement)] };
         let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
-        assert_eq!(found.status, Status::Optimal);
+        assert_eq!(found.status, Status::Optimal, "case {case}: {:?} {:?}", found.proof, found.requirements);
         assert!(found.proof.closed_form, "case {case}");
         for (d, ratio) in ratio.iter().enumerate() {
             relative(tolerance(&found, d), mu * ratio, 1e-9);
@@ -116,7 +116,8 @@ fn rss(slopes: &[f64], bands: &[f64]) -> f64 {
 }
 
 fn slopes_and_limits(rng: &mut Xoshiro256PlusPlus, bands: &[f64]) -> ([Vec<f64>; 3], [[f64; 2]; 3]) {
-    let slope = |rng: &mut Xoshiro256PlusPlus| if rng.random::<f64>() < 0.3 { 0.0 } else { rng.random_range(-2.0..2.0) };
+    let slope =
+        |rng: &mut Xoshiro256PlusPlus| if rng.random::<f64>() < 0.3 { 0.0 } else { rng.random_range(-2.0..2.0) };
     let slopes: [Vec<f64>; 3] = std::array::from_fn(|_| bands.iter().map(|_| slope(rng)).collect());
     let limits = slopes.each_ref().map(|slopes| rss(slopes, bands));
     let limits = limits.map(|rss| [-rss * rng.random_range(0.5..2.0), rss * rng.random_range(0.5..2.0)]);
@@ -205,7 +206,8 @@ fn independent_residual(task: &AllocationTask, slopes: &[Vec<f64>], limits: &[[f
     let right: Vec<f64> = inside.iter().map(|&d| -slope(d) / scale).collect();
     // Least squares by the normal equations, a little regular where two requirements ask for the same.
     let k = columns.len();
-    let mut matrix = faer::Mat::<f64>::from_fn(k, k, |a, b| inside.iter().map(|&d| columns[a][d] * columns[b][d]).sum());
+    let mut matrix =
+        faer::Mat::<f64>::from_fn(k, k, |a, b| inside.iter().map(|&d| columns[a][d] * columns[b][d]).sum());
     (0..k).for_each(|a| matrix[(a, a)] *= 1.0 + 1e-12);
     let vector = faer::Mat::from_fn(k, 1, |a, _| inside.iter().zip(&right).map(|(&d, r)| columns[a][d] * r).sum());
     let factors = faer::linalg::solvers::Solve::solve(&matrix.partial_piv_lu(), &vector);
@@ -453,8 +455,7 @@ fn the_middle_of_an_asymmetric_band_moves_with_its_tolerance() {
     let dimensions =
         [Dimension::normal("a", 10.0, 0.1).unwrap(), Dimension::normal_between("b", 20.0, [-0.1, 0.3]).unwrap()];
     let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(9.0), Some(10.25)).unwrap());
-    let problem =
-        Problem::new(dimensions, Closure::scalar("gap", |x| x[1] - x[0])).unwrap().asking([gap]).unwrap();
+    let problem = Problem::new(dimensions, Closure::scalar("gap", |x| x[1] - x[0])).unwrap().asking([gap]).unwrap();
     // Only b is free; the worst case above is 10 + 0.1 + 0.3 T/0.2, so that T = 0.1, of -0.05/+0.15.
     let task = AllocationTask {
         priced: vec![free(1, Curve::reciprocal(0.0, 1.0).unwrap(), 0.01, 1.0)],
@@ -498,31 +499,26 @@ fn correlation_has_its_part_in_the_requirement() {
     }
 }
 
-/// A uniform dimension with a lognormal one: the shape of the sum changes with the tolerances, and of the lognormal one with its own.
+/// Uniform dimensions with a lognormal one: the shape of the sum changes with the tolerances, and that of the lognormal one with its own.
 #[test]
 fn shapes_that_change_are_followed() {
     let lognormal = sensitol::distribution::Lognormal::new(0.0, 1.0, 0.1).unwrap();
-    let dimensions = [
-        Dimension::uniform("a", 10.0, 0.3).unwrap(),
-        Dimension::distributed("b", 1.0, None, std::sync::Arc::new(lognormal)).unwrap(),
-    ];
-    let sum = Characteristic::new("sum").with_limits(SpecLimits::new(None, Some(11.5)).unwrap());
-    let problem =
-        Problem::new(dimensions, Closure::scalar("sum", |x| x[0] + x[1])).unwrap().asking([sum]).unwrap();
+    let uniform = |name: &str| Dimension::uniform(name, 10.0, 0.2).unwrap();
+    let lognormal = Dimension::distributed("e", 1.0, None, std::sync::Arc::new(lognormal)).unwrap();
+    let dimensions = [uniform("a"), uniform("b"), uniform("c"), uniform("d"), lognormal];
+    let sum = Characteristic::new("sum").with_limits(SpecLimits::new(None, Some(41.5)).unwrap());
+    let problem = Problem::new(dimensions, Closure::scalar("sum", |x| x.iter().sum())).unwrap().asking([sum]).unwrap();
     let task = AllocationTask {
-        priced: vec![
-            free(0, Curve::reciprocal(0.0, 1.0).unwrap(), 0.01, 2.0),
-            free(1, Curve::reciprocal(0.0, 1.0).unwrap(), 0.01, 2.0),
-        ],
-        requirements: vec![Some(Requirement::Yield(0.999))],
+        priced: (0..5).map(|d| free(d, Curve::reciprocal(0.0, 1.0 + d as f64).unwrap(), 0.01, 2.0)).collect(),
+        requirements: vec![Some(Requirement::Yield(0.995))],
     };
     let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
     assert_eq!(found.status, Status::Optimal, "{:?} {:?}", found.proof, found.requirements);
     let sample = SimulationOptions { samples: 1_000_000, ..SimulationOptions::default() };
     let simulated = simulate(&found.problem, &sample).unwrap();
     let [low, high] = simulated.characteristics[0].yield_.unwrap().interval;
-    // Four moments do not say everything of such a sum: a tenth of what is rejected.
-    assert!(low - 1e-4 < 0.999 && 0.999 < high + 1e-4, "{low} {high}");
+    // Four moments do not say everything of a sum of uniforms: a tenth of what is rejected.
+    assert!(low - 5e-4 < 0.995 && 0.995 < high + 5e-4, "{low} {high}");
 }
 
 #[test]
@@ -575,7 +571,11 @@ fn nominal_values_move_to_the_middle_of_the_limits() {
     assert!((found.moved[0].after - 31.0).abs() < 1e-4, "{:?}", found.moved);
     let found = recentred(&problem(|x| x[1] - x[0]), &["a", "b"]);
     // Each in proportion to its sigma squared: the shortest way in sigmas.
-    assert!((found.moved[0].after - 9.8).abs() < 1e-3 && (found.moved[1].after - 30.8).abs() < 1e-3, "{:?}", found.moved);
+    assert!(
+        (found.moved[0].after - 9.8).abs() < 1e-3 && (found.moved[1].after - 30.8).abs() < 1e-3,
+        "{:?}",
+        found.moved
+    );
     // Far away along a curve: 21 = x1 - 1000/x0^2 at x0 with 20 + ... found by several rounds of derivatives.
     let found = recentred(&problem(|x| x[1] - 1000.0 / (x[0] * x[0])), &["a"]);
     let expected = (1000.0f64 / 9.0).sqrt();
