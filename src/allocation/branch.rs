@@ -17,6 +17,7 @@ use std::ops::Range;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use super::constraint::{KEPT, kept};
 use super::cost::Priced;
 use super::separable::{Best, Row, Separable};
 use super::solve::{Setting, Solved};
@@ -84,7 +85,8 @@ struct Search<'a> {
 pub(super) fn branch(setting: Setting<'_>, start: &[f64]) -> Option<Chosen> {
     let exact = setting.is_exact();
     let reference = reference(&setting, start)?;
-    let rows = setting.linearised(&reference)?.iter().map(|one| one.row(&reference)).collect();
+    let mut rows: Vec<Row> = setting.linearised(&reference)?.iter().map(|one| one.row(&reference)).collect();
+    rows.iter_mut().for_each(|row| row.constant -= KEPT);
     let mut search = Search { setting, rows, incumbent: None, nodes: 0 };
     let discrete = setting.priced.iter().all(|group| group.offers.iter().all(|offer| offer.min == offer.max));
     let choices = setting.priced.iter().fold(1usize, |count, group| count.saturating_mul(group.offers.len()));
@@ -179,47 +181,47 @@ impl Search<'_> {
     fn try_from(&mut self, best: &[Best]) {
         let mut offers: Vec<usize> = best.iter().map(|best| best.offer).collect();
         let mut value = self.judged(&offers).map_or_else(|| self.quick(&offers).max(1.0 + 1e-9), |(_, value)| value);
-        while value > 1.0 {
+        while !kept(value) {
             let mut better: Option<(f64, usize, usize, f64)> = None;
             for g in 0..offers.len() {
-                let kept = offers[g];
+                let present = offers[g];
                 for offer in 0..self.setting.priced[g].offers.len() {
-                    if offer == kept {
+                    if offer == present {
                         continue;
                     }
                     offers[g] = offer;
                     let now = self.quick(&offers);
                     if now < value {
                         let gain = (value.min(1e6) - now.max(1.0)).max(1e-12);
-                        let price = (self.price(g, offer) - self.price(g, kept)).max(1e-12);
+                        let price = (self.price(g, offer) - self.price(g, present)).max(1e-12);
                         if better.is_none_or(|(ratio, ..)| gain / price > ratio) {
                             better = Some((gain / price, g, offer, now));
                         }
                     }
                 }
-                offers[g] = kept;
+                offers[g] = present;
             }
             let Some((_, g, offer, _)) = better else { return };
             offers[g] = offer;
             let now = self.judged(&offers).map_or(f64::INFINITY, |(_, value)| value);
-            if now >= value && now > 1.0 {
+            if now >= value && !kept(now) {
                 return;
             }
             value = now;
         }
         self.consider(offers.clone());
         for g in 0..offers.len() {
-            let kept = offers[g];
+            let present = offers[g];
             let mut cheaper: Vec<usize> = (0..self.setting.priced[g].offers.len())
-                .filter(|&offer| self.price(g, offer) < self.price(g, kept))
+                .filter(|&offer| self.price(g, offer) < self.price(g, present))
                 .collect();
             cheaper.sort_by(|&a, &b| self.price(g, a).total_cmp(&self.price(g, b)));
             for offer in cheaper {
                 offers[g] = offer;
-                if self.quick(&offers) <= 1.0 {
+                if kept(self.quick(&offers)) {
                     break;
                 }
-                offers[g] = kept;
+                offers[g] = present;
             }
         }
         self.consider(offers);
@@ -228,7 +230,7 @@ impl Search<'_> {
     /// Takes the optimum with these offers if it is the best so far.
     fn consider(&mut self, offers: Vec<usize>) {
         if let Some((solved, value)) = self.judged(&offers) {
-            if value <= 1.0 && solved.cost < self.known() * (1.0 - SAME) {
+            if kept(value) && solved.cost < self.known() * (1.0 - SAME) {
                 self.incumbent = Some((solved, offers));
             }
         }
@@ -279,7 +281,7 @@ impl Search<'_> {
             let cost: f64 = (self.setting.priced.iter().zip(&offers))
                 .map(|(group, &offer)| group.parts * group.offers[offer].curve.cost(group.offers[offer].min))
                 .sum();
-            if cost < self.known() * (1.0 - SAME) && self.quick(&offers) <= 1.0 {
+            if cost < self.known() * (1.0 - SAME) && kept(self.quick(&offers)) {
                 let (solved, _) = self.judged(&offers)?;
                 self.incumbent = Some((solved, offers.clone()));
             }

@@ -9,16 +9,14 @@
 //! with q = 1 for a worst case and q = 2 for a root of the sum of squares. Source: K. W. Chase, A. R. Parkinson, "A survey of research
 //! in the application of tolerance analysis to the design of mechanical assemblies", Research in Engineering Design 3 (1991).
 
+use super::constraint;
 use super::separable::Separable;
-
-/// Two sides that ask for the same differ by rounding.
-const KEPT: f64 = 1e-12;
 
 /// Tolerances and multipliers; None where costs differ in kind, several constraints bind, or a bound is met.
 pub(super) fn closed_form(problem: &Separable<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
     (0..problem.rows.len()).find_map(|k| {
         let at = bound_by(problem, k)?;
-        let kept = |(other, row): (usize, &super::separable::Row)| other == k || row.value(&at) <= 1.0 + KEPT;
+        let kept = |(other, row): (usize, &super::separable::Row)| other == k || constraint::kept(row.value(&at));
         let inside =
             problem.priced.iter().zip(&at).all(|(group, t)| (group.offers[0].min..=group.offers[0].max).contains(t));
         let mut multipliers = vec![0.0; problem.rows.len()];

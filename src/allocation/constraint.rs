@@ -17,6 +17,14 @@ use crate::capability::{self, Capability, Law};
 use crate::characteristic::SpecLimits;
 use crate::moments::Moments;
 
+/// What sums in another order may add: limits that are met to the last digit are kept.
+pub(super) const KEPT: f64 = 1e-12;
+
+/// Whether a constraint of this value is kept.
+pub(super) fn kept(value: f64) -> bool {
+    value <= 1.0 + KEPT
+}
+
 /// One side of one requirement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Constraint {
@@ -377,7 +385,7 @@ impl Constraint {
                 })
                 .collect()
         };
-        if self.value_at(responses, &alone(None)) <= 1.0 {
+        if kept(self.value_at(responses, &alone(None))) {
             return Vec::new();
         }
         let mut harm: Vec<(f64, usize)> = (0..factors.len())

@@ -49,7 +49,7 @@ impl CurveKind {
 #[non_exhaustive]
 pub enum CostError {
     /// A constant that must not be negative is, or is no number.
-    #[error("the cost constant {name} must be 0 or above, but is {value}")]
+    #[error("{} must be 0 or above, but is {value}", if *name == "cost" { "a cost".to_owned() } else { format!("the cost constant {name}") })]
     Negative {
         /// The constant.
         name: &'static str,

@@ -1,7 +1,7 @@
 //! From a problem with costs to tolerances that the model confirms.
 
 use super::branch::{Chosen, branch};
-use super::constraint::Constraint;
+use super::constraint::{Constraint, kept};
 use super::cost::Priced;
 use super::front::front;
 use super::joint::joint;
@@ -10,10 +10,11 @@ use super::requirement::Requirement;
 use super::response::Responses;
 use super::result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, ShadowPrice, Status};
 use super::scaling::loosest;
-use super::solve::{Setting, Solved};
+use super::solve::{Setting, Solved, tightened};
 use super::task::{AllocateError, AllocationOptions, AllocationTask};
 use crate::analysis::{Analysis, analyze_keeping};
 use crate::assembly::Run;
+use crate::dimension::Dimension;
 use crate::method::{MethodError, Options};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Sampler};
@@ -224,7 +225,7 @@ impl Driver<'_> {
             };
             let change = at.iter().zip(&solved.at).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f64::max);
             // The model has been asked at these tolerances, and would not choose others.
-            if still && last.is_some() && here.is_some_and(|value| value <= 1.0) && change <= AGREE {
+            if still && last.is_some() && here.is_some_and(kept) && change <= AGREE {
                 last = last.map(|(old, offers, _)| {
                     let kept = Solved { residual: solved.residual, multipliers: solved.multipliers.clone(), ..old };
                     (kept, offers, proof)
@@ -233,12 +234,7 @@ impl Driver<'_> {
                 break;
             }
             if round > 0 && !setting.is_exact() {
-                let tightest = |t: &mut f64, group: &Priced| {
-                    if group.offers.len() == 1 {
-                        *t = (*t * (1.0 - MARGIN)).max(group.tightest());
-                    }
-                };
-                solved.at.iter_mut().zip(&self.task.priced).for_each(|(t, group)| tightest(t, group));
+                tightened(&mut solved.at, &self.task.priced, 1.0 - MARGIN);
             }
             at.clone_from(&solved.at);
             let dimensions = scaled(&next, &self.task.priced, &at)?;
@@ -278,7 +274,7 @@ impl Driver<'_> {
         let stopped = || self.run.stopped();
         let ones = vec![1.0; station.problem.dimensions().len()];
         let values: Vec<f64> = constraints.iter().map(|one| one.value_at(&station.responses, &ones)).collect();
-        let met = values.iter().all(|&value| value <= 1.0);
+        let met = values.iter().all(|&value| kept(value));
         let solved = last.as_ref().map(|(solved, ..)| solved);
         if let Some((solved, offers, proof)) = &last {
             allocation.proof = proof.clone();
@@ -318,8 +314,8 @@ impl Driver<'_> {
                 }
             });
         }
-        for kept in &mut allocation.requirements {
-            (kept.after, kept.met_after) = judged(&station, kept.characteristic, kept.requirement);
+        for one in &mut allocation.requirements {
+            (one.after, one.met_after) = judged(&station, one.characteristic, one.requirement);
         }
         allocation.loosest_after = loosest(&station.responses, constraints);
         allocation.joint[1] = joint(&station.problem, &station.responses, self.options.seed);
@@ -469,7 +465,7 @@ fn cost(priced: &[Priced], at: &[f64], offers: &[usize]) -> f64 {
 }
 
 /// The dimensions with the groups at these half bands.
-fn scaled(problem: &Problem, priced: &[Priced], at: &[f64]) -> Result<Vec<crate::Dimension>, AllocateError> {
+fn scaled(problem: &Problem, priced: &[Priced], at: &[f64]) -> Result<Vec<Dimension>, AllocateError> {
     let mut dimensions = problem.dimensions().to_vec();
     for (group, &t) in priced.iter().zip(at) {
         for &d in &group.members {
@@ -495,7 +491,7 @@ fn moved(before: &Problem, after: &Problem) -> Vec<Moved> {
 pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
     for constraint in setting.constraints {
         let (value, at) = setting.attainable(constraint);
-        if value > 1.0 {
+        if !kept(value) {
             return Choice::Infeasible(unattainable(setting, constraint, &at));
         }
     }
@@ -585,7 +581,7 @@ fn judged(station: &Station, characteristic: usize, requirement: Requirement) ->
     let limits = station.problem.characteristics()[characteristic].limits();
     let ones = vec![1.0; station.problem.dimensions().len()];
     let constraints = Constraint::of(characteristic, requirement, limits);
-    let met = constraints.iter().all(|constraint| constraint.value_at(&station.responses, &ones) <= 1.0);
+    let met = constraints.iter().all(|constraint| kept(constraint.value_at(&station.responses, &ones)));
     (measure(station, characteristic, requirement), met)
 }
 

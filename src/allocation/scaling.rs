@@ -1,6 +1,6 @@
 //! One factor for all tolerances.
 
-use super::constraint::Constraint;
+use super::constraint::{Constraint, kept};
 use super::response::Responses;
 
 /// How near the factor is found.
@@ -15,14 +15,14 @@ const RANGE: [f64; 2] = [1e-4, 100.0];
 ///
 /// At fixed derivatives, so that far from 1 it is an extrapolation.
 pub(super) fn loosest(responses: &Responses, constraints: &[Constraint]) -> Option<f64> {
-    let kept = |factor: f64| {
+    let keeps = |factor: f64| {
         let factors: Vec<f64> = vec![factor; responses.dimensions.len()];
-        constraints.iter().all(|constraint| constraint.value_at(responses, &factors) <= 1.0)
+        constraints.iter().all(|constraint| kept(constraint.value_at(responses, &factors)))
     };
     if constraints.is_empty() {
         return None;
     }
-    let up = kept(1.0);
+    let up = keeps(1.0);
     let (mut inside, mut outside) = (1.0, 1.0);
     loop {
         if up {
@@ -30,7 +30,7 @@ pub(super) fn loosest(responses: &Responses, constraints: &[Constraint]) -> Opti
             if outside > RANGE[1] {
                 return None;
             }
-            if !kept(outside) {
+            if !keeps(outside) {
                 break;
             }
             inside = outside;
@@ -39,7 +39,7 @@ pub(super) fn loosest(responses: &Responses, constraints: &[Constraint]) -> Opti
             if inside < RANGE[0] {
                 return None;
             }
-            if kept(inside) {
+            if keeps(inside) {
                 break;
             }
             outside = inside;
@@ -47,7 +47,7 @@ pub(super) fn loosest(responses: &Responses, constraints: &[Constraint]) -> Opti
     }
     while outside / inside - 1.0 > NEAR {
         let middle = (inside * outside).sqrt();
-        if kept(middle) { inside = middle } else { outside = middle }
+        if keeps(middle) { inside = middle } else { outside = middle }
     }
     Some(inside)
 }

@@ -9,7 +9,7 @@
 
 use super::augmented::augmented;
 use super::closed_form::closed_form;
-use super::constraint::{Constraint, Linearised};
+use super::constraint::{Constraint, Linearised, kept};
 use super::cost::Priced;
 use super::response::Responses;
 use super::separable::{Row, Separable};
@@ -43,8 +43,6 @@ pub(super) struct Solved {
 
 /// Steps at most.
 const STEPS: usize = 60;
-/// Constraints are kept to this part.
-pub(super) const KEPT: f64 = 1e-12;
 /// What other orders of the same sums may say differently.
 const RESERVE: f64 = 1e-13;
 /// It stands still.
@@ -95,8 +93,8 @@ impl Setting<'_> {
         for start in starts {
             let found = self.usable(&start, &tight).and_then(|start| self.descend(&start));
             let better = |best: &Solved| {
-                (best.value > 1.0 && found.as_ref().is_some_and(|found| found.value < best.value))
-                    || found.as_ref().is_some_and(|found| found.value <= 1.0 && found.cost < best.cost * (1.0 - 1e-9))
+                (!kept(best.value) && found.as_ref().is_some_and(|found| found.value < best.value))
+                    || found.as_ref().is_some_and(|found| kept(found.value) && found.cost < best.cost * (1.0 - 1e-9))
             };
             if best.as_ref().is_none_or(better) {
                 best = found.or(best);
@@ -105,26 +103,26 @@ impl Setting<'_> {
                 break;
             }
         }
-        best.filter(|best| best.value <= 1.0 + KEPT).or_else(|| self.kept_at_least(start, &tight))
+        best.filter(|best| kept(best.value)).or_else(|| self.kept_at_least(start, &tight))
     }
 
     /// Where the search found nothing that keeps all constraints and the tightest tolerances do: as far from these towards the start as they
     /// are kept, with nothing proven.
     fn kept_at_least(&self, start: &[f64], tight: &[f64]) -> Option<Solved> {
-        if self.value(tight) > 1.0 {
+        if !kept(self.value(tight)) {
             return None;
         }
         let (mut inside, mut outside) = (0.0, 1.0);
         for _ in 0..40 {
             let middle = 0.5 * (inside + outside);
-            if self.value(&self.reached(tight, start, middle)) <= 1.0 { inside = middle } else { outside = middle }
+            if kept(self.value(&self.reached(tight, start, middle))) { inside = middle } else { outside = middle }
         }
         let at = self.within(&self.reached(tight, start, inside));
         let (cost, value) = (self.cost(&at), self.value(&at));
         let multipliers = vec![0.0; self.constraints.len()];
         let residual = f64::INFINITY;
         let solved = Solved { at, cost, multipliers, residual, value, closed: false, converged: false };
-        (value <= 1.0).then_some(solved)
+        kept(value).then_some(solved)
     }
 
     /// The half bands within their bounds.
@@ -213,8 +211,7 @@ impl Setting<'_> {
             if excess <= 0.0 {
                 break;
             }
-            let factor = 1.0 - excess * f64::from(1 << attempt.min(8)) - 1e-15;
-            solved.at.iter_mut().zip(self.priced).for_each(|(t, group)| *t = (*t * factor).max(group.tightest()));
+            tightened(&mut solved.at, self.priced, 1.0 - excess * f64::from(1 << attempt.min(8)) - 1e-15);
         }
         solved.value = self.value(&solved.at);
         solved.cost = self.cost(&solved.at);
@@ -287,5 +284,16 @@ fn keep(best: &mut Option<Solved>, found: Solved) {
     let better = |old: &Solved| found.residual < old.residual;
     if best.as_ref().is_none_or(better) {
         *best = Some(found);
+    }
+}
+
+/// All tolerances that are free a little tighter: what lies at its bound stays there, unless everything does.
+pub(super) fn tightened(at: &mut [f64], priced: &[Priced], factor: f64) {
+    let free = |group: &Priced, t: f64| group.offers.len() == 1 && t < group.loosest();
+    let any = priced.iter().zip(at.iter()).any(|(group, &t)| free(group, t));
+    for (t, group) in at.iter_mut().zip(priced) {
+        if !any && group.offers.len() == 1 || free(group, *t) {
+            *t = (*t * factor).max(group.tightest());
+        }
     }
 }

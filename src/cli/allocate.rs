@@ -68,7 +68,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     result?;
     let incomplete = allocation.before.characteristics.iter().any(|one| one.moments.is_none());
     Ok(match allocation.status {
-        _ if incomplete => Exit::NoResult,
+        _ if incomplete && !allocation.stopped => Exit::NoResult,
         Status::Optimal | Status::AlmostOptimal => Exit::Done,
         Status::Infeasible | Status::OutOfTime => Exit::NotAllocated,
     })

@@ -382,9 +382,12 @@ fn missed(problem: &Problem, allocation: &Allocation) -> Vec<Warning> {
     let of = |kept: &crate::allocation::Kept| {
         let Requirement::Yield(required) = kept.requirement else { return None };
         let simulated = &allocation.confirmation.as_ref()?.characteristics[kept.characteristic];
-        let interval = simulated.yield_?.interval;
+        let found = simulated.yield_?;
+        let interval = found.interval;
+        // Half as far again as the interval reaches: three standard errors.
+        let most = found.interval[1] + 0.5 * (found.interval[1] - found.value);
         let characteristic = problem.characteristics()[kept.characteristic].name().to_owned();
-        (interval[1] < required).then_some(Warning::ConfirmationMisses { characteristic, required, interval })
+        (most < required).then_some(Warning::ConfirmationMisses { characteristic, required, interval })
     };
     allocation.requirements.iter().filter_map(of).collect()
 }

@@ -45,6 +45,8 @@ pub fn allocation_text(report: &AllocationReport, style: Style) -> String {
     page.finish()
 }
 
+/// A smaller residual is rounding.
+const LEAST: f64 = 1e-12;
 /// Digits of a cost.
 const COST: usize = 5;
 
@@ -93,7 +95,9 @@ fn heading(page: &mut Page, report: &AllocationReport) {
     }
     if let Some(residual) = proof.kkt_residual {
         let closed = if proof.closed_form { ", Lagrange's solution in closed form" } else { "" };
-        page.line(&format!("conditions of Karush, Kuhn and Tucker kept within {residual:.0e}{closed}"));
+        // The next power of ten, and no more than doubles tell.
+        let within = 10f64.powi(residual.max(LEAST).log10().ceil() as i32);
+        page.line(&format!("conditions of Karush, Kuhn and Tucker kept within {within:.0e}{closed}"));
     }
 }
 

@@ -189,19 +189,12 @@ pub(super) fn costs(file: &StudyFile, problem: &Problem) -> Result<Vec<Priced>, 
         let (mut members, parts) = members(file, problem, name, &key)?;
         let target = other.get_ref();
         if target == name.get_ref() {
-            let why = "are the same: name another dimension, or write a model".to_owned();
-            return Err(at(StudyFault::Conflict { a: "same_as", b: "the dimension itself", why }));
+            return Err(at(StudyFault::SameAsItself { name: target.clone() }));
         }
         let Some(group) = groups.iter_mut().find(|(of, ..)| of == target) else {
             let chained = file.costs.0.iter().find(|(other, _)| other.get_ref() == target);
             return Err(at(match chained.and_then(|(_, entry)| entry.get_ref().same_as.as_ref()) {
-                Some(end) => {
-                    let why = format!(
-                        "make a chain: `{target}` is itself the same as `{0}`; write `{0}` here",
-                        end.get_ref()
-                    );
-                    StudyFault::Conflict { a: "same_as", b: "same_as", why }
-                }
+                Some(end) => StudyFault::SameAsChain { name: target.clone(), end: end.get_ref().clone() },
                 None => {
                     let nearest = nearest(target, names.iter().copied()).map(str::to_owned);
                     let known = names.iter().map(|&name| name.to_owned()).collect();
@@ -364,7 +357,7 @@ impl Numbers<'_> {
         };
         if let Some((name, value)) = spare.iter().find_map(|(name, value)| Some((*name, value.as_ref()?))) {
             let (to, instead) = (
-                format!("a {} cost", model.get_ref()),
+                format!("a cost of the model {}", model.get_ref()),
                 "k is the exponent of reciprocal-power, c the half band of exponential",
             );
             return Err(fault(
@@ -376,7 +369,7 @@ impl Numbers<'_> {
         let needed = |name: &'static str, value: &Option<Spanned<f64>>| match value {
             Some(value) => Ok(*value.get_ref()),
             None => {
-                let instead = format!("a {} cost needs {name}", model.get_ref());
+                let instead = format!("a cost of the model {} needs {name}", model.get_ref());
                 Err(fault(line.clone(), key, StudyFault::MissingKey { key: name.into(), instead }))
             }
         };

@@ -252,6 +252,20 @@ pub enum StudyFault {
     /// A file of measured values cannot be used.
     #[error(transparent)]
     Data(#[from] DataFault),
+    /// A dimension that would share its own tolerance.
+    #[error("`{name}` is the dimension itself")]
+    SameAsItself {
+        /// The dimension.
+        name: String,
+    },
+    /// A dimension that would share the tolerance of one that shares another's.
+    #[error("`{name}` has no cost of its own: it is the same as `{end}`")]
+    SameAsChain {
+        /// The dimension named.
+        name: String,
+        /// The one that it is the same as.
+        end: String,
+    },
     /// A cost is impossible.
     #[error(transparent)]
     Cost(#[from] CostError),
@@ -299,6 +313,10 @@ impl StudyFault {
             Self::Data(fault) => fault.problem.help(),
             Self::Limits(LimitsError::Swapped { .. }) | Self::Cost(CostError::Swapped { .. }) => {
                 Some("exchange them".into())
+            }
+            Self::SameAsItself { .. } => Some("name another dimension, or write a model or processes".into()),
+            Self::SameAsChain { end, .. } => {
+                Some(format!("write same_as = \"{end}\" where that has a cost, or give one of them a cost"))
             }
             Self::Cost(CostError::NoProcess) => {
                 Some("write some, such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }".into())

@@ -305,10 +305,10 @@ fn rounded(value: f64, scale: f64, up: bool) -> String {
         return "0.0".to_owned();
     }
     // What is a rounding error beside a round number is that number.
-    let magnitude = (scale.abs() * (1.0 + 1e-12)).log10().floor() as i32;
+    let magnitude = (scale.abs() * (1.0 + 8.0 * f64::EPSILON)).log10().floor() as i32;
     let decimals = DIGITS as i32 - 1 - magnitude;
     let unit = 10f64.powi(decimals);
-    let (scaled, blur) = (value * unit, 1e-12 * (scale * unit).abs());
+    let (scaled, blur) = (value * unit, 8.0 * f64::EPSILON * (value * unit).abs());
     let whole = if up { (scaled - blur).ceil() } else { (scaled + blur).floor() };
     let text = format!("{:.*}", decimals.max(0) as usize, whole / unit);
     if !text.contains('.') {

@@ -1,6 +1,7 @@
 //! Every test of the project, a module per theme; `cargo test --test suite moments::` runs one theme.
 
 mod allocation;
+mod allocation_cli;
 mod analysis;
 mod architecture;
 mod capability;
