@@ -125,7 +125,7 @@ impl Search<'_> {
                 bound = known;
                 break;
             }
-            if self.nodes >= NODES || self.nodes % 16 == 0 && self.nodes > 0 && (self.setting.stopped)() {
+            if self.nodes >= NODES || self.nodes.is_multiple_of(16) && self.nodes > 0 && (self.setting.stopped)() {
                 bound = node.bound;
                 break;
             }
@@ -229,10 +229,9 @@ impl Search<'_> {
 
     /// Takes the optimum with these offers if it is the best so far.
     fn consider(&mut self, offers: Vec<usize>) {
-        if let Some((solved, value)) = self.judged(&offers) {
-            if kept(value) && solved.cost < self.known() * (1.0 - SAME) {
-                self.incumbent = Some((solved, offers));
-            }
+        let better = |(solved, value): &(Solved, f64)| kept(*value) && solved.cost < self.known() * (1.0 - SAME);
+        if let Some((solved, _)) = self.judged(&offers).filter(better) {
+            self.incumbent = Some((solved, offers));
         }
     }
 

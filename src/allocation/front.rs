@@ -1,8 +1,8 @@
 //! Cost against yield.
 
+use super::choose::{Choice, choose};
 use super::constraint::Constraint;
 use super::requirement::Requirement;
-use super::run::{Choice, choose};
 use super::solve::Setting;
 use crate::distribution::standard_normal;
 use crate::problem::Problem;

@@ -15,19 +15,24 @@ const MEMORY: usize = 12;
 /// Value and gradient together; None where there is none.
 type Function<'a> = dyn Fn(&[f64]) -> Option<(f64, Vec<f64>)> + 'a;
 
+/// A point with value and gradient.
+struct Answer {
+    x: Vec<f64>,
+    value: f64,
+    gradient: Vec<f64>,
+}
+
 struct Watched<'a> {
     function: &'a Function<'a>,
     /// The last point asked, which argmin asks twice: for its value and for its gradient.
-    last: RefCell<Option<(Vec<f64>, f64, Vec<f64>)>>,
+    last: RefCell<Option<Answer>>,
     best: RefCell<(f64, Vec<f64>)>,
 }
 
 impl Watched<'_> {
     fn at(&self, x: &[f64]) -> (f64, Vec<f64>) {
-        if let Some((known, value, gradient)) = &*self.last.borrow() {
-            if known == x {
-                return (*value, gradient.clone());
-            }
+        if let Some(known) = self.last.borrow().as_ref().filter(|known| known.x == x) {
+            return (known.value, known.gradient.clone());
         }
         let found = (self.function)(x)
             .filter(|(value, gradient)| value.is_finite() && gradient.iter().all(|slope| slope.is_finite()));
@@ -35,7 +40,7 @@ impl Watched<'_> {
         if value < self.best.borrow().0 {
             *self.best.borrow_mut() = (value, x.to_vec());
         }
-        *self.last.borrow_mut() = Some((x.to_vec(), value, gradient.clone()));
+        *self.last.borrow_mut() = Some(Answer { x: x.to_vec(), value, gradient: gradient.clone() });
         (value, gradient)
     }
 }

@@ -20,6 +20,7 @@
 
 mod augmented;
 mod branch;
+mod choose;
 mod closed_form;
 mod constraint;
 mod cost;

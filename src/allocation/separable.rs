@@ -328,9 +328,9 @@ pub(super) fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<V
         for row in column + 1..n {
             let factor = matrix[row][column] / matrix[column][column];
             if factor != 0.0 {
-                for k in column..n {
-                    matrix[row][k] -= factor * matrix[column][k];
-                }
+                let (above, below) = matrix.split_at_mut(row);
+                let pairs = below[0].iter_mut().zip(&above[column]).skip(column);
+                pairs.for_each(|(value, pivot)| *value -= factor * pivot);
                 right[row] -= factor * right[column];
             }
         }

@@ -166,10 +166,18 @@ pub(super) fn requirement(
     requirement.checked(characteristic).map(Some).map_err(|error| at(span, error.into()))
 }
 
+/// A cost and the dimensions that share it.
+struct Group<'f> {
+    name: &'f Spanned<String>,
+    members: Vec<usize>,
+    parts: f64,
+    offers: Vec<Offer>,
+}
+
 /// The groups of dimensions that share a tolerance, each with its cost, in the order of the file.
 pub(super) fn costs(file: &StudyFile, problem: &Problem) -> Result<Vec<Priced>, Fault> {
     let names: Vec<&str> = file.costs.0.iter().map(|(name, _)| name.get_ref().as_str()).collect();
-    let mut groups: Vec<(&str, Vec<usize>, f64, Vec<Offer>, Range<usize>)> = Vec::new();
+    let mut groups: Vec<Group<'_>> = Vec::new();
     for (name, entry) in &file.costs.0 {
         let entry = entry.get_ref();
         let key = format!("costs.{}", name.get_ref());
@@ -180,7 +188,7 @@ pub(super) fn costs(file: &StudyFile, problem: &Problem) -> Result<Vec<Priced>, 
         let (members, parts) = members(file, problem, name, &key)?;
         let present = problem.dimensions()[members[0]].half_band();
         let offers = offers(entry, name, &key, present)?;
-        groups.push((name.get_ref(), members, parts, offers, name.span()));
+        groups.push(Group { name, members, parts, offers });
     }
     for (name, entry) in &file.costs.0 {
         let Some(other) = &entry.get_ref().same_as else { continue };
@@ -191,7 +199,7 @@ pub(super) fn costs(file: &StudyFile, problem: &Problem) -> Result<Vec<Priced>, 
         if target == name.get_ref() {
             return Err(at(StudyFault::SameAsItself { name: target.clone() }));
         }
-        let Some(group) = groups.iter_mut().find(|(of, ..)| of == target) else {
+        let Some(group) = groups.iter_mut().find(|group| group.name.get_ref() == target) else {
             let chained = file.costs.0.iter().find(|(other, _)| other.get_ref() == target);
             return Err(at(match chained.and_then(|(_, entry)| entry.get_ref().same_as.as_ref()) {
                 Some(end) => StudyFault::SameAsChain { name: target.clone(), end: end.get_ref().clone() },
@@ -202,12 +210,12 @@ pub(super) fn costs(file: &StudyFile, problem: &Problem) -> Result<Vec<Priced>, 
                 }
             }));
         };
-        group.1.append(&mut members);
-        group.2 += parts;
+        group.members.append(&mut members);
+        group.parts += parts;
     }
-    let priced = |(name, members, parts, offers, span): (&str, Vec<usize>, f64, Vec<Offer>, Range<usize>)| {
-        let priced = Priced::new(members, offers).map_err(|error| fault(span, format!("costs.{name}"), error))?;
-        Ok(Priced { parts, ..priced })
+    let priced = |Group { name, members, parts, offers }: Group<'_>| {
+        let at = |error| fault(name.span(), format!("costs.{}", name.get_ref()), StudyFault::Cost(error));
+        Priced::new(members, offers).map(|priced| Priced { parts, ..priced }).map_err(at)
     };
     groups.into_iter().map(priced).collect()
 }
@@ -230,15 +238,14 @@ fn one_form(entry: &CostEntry, name: &Spanned<String>, key: &str) -> Result<(), 
     }
     let numbers: [(&'static str, &Option<Spanned<f64>>); 6] =
         [("a", &entry.a), ("b", &entry.b), ("k", &entry.k), ("c", &entry.c), ("min", &entry.min), ("max", &entry.max)];
-    if first != "model" {
-        if let Some((number, value)) = numbers.iter().find_map(|(number, value)| Some((*number, value.as_ref()?))) {
-            let (to, instead) = match first {
-                "same_as" => ("a cost that is another's", "write it at the dimension that has the cost"),
-                _ => ("a list of processes", "write it within a process"),
-            };
-            let fault_ = StudyFault::DoesNotApply { key: number, to: to.to_owned(), instead };
-            return Err(fault(value.span(), format!("{key}.{number}"), fault_));
-        }
+    let number = numbers.iter().find_map(|(number, value)| Some((*number, value.as_ref()?)));
+    if let Some((number, value)) = number.filter(|_| first != "model") {
+        let (to, instead) = match first {
+            "same_as" => ("a cost that is another's", "write it at the dimension that has the cost"),
+            _ => ("a list of processes", "write it within a process"),
+        };
+        let apart = StudyFault::DoesNotApply { key: number, to: to.to_owned(), instead };
+        return Err(fault(value.span(), format!("{key}.{number}"), apart));
     }
     Ok(())
 }

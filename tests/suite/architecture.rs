@@ -125,6 +125,13 @@ fn nothing_prints_outside_the_command_line() {
     }
 }
 
+/// A solver that is exchanged is exchanged in one file.
+#[test]
+fn one_file_knows_the_minimiser() {
+    let knows = files().into_iter().filter(|(_, _, code)| code.contains("argmin::")).map(|(file, ..)| file);
+    assert_eq!(knows.collect::<Vec<_>>(), ["allocation/minimise.rs"]);
+}
+
 #[test]
 fn main_is_small_and_no_file_is_much_over_600_lines() {
     for (file, _, _) in files() {
