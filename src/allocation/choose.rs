@@ -10,8 +10,8 @@ use super::solve::{Setting, Solved};
 pub(super) enum Choice {
     /// Tolerances that keep every requirement.
     Found { solved: Solved, offers: Vec<usize>, proof: Proof },
-    /// There are none.
-    Infeasible(Attainable),
+    /// There are none; with the half bands at which the best of it is to be had.
+    Infeasible(Attainable, Vec<f64>),
     /// Stopped before any were found.
     Stopped,
 }
@@ -21,7 +21,7 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
     for constraint in setting.constraints {
         let (value, at) = setting.attainable(constraint);
         if !kept(value) {
-            return Choice::Infeasible(unattainable(setting, constraint, &at));
+            return Choice::Infeasible(unattainable(setting, constraint, &at), at);
         }
     }
     let free = setting.priced.iter().all(|group| group.offers.len() == 1);
@@ -52,7 +52,8 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
             let value = |one: &&Constraint| one.value(setting.responses, setting.priced, &tight);
             let worst = setting.constraints.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
             worst.map_or(Choice::Stopped, |worst| {
-                Choice::Infeasible(Attainable { together: true, ..unattainable(setting, worst, &tight) })
+                let attainable = Attainable { together: true, ..unattainable(setting, worst, &tight) };
+                Choice::Infeasible(attainable, tight.clone())
             })
         }
     }

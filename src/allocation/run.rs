@@ -22,10 +22,9 @@ use crate::simulation::{SimulationError, SimulationOptions, simulate_within};
 
 /// Rounds of derivatives, at most.
 const ROUNDS: usize = 12;
-/// Tolerances that change by less than this part agree.
-const AGREE: f64 = 1e-3;
-/// What the model is allowed to say differently after derivatives were taken anew.
-const MARGIN: f64 = 1e-7;
+/// The factor up to which derivatives are trusted when they say that nothing is possible, and by which tolerances may move in a
+/// step after the model has failed farther out.
+const REACH: f64 = 1.5;
 /// Nominal values are at rest when they move by fewer sigmas.
 const REST: f64 = 1e-3;
 /// A step of a nominal value, in sigmas, that derivatives are trusted for.
@@ -33,7 +32,7 @@ const FAR: f64 = 30.0;
 /// A constraint that is so near its bound is at it.
 const BINDING: f64 = 1e-6;
 /// A residual up to which tolerances are called optimal.
-const OPTIMAL: f64 = 1e-7;
+const OPTIMAL: f64 = 1e-6;
 /// A gap up to which a choice of processes is called optimal.
 const NO_GAP: f64 = 1e-9;
 
@@ -107,6 +106,31 @@ struct Station {
     responses: Responses,
 }
 
+impl Station {
+    /// Whether everything of which something is required has moments.
+    fn answers(&self, constraints: &[Constraint]) -> bool {
+        constraints.iter().all(|one| self.analysis.characteristics[one.characteristic].moments.is_some())
+    }
+}
+
+/// How near is near enough: every round asks the model.
+#[derive(Clone, Copy)]
+struct Near {
+    /// Tolerances that change by less than this part agree.
+    agree: f64,
+    /// By what part tolerances are tightened for what the model may say differently where it is asked next.
+    margin: f64,
+}
+
+impl Near {
+    fn of(problem: &Problem) -> Self {
+        match problem.function().signature().costly {
+            true => Self { agree: 1e-3, margin: 1e-7 },
+            false => Self { agree: 1e-7, margin: 1e-9 },
+        }
+    }
+}
+
 impl Driver<'_> {
     fn run(mut self, problem: &Problem) -> Result<Allocation, AllocateError> {
         let first = self.analysed(problem.clone())?;
@@ -164,33 +188,30 @@ impl Driver<'_> {
         before: &[f64],
     ) -> Result<(), AllocateError> {
         let original = allocation.problem.clone();
+        let near = Near::of(&original);
         let mut station = first;
         let mut at = before.to_vec();
         let mut last: Option<(Solved, Vec<usize>, Proof)> = None;
-        let (mut agreed, mut within_budget) = (false, true);
-        let mut moving = !self.options.recentre.is_empty();
-        for round in 0..ROUNDS {
+        let (mut agreed, mut within_budget, mut at_tightest, mut reach) = (false, true, false, f64::INFINITY);
+        for _ in 0..ROUNDS {
             let mut next = station.problem.clone();
             let mut still = true;
-            if moving {
-                let moved = self.recentred(&station)?;
-                still = moved.1 <= REST;
+            if !self.options.recentre.is_empty() {
+                let (moved, far) = self.recentred(&station)?;
+                still = far <= REST;
                 if !still {
-                    next = moved.0;
-                    // Tolerances are chosen about the place where the nominal values come to rest.
-                    if moved.1 > 1.0 || self.task.priced.is_empty() {
-                        match self.station(next)? {
-                            Some(there) => station = there,
-                            None => {
-                                within_budget = false;
-                                break;
-                            }
-                        }
-                        if self.spent.stopped {
+                    next = moved;
+                }
+                // Tolerances are chosen about the place where the nominal values come to rest.
+                if !still && (far > 1.0 || self.task.priced.is_empty()) {
+                    match self.station(next)? {
+                        Some(there) if !self.spent.stopped => station = there,
+                        there => {
+                            within_budget = there.is_some();
                             break;
                         }
-                        continue;
                     }
+                    continue;
                 }
             }
             if self.task.priced.is_empty() {
@@ -198,12 +219,24 @@ impl Driver<'_> {
                 break;
             }
             let stopped = || self.run.stopped();
-            let setting =
-                Setting { responses: &station.responses, priced: &self.task.priced, constraints, stopped: &stopped };
-            let here = (round > 0).then(|| setting.value(&at));
+            let priced = within_reach(&self.task.priced, &at, reach);
+            let setting = Setting { responses: &station.responses, priced: &priced, constraints, stopped: &stopped };
+            let here = last.as_ref().map(|_| setting.value(&at));
             let (mut solved, offers, proof) = match choose(&setting, &at) {
                 Choice::Found { solved, offers, proof } => (solved, offers, proof),
-                Choice::Infeasible(attainable) => {
+                // Derivatives at other tolerances may be wrong there: the model is asked first.
+                Choice::Infeasible(_, tight) if !at_tightest && farthest(&at, &tight) > REACH.ln() => {
+                    (at, at_tightest, last) = (tight, true, None);
+                    match self.station(with_tolerances(next, &self.task.priced, &at)?)? {
+                        Some(there) if !self.spent.stopped => station = there,
+                        there => {
+                            within_budget = there.is_some();
+                            break;
+                        }
+                    }
+                    continue;
+                }
+                Choice::Infeasible(attainable, _) => {
                     allocation.status = Status::Infeasible;
                     allocation.attainable = Some(attainable);
                     return Ok(());
@@ -213,33 +246,35 @@ impl Driver<'_> {
                     break;
                 }
             };
-            let change = at.iter().zip(&solved.at).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f64::max);
+            let change = farthest(&at, &solved.at);
             // The model has been asked at these tolerances, and would not choose others.
-            if still && last.is_some() && here.is_some_and(kept) && change <= AGREE {
+            if still && here.is_some_and(kept) && change <= near.agree {
                 last = last.map(|(old, offers, _)| {
-                    let kept = Solved { residual: solved.residual, multipliers: solved.multipliers.clone(), ..old };
-                    (kept, offers, proof)
+                    let residual = setting.residual(&old.at, &solved.multipliers).unwrap_or(solved.residual);
+                    let proof = Proof { residual: proof.residual.map(|_| residual), ..proof };
+                    (Solved { multipliers: solved.multipliers.clone(), ..old }, offers, proof)
                 });
                 agreed = true;
                 break;
             }
-            if round > 0 && !setting.is_exact() {
-                tightened(&mut solved.at, &self.task.priced, 1.0 - MARGIN);
+            if last.is_some() && !setting.is_exact() {
+                tightened(&mut solved.at, &priced, 1.0 - near.margin);
             }
-            at.clone_from(&solved.at);
-            let dimensions = scaled(&next, &self.task.priced, &at)?;
-            last = Some((solved, offers, proof));
-            match self.station(next.with_dimensions(dimensions)?)? {
-                Some(there) => station = there,
+            let from = std::mem::replace(&mut at, solved.at.clone());
+            match self.station(with_tolerances(next, &self.task.priced, &at)?)? {
+                Some(there) if self.spent.stopped || there.answers(constraints) => {
+                    (station, last) = (there, Some((solved, offers, proof)));
+                }
+                // The model fails so far out: shorter steps from where it did not.
+                Some(_) => (at, reach) = (from, if reach.is_finite() { reach.sqrt() } else { REACH }),
                 None => {
-                    within_budget = false;
+                    (within_budget, last) = (false, Some((solved, offers, proof)));
                     break;
                 }
             }
             if self.spent.stopped {
                 break;
             }
-            moving &= !self.options.recentre.is_empty();
         }
         self.conclude(allocation, &original, station, last, constraints, Ended { agreed, within_budget })
     }
@@ -452,6 +487,28 @@ fn widest_common(problem: &Problem, group: &Priced) -> f64 {
 fn cost(priced: &[Priced], at: &[f64], offers: &[usize]) -> f64 {
     let of = |((group, &t), &offer): ((&Priced, &f64), &usize)| group.parts * group.offers[offer].curve.cost(t);
     priced.iter().zip(at).zip(offers).map(of).sum()
+}
+
+/// The largest change of a half band, in logarithms.
+fn farthest(from: &[f64], to: &[f64]) -> f64 {
+    from.iter().zip(to).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f64::max)
+}
+
+/// The groups with free tolerances no farther from these half bands than by a factor.
+fn within_reach(priced: &[Priced], at: &[f64], reach: f64) -> Vec<Priced> {
+    let mut priced = priced.to_vec();
+    for (group, &t) in priced.iter_mut().zip(at).filter(|(group, _)| reach.is_finite() && group.offers.len() == 1) {
+        let offer = &mut group.offers[0];
+        let t = t.clamp(offer.min, offer.max);
+        (offer.min, offer.max) = (offer.min.max(t / reach), offer.max.min(t * reach));
+    }
+    priced
+}
+
+/// The problem with the groups at these half bands.
+fn with_tolerances(problem: Problem, priced: &[Priced], at: &[f64]) -> Result<Problem, AllocateError> {
+    let dimensions: Vec<Dimension> = scaled(&problem, priced, at)?;
+    Ok(problem.with_dimensions(dimensions)?)
 }
 
 /// The dimensions with the groups at these half bands.

@@ -45,6 +45,8 @@ pub(super) struct Solved {
 const STEPS: usize = 60;
 /// What other orders of the same sums may say differently.
 const RESERVE: f64 = 1e-13;
+/// A tolerance so near its bound is at it.
+const AT_BOUND: f64 = 1e-9;
 /// It stands still.
 const STILL: f64 = 1e-11;
 /// Two ways to the same.
@@ -206,6 +208,12 @@ impl Setting<'_> {
         if solved.value > 1.0 + 1e-6 {
             return;
         }
+        // Logarithms of bounds are not quite the bounds.
+        for (t, group) in solved.at.iter_mut().zip(self.priced) {
+            let near =
+                [group.tightest(), group.loosest()].into_iter().find(|bound| (*t / bound - 1.0).abs() < AT_BOUND);
+            *t = near.unwrap_or(*t);
+        }
         for attempt in 0..20 {
             let excess = self.value(&solved.at) - (1.0 - RESERVE);
             if excess <= 0.0 {
@@ -228,7 +236,7 @@ impl Setting<'_> {
             let uses = linearised.iter().zip(multipliers).map(|(one, multiplier)| multiplier * one.slopes[g]);
             let slope = slopes[g] + uses.sum::<f64>();
             let offer = &group.offers[0];
-            let violation = match (t <= offer.min * (1.0 + 1e-14), t >= offer.max * (1.0 - 1e-14)) {
+            let violation = match (t <= offer.min * (1.0 + AT_BOUND), t >= offer.max * (1.0 - AT_BOUND)) {
                 (true, true) => 0.0,
                 (true, false) => (-slope).max(0.0),
                 (false, true) => slope.max(0.0),
@@ -252,6 +260,14 @@ impl Setting<'_> {
             closed,
             converged: false,
         }
+    }
+
+    /// How far these tolerances are from the conditions of an optimum with these multipliers; None where processes compete, or the
+    /// constraints are unknown there.
+    pub(super) fn residual(&self, at: &[f64], multipliers: &[f64]) -> Option<f64> {
+        let free = self.priced.iter().all(|group| group.offers.len() == 1);
+        let linearised = self.linearised(at).filter(|_| free)?;
+        Some(self.judged(at, &linearised, multipliers, false).residual)
     }
 
     /// The least value that a constraint can have by itself within the bounds, and where.
@@ -289,7 +305,7 @@ fn keep(best: &mut Option<Solved>, found: Solved) {
 
 /// All tolerances that are free a little tighter: what lies at its bound stays there, unless everything does.
 pub(super) fn tightened(at: &mut [f64], priced: &[Priced], factor: f64) {
-    let free = |group: &Priced, t: f64| group.offers.len() == 1 && t < group.loosest();
+    let free = |group: &Priced, t: f64| group.offers.len() == 1 && t < group.loosest() * (1.0 - AT_BOUND);
     let any = priced.iter().zip(at.iter()).any(|(group, &t)| free(group, t));
     for (t, group) in at.iter_mut().zip(priced) {
         if !any && group.offers.len() == 1 || free(group, *t) {

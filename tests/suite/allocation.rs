@@ -382,7 +382,7 @@ fn dimensions_without_a_cost_that_break_a_requirement_are_named() {
     let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
     let attainable = found.attainable.unwrap();
     assert_eq!(attainable.because, [1, 2], "0.6 and 0.2 of 0.5 by themselves, most harmful first");
-    assert_eq!(found.evaluations, 7, "the present tolerances were analysed, nothing else");
+    assert_eq!(found.evaluations, 14, "the present tolerances were analysed, and the tightest");
 }
 
 fn example(path: &str) -> (Study, AllocationTask, AllocationOptions) {
@@ -679,4 +679,39 @@ fn a_budget_that_does_not_reach_is_said() {
     let analysis = Options { budget: Some(110), ..options.analysis.clone() };
     let error = allocate(&study.problem, &task, &AllocationOptions { analysis, ..options }).unwrap_err();
     assert!(error.to_string().contains("111 evaluations"), "{error}");
+}
+
+/// A model that ends where the tolerances would like to go: shorter steps from where it has values.
+#[test]
+fn a_model_that_fails_farther_out_is_approached_in_steps() {
+    let dimensions = [Dimension::normal("a", 1.0, 0.1).unwrap(), Dimension::normal("b", 1.0, 0.1).unwrap()];
+    // Even the nodes that stand in for failed ones, at a quarter of sqrt 3 sigma, lie outside for tolerances above 0.7.
+    let root = super::support::refusing(|x| x[1] + 0.01 * x[0], |x| (x[0] - 1.0).abs() > 0.1);
+    let y = Characteristic::new("y").with_limits(SpecLimits::new(Some(0.9), Some(1.12)).unwrap());
+    let problem = Problem::new(dimensions, root).unwrap().asking([y]).unwrap();
+    let curve = || Curve::reciprocal(0.0, 1.0).unwrap();
+    let task = AllocationTask {
+        priced: vec![free(0, curve(), 0.01, 3.0), free(1, curve(), 0.01, 3.0)],
+        requirements: vec![Some(Requirement::Cpk(1.0))],
+    };
+    let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
+    assert!(found.cost_after.unwrap() < found.cost_before.unwrap(), "{:?}", found.status);
+    assert!(found.requirements[0].met_after && found.confirmed);
+}
+
+/// What derivatives at wide tolerances say of tight ones is asked of the model before anything is called impossible.
+#[test]
+fn nothing_is_called_impossible_by_extrapolation() {
+    // Flat near the middle and steep beyond: seen from half bands of 1 its sigma at 0.1 seems larger than it is.
+    let steep = |x: &[f64]| x[0].powi(3) + 0.001 * x[0];
+    let y = Characteristic::new("y").with_limits(SpecLimits::new(Some(-0.002), Some(0.002)).unwrap());
+    let dimensions = [Dimension::normal("a", 0.0, 1.0).unwrap()];
+    let problem = Problem::new(dimensions, Closure::scalar("y", steep)).unwrap().asking([y]).unwrap();
+    let task = AllocationTask {
+        priced: vec![free(0, Curve::reciprocal(0.0, 1.0).unwrap(), 0.1, 3.0)],
+        requirements: vec![Some(Requirement::Cpk(1.0))],
+    };
+    let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
+    assert_eq!(found.status, Status::Optimal, "{:?} {:?}", found.attainable, found.proof);
+    assert!(found.requirements[0].met_after && tolerance(&found, 0) > 0.1);
 }
