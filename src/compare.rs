@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::Run;
-use crate::method::{self, Method, Options};
+use crate::method::{self, Method, Options, Procedure};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_within};
@@ -190,8 +190,9 @@ pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>
     let samples = options.reference.unwrap_or(if costly { COSTLY_REFERENCE } else { REFERENCE });
     let mut comparison = Comparer { problem, options, run, ran: Vec::new(), not_run: Vec::new() };
     // The cheap ones first: should time run out, the most is known.
-    for procedure in method::ALL.iter().filter(|procedure| procedure.method() != Method::Auto) {
-        comparison.method(procedure.method());
+    let adaptive = |procedure: &&&dyn Procedure| procedure.method() == Method::Auto;
+    for procedure in method::ALL.iter().filter(|one| !adaptive(one)).chain(method::ALL.iter().filter(adaptive)) {
+        comparison.method(procedure.method(), costly.then_some(samples));
     }
     let drawn = SAMPLES.map(Contender::MonteCarlo).into_iter().chain(QUASI.map(Contender::QuasiMonteCarlo));
     for contender in drawn {
@@ -231,12 +232,21 @@ impl Comparer<'_> {
         self.not_run.push(NotRun { contender, evaluations, projected_s: None, reason: reason.into() });
     }
 
-    fn method(&mut self, method: Method) {
+    /// Unless the budget allows it, nothing that is costly is evaluated more often than the `reference`.
+    fn method(&mut self, method: Method, reference: Option<u64>) {
         let contender = Contender::Method(method);
         let options = Options { budget: self.options.budget, ..Options::from(method) };
-        let cost = method.procedure().plan(self.problem, &options).map(|plan| plan.cost().0 as u64).ok();
+        let cost = match method.procedure().fits(self.problem, &options) {
+            Ok(cost) => Some(cost.evaluations as u64),
+            Err(error) => return self.refuse(contender, error.needed(), error.to_string()),
+        };
         if self.run.stopped() {
             return self.refuse(contender, cost, "stopped before");
+        }
+        if let (None, Some(most), Some(needed)) = (self.options.budget, reference, cost)
+            && needed > most
+        {
+            return self.refuse(contender, cost, "more than the reference; a budget allows it");
         }
         let begun = Instant::now();
         match analyze_within(self.problem, &options, self.run) {

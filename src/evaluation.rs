@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::assembly::process::Doubt;
 use crate::assembly::{Ask, Points, Responses, Run};
-use crate::plan::{DifferencePlan, Known, Stage};
+use crate::plan::{Known, Plan, Stage};
 use crate::problem::Problem;
 
 /// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
@@ -31,19 +31,10 @@ pub struct Evaluated {
 
 /// Evaluates stage after stage until the plan lacks nothing, or the run is stopped.
 ///
-/// Evaluations: as [`DifferencePlan::cost`] says, and more only where the model fails.
-pub fn evaluate(problem: &Problem, plan: &DifferencePlan, run: &Run<'_>) -> Evaluated {
-    let mut evaluated = Evaluated {
-        known: Known::nothing(problem.characteristics().len()),
-        evaluations: 0,
-        reused: 0,
-        doubts: Vec::new(),
-        stages: 0,
-        stopped: false,
-        in_model: Duration::ZERO,
-    };
+/// Evaluations: as [`Plan::cost`] says, and more only where the model fails.
+pub fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated {
+    let mut evaluated = Evaluated::nothing(problem);
     while let Some(stage) = plan.next(&evaluated.known) {
-        evaluated.stages += 1;
         evaluated.add(problem, plan, &stage, run);
         if evaluated.stopped {
             break;
@@ -53,7 +44,22 @@ pub fn evaluate(problem: &Problem, plan: &DifferencePlan, run: &Run<'_>) -> Eval
 }
 
 impl Evaluated {
-    fn add(&mut self, problem: &Problem, plan: &DifferencePlan, stage: &Stage, run: &Run<'_>) {
+    /// Nothing yet.
+    pub fn nothing(problem: &Problem) -> Self {
+        Self {
+            known: Known::nothing(problem.characteristics().len()),
+            evaluations: 0,
+            reused: 0,
+            doubts: Vec::new(),
+            stages: 0,
+            stopped: false,
+            in_model: Duration::ZERO,
+        }
+    }
+
+    /// Evaluates one stage; the points are by the nodes of this plan.
+    pub fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
+        self.stages += 1;
         let centre = plan.centre();
         let rows = (BATCH / centre.len()).max(1);
         for batch in stage.points.chunks(rows) {

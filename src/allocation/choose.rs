@@ -18,7 +18,12 @@ pub(super) enum Choice {
 
 /// The cheapest tolerances at fixed derivatives.
 pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
+    let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
     for constraint in setting.constraints {
+        // Nearly always the tightest tolerances keep what any do.
+        if kept(constraint.value(setting.responses, setting.priced, &tight)) {
+            continue;
+        }
         let (value, at) = setting.attainable(constraint);
         if !kept(value) {
             return Choice::Infeasible(unattainable(setting, constraint, &at), at);
@@ -48,12 +53,11 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
         None if (setting.stopped)() => Choice::Stopped,
         // Each can be kept by itself: the one that is farthest off where all are tightest.
         None => {
-            let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
             let value = |one: &&Constraint| one.value(setting.responses, setting.priced, &tight);
             let worst = setting.constraints.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
             worst.map_or(Choice::Stopped, |worst| {
                 let attainable = Attainable { together: true, ..unattainable(setting, worst, &tight) };
-                Choice::Infeasible(attainable, tight.clone())
+                Choice::Infeasible(attainable, tight)
             })
         }
     }

@@ -33,10 +33,6 @@ pub(super) fn joint(problem: &Problem, responses: &Responses, seed: u64) -> Opti
     let surrogates: Vec<_> = (limits.iter())
         .map(|&c| responses.relocated(c, &ones, None).map(|(surrogate, _)| surrogate))
         .collect::<Option<_>>()?;
-    let parts: Vec<Vec<_>> = (surrogates.iter())
-        .map(|surrogate| surrogate.parts.iter().copied().collect::<Option<Vec<_>>>())
-        .collect::<Option<_>>()?;
-    let pairs: Vec<_> = surrogates.iter().map(|surrogate| surrogate.interactions.pairs()).collect();
     let varying = responses.varying();
     let mut within = 0usize;
     for portion in 0..PORTIONS {
@@ -49,16 +45,10 @@ pub(super) fn joint(problem: &Problem, responses: &Responses, seed: u64) -> Opti
             .collect();
         let mut keeps = vec![true; ROWS];
         for (k, &c) in limits.iter().enumerate() {
-            let mut values = vec![surrogates[k].centre; ROWS];
-            for (part, column) in parts[k].iter().zip(&columns) {
-                values.iter_mut().zip(column).for_each(|(value, &u)| *value += part.value(u));
-            }
-            for &(a, b, product) in &pairs[k] {
-                let both = columns[a].iter().zip(&columns[b]);
-                values.iter_mut().zip(both).for_each(|(value, (u, v))| *value += product * u * v);
-            }
+            let rises = surrogates[k].rises(&columns)?;
             let limits = problem.characteristics()[c].limits();
-            keeps.iter_mut().zip(&values).for_each(|(keeps, &value)| *keeps &= limits.contains(value));
+            let values = rises.iter().map(|rise| surrogates[k].centre + rise);
+            keeps.iter_mut().zip(values).for_each(|(keeps, value)| *keeps &= limits.contains(value));
         }
         within += keeps.iter().filter(|keeps| **keeps).count();
     }

@@ -35,6 +35,7 @@ mod run;
 mod scaling;
 mod separable;
 mod solve;
+mod station;
 mod task;
 
 pub use cost::{CostError, Curve, CurveKind, Offer, Priced};

@@ -8,11 +8,12 @@ use super::joint::joint;
 use super::recentre::shifts;
 use super::requirement::Requirement;
 use super::response::Responses;
-use super::result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, ShadowPrice, Status};
+use super::result::{Allocated, Allocation, Attainable, Bound, Moved, Proof, Status};
 use super::scaling::loosest;
 use super::solve::{Setting, Solved, tightened};
+use super::station::{Station, judged, measure, prices, required};
 use super::task::{AllocateError, AllocationOptions, AllocationTask};
-use crate::analysis::{Analysis, analyze_keeping};
+use crate::analysis::analyze_keeping;
 use crate::assembly::Run;
 use crate::dimension::Dimension;
 use crate::method::{MethodError, Options};
@@ -29,8 +30,6 @@ const REACH: f64 = 1.5;
 const REST: f64 = 1e-3;
 /// A step of a nominal value, in sigmas, that derivatives are trusted for.
 const FAR: f64 = 30.0;
-/// A constraint that is so near its bound is at it.
-const BINDING: f64 = 1e-6;
 /// A residual up to which tolerances are called optimal.
 const OPTIMAL: f64 = 1e-6;
 /// A gap up to which a choice of processes is called optimal.
@@ -97,20 +96,6 @@ struct Driver<'a> {
     options: &'a AllocationOptions,
     run: &'a Run<'a>,
     spent: Spent,
-}
-
-/// Tolerances with their derivatives.
-struct Station {
-    problem: Problem,
-    analysis: Analysis,
-    responses: Responses,
-}
-
-impl Station {
-    /// Whether everything of which something is required has moments.
-    fn answers(&self, constraints: &[Constraint]) -> bool {
-        constraints.iter().all(|one| self.analysis.characteristics[one.characteristic].moments.is_some())
-    }
 }
 
 /// How near is near enough: every round asks the model.
@@ -382,7 +367,7 @@ impl Driver<'_> {
             .analysis
             .budget
             .map(|budget| budget.saturating_sub(usize::try_from(self.spent.evaluations).unwrap_or(usize::MAX)));
-        let options = Options { budget, extremes: false, ..self.options.analysis.clone() };
+        let options = Options { budget, ..self.options.derivatives(&problem) };
         let (analysis, outcome) = analyze_keeping(&problem, &options, self.run)?;
         self.spent.evaluations += analysis.evaluations as u64;
         self.spent.reused += analysis.reused as u64;
@@ -421,7 +406,7 @@ impl Driver<'_> {
     }
 
     fn cost_to_hold(&self, problem: &Problem) -> Option<f64> {
-        let of = |group: &Priced| group.cost_to_hold(widest_common(problem, group));
+        let of = |group: &Priced| group.cost_to_hold(tightest_member(problem, group));
         self.task.priced.iter().map(of).sum()
     }
 
@@ -480,7 +465,7 @@ struct Ended {
 }
 
 /// The tightest half band among the members, which the shared process has to hold.
-fn widest_common(problem: &Problem, group: &Priced) -> f64 {
+fn tightest_member(problem: &Problem, group: &Priced) -> f64 {
     group.members.iter().map(|&d| problem.dimensions()[d].half_band()).fold(f64::INFINITY, f64::min)
 }
 
@@ -532,70 +517,4 @@ fn moved(before: &Problem, after: &Problem) -> Vec<Moved> {
         .filter(|(_, (before, after))| before.nominal() != after.nominal())
         .map(|(dimension, (before, after))| Moved { dimension, before: before.nominal(), after: after.nominal() })
         .collect()
-}
-
-/// What there is of a requirement, in its own measure.
-fn measure(station: &Station, characteristic: usize, requirement: Requirement) -> Option<f64> {
-    let analysis = &station.analysis.characteristics[characteristic];
-    let limits = analysis.characteristic.limits();
-    let ones = vec![1.0; station.problem.dimensions().len()];
-    match requirement {
-        Requirement::Yield(_) => analysis.capability?.yield_(),
-        Requirement::Cpk(_) => analysis.capability?.cpk,
-        Requirement::Sigma(_) => Some(analysis.moments?.sigma()),
-        Requirement::Rss => {
-            let mean = analysis.moments?.mean();
-            let rss = station.responses.rss_squared(characteristic, &[], &ones)?.0.sqrt();
-            let below = limits.lower().map(|lower| rss / (mean - lower));
-            let above = limits.upper().map(|upper| rss / (upper - mean));
-            below.into_iter().chain(above).reduce(f64::max)
-        }
-        Requirement::WorstCase => {
-            let ([low, high], nominal) = (analysis.worst_case?, analysis.nominal?);
-            let below = limits.lower().map(|lower| (nominal - low) / (nominal - lower));
-            let above = limits.upper().map(|upper| (high - nominal) / (upper - nominal));
-            below.into_iter().chain(above).reduce(f64::max)
-        }
-    }
-}
-
-/// Every requirement, with nothing known of it after.
-fn required(requirements: &[Option<Requirement>], station: &Station) -> Vec<Kept> {
-    let of = |(characteristic, one): (usize, &Option<Requirement>)| {
-        let requirement = (*one)?;
-        let (before, met_before) = judged(station, characteristic, requirement);
-        Some(Kept { characteristic, requirement, before, after: None, met_before, met_after: false })
-    };
-    requirements.iter().enumerate().filter_map(of).collect()
-}
-
-/// What there is of a requirement, and whether that is enough.
-fn judged(station: &Station, characteristic: usize, requirement: Requirement) -> (Option<f64>, bool) {
-    let limits = station.problem.characteristics()[characteristic].limits();
-    let ones = vec![1.0; station.problem.dimensions().len()];
-    let constraints = Constraint::of(characteristic, requirement, limits);
-    let met = constraints.iter().all(|constraint| kept(constraint.value_at(&station.responses, &ones)));
-    (measure(station, characteristic, requirement), met)
-}
-
-/// What every limit costs.
-fn prices(station: &Station, priced: &[Priced], constraints: &[Constraint], solved: &Solved) -> Vec<ShadowPrice> {
-    let mut prices: Vec<ShadowPrice> = Vec::new();
-    for (constraint, &multiplier) in constraints.iter().zip(&solved.multipliers).filter(|(_, m)| **m > 0.0) {
-        let c = constraint.characteristic;
-        let Some([lower, upper, sigma]) = constraint.prices(&station.responses, priced, &solved.at, multiplier) else {
-            continue;
-        };
-        let both = [lower, upper].into_iter().flatten().reduce(|a, b| a + b);
-        let same = |other: &&Constraint| other.characteristic == c && *other != constraint;
-        // The other side holds the cost up too, whichever of them the multipliers name.
-        let other = constraints.iter().find(same);
-        let binds = |other: &Constraint| other.value(&station.responses, priced, &solved.at) >= 1.0 - BINDING;
-        let [lower, upper] = if other.is_some_and(binds) { [None, None] } else { [lower, upper] };
-        match prices.iter_mut().find(|price| price.characteristic == c) {
-            Some(price) => price.both = [price.both, both].into_iter().flatten().reduce(|a, b| a + b),
-            None => prices.push(ShadowPrice { characteristic: c, both, lower, upper, sigma }),
-        }
-    }
-    prices
 }

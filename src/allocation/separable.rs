@@ -9,6 +9,9 @@
 //! convex: the greatest `D` over `lambda >= 0` is the least cost. For several, `D` of any `lambda` is a bound that no choice of
 //! processes can beat (weak duality), and the greatest one is the bound of the convex relaxation.
 
+use faer::Mat;
+use faer::linalg::solvers::Solve;
+
 use super::cost::{Offer, Priced};
 
 /// One constraint.
@@ -154,28 +157,34 @@ impl Separable<'_> {
                 (0..multipliers.len()).filter(|&k| multipliers[k] > 0.0 || misses[k] > 0.0).collect();
             let best = self.all(multipliers);
             let n = active.len();
-            let mut matrix = vec![vec![0.0; n]; n];
+            let mut matrix = Mat::<f64>::zeros(n, n);
             for (g, best) in best.iter().enumerate().filter(|(_, best)| best.curvature > 0.0) {
                 let slopes: Vec<f64> = (active.iter())
                     .map(|&k| self.rows[k].terms[g].power * self.rows[k].terms[g].value(best.t))
                     .collect();
-                for (a, row) in matrix.iter_mut().enumerate() {
-                    row.iter_mut().zip(&slopes).for_each(|(m, slope)| *m += slopes[a] * slope / best.curvature);
+                for (a, slope) in slopes.iter().enumerate() {
+                    slopes.iter().enumerate().for_each(|(b, other)| matrix[(a, b)] += slope * other / best.curvature);
                 }
             }
-            let largest = (0..n).map(|a| matrix[a][a]).fold(0.0, f64::max);
+            let largest = (0..n).map(|a| matrix[(a, a)]).fold(0.0, f64::max);
             if largest == 0.0 {
                 return false;
             }
             // Two sides of a characteristic may ask for the same: any split between them does.
-            (0..n).for_each(|a| matrix[a][a] += 1e-13 * largest);
-            let right = active.iter().map(|&k| misses[k]).collect();
-            let Some(step) = solved(matrix, right) else { return false };
+            (0..n).for_each(|a| matrix[(a, a)] += 1e-13 * largest);
+            let right = Mat::from_fn(n, 1, |a, _| misses[active[a]]);
+            let step = matrix.partial_piv_lu().solve(&right);
+            if step.col_as_slice(0).iter().any(|step| !step.is_finite()) {
+                return false;
+            }
             let mut accepted = false;
             for halved in 0..12 {
                 let part = 0.5f64.powi(halved);
                 let mut trial = multipliers.clone();
-                active.iter().zip(&step).for_each(|(&k, step)| trial[k] = (trial[k] + part * step).max(0.0));
+                active
+                    .iter()
+                    .zip(step.col_as_slice(0))
+                    .for_each(|(&k, step)| trial[k] = (trial[k] + part * step).max(0.0));
                 let found = self.misses(&trial);
                 if Self::error(&trial, &found) < error * (1.0 - 1e-4 * part) {
                     (*multipliers, *misses, accepted) = (trial, found, true);
@@ -313,31 +322,4 @@ fn least(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64) -> (f64, f64) {
     }
     let t = x.exp().clamp(min, max);
     (t, slope(t).1.max(f64::MIN_POSITIVE))
-}
-
-/// The solution of a small symmetric system by elimination with pivots; None where it is singular.
-pub(super) fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
-    let n = right.len();
-    for column in 0..n {
-        let pivot = (column..n).max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()))?;
-        if matrix[pivot][column] == 0.0 || !matrix[pivot][column].is_finite() {
-            return None;
-        }
-        matrix.swap(column, pivot);
-        right.swap(column, pivot);
-        for row in column + 1..n {
-            let factor = matrix[row][column] / matrix[column][column];
-            if factor != 0.0 {
-                let (above, below) = matrix.split_at_mut(row);
-                let pairs = below[0].iter_mut().zip(&above[column]).skip(column);
-                pairs.for_each(|(value, pivot)| *value -= factor * pivot);
-                right[row] -= factor * right[column];
-            }
-        }
-    }
-    for row in (0..n).rev() {
-        let rest: f64 = (row + 1..n).map(|k| matrix[row][k] * right[k]).sum();
-        right[row] = (right[row] - rest) / matrix[row][row];
-    }
-    right.iter().all(|value| value.is_finite()).then_some(right)
 }

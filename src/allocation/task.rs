@@ -6,7 +6,7 @@ use crate::dimension::Dimension;
 use crate::method::{MethodError, Options};
 use crate::names::nearest;
 use crate::problem::Problem;
-use crate::simulation::SimulationError;
+use crate::simulation::{SimulationError, chosen};
 
 /// Costs and requirements beside a problem.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -20,7 +20,8 @@ pub struct AllocationTask {
 /// How tolerances are allocated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllocationOptions {
-    /// How derivatives are taken; its budget is that of all evaluations together.
+    /// How derivatives are taken; its budget is that of all evaluations together. [`Method::Auto`](crate::Method::Auto) stands for `full` where
+    /// dimensions are few and for `six-n` where they are many: every round must ask the same.
     pub analysis: Options,
     /// Dimensions whose nominal values may move, by name.
     pub recentre: Vec<String>,
@@ -35,6 +36,13 @@ pub struct AllocationOptions {
 impl Default for AllocationOptions {
     fn default() -> Self {
         Self { analysis: Options::default(), recentre: Vec::new(), front: None, confirm: None, seed: Options::SEED }
+    }
+}
+
+impl AllocationOptions {
+    /// How derivatives of this problem are taken.
+    pub fn derivatives(&self, problem: &Problem) -> Options {
+        Options { extremes: false, ..chosen(problem, &self.analysis) }
     }
 }
 
@@ -108,6 +116,14 @@ pub enum AllocateError {
         /// The characteristic.
         characteristic: String,
     },
+    /// A method that has nothing to follow tolerances on.
+    #[error(
+        "{method} has no surface on which the search could follow the tolerances: use --method full, six-n or second-order"
+    )]
+    NoSurrogate {
+        /// The method.
+        method: &'static str,
+    },
     /// The method does not fit the problem.
     #[error(transparent)]
     Method(#[from] MethodError),
@@ -126,6 +142,9 @@ impl AllocationTask {
     /// Whether the task and the options fit the problem.
     pub(super) fn check(&self, problem: &Problem, options: &AllocationOptions) -> Result<(), AllocateError> {
         let dimensions = problem.dimensions();
+        if !options.analysis.method.has_surrogate() {
+            return Err(AllocateError::NoSurrogate { method: options.analysis.method.name() });
+        }
         if self.priced.is_empty() && options.recentre.is_empty() {
             return Err(AllocateError::NothingToChoose);
         }

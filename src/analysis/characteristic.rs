@@ -1,12 +1,14 @@
 //! What is known of one characteristic.
 
-use super::SamplingInterval;
+use super::errors::of_yield;
 use super::linear::Linear;
+use super::shares::Shares;
+use super::{SampledModel, SamplingInterval};
 use crate::capability::{Capability, Law};
 use crate::characteristic::Characteristic;
 use crate::extremes::Extremes;
-use crate::method::{Order, Outcome};
-use crate::moments::{Contributions, Moments, Sampled};
+use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
+use crate::moments::{Moments, Sampled};
 use crate::pearson::PearsonError;
 use crate::problem::Problem;
 
@@ -21,6 +23,12 @@ pub struct CharacteristicAnalysis {
     pub moments: Option<Moments>,
     /// What sampling the surrogate of correlated inputs leaves uncertain of them; None where they are exact.
     pub sampled: Option<Sampled>,
+    /// Points of the model that the moments rest on, in place of a surrogate that was not trusted.
+    pub model_sampled: Option<SampledModel>,
+    /// How far these results may be off; None without moments.
+    pub error_estimate: Option<ErrorEstimate>,
+    /// How far a fitted surface misses the values that it was fitted to; None where nothing was fitted.
+    pub residual: Option<Residual>,
     /// The distribution that has these moments, or why none has.
     pub law: Option<Result<Law, PearsonError>>,
     /// How that keeps the limits.
@@ -109,11 +117,11 @@ impl CharacteristicAnalysis {
     pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> Self {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;
-        let contributions = fitted.surrogate.as_ref().and_then(|surrogate| surrogate.contributions(plan.inputs()));
-        let sensitivities: Vec<Sensitivity> = (0..problem.dimensions().len())
-            .map(|d| sensitivity(problem, outcome, c, d, contributions.as_ref()))
-            .collect();
-        let interactions = interactions(problem, outcome, c, contributions.as_ref());
+        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+        let shares = Shares::of(fitted, plan.inputs()).map(|shares| shares.beside(unexplained));
+        let sensitivities: Vec<Sensitivity> =
+            (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
+        let interactions = interactions(problem, outcome, c, shares.as_ref());
         let n = plan.varying().len();
         let possible_interactions = (0..n).map(|j| (j + 1..n).filter(|&k| plan.joint(c, j, k)).count()).sum::<usize>();
         let complete = outcome.order == Order::Second
@@ -121,19 +129,38 @@ impl CharacteristicAnalysis {
             && interactions.iter().all(|interaction| interaction.share.is_some())
             && plan.varying().iter().all(|&d| fitted.parts[d].is_some_and(|part| part.degree() >= 2));
         let characteristic = problem.characteristics()[c].clone();
-        let moments = contributions.as_ref().map(|contributions| contributions.moments);
-        let sampled = contributions.as_ref().and_then(|contributions| contributions.sampled);
+        let moments = shares.as_ref().map(Shares::moments);
+        let sampled = shares.as_ref().and_then(Shares::sampled);
         let law = moments.map(|moments| Law::fit(&moments));
         let capability = |law: &Law| {
             moments.map(|moments| Capability::of(law, moments.mean(), moments.sigma(), characteristic.limits()))
         };
         let normal = moments.and_then(|moments| capability(&Law::normal(&moments).ok()?));
+        let error_estimate = moments.and_then(|moments| {
+            let estimate = estimate(problem, outcome, c, &moments)?;
+            let yield_ = of_yield(&estimate, &moments, characteristic.limits());
+            Some(ErrorEstimate { yield_, ..estimate })
+        });
         let linear = linear(problem, plan.varying(), &sensitivities);
+        let explained = || {
+            let own =
+                sensitivities.iter().flat_map(|one| [one.linear_share, one.curvature_share]).flatten().sum::<f64>();
+            own + interactions.iter().filter_map(|one| one.share).sum::<f64>()
+        };
+        let left_out_share = match (&shares, unexplained) {
+            (Some(Shares::Integrated(integrated)), _) => integrated.left_out,
+            (Some(_), Some(_)) if moments.is_some_and(|moments| moments.sigma() > 0.0) => {
+                Some(1.0 - explained()).map(|share| if share.abs() < 1e-12 { 0.0 } else { share })
+            }
+            (Some(_), _) if complete => Some(0.0),
+            _ => None,
+        };
         let middle = fitted.nominal.zip(linear).map(|(nominal, linear)| nominal + linear.middle);
         Self {
             nominal: fitted.nominal,
             moments,
             sampled,
+            residual: fitted.residual,
             capability: law.as_ref().and_then(|law| capability(law.as_ref().ok()?)),
             normal,
             law,
@@ -150,18 +177,14 @@ impl CharacteristicAnalysis {
             sensitivities,
             interactions,
             possible_interactions,
-            left_out_share: (complete && contributions.is_some()).then_some(0.0),
+            left_out_share,
+            error_estimate,
+            model_sampled: None,
         }
     }
 }
 
-fn sensitivity(
-    problem: &Problem,
-    outcome: &Outcome,
-    c: usize,
-    d: usize,
-    contributions: Option<&Contributions>,
-) -> Sensitivity {
+fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares: Option<&Shares>) -> Sensitivity {
     let (plan, dimension) = (&outcome.plan, &problem.dimensions()[d]);
     let part = outcome.fitted[c].parts[d];
     let axis = plan.axis(d);
@@ -181,13 +204,14 @@ fn sensitivity(
     // A characteristic that cannot depend on a dimension has slope 0, evaluated or not.
     let per_unit = |value: f64| if plan.depends(c, d) { value / scale } else { 0.0 };
     let position = plan.varying().iter().position(|&varying| varying == d);
-    let of = |shares: fn(&Contributions) -> &Vec<f64>| match (position, contributions) {
-        (Some(position), Some(contributions)) => Some(shares(contributions)[position]),
+    let of = |share: fn(&Shares, usize) -> Option<f64>| match (position, shares) {
+        (Some(position), Some(shares)) => share(shares, position),
         // What does not vary, or has no effect, adds nothing.
         (None, Some(_)) => Some(0.0),
         (_, None) => None,
     };
     let curved = |share: Option<f64>| match outcome.order {
+        _ if matches!(shares, Some(Shares::Integrated(_))) => share,
         Order::Second if part.is_none_or(|part| part.degree() >= 2) || position.is_none() => share,
         _ => None,
     };
@@ -197,37 +221,37 @@ fn sensitivity(
         second: exact.map(|exact| exact.1).or_else(|| Some(per_unit(per_unit(part?.second()?)))),
         exact: exact.is_some(),
         rounding,
-        linear_share: of(|contributions| &contributions.linear),
-        curvature_share: curved(of(|contributions| &contributions.curvature)),
-        mean_shift: curved(of(|contributions| &contributions.mean_shift)),
+        linear_share: of(Shares::linear),
+        curvature_share: curved(of(Shares::curvature)),
+        mean_shift: curved(of(Shares::mean_shift)),
     }
 }
 
 /// Of the pairs on which the characteristic can depend, strongest first.
-fn interactions(
-    problem: &Problem,
-    outcome: &Outcome,
-    c: usize,
-    contributions: Option<&Contributions>,
-) -> Vec<Interaction> {
+fn interactions(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&Shares>) -> Vec<Interaction> {
     let plan = &outcome.plan;
     let fitted = &outcome.fitted[c];
     let examined =
         (outcome.pairs.iter().zip(&fitted.mixed).enumerate()).filter(|(_, ((j, k), _))| plan.joint(c, *j, *k));
     let mut interactions: Vec<Interaction> = examined
         .map(|(index, (&(j, k), mixed))| {
-            let share = |value: f64| contributions.map(|contributions| contributions.share(j, k, value));
+            let share = shares.and_then(|shares| shares.pair(index, (j, k), mixed.map(|mixed| mixed.value)));
             let [j, k] = [j, k].map(|position| plan.varying()[position]);
             let together = problem.correlation().map_or(0.0, |correlation| correlation.of(j, k));
             let exact = fitted.exact.as_ref().and_then(|exact| exact.mixed[index]);
+            let coefficient = mixed.map(|mixed| mixed.value);
+            let mean_shift = match shares {
+                Some(shares) => shares.pair_shift(index, coefficient, together),
+                None => coefficient.map(|value| value * together),
+            };
             let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
             Interaction {
                 dimensions: [j, k].map(|d| problem.dimensions()[d].name().to_owned()),
                 mixed: exact.or(mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale)),
                 exact: exact.is_some(),
                 rounding: fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k)),
-                share: mixed.and_then(|mixed| share(mixed.value)),
-                mean_shift: mixed.map(|mixed| mixed.value * together),
+                share,
+                mean_shift,
             }
         })
         .collect();

@@ -1,19 +1,26 @@
 //! The main job: from a problem to moments, sensitivities, contributions and warnings.
 
+mod account;
 mod bootstrap;
 mod characteristic;
+mod errors;
+mod fallback;
 mod interval;
 mod linear;
+mod shapes;
+mod shares;
+mod trust;
 mod warnings;
 
 pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
+pub use fallback::SampledModel;
 
 use std::time::Duration;
 
 use crate::assembly::Run;
 use crate::extremes::{Found, search};
-use crate::method::{DerivativeSource, Method, MethodError, Options, Outcome};
+use crate::method::{Basis, Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -40,8 +47,10 @@ pub struct Analysis {
     pub seed: Option<u64>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<CharacteristicAnalysis>,
-    /// Where the derivatives that the moments rest on come from.
-    pub derivatives: DerivativeSource,
+    /// What `auto` found and bought, in words; None for any other method.
+    pub account: Option<String>,
+    /// What the moments rest on.
+    pub basis: Basis,
     /// Where an assumption fails.
     pub warnings: Vec<Warning>,
 }
@@ -87,24 +96,28 @@ pub(crate) fn analyze_keeping(
     outcome.evaluated.doubts.extend(found.spent.doubts);
     let mut characteristics: Vec<CharacteristicAnalysis> =
         (0..problem.characteristics().len()).map(|c| CharacteristicAnalysis::of(problem, &outcome, c)).collect();
+    let fallback = fallback::fall_back(problem, &outcome, options, &mut characteristics, run);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
     let warnings = warnings::of(problem, &outcome, &characteristics);
+    let spent = outcome.evaluated.evaluations;
+    let account = account::account(problem, &outcome, &characteristics, spent);
     let seed = options.seed.unwrap_or(Options::SEED);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
     let analysis = Analysis {
         method: outcome.method,
         varying: outcome.plan.varying().len(),
-        evaluations: outcome.evaluated.evaluations + found.spent.evaluations,
-        reused: outcome.evaluated.reused + found.spent.reused,
-        failed: outcome.evaluated.known.failed_points() + found.spent.failed,
-        stages: outcome.evaluated.stages + found.spent.stages,
-        stopped: outcome.evaluated.stopped || found.spent.stopped,
-        in_model: outcome.evaluated.in_model + found.spent.in_model,
+        evaluations: outcome.evaluated.evaluations + fallback.evaluations + found.spent.evaluations,
+        reused: outcome.evaluated.reused + fallback.reused + found.spent.reused,
+        failed: outcome.evaluated.known.failed_points() + fallback.failed + found.spent.failed,
+        stages: outcome.evaluated.stages + fallback.stages + found.spent.stages,
+        stopped: outcome.evaluated.stopped || fallback.stopped || found.spent.stopped,
+        in_model: outcome.evaluated.in_model + fallback.in_model + found.spent.in_model,
         seed: drawn.then_some(seed),
         characteristics,
-        derivatives: if outcome.exact { DerivativeSource::Exact } else { DerivativeSource::Difference },
+        account,
+        basis: outcome.basis,
         warnings,
     };
     Ok((analysis, outcome))

@@ -1,8 +1,8 @@
 //! Where the results of an analysis rest on something that does not hold.
 
-use super::CharacteristicAnalysis;
+use super::{CharacteristicAnalysis, trust};
 use crate::capability::Law;
-use crate::method::{Method, Order, Outcome};
+use crate::method::{Basis, Lacking, Order, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::surrogate::Surrogate;
@@ -17,6 +17,12 @@ const CURVED: f64 = 0.05;
 
 /// A change of the nominal value by more than this part of what a characteristic varies by is another solution of the model.
 const FLIP: f64 = 0.01;
+/// Rules of so many nodes are exact to the fifth degree, and the fourth power of a parabola is of the eighth: curvature that adds
+/// more than this part of the variance shows in the kurtosis.
+const SHALLOW: usize = 3;
+const SHALLOW_CURVED: f64 = 1e-2;
+/// A fitted surface that misses its values by more than this part of sigma is not to be trusted.
+const POOR: f64 = 0.05;
 /// Points in doubt that are named.
 const SUSPECTS: usize = 3;
 /// Points at which a characteristic that is not 0 at the means may be exactly 0 by chance.
@@ -25,12 +31,11 @@ const ATOM: usize = 2;
 const LONG_TAIL: f64 = 1e-3;
 /// A kurtosis that exceeds the least possible by no more than this part is worth one too.
 const MARGIN: f64 = 0.1;
+/// From here on there are more likely two peaks than one: an arc sine law, which has its mass at both ends, has 2/3.
+const MODES: f64 = 0.68;
 
 pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[CharacteristicAnalysis]) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    if outcome.asked == Method::Auto {
-        warnings.push(Warning::AutoIsSecondOrder);
-    }
     warnings.extend(unused(problem));
     for &d in outcome.plan.varying() {
         let moved = |moved: &crate::plan::Moved| Warning::SupportEdge {
@@ -45,14 +50,19 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
     warnings.extend(problem.function().warnings(problem.outputs()));
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
-        warnings.extend(lost(problem, outcome, c));
+        match outcome.basis {
+            Basis::Exact | Basis::Differences => warnings.extend(lost(problem, outcome, c)),
+            Basis::LeastSquares | Basis::Quadrature => warnings.extend(lost_moments(problem, outcome, c)),
+        }
         warnings.extend(atom(problem, outcome, c));
         warnings.extend(long_tails(problem, outcome, analysis));
         warnings.extend(doubtful(outcome, c, analysis));
+        warnings.extend(trust::of(problem, outcome, c, analysis));
         warnings.extend(not_proven(analysis));
     }
     let possible = outcome.plan.possible_pairs();
-    if outcome.order == Order::Second && outcome.pairs.len() < possible {
+    // What `auto` did not examine stands in its comparison with the model.
+    if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
     warnings
@@ -61,11 +71,15 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
 /// Measured dimensions whose sample was not drawn anew.
 fn not_resampled<'a>(problem: &'a Problem, outcome: &'a Outcome) -> impl Iterator<Item = Warning> + 'a {
     let correlated = outcome.plan.inputs().correlation().is_some();
+    let integrated = outcome.basis == Basis::Quadrature;
     let measured = move |d: &&usize| {
         let law = problem.dimensions()[**d].distribution();
-        correlated && law.is_some_and(|law| law.measured().is_some())
+        (correlated || integrated) && law.is_some_and(|law| law.measured().is_some())
     };
-    let warning = |d: &usize| Warning::NoSamplingInterval { dimension: problem.dimensions()[*d].name().to_owned() };
+    let warning = move |d: &usize| Warning::NoSamplingInterval {
+        dimension: problem.dimensions()[*d].name().to_owned(),
+        correlated,
+    };
     outcome.plan.varying().iter().filter(measured).map(warning)
 }
 
@@ -139,6 +153,22 @@ fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
     at.collect::<Vec<_>>().join(", ")
 }
 
+/// Moments that could not be had by a method that is no difference plan.
+fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
+    let because = match outcome.fitted[c].lacking? {
+        Lacking::Points { lost, of } => format!(
+            "{lost} of the {of} values of its quadrature {} missing, and none is made up",
+            if lost == 1 { "is" } else { "are" }
+        ),
+        Lacking::NotEstimable { left, coefficients } => {
+            format!(
+                "the {left} points that have a value do not determine the {coefficients} coefficients of its surface"
+            )
+        }
+    };
+    Some(Warning::LostMoments { characteristic: name(problem, c), because })
+}
+
 /// Derivatives that could not be had, or only over a shorter step.
 fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
     let (plan, fitted, known) = (&outcome.plan, &outcome.fitted[c], &outcome.evaluated.known);
@@ -210,19 +240,28 @@ fn atom(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
 /// Results that exist but should not be taken at face value.
 fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    let (Some(moments), Some(surrogate)) = (analysis.moments, &outcome.fitted[c].surrogate) else { return warnings };
+    let (Some(moments), fitted) = (analysis.moments, &outcome.fitted[c]) else { return warnings };
     let characteristic = analysis.characteristic.name().to_owned();
     let sigma = moments.sigma();
     if sigma == 0.0 {
         warnings.push(Warning::NoReaction { characteristic });
         return warnings;
     }
-    let rounding = f64::EPSILON * surrogate.centre.abs() / sigma;
+    let centre = fitted.surrogate.as_ref().map_or(moments.mean(), |surrogate| surrogate.centre);
+    let rounding = f64::EPSILON * centre.abs() / sigma;
     if rounding > NOISE {
         warnings.push(Warning::Noise { characteristic: characteristic.clone(), rounding });
     }
     warnings.extend(law(analysis, &characteristic));
-    if outcome.order == Order::First {
+    let curved: f64 = analysis.sensitivities.iter().filter_map(|row| row.curvature_share).sum();
+    if fitted.integrated.as_ref().is_some_and(|integrated| integrated.nodes == SHALLOW) && curved > SHALLOW_CURVED {
+        warnings.push(Warning::ShallowRules { characteristic: characteristic.clone(), share: curved });
+    }
+    let residual = fitted.residual.and_then(|residual| residual.standard_error).map(|residual| residual / sigma);
+    if let Some(residual) = residual.filter(|&residual| residual > POOR) {
+        warnings.push(Warning::PoorFit { characteristic: characteristic.clone(), residual });
+    }
+    if let (Order::First, Some(surrogate)) = (outcome.order, &fitted.surrogate) {
         let plan = &outcome.plan;
         let parts = plan.varying().iter().map(|&d| outcome.fitted[c].parts[d]).collect();
         let curved = Surrogate { parts, ..surrogate.clone() }.contributions(plan.inputs());
@@ -257,6 +296,10 @@ fn law(analysis: &CharacteristicAnalysis, characteristic: &str) -> Option<Warnin
         Err(error) => Some(Warning::InfeasibleMoments { characteristic, reason: error.to_string() }),
         Ok(Law::Pearson(law)) if law.margin() < MARGIN => {
             Some(Warning::NearInfeasibleMoments { characteristic, skewness: law.skewness(), kurtosis: law.kurtosis() })
+        }
+        Ok(Law::Pearson(law)) => {
+            let coefficient = (law.skewness().powi(2) + 1.0) / law.kurtosis();
+            (coefficient > MODES).then_some(Warning::SeveralModes { characteristic, coefficient })
         }
         Ok(_) => None,
     }

@@ -26,6 +26,19 @@ impl Points {
         Self { rows, dimensions: point.len(), values }
     }
 
+    /// Columns that `column` writes, given their place.
+    pub(crate) fn written(rows: usize, dimensions: usize, mut column: impl FnMut(usize, &mut [f64])) -> Self {
+        let mut points = Self { rows, dimensions, values: vec![0.0; rows * dimensions] };
+        (0..dimensions).for_each(|dimension| column(dimension, points.column_mut(dimension)));
+        points
+    }
+
+    /// From all values, a column after the other.
+    pub(crate) fn of_values(rows: usize, dimensions: usize, values: Vec<f64>) -> Self {
+        assert_eq!(values.len(), rows * dimensions, "columns of different length");
+        Self { rows, dimensions, values }
+    }
+
     /// A point per row; every row must have the same length.
     pub fn from_rows<R: AsRef<[f64]>>(rows: &[R]) -> Self {
         let dimensions = rows.first().map_or(0, |row| row.as_ref().len());

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
 use super::process::Adapter;
+use super::responses::all_finite;
 use super::{
     Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, Output, Points, Responses, Run,
     Signature, in_blocks,
@@ -253,13 +254,14 @@ impl Composite {
         let rows = points.rows();
         let mut answers = Responses::open(rows, needed.len());
         if let (Some(model), false) = (&self.model, needed.is_empty()) {
-            let columns: Vec<Vec<f64>> = (model.inputs.iter())
-                .map(|source| match *source {
-                    Source::Dimension(dimension) => points.column(dimension).to_vec(),
-                    Source::Fixed(value) => vec![value; rows],
-                })
-                .collect();
-            let points = Points::from_columns(rows, &columns);
+            let mut values = Vec::with_capacity(rows * model.inputs.len());
+            for source in &model.inputs {
+                match *source {
+                    Source::Dimension(dimension) => values.extend_from_slice(points.column(dimension)),
+                    Source::Fixed(value) => values.resize(values.len() + rows, value),
+                }
+            }
+            let points = Points::of_values(rows, model.inputs.len(), values);
             model.function.evaluate(&Ask::values(&points, needed), run, &mut answers);
         }
         answers
@@ -412,6 +414,13 @@ impl AssemblyFunction for Composite {
                 true
             };
             for (column, origin) in origins.iter().enumerate() {
+                if let Origin::Model(output) = *origin
+                    && let answers = &answers.column(answer(output))[rows.clone()]
+                    && all_finite(answers)
+                {
+                    out.set_rows(0, column, answers);
+                    continue;
+                }
                 for row in 0..rows.len() {
                     match *origin {
                         Origin::Model(output) => out.pass_on(row, column, &answers, rows.start + row, answer(output)),
@@ -422,15 +431,20 @@ impl AssemblyFunction for Composite {
                     }
                 }
             }
-            self.formulas.evaluate(&formulas, rows.len(), variable, |position, row, value| {
+            self.formulas.evaluate_blocks(&formulas, rows.len(), variable, |position, first, values| {
                 let column = columns[position];
-                if value.is_finite() {
-                    out.set(row, column, value);
-                } else if !missing(out, row, column) {
-                    let explained = self.formulas.explain(formulas[position], |index| variable(index)[row]);
-                    let error =
-                        explained.map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into());
-                    out.fail(row, column, error);
+                if all_finite(values) {
+                    return out.set_rows(first, column, values);
+                }
+                for (row, &value) in (first..).zip(values) {
+                    if value.is_finite() {
+                        out.set(row, column, value);
+                    } else if !missing(out, row, column) {
+                        let explained = self.formulas.explain(formulas[position], |index| variable(index)[row]);
+                        let error =
+                            explained.map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into());
+                        out.fail(row, column, error);
+                    }
                 }
             });
         });

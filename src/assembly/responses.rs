@@ -71,6 +71,16 @@ impl Responses {
         }
     }
 
+    /// Answers the entries from a row on, as [`set`](Self::set) does one by one.
+    pub fn set_rows(&mut self, first: usize, output: usize, values: &[f64]) {
+        if self.errors.is_empty() && all_finite(values) {
+            let start = output * self.rows + first;
+            self.values[start..start + values.len()].copy_from_slice(values);
+        } else {
+            values.iter().zip(first..).for_each(|(&value, row)| self.set(row, output, value));
+        }
+    }
+
     /// Answers one entry with an error.
     pub fn fail(&mut self, row: usize, output: usize, error: EvaluationError) {
         self.values[output * self.rows + row] = f64::NAN;
@@ -159,4 +169,9 @@ impl Responses {
         self.doubts.extend(block.doubts.iter().cloned());
         self.errors.extend(block.errors.into_iter().map(|((row, output), error)| ((first + row, output), error)));
     }
+}
+
+/// Whether none of them is infinite or NaN.
+pub(super) fn all_finite(values: &[f64]) -> bool {
+    values.iter().fold(true, |all, value| all & value.is_finite())
 }

@@ -75,6 +75,11 @@ impl<'a> Run<'a> {
         Self { stop: None, ..self }
     }
 
+    /// Whether anybody is told of finished rows.
+    pub(crate) fn tells(&self) -> bool {
+        self.finished.is_some()
+    }
+
     /// These rows of `out` are final: values or errors, for every output asked.
     pub fn finished(&self, rows: &[usize], out: &Responses) {
         if let Some(finished) = self.finished {

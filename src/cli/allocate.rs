@@ -1,5 +1,7 @@
 //! `sensitol allocate`.
 
+use std::path::Path;
+
 use super::args::AllocateArgs;
 use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
@@ -20,7 +22,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let destination = Destination::open(&asked.output)?;
     let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &allocation_csv_names())).transpose()?;
     let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
-    let written = asked.write.as_deref().map(Destination::file).transpose()?;
+    let written = asked.write.as_deref().map(|path| beside(&asked.study.study, path)).transpose()?;
     let clock = Clock::start(asked.time);
     let options = AllocationOptions {
         analysis: study.options.clone(),
@@ -30,7 +32,8 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         seed: asked.seed.or(study.seed).unwrap_or(Options::SEED),
     };
     let allocation = allocate(&study, &options, asked.threads, &clock, look)?;
-    let found = allocation.after.is_some();
+    // What was stopped before the model had its say is shown and not written.
+    let found = allocation.after.is_some() && allocation.status != Status::OutOfTime;
     // What cannot be written into the file can be shown all the same.
     let anew = if found { Some(study.rewritten(&allocation.problem)) } else { None };
     let table =
@@ -74,6 +77,12 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     })
 }
 
+/// Where the study is written anew: never onto itself.
+fn beside(study: &Path, path: &Path) -> Result<Destination, Failure> {
+    let same = std::fs::canonicalize(path).ok().zip(std::fs::canonicalize(study).ok()).is_some_and(|(a, b)| a == b);
+    if same { Err(Failure::OntoItself { path: path.to_owned() }) } else { Destination::file(path) }
+}
+
 /// Points of a chart when nobody said how many.
 const FRONT: usize = 12;
 
@@ -86,8 +95,8 @@ fn allocate(
 ) -> Result<Allocation, Failure> {
     let stop = || clock.stop();
     let costly = study.problem.function().signature().costly;
-    let plan =
-        costly.then(|| options.analysis.method.procedure().plan(&study.problem, &options.analysis)).transpose()?;
+    let asked = options.derivatives(&study.problem);
+    let plan = costly.then(|| asked.method.procedure().plan(&study.problem, &asked)).transpose()?;
     // At the tolerances before and at those found, at the least.
     let bar = plan.map(|plan| Bar::new(2 * plan.cost().0, look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand, ValueEnum};
 
 /// The heading of the options that say what is printed, and where.
 const OUTPUT: &str = "Output";
@@ -39,6 +39,9 @@ pub(super) enum Command {
     #[command(after_help = "Example: sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
     Compare(CompareArgs),
     /// The cheapest tolerances with which every characteristic keeps what is required
+    ///
+    /// What tolerances cost stands in [costs], what is required at each characteristic: a target_yield or a require. Method auto
+    /// stands for full, and above twenty dimensions for six-n.
     #[command(after_help = "Example: sensitol allocate examples/shaft-and-housing/study.toml --write cheaper.toml")]
     Allocate(AllocateArgs),
     /// What would be evaluated, how often, and why; evaluates nothing
@@ -97,6 +100,10 @@ pub(super) struct StudyArgs {
     /// How six-n evaluates an interaction: two-point, or four-point as the papers do
     #[arg(long, value_name = "STENCIL")]
     pub(super) stencil: Option<StencilArg>,
+
+    /// Nodes of the quadrature rules of dimension-reduction, univariate or bivariate: 3, 5 or 7 [default: 5]
+    #[arg(long, value_name = "M")]
+    pub(super) nodes: Option<usize>,
 
     /// Sensitivities of varying dimensions, or of all: two evaluations each for those without tolerance
     #[arg(long, value_name = "WHICH")]
@@ -179,11 +186,13 @@ pub(super) struct SampledArgs {
 }
 
 #[derive(Debug, Args)]
+#[group(skip)]
+#[command(group = ArgGroup::new("surrogate").args(["surrogate_control", "rare"]))]
 pub(super) struct SimulateArgs {
     #[command(flatten)]
     pub(super) of: SampledArgs,
 
-    /// Points [default: 100000, or as many as --until takes]; Sobol' takes 16 times a power of two, at least as many
+    /// Points [default: 100000, or as many as --until takes; with --rare 10000, of an external model 1000]; Sobol' takes 16 times a power of two, at least as many
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
     pub(super) samples: Option<u64>,
 
@@ -191,13 +200,25 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "SAMPLER", default_value = "random")]
     pub(super) sampler: SamplerArg,
 
-    /// Go on until the standard error of every sigma is below this part of it
+    /// Go on until the standard error of every sigma (with --rare: of every probability) is below this part of it
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(super) until: Option<f64>,
 
     /// Go on until half the 95 % interval of every yield is below this
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(super) until_yield: Option<f64>,
+
+    /// Sample only what the surrogate of an analysis leaves unexplained: the same standard errors with fewer points
+    #[arg(long)]
+    pub(super) surrogate_control: bool,
+
+    /// Seek what is rare: the probability beyond each limit, by importance sampling that is placed with the surrogate
+    #[arg(long, conflicts_with_all = ["surrogate_control", "until_yield", "sampler"])]
+    pub(super) rare: bool,
+
+    /// The method of the surrogate [default: that of the study, or full to 20 dimensions and six-n beyond]
+    #[arg(short, long, value_name = "METHOD", requires = "surrogate")]
+    pub(super) method: Option<MethodArg>,
 
     /// Exit with 1 unless the sample shows that every target_yield is met
     #[arg(long)]

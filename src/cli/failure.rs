@@ -11,6 +11,7 @@ use crate::journal::JournalError;
 use crate::method::MethodError;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
+use crate::rare::RareError;
 use crate::simulation::SimulationError;
 use crate::study::{RewriteError, StudyError};
 
@@ -49,6 +50,8 @@ pub(super) enum Failure {
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     #[error(transparent)]
+    Rare(#[from] RareError),
+    #[error(transparent)]
     Compare(#[from] CompareError),
     #[error(transparent)]
     Allocate(#[from] AllocateError),
@@ -72,6 +75,8 @@ pub(super) enum Failure {
     UnknownModel { name: String, help: String },
     #[error("{path} cannot be written: {error}", path = path.display())]
     Unwritable { path: PathBuf, error: std::io::Error },
+    #[error("--write {path} is the study itself, which would be lost: name a new file", path = path.display())]
+    OntoItself { path: PathBuf },
     #[error("{path} is a file, and --csv needs a folder", path = path.display())]
     NoFolder { path: PathBuf },
     #[error("cannot write to standard output: {0}")]

@@ -19,6 +19,7 @@ mod plan;
 mod points;
 mod probe;
 mod progress;
+mod rare;
 mod running;
 mod schema;
 mod simulate;

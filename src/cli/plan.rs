@@ -8,7 +8,8 @@ use super::args::PlanArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use super::study;
-use crate::plan::{DifferencePlan, Known, Purpose, Spread, Stage};
+use crate::method::DerivativeSource;
+use crate::plan::{Known, Plan, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
 
@@ -22,6 +23,8 @@ struct PlanReport {
     count: &'static str,
     varying: usize,
     evaluations: usize,
+    /// The fewest and the most, of a method that chooses as it goes.
+    range: Option<[usize; 2]>,
     stages: Vec<StageReport>,
     /// Whether a search of the extremes follows, whose points nobody knows beforehand.
     extremes: bool,
@@ -67,20 +70,22 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         command: "plan",
         method: procedure.name(),
         about: procedure.about(),
-        count: if plan.layout().spread == Spread::Bare { EXACT } else { procedure.count() },
+        count: if study.options.derivatives == Some(DerivativeSource::Exact) { EXACT } else { procedure.count() },
         varying: plan.varying().len(),
         evaluations,
+        range: procedure.range(&study.problem, &study.options),
         stages: vec![of_stage(&first)],
         extremes: study.options.extremes,
-        dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &plan, d)).collect(),
+        dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &*plan, d)).collect(),
     };
     if stages > 1 {
         let left = evaluations - first.points.len();
-        let purposes = vec![PurposeReport { points: left, purpose: Purpose::Pair.words() }];
+        let purpose = if report.range.is_some() { Purpose::Check } else { Purpose::Pair };
+        let purposes = vec![PurposeReport { points: left, purpose: purpose.words() }];
         report.stages.push(StageReport { evaluations: left, known_beforehand: false, purposes });
     }
     if let Some(points) = points {
-        points.write(&csv(&study.problem, &plan, &first))?;
+        points.write(&csv(&study.problem, &*plan, &first))?;
         if stages > 1 {
             look.warn("first-stage-only", "the points of later stages depend on the answers to those of the first");
         }
@@ -100,7 +105,7 @@ fn of_stage(stage: &Stage) -> StageReport {
     StageReport { evaluations: stage.points.len(), known_beforehand: true, purposes }
 }
 
-fn axis(problem: &Problem, plan: &DifferencePlan, d: usize) -> AxisReport {
+fn axis(problem: &Problem, plan: &dyn Plan, d: usize) -> AxisReport {
     let (dimension, axis) = (&problem.dimensions()[d], plan.axis(d));
     let nodes: Vec<_> = axis.slots.iter().map(|slot| axis.nodes[slot[0] as usize]).collect();
     AxisReport {
@@ -120,6 +125,15 @@ fn text(report: &PlanReport) -> String {
         let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };
         lines.push(format!("stage {}: {} points{chosen}", index + 1, stage.evaluations));
         lines.extend(stage.purposes.iter().map(|purpose| format!("  {:>6}  {}", purpose.points, purpose.purpose)));
+    }
+    if let Some([least, most]) = report.range {
+        lines.push(format!(
+            "then more nodes, interactions and probes where they lower the error of sigma: {least} to {most} evaluations in all,"
+        ));
+        lines.push(
+            "and points of the model itself where no surrogate is to be trusted and --budget, or a cheap model, allows"
+                .into(),
+        );
     }
     if report.extremes {
         let search = "then the search of the extremes: 4 points for a linear characteristic, some 2N or more for either side \
@@ -148,7 +162,7 @@ fn text(report: &PlanReport) -> String {
 }
 
 /// A column per dimension, a row per point, every number to its last digit.
-fn csv(problem: &Problem, plan: &DifferencePlan, stage: &Stage) -> String {
+fn csv(problem: &Problem, plan: &dyn Plan, stage: &Stage) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let names = problem.dimensions().iter().map(|dimension| dimension.name());
     writer.write_record(names).expect("memory takes any record");

@@ -9,9 +9,9 @@ use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use super::progress::Samples;
 use super::running::{Clock, on_threads};
-use super::{interrupt, study};
+use super::{interrupt, rare, study};
 use crate::assembly::Run;
-use crate::method::Options;
+use crate::method::{Method, Options};
 use crate::report::{SimulationReport, simulation_csv, simulation_text};
 use crate::sampling::Sampler;
 use crate::simulation::{Pace, Simulation, SimulationOptions, simulate_within};
@@ -28,6 +28,9 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }
+    if asked.rare {
+        return rare::run(asked, &study, look);
+    }
     let destination = Destination::open(&asked.output)?;
     let names = ["estimates.csv", "histogram.csv"].map(str::to_owned);
     let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
@@ -41,6 +44,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         seed: asked.of.seed.or(study.seed).unwrap_or(Options::SEED),
         until: asked.until,
         until_yield: asked.until_yield,
+        control: asked.surrogate_control.then(|| surrogate(&study, asked)),
     };
     let clock = Clock::start(asked.of.time);
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look)?;
@@ -72,6 +76,19 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
 }
 
+/// How the surrogate is analysed: as the study says, but for the method that is asked for.
+pub(super) fn surrogate(study: &Study, asked: &SimulateArgs) -> Options {
+    let mut options = study.options.clone();
+    if let Some(method) = asked.method {
+        options.method = method.0;
+        // The study's choice of pairs was made for its own method.
+        if method.0 != Method::SixN {
+            (options.pairs, options.stencil) = (None, None);
+        }
+    }
+    options
+}
+
 fn simulate(
     study: &Study,
     threads: Option<u16>,
@@ -79,6 +96,16 @@ fn simulate(
     clock: &Clock,
     look: Look,
 ) -> Result<Simulation, Failure> {
+    Ok(sampling(threads, clock, look, |run, pace| simulate_within(&study.problem, options, run, pace))??)
+}
+
+/// Draws points, showing how far it is, and telling once when that will be long.
+pub(super) fn sampling<T: Send>(
+    threads: Option<u16>,
+    clock: &Clock,
+    look: Look,
+    work: impl FnOnce(&Run<'_>, &(dyn Fn(Pace) + Sync)) -> T + Send,
+) -> Result<T, Failure> {
     let bar = Samples::new(look.quiet);
     let told = Mutex::new(false);
     let pace = |pace: Pace| {
@@ -93,9 +120,9 @@ fn simulate(
     };
     let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
-    let result = on_threads(threads, || simulate_within(&study.problem, options, &run, &pace));
+    let result = on_threads(threads, || work(&run, &pace));
     bar.clear();
-    Ok(result??)
+    result
 }
 
 /// A time in the unit that people would use.

@@ -35,6 +35,14 @@ pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Fai
         if method.0 != Method::SixN {
             (options.pairs, options.stencil) = (None, None);
         }
+        // So were its nodes, and steps.
+        let reduction = matches!(method.0, Method::DimensionReduction | Method::BivariateDimensionReduction);
+        if !reduction {
+            options.nodes = None;
+        }
+        if reduction || method.0 == Method::ThreePoint {
+            options.step = None;
+        }
     }
     if let Some(text) = &asked.pairs {
         options.pairs = Some(pairs::parse(text)?);
@@ -45,6 +53,7 @@ pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Fai
             StencilArg::FourPoint => Stencil::FourPoint,
         });
     }
+    options.nodes = asked.nodes.or(options.nodes);
     if let Some(which) = asked.sensitivities {
         options.all_sensitivities = which == SensitivitiesArg::All;
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-use crate::distribution::{Distribution, Normal, standard_normal};
+use crate::distribution::{Distribution, Normal, behind_normal};
 
 /// The function, and its Hermite series.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,11 +63,7 @@ impl Transform {
             return Some(Self { kind: Kind::Normal });
         }
         let (mean, sigma) = (distribution.mean(), distribution.sigma());
-        let value = |z: f64| match z < 0.0 {
-            true => law.quantile(standard_normal::cdf(z)),
-            false => law.upper_quantile(standard_normal::sf(z)),
-        };
-        let values: Vec<f64> = places().iter().map(|&z| (value(z) - mean) / sigma).collect();
+        let values: Vec<f64> = places().iter().map(|&z| (behind_normal(law, z) - mean) / sigma).collect();
         let series = series(&values);
         Some(Self { kind: Kind::Tabulated { values, series, smooth: law.density(mean).is_some() } })
     }

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use rand::{Rng, RngExt};
-use rand_distr::StandardNormal;
+use rand::Rng;
 
 use super::tail::ratio;
-use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, standard_normal};
+use super::{Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, standard_normal, ziggurat};
 
 /// Lognormal distribution from an origin on, of given mean and sigma: the logarithm of the distance from the origin is
 /// normal.
@@ -183,6 +182,7 @@ impl Probability for Lognormal {
     }
 
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
-        out.iter_mut().for_each(|value| *value = self.x(rng.sample::<f64, _>(StandardNormal)));
+        ziggurat::normals(rng, out);
+        out.iter_mut().for_each(|value| *value = self.x(*value));
     }
 }

@@ -33,6 +33,7 @@ mod triangular;
 mod truncated_normal;
 mod uniform;
 mod weibull;
+pub(crate) mod ziggurat;
 
 pub use beta::Beta;
 pub use central_moments::CentralMoments;
@@ -46,6 +47,7 @@ pub use normal::Normal;
 pub use outliers::{extreme, outliers};
 pub use pearson::PearsonLaw;
 pub use probability::Probability;
+pub(crate) use probability::behind_normal;
 pub use rayleigh::Rayleigh;
 pub use rule::{Jacobi, Rule};
 pub use sample::{Resample, Reweighted, Sample};

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use rand::{Rng, RngExt};
-use rand_distr::StandardNormal;
+use rand::Rng;
 
 use super::{
     Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, finite, positive, standard_normal,
+    ziggurat,
 };
 
 /// Normal distribution of given mean and sigma.
@@ -95,7 +95,13 @@ impl Probability for Normal {
         self.mean + self.sigma * standard_normal::upper_quantile(p)
     }
 
+    fn quantiles(&self, tails: &mut [f64]) {
+        standard_normal::quantiles(tails);
+        tails.iter_mut().for_each(|value| *value = self.mean + self.sigma * *value);
+    }
+
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
-        out.iter_mut().for_each(|value| *value = self.mean + self.sigma * rng.sample::<f64, _>(StandardNormal));
+        ziggurat::normals(rng, out);
+        out.iter_mut().for_each(|value| *value = self.mean + self.sigma * *value);
     }
 }

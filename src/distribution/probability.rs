@@ -2,6 +2,8 @@
 
 use rand::{Rng, RngExt};
 
+use super::standard_normal;
+
 /// Density, probabilities, quantiles and samples, in the dimension's own unit.
 ///
 /// Both tails are asked for by name, because `1 - cdf` and `quantile(1 - p)` have lost the digits that a small tail needs.
@@ -35,6 +37,13 @@ pub trait Probability: Send + Sync {
     /// The value above which the probability is `p`, with the digits of a small `p`; NaN where `p` is no probability.
     fn upper_quantile(&self, p: f64) -> f64;
 
+    /// Puts quantiles in the place of probabilities above 0, counted from the nearer end: `p` from below, `-p` from above.
+    fn quantiles(&self, tails: &mut [f64]) {
+        for tail in tails {
+            *tail = if *tail < 0.0 { self.upper_quantile(-*tail) } else { self.quantile(*tail) };
+        }
+    }
+
     /// Fills `out` with independent random values.
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
         for value in out {
@@ -42,6 +51,11 @@ pub trait Probability: Send + Sync {
             *value = if upper { self.upper_quantile(p) } else { self.quantile(p) };
         }
     }
+}
+
+/// The value that stands where `z` stands in a standard normal distribution, with the digits of the nearer tail.
+pub(crate) fn behind_normal(law: &dyn Probability, z: f64) -> f64 {
+    if z < 0.0 { law.quantile(standard_normal::cdf(z)) } else { law.upper_quantile(standard_normal::sf(z)) }
 }
 
 /// A random probability of at most one half and the end that it is counted from, so that both tails are as fine.

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
+use crate::elementary::{Elementary, Ln, Work, on_this_processor};
+
 /// Density.
 pub(crate) fn density(z: f64) -> f64 {
     (-0.5 * z * z).exp() / (2.0 * PI).sqrt()
@@ -20,11 +22,58 @@ pub(crate) fn sf(z: f64) -> f64 {
 /// Below which the probability is `p`: algorithm AS 241, PPND16 (Wichura 1988), about 1e-16 relative.
 pub(crate) fn quantile(p: f64) -> f64 {
     let q = p - 0.5;
-    if q.abs() <= 0.425 {
-        let r = 0.180_625 - q * q;
-        return q * polynomial(&CENTRE[0], r) / polynomial(&CENTRE[1], r);
+    if q.abs() <= CENTRAL {
+        return central(q);
     }
     if p < 0.5 { lower_tail(p) } else { -lower_tail(1.0 - p) }
+}
+
+/// Puts quantiles in the place of probabilities to one half, as [`Probability::quantiles`](super::Probability::quantiles).
+pub(crate) fn quantiles(tails: &mut [f64]) {
+    for tails in tails.chunks_mut(LANES) {
+        on_this_processor(Quantiles(tails));
+    }
+}
+
+/// Half the range of probabilities that one approximation serves.
+const CENTRAL: f64 = 0.425;
+
+#[inline(always)]
+fn central(q: f64) -> f64 {
+    let r = 0.180_625 - q * q;
+    q * polynomial(&CENTRE[0], r) / polynomial(&CENTRE[1], r)
+}
+
+/// Probabilities that are taken together.
+const LANES: usize = 256;
+
+struct Quantiles<'a>(&'a mut [f64]);
+
+impl Work for Quantiles<'_> {
+    type Output = ();
+
+    /// The centre's for all, then those of the tails, picked out and side by side: the same as one by one.
+    #[inline(always)]
+    fn work(self) {
+        let (mut places, mut outer, mut found) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
+        let mut count = 0;
+        for (place, value) in self.0.iter().enumerate() {
+            (places[count], outer[count]) = (place, *value);
+            count += usize::from(value.abs() - 0.5 < -CENTRAL);
+        }
+        for value in self.0.iter_mut() {
+            *value = central(value.abs() - 0.5).copysign(-*value);
+        }
+        let mut far = false;
+        for (z, tail) in found[..count].iter_mut().zip(&outer) {
+            let (value, beyond) = near_tail(tail.abs());
+            far |= beyond;
+            *z = value.copysign(-tail);
+        }
+        for ((&place, z), tail) in places[..count].iter().zip(&found).zip(&outer) {
+            self.0[place] = if far { lower_tail(tail.abs()).copysign(-tail) } else { *z };
+        }
+    }
 }
 
 /// Above which the probability is `p`.
@@ -50,12 +99,24 @@ fn lower_tail(p: f64) -> f64 {
     if p == 0.0 {
         return f64::NEG_INFINITY;
     }
-    let r = (-p.ln()).sqrt();
-    let [above, below] = if r <= 5.0 { &TAIL } else { &FAR };
-    let r = if r <= 5.0 { r - 1.6 } else { r - 5.0 };
-    -polynomial(above, r) / polynomial(below, r)
+    let (value, far) = near_tail(p);
+    if !far {
+        return value;
+    }
+    let r = (-Ln::of(p)).sqrt() - 5.0;
+    -polynomial(&FAR[0], r) / polynomial(&FAR[1], r)
 }
 
+/// The quantile of a probability in the tail, and whether it is too far out for this, or too small a number.
+#[inline(always)]
+fn near_tail(p: f64) -> (f64, bool) {
+    let (logarithm, apart) = Ln::lane(p);
+    let root = (-logarithm).sqrt();
+    let r = root - 1.6;
+    (-polynomial(&TAIL[0], r) / polynomial(&TAIL[1], r), apart | (root > 5.0))
+}
+
+#[inline(always)]
 fn polynomial(coefficients: &[f64; 8], r: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * r + coefficient)
 }

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use rand::Rng;
+
 use super::{
     Distribution, DistributionError, Jacobi, Probability, Scaled, StandardMoments, finite, interval, positive,
-    probability,
+    probability, ziggurat,
 };
 
 /// Uniform distribution between two limits.
@@ -101,5 +103,10 @@ impl Probability for Uniform {
 
     fn upper_quantile(&self, p: f64) -> f64 {
         self.mean + self.half * (1.0 - 2.0 * probability::checked(p))
+    }
+
+    fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
+        ziggurat::uniforms(rng, out);
+        out.iter_mut().for_each(|value| *value = self.mean + self.half * *value);
     }
 }

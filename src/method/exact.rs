@@ -1,8 +1,8 @@
 //! Exact derivatives in the place of differences.
 
-use super::{DerivativeSource, MethodError, Order};
+use super::{DerivativeSource, MethodError, Options, Order};
 use crate::assembly::{Derivatives, Directions};
-use crate::plan::{DifferencePlan, Mixed};
+use crate::plan::{DifferencePlan, Mixed, Plan};
 use crate::problem::Problem;
 use crate::surrogate::Univariate;
 
@@ -19,7 +19,7 @@ pub struct ExactDerivatives {
 
 impl ExactDerivatives {
     /// Of every characteristic; None for those of which the function does not know them.
-    pub(super) fn of(problem: &Problem, plan: &DifferencePlan) -> Vec<Option<Self>> {
+    pub(super) fn of(problem: &Problem, plan: &dyn Plan) -> Vec<Option<Self>> {
         let (inputs, point) = (plan.moved(), plan.centre());
         let directions = Directions { point: &point, inputs: &inputs, pairs: &[] };
         let known = |derivatives: Derivatives| {
@@ -35,13 +35,24 @@ impl ExactDerivatives {
         derivatives.into_iter().map(|derivatives| derivatives.map(known)).collect()
     }
 
-    /// Adds the mixed ones of these pairs of positions.
-    pub(super) fn add_pairs(
-        all: &mut [Option<Self>],
+    /// Those that a report shows beside what was evaluated, with the mixed ones of these pairs of positions; none where only
+    /// differences are wanted.
+    pub(super) fn beside(
         problem: &Problem,
-        plan: &DifferencePlan,
+        plan: &dyn Plan,
+        options: &Options,
         pairs: &[(usize, usize)],
-    ) {
+    ) -> Vec<Option<Self>> {
+        if options.derivatives == Some(DerivativeSource::Difference) {
+            return vec![None; problem.characteristics().len()];
+        }
+        let mut all = Self::of(problem, plan);
+        Self::add_pairs(&mut all, problem, plan, pairs);
+        all
+    }
+
+    /// Adds the mixed ones of these pairs of positions.
+    pub(super) fn add_pairs(all: &mut [Option<Self>], problem: &Problem, plan: &dyn Plan, pairs: &[(usize, usize)]) {
         let dimensions: Vec<(usize, usize)> =
             pairs.iter().map(|&(j, k)| (plan.varying()[j], plan.varying()[k])).collect();
         let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &dimensions };

@@ -1,26 +1,20 @@
 //! What the derivative methods share: a difference plan, evaluated and fitted.
 
+use std::sync::Arc;
+
+pub(super) use super::Order;
 use super::exact::{ExactDerivatives, fits, known};
-use super::{DerivativeSource, Method, MethodError, Options, Pairs, Procedure};
+use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, NODES, Options, Outcome, Pairs, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::{Evaluated, evaluate};
 use crate::moments::Interactions;
 use crate::names::nearest;
-use crate::plan::{DifferencePlan, Layout, PairChoice, Point, Spread, Stencil};
+use crate::plan::{DifferencePlan, Layout, PairChoice, Plan, Point, Spread, Stencil};
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
 /// What the assembly function knows of every characteristic's derivatives.
 type Known = Vec<Option<ExactDerivatives>>;
-
-/// How much of the derivatives a method makes use of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
-    /// Slopes only.
-    First,
-    /// Curvatures and interactions too.
-    Second,
-}
 
 /// A derivative method: what it evaluates, and what it uses of that.
 pub(super) struct Ladder {
@@ -44,44 +38,6 @@ pub(super) enum Examined {
     Chosen,
 }
 
-/// What a method found out.
-#[derive(Debug, Clone)]
-pub struct Outcome {
-    /// The method that was asked for.
-    pub asked: Method,
-    /// The method that was run.
-    pub method: Method,
-    /// What it planned.
-    pub plan: DifferencePlan,
-    /// What it evaluated.
-    pub evaluated: Evaluated,
-    /// How much of it the surrogates use.
-    pub order: Order,
-    /// For every characteristic what is known of it.
-    pub fitted: Vec<Fitted>,
-    /// The pairs that were examined, as positions among the varying dimensions.
-    pub pairs: Vec<(usize, usize)>,
-    /// Whether the moments come from exact derivatives rather than differences.
-    pub exact: bool,
-}
-
-/// What is known of one characteristic.
-#[derive(Debug, Clone)]
-pub struct Fitted {
-    /// Its value at the nominal dimensions.
-    pub nominal: Option<f64>,
-    /// Its value with every dimension at its mean.
-    pub centre: Option<f64>,
-    /// The derivatives at the means as the assembly function knows them; None where it does not, or was not asked.
-    pub exact: Option<ExactDerivatives>,
-    /// Every dimension's own part, in the problem's order; None where it is unknown or was not asked for.
-    pub parts: Vec<Option<Univariate>>,
-    /// The mixed derivatives of the pairs examined, in sigma units; None where lost.
-    pub mixed: Vec<Option<crate::plan::Mixed>>,
-    /// The surrogate over the varying dimensions; None without a value at the means.
-    pub surrogate: Option<Surrogate>,
-}
-
 impl Procedure for Ladder {
     fn method(&self) -> Method {
         self.method
@@ -99,30 +55,13 @@ impl Procedure for Ladder {
         self.count
     }
 
-    fn plan(&self, problem: &Problem, options: &Options) -> Result<DifferencePlan, MethodError> {
-        if let Some(step) = options.step.filter(|step| !(step.is_finite() && *step > 0.0)) {
-            return Err(MethodError::BadStep { step });
-        }
-        fits(options.derivatives, "step", options.step.is_some())?;
-        fits(options.derivatives, "stencil", options.stencil.is_some())?;
-        let (spread, pairs, stencil) = self.differences(problem, options)?;
-        let exact = options.derivatives == Some(DerivativeSource::Exact);
-        let spread = if exact { Spread::Bare } else { spread };
-        let layout = Layout { spread, pairs, stencil, step: options.step, fixed_too: options.all_sensitivities };
-        Ok(DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout))
+    fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {
+        Ok(Arc::new(self.differences(problem, options)?))
     }
 
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
-        let plan = self.plan(problem, options)?;
-        let needed = plan.cost().0;
-        if let Some(budget) = options.budget.filter(|&budget| needed > budget) {
-            return Err(MethodError::OverBudget {
-                method: self.name,
-                needed,
-                budget,
-                fitting: fitting(problem, budget),
-            });
-        }
+        let plan = self.differences(problem, options)?;
+        Cost::of(&plan).within(self.name, problem, options)?;
         problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
         let exact = options.derivatives == Some(DerivativeSource::Exact);
         if exact {
@@ -132,12 +71,31 @@ impl Procedure for Ladder {
         let (pairs, derivatives) = self.derivatives(problem, options, &plan, &evaluated)?;
         let fit = |(c, derivatives)| self.fit(&plan, &evaluated, c, &pairs, derivatives, exact);
         let fitted = derivatives.into_iter().enumerate().map(fit).collect();
-        Ok(Outcome { asked: self.method, method: self.runs, plan, evaluated, order: self.order, fitted, pairs, exact })
+        let basis = if exact { Basis::Exact } else { Basis::Differences };
+        let (asked, method, plan) = (self.method, self.runs, Arc::new(plan) as _);
+        Ok(Outcome { asked, method, basis, plan, evaluated, order: self.order, fitted, pairs, climbed: None })
     }
 }
 
 impl Ladder {
-    fn differences(&self, problem: &Problem, options: &Options) -> Result<(Spread, PairChoice, Stencil), MethodError> {
+    /// The plan that it would follow.
+    pub(super) fn differences(&self, problem: &Problem, options: &Options) -> Result<DifferencePlan, MethodError> {
+        if let Some(step) = options.step.filter(|step| !(step.is_finite() && *step > 0.0)) {
+            return Err(MethodError::BadStep { step });
+        }
+        if options.nodes.is_some() {
+            return Err(MethodError::OptionDoesNotApply { method: self.name, option: "nodes", only: NODES });
+        }
+        fits(options.derivatives, "step", options.step.is_some())?;
+        fits(options.derivatives, "stencil", options.stencil.is_some())?;
+        let (spread, pairs, stencil) = self.layout(problem, options)?;
+        let exact = options.derivatives == Some(DerivativeSource::Exact);
+        let spread = if exact { Spread::Bare } else { spread };
+        let layout = Layout { spread, pairs, stencil, step: options.step, fixed_too: options.all_sensitivities };
+        Ok(DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout))
+    }
+
+    fn layout(&self, problem: &Problem, options: &Options) -> Result<(Spread, PairChoice, Stencil), MethodError> {
         let refused =
             |option| Err(MethodError::OptionDoesNotApply { method: self.name, option, only: Method::SixN.name() });
         match (self.interactions, &options.pairs, options.stencil) {
@@ -215,19 +173,9 @@ impl Ladder {
             parts: plan.varying().iter().map(used).collect(),
             interactions: Interactions::of_pairs(plan.varying().len(), products.filter(|&(_, _, value)| value != 0.0)),
         });
-        Fitted { nominal: known.value(plan.nominal(), c), centre, exact: derivatives, parts, mixed, surrogate }
+        let nominal = known.value(plan.nominal(), c);
+        Fitted { nominal, centre, exact: derivatives, parts, mixed, surrogate, ..Fitted::default() }
     }
-}
-
-/// The method with the most evaluations that the budget allows.
-fn fitting(problem: &Problem, budget: usize) -> Option<(&'static str, usize)> {
-    [Method::Full, Method::SixN, Method::SecondOrder]
-        .into_iter()
-        .filter_map(|method| {
-            let cost = method.procedure().plan(problem, &Options::from(method)).ok()?.cost().0;
-            (cost <= budget).then_some((method.name(), cost))
-        })
-        .max_by_key(|&(_, cost)| cost)
 }
 
 /// The pairs as indices of dimensions that vary.

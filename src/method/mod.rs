@@ -1,26 +1,42 @@
 //! The methods: what each evaluates and what it makes of it, a file each, and their registry.
 //!
 //! # A new method
-//! One new file with a type that implements [`Procedure`], one variant of [`Method`] and one line in [`ALL`]; `plan` and
-//! the documentation of the command line iterate the registry.
+//! One new file with a type that implements [`Procedure`], one variant of [`Method`] and one line in [`ALL`]; `plan`,
+//! `compare` and the documentation of the command line iterate the registry.
 
 mod auto;
+mod bivariate_dimension_reduction;
+mod check;
 mod classic;
+mod cost;
+mod dimension_reduction;
+mod estimate;
 mod exact;
 mod full;
+mod hidden;
 mod ladder;
 mod options;
+mod outcome;
+mod quadrature;
+mod response_surface;
 mod rss;
 mod second_order;
 mod six_n;
+mod three_point;
 mod worst_case;
 
+pub use auto::{ACCURACY, Climbed, Rest};
+pub use check::Check;
+pub use cost::Cost;
+pub use estimate::{ErrorEstimate, Source, estimate};
 pub use exact::ExactDerivatives;
-pub use ladder::{Fitted, Order, Outcome};
 pub use options::{DerivativeSource, Options, Pairs};
+pub use outcome::{Basis, Fitted, Integrated, Joint, Lacking, Order, Outcome, Own, Residual};
+
+use std::sync::Arc;
 
 use crate::assembly::{EvaluationError, Run};
-use crate::plan::DifferencePlan;
+use crate::plan::Plan;
 use crate::problem::Problem;
 
 /// A method by name.
@@ -38,6 +54,14 @@ pub enum Method {
     Full,
     /// Every second derivative by the published four-point stencil.
     Classic,
+    /// Every dimension by itself, integrated by its own Gauss rule.
+    DimensionReduction,
+    /// Every two dimensions together, integrated by products of their Gauss rules.
+    BivariateDimensionReduction,
+    /// All combinations of three levels of every dimension.
+    ThreePoint,
+    /// A quadratic fitted by least squares to a central composite design.
+    ResponseSurface,
     /// As few evaluations as the wanted accuracy takes.
     Auto,
 }
@@ -51,6 +75,10 @@ pub static ALL: &[&dyn Procedure] = &[
     &six_n::SIX_N,
     &full::FULL,
     &classic::CLASSIC,
+    &dimension_reduction::DimensionReduction,
+    &bivariate_dimension_reduction::BivariateDimensionReduction,
+    &three_point::ThreePoint,
+    &response_surface::ResponseSurface,
 ];
 
 /// What a method does.
@@ -67,16 +95,39 @@ pub trait Procedure: Sync {
     /// How many evaluations it takes for N dimensions, as a formula.
     fn count(&self) -> &'static str;
 
-    /// The plan that it would follow.
+    /// Whether the options mean something to it.
     ///
     /// # Errors
-    /// When an option means nothing to this method, or names something that the problem does not have.
-    fn plan(&self, problem: &Problem, options: &Options) -> Result<DifferencePlan, MethodError>;
+    /// When one does not, or names something that the problem does not have.
+    fn check(&self, problem: &Problem, options: &Options) -> Result<(), MethodError> {
+        self.plan(problem, options).map(drop)
+    }
+
+    /// What it would take, or why it cannot be run.
+    ///
+    /// # Errors
+    /// As [`Procedure::plan`], and when it needs more evaluations than the budget allows.
+    fn fits(&self, problem: &Problem, options: &Options) -> Result<Cost, MethodError> {
+        let plan = self.plan(problem, options)?;
+        Cost::of(&*plan).within(self.name(), problem, options)
+    }
+
+    /// The fewest and the most evaluations of a method that chooses as it goes; None for one whose plan says how many.
+    fn range(&self, problem: &Problem, options: &Options) -> Option<[usize; 2]> {
+        let _ = (problem, options);
+        None
+    }
+
+    /// The plan that it would follow, whatever the budget.
+    ///
+    /// # Errors
+    /// As [`Procedure::check`], and when there are more points than could ever be evaluated.
+    fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError>;
 
     /// Evaluates the problem.
     ///
     /// # Errors
-    /// As [`Procedure::plan`], and when the plan needs more evaluations than the budget allows; nothing is evaluated then.
+    /// As [`Procedure::fits`]; nothing is evaluated then.
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError>;
 }
 
@@ -89,6 +140,11 @@ impl Method {
     /// Its name in study files and on the command line.
     pub fn name(self) -> &'static str {
         self.procedure().name()
+    }
+
+    /// Whether it has a surrogate that can stand beside the model, rather than integrals only.
+    pub fn has_surrogate(self) -> bool {
+        !matches!(self, Self::DimensionReduction | Self::BivariateDimensionReduction | Self::ThreePoint)
     }
 
     /// The method of this name.
@@ -179,12 +235,56 @@ pub enum MethodError {
         /// The one that does not vary.
         still: String,
     },
+    /// More points than can ever be evaluated, whatever the budget.
+    #[error("{method} needs {} evaluations for {dimensions} varying dimensions, {limit}{}", count(*.needed), advice(.fitting))]
+    TooMany {
+        /// The method's name.
+        method: &'static str,
+        /// How many dimensions vary.
+        dimensions: usize,
+        /// How many evaluations it needs, `u128::MAX` where there are more than that.
+        needed: u128,
+        /// What is the most, in words.
+        limit: &'static str,
+        /// The derivative method to use instead, and what it needs.
+        fitting: Option<(&'static str, usize)>,
+    },
+    /// A number of nodes of which there is no rule.
+    #[error("a quadrature rule has 3, 5 or 7 nodes, not {nodes}")]
+    BadNodes {
+        /// The number given.
+        nodes: usize,
+    },
+    /// An accuracy that is no positive number.
+    #[error("the accuracy is the relative error of sigma that is wanted, a number above 0, not {accuracy}")]
+    BadAccuracy {
+        /// The accuracy given.
+        accuracy: f64,
+    },
     /// A step that is no positive number.
     #[error("the step must be a number of sigmas above 0, not {step}")]
     BadStep {
         /// The step given.
         step: f64,
     },
+}
+
+impl MethodError {
+    /// How many evaluations it would have taken, where that is why it cannot be run.
+    pub fn needed(&self) -> Option<u64> {
+        match self {
+            Self::OverBudget { needed, .. } => u64::try_from(*needed).ok(),
+            Self::TooMany { needed, .. } => u64::try_from(*needed).ok(),
+            _ => None,
+        }
+    }
+}
+
+/// The methods that have a choice of nodes.
+const NODES: &str = "dimension-reduction, univariate or bivariate,";
+
+fn count(needed: u128) -> String {
+    if needed == u128::MAX { "more than 10^38".to_owned() } else { needed.to_string() }
 }
 
 fn advice(fitting: &Option<(&'static str, usize)>) -> String {

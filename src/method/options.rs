@@ -24,6 +24,9 @@ pub struct Options {
     pub pairs: Option<Pairs>,
     /// How `six-n` evaluates a mixed derivative; by two points unless said otherwise.
     pub stencil: Option<Stencil>,
+    /// How many nodes the quadrature rule of an input has: 3, 5 or 7, and 5 unless said otherwise; for
+    /// `dimension-reduction` and `bivariate-dimension-reduction`.
+    pub nodes: Option<usize>,
     /// Whether dimensions without tolerance get a sensitivity too, at two evaluations each.
     pub all_sensitivities: bool,
     /// Whether the true extremes in the box of the tolerance bands are searched, at further evaluations.
@@ -105,6 +108,7 @@ impl Default for Options {
             step: None,
             pairs: None,
             stencil: None,
+            nodes: None,
             all_sensitivities: false,
             extremes: false,
             seed: None,

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::{Block, Model, ModelInput, ModelOutput};
 use crate::assembly::Responses;
+use crate::elementary::{Cos, Elementary, Work, on_this_processor};
 
 /// The inputs' places, in the order of `ENGINE_BALANCE.inputs`.
 mod input {
@@ -63,29 +64,66 @@ pub static ENGINE_BALANCE: Model = Model {
     evaluate,
 };
 
+/// Rows whose angles and sums stay in the nearest cache.
+const LANES: usize = 256;
+
 fn evaluate(block: &Block<'_>, out: &mut Responses) {
-    let column = |index| block.input(index);
-    let (mp, mr, omega, a) = (column(input::MP), column(input::MR), column(input::OMEGA), column(input::A));
-    let (r, l, hp, hc, t) =
-        (column(input::R), column(input::L), column(input::HP), column(input::HC), column(input::T));
-    let phi = input::PHI.map(column);
     let (force, moment) = (block.column(0), block.column(1));
-    for row in 0..block.rows() {
-        let reciprocating = mp[row] + mr[row] * hc[row] / (hc[row] + hp[row]);
-        let scale = reciprocating * r[row] * omega[row] * omega[row];
-        let ratio = r[row] / l[row];
-        // cos t cos phi - sin t sin phi = cos(t + phi): each cylinder's share, first and second order.
-        let share = |n: usize| {
-            let angle = t[row] + phi[n][row];
-            angle.cos() + ratio * (2.0 * angle).cos()
-        };
-        let shares = [0, 1, 2, 3].map(share);
-        if let Some(column) = force {
-            out.set(row, column, scale * shares.iter().sum::<f64>());
+    let mut sums = [[0.0; LANES]; 2];
+    for first in (0..block.rows()).step_by(LANES) {
+        let rows = first..(first + LANES).min(block.rows());
+        let inputs = std::array::from_fn(|input| &block.input(input)[rows.clone()]);
+        let [forces, moments] = &mut sums;
+        let (forces, moments) = (&mut forces[..rows.len()], &mut moments[..rows.len()]);
+        on_this_processor(Balance { inputs, forces: &mut *forces, moments: &mut *moments });
+        for (column, values) in [(force, forces), (moment, moments)] {
+            if let Some(column) = column {
+                out.set_rows(first, column, values);
+            }
         }
-        if let Some(column) = moment {
-            let levers = shares[1] + 2.0 * shares[2] + 3.0 * shares[3];
-            out.set(row, column, scale * a[row] * levers);
+    }
+}
+
+struct Balance<'a> {
+    inputs: [&'a [f64]; 13],
+    forces: &'a mut [f64],
+    moments: &'a mut [f64],
+}
+
+impl Work for Balance<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        let Self { inputs, forces, moments } = self;
+        let rows = forces.len();
+        let (mut angles, mut shares) = ([0.0; LANES], [0.0; LANES]);
+        let (angles, shares) = (&mut angles[..rows], &mut shares[..rows]);
+        let (r, l) = (&inputs[input::R][..rows], &inputs[input::L][..rows]);
+        forces.fill(0.0);
+        moments.fill(0.0);
+        for (phi, lever) in input::PHI.into_iter().zip([0.0, 1.0, 2.0, 3.0]) {
+            let (t, phi) = (&inputs[input::T][..rows], &inputs[phi][..rows]);
+            for row in 0..rows {
+                angles[row] = t[row] + phi[row];
+            }
+            Cos::map_inline(angles, shares);
+            for row in 0..rows {
+                // cos t cos phi - sin t sin phi = cos(t + phi): each cylinder's share, first and second order, the latter by
+                // cos 2x = 2 cos^2 x - 1, which is off by as much as cos x.
+                let c = shares[row];
+                let share = c + r[row] / l[row] * (2.0 * c * c - 1.0);
+                forces[row] += share;
+                moments[row] += lever * share;
+            }
+        }
+        let [mp, mr, omega, a] = [input::MP, input::MR, input::OMEGA, input::A].map(|input| &inputs[input][..rows]);
+        let (hp, hc) = (&inputs[input::HP][..rows], &inputs[input::HC][..rows]);
+        for row in 0..rows {
+            let reciprocating = mp[row] + mr[row] * hc[row] / (hc[row] + hp[row]);
+            let scale = reciprocating * r[row] * omega[row] * omega[row];
+            forces[row] *= scale;
+            moments[row] *= scale * a[row];
         }
     }
 }

@@ -17,11 +17,14 @@
 
 mod assemble;
 mod interactions;
+mod pairwise;
 mod part;
 mod sum;
 
 pub use interactions::Interactions;
+pub use pairwise::{Pairwise, Tables};
 pub use part::{Part, Term};
+pub(crate) use sum::exact;
 
 use std::collections::BTreeMap;
 
@@ -117,6 +120,28 @@ impl Contributions {
         match &self.products {
             None => (coefficient * self.per_sigma).powi(2),
             Some(products) => products.get(&(j.min(k), j.max(k))).copied().unwrap_or(0.0),
+        }
+    }
+
+    /// The same beside an independent part with this variance, of which nothing else is known: taken to be normal.
+    pub(crate) fn beside(self, variance: f64) -> Self {
+        let sigma = self.moments.sigma().hypot(variance.sqrt());
+        if sigma == self.moments.sigma() {
+            return self;
+        }
+        let part = self.moments.sigma() / sigma;
+        let (skewness, excess) = self.moments.shape.unwrap_or((0.0, 0.0));
+        let shares = |shares: Vec<f64>| shares.into_iter().map(|share| share * part * part).collect();
+        let products = self.products.map(|products| {
+            products.into_iter().map(|(pair, share)| (pair, share * part * part)).collect::<BTreeMap<_, _>>()
+        });
+        Self {
+            moments: Moments::new(self.moments.mean(), sigma, skewness * part.powi(3), excess * part.powi(4)),
+            linear: shares(self.linear),
+            curvature: shares(self.curvature),
+            per_sigma: self.per_sigma * part,
+            products,
+            ..self
         }
     }
 

@@ -23,6 +23,8 @@ pub struct Axis {
     pub nodes: Vec<Node>,
     /// For every node of the plan, ascending: itself, then its replacements in the order in which they are tried.
     pub slots: Vec<Vec<u32>>,
+    /// The slots on the left and on the right at which pairs stand: those next to the mean when the plan was made.
+    pub inner: [Option<Vec<u32>>; 2],
     /// Nodes that would have lain outside the support.
     pub moved: Vec<Moved>,
     /// A tail that is too long for the nodes.
@@ -36,7 +38,7 @@ const SENSITIVITY_STEP: f64 = 1e-4;
 
 impl Axis {
     /// The axis of a dimension that varies.
-    pub(super) fn varying(dimension: &Dimension, spread: Spread, step: Option<f64>) -> Self {
+    pub(crate) fn varying(dimension: &Dimension, spread: Spread, step: Option<f64>) -> Self {
         let distribution = dimension.distribution().expect("a dimension that varies");
         let nodes = match dimension.step().or(step) {
             Some(step) => Nodes::stepped(step, spread),
@@ -47,21 +49,60 @@ impl Axis {
             scale: dimension.sigma(),
             nodes: Vec::new(),
             slots: Vec::new(),
+            inner: [None, None],
             moved: nodes.moved,
             tail: nodes.tail,
         };
         for u in nodes.u {
             axis.open_slot(u);
         }
-        axis
+        axis.with_inner()
+    }
+
+    /// Two nodes more, so that the axis has five with the mean; whether there are such. What was evaluated stays, and pairs
+    /// stand where they stood.
+    ///
+    /// On either side the one of the matched five-point nodes that lies farther from the node that there is. Where the
+    /// tail is too long for a quartic, or the five do not lie two on either side, all four are new.
+    pub(super) fn refine(&mut self, dimension: &Dimension, step: Option<f64>) -> bool {
+        let Some(distribution) = dimension.distribution().filter(|_| self.slots.len() == 2) else { return false };
+        let five = match dimension.step().or(step) {
+            Some(step) => Nodes::stepped(step, Spread::Five),
+            None => Nodes::matched(distribution, Spread::Five),
+        };
+        let [left, right] = [0, 1].map(|i| self.nodes[self.slots[i][0] as usize].u);
+        let added = match *five.u {
+            [a, b, c, d] if five.tail.is_none() && b < 0.0 && c > 0.0 && left < 0.0 && right > 0.0 => {
+                vec![farther(left, [a, b]), farther(right, [c, d])]
+            }
+            [_, _, _, _] => {
+                self.slots.clear();
+                five.u
+            }
+            _ => return false,
+        };
+        self.tail = five.tail;
+        for u in added {
+            self.open_slot(u);
+        }
+        let nodes = &self.nodes;
+        self.slots.sort_by(|a, b| nodes[a[0] as usize].u.total_cmp(&nodes[b[0] as usize].u));
+        true
+    }
+
+    fn with_inner(mut self) -> Self {
+        let side = |slot: &&Vec<u32>, right: bool| (self.nodes[slot[0] as usize].u > 0.0) == right;
+        let left = self.slots.iter().rfind(|slot| side(slot, false)).cloned();
+        let right = self.slots.iter().find(|slot| side(slot, true)).cloned();
+        self.inner = [left, right];
+        self
     }
 
     /// The axis of a dimension that does not vary, for its sensitivity alone.
     pub(super) fn fixed(dimension: &Dimension, spread: Spread) -> Self {
         let nominal = dimension.nominal();
         let scale = SENSITIVITY_STEP * nominal.abs().max(1.0);
-        let mut axis =
-            Self { mean: nominal, scale, nodes: Vec::new(), slots: Vec::new(), moved: Vec::new(), tail: None };
+        let mut axis = Self { mean: nominal, scale, ..Self::still(dimension) };
         if spread != Spread::Bare {
             axis.open_slot(-1.0);
             axis.open_slot(1.0);
@@ -72,7 +113,8 @@ impl Axis {
     /// A dimension that stays where it is.
     pub(super) fn still(dimension: &Dimension) -> Self {
         let mean = dimension.mean();
-        Self { mean, scale: 0.0, nodes: Vec::new(), slots: Vec::new(), moved: Vec::new(), tail: None }
+        let (nodes, slots, moved) = (Vec::new(), Vec::new(), Vec::new());
+        Self { mean, scale: 0.0, nodes, slots, inner: [None, None], moved, tail: None }
     }
 
     /// The distance of the nearest node from the mean, in the dimension's unit.
@@ -93,11 +135,22 @@ impl Axis {
     }
 
     fn node(&mut self, x: f64) -> u32 {
-        let known = self.nodes.iter().position(|node| node.x == x);
-        let index = known.unwrap_or_else(|| {
-            self.nodes.push(Node { x, u: (x - self.mean) / self.scale });
-            self.nodes.len() - 1
-        });
-        u32::try_from(index).expect("few nodes on an axis")
+        match self.nodes.iter().position(|node| node.x == x) {
+            Some(index) => u32::try_from(index).expect("few nodes on an axis"),
+            None => self.open_node(x),
+        }
     }
+
+    /// A node of a value that is no node yet.
+    pub(super) fn open_node(&mut self, x: f64) -> u32 {
+        let index = u32::try_from(self.nodes.len()).expect("fewer than four billion nodes on an axis");
+        self.nodes.push(Node { x, u: (x - self.mean) / self.scale });
+        index
+    }
+}
+
+/// The one of two places that lies farther from a third on the same side, by their ratio.
+fn farther(from: f64, of: [f64; 2]) -> f64 {
+    let ratio = |u: f64| (u / from).max(from / u);
+    if ratio(of[1]) > ratio(of[0]) { of[1] } else { of[0] }
 }

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use super::Plan;
 use super::axis::Axis;
 use super::known::Known;
 use super::nodes::Spread;
@@ -81,6 +82,58 @@ impl DifferencePlan {
         }
         let inputs = Inputs::new(shapes, correlation.and_then(|correlation| correlation.among(&varying)));
         Self { nominal: Point::of(&nominal), layout, axes, varying, fixed, inputs, depends }
+    }
+
+    /// Two nodes more on the axis of a dimension that has a pair; whether there are such nodes. `dimension` is the one
+    /// with this index in the problem.
+    pub fn refine(&mut self, dimension: &Dimension, index: usize) -> bool {
+        let refined = self.axes[index].refine(dimension, self.layout.step);
+        let rule = self.axes[index].tail.as_ref().and_then(|tail| tail.rule.as_ref());
+        if let (true, Some(rule), Ok(position)) = (refined, rule, self.varying.binary_search(&index)) {
+            self.inputs = self.inputs.clone().with_rule(position, Arc::new(rule.clone()));
+        }
+        refined
+    }
+
+    /// Examines these pairs of positions too.
+    pub fn examine(&mut self, pairs: impl IntoIterator<Item = (usize, usize)>) {
+        let pairs = pairs.into_iter().map(|(j, k)| (self.varying[j], self.varying[k]));
+        match &mut self.layout.pairs {
+            PairChoice::Listed(listed) => listed.extend(pairs),
+            choice => *choice = PairChoice::Listed(pairs.collect()),
+        }
+    }
+
+    /// Evaluates every pair at all four corners from now on.
+    pub fn use_four_corners(&mut self) {
+        self.layout.stencil = Stencil::FourPoint;
+    }
+
+    /// The point with these values of dimensions, every other one at its mean.
+    pub fn point_at(&mut self, values: impl IntoIterator<Item = (usize, f64)>) -> Point {
+        let at = values.into_iter().filter_map(|(d, x)| {
+            let node = self.axes[d].at_value(x)?;
+            Some(At { dimension: d as u32, node })
+        });
+        Point::of(&at.collect::<Vec<At>>())
+    }
+
+    /// For every position its nodes on the left and on the right at which pairs stand, with their places in sigmas.
+    pub fn corners(&self, known: &Known) -> Vec<[Option<(At, f64)>; 2]> {
+        let place = |(d, node): (usize, u32)| (At { dimension: d as u32, node }, self.axes[d].nodes[node as usize].u);
+        let both = |(&d, nodes): (&usize, &PairNodes)| [nodes.left, nodes.right].map(|node| Some(place((d, node?))));
+        self.varying.iter().zip(&self.pair_nodes(known)).map(both).collect()
+    }
+
+    /// Where a point lies, in sigmas: a value for every position.
+    pub fn standardised(&self, point: &Point) -> Vec<f64> {
+        let mut u = vec![0.0; self.varying.len()];
+        for at in point.at() {
+            if let Ok(position) = self.varying.binary_search(&(at.dimension as usize)) {
+                u[position] = self.axes[at.dimension as usize].nodes[at.node as usize].u;
+            }
+        }
+        u
     }
 
     /// What it evaluates.
@@ -276,18 +329,7 @@ impl DifferencePlan {
         if !self.depends[characteristic][dimension] {
             return Some(Univariate::of_coefficients(&[0.0, 0.0]));
         }
-        let centre = known.value(&Point::Centre, characteristic)?;
-        let axis = &self.axes[dimension];
-        let value = |node: u32| known.value(&self.on_axis(dimension, node), characteristic);
-        let mut used = HashSet::new();
-        let mut samples = Vec::new();
-        for slot in &axis.slots {
-            let answered = slot.iter().find_map(|&node| Some((node, value(node)?)));
-            if let Some((node, value)) = answered.filter(|&(node, _)| used.insert(node)) {
-                samples.push((axis.nodes[node as usize].u, value - centre));
-            }
-        }
-        Univariate::through(&samples)
+        Univariate::through(&self.samples(known, characteristic, dimension)?)
     }
 
     /// Where pairs stand: the nodes next to the mean, or the replacement at which most characteristics have a value.
@@ -304,11 +346,10 @@ impl DifferencePlan {
             slot.iter().copied().find(|&node| answered(node) == best).expect("a slot is never empty")
         };
         let nodes = |&d: &usize| {
-            let axis = &self.axes[d];
-            let side = |slot: &&Vec<u32>, right: bool| (axis.nodes[slot[0] as usize].u > 0.0) == right;
+            let [left, right] = &self.axes[d].inner;
             PairNodes {
-                left: axis.slots.iter().rfind(|slot| side(slot, false)).map(|slot| of_slot(d, slot)),
-                right: axis.slots.iter().find(|slot| side(slot, true)).map(|slot| of_slot(d, slot)),
+                left: left.as_ref().map(|slot| of_slot(d, slot)),
+                right: right.as_ref().map(|slot| of_slot(d, slot)),
             }
         };
         self.varying.iter().map(nodes).collect()
@@ -351,6 +392,24 @@ impl DifferencePlan {
         pairs.iter().map(mixed).collect()
     }
 
+    /// For every pair its corners, where they have values, both up and both down first, then up and down, down and up: the two
+    /// places in sigmas, and the difference of which [`mixed`](Self::mixed) is made.
+    pub fn twists(&self, known: &Known, characteristic: usize, pairs: &[(usize, usize)]) -> Vec<[Option<Corner>; 4]> {
+        let nodes = self.pair_nodes(known);
+        let centre = known.value(&Point::Centre, characteristic);
+        let twist = |&(j, k): &(usize, usize)| {
+            let corners = Stencil::FourPoint.corners();
+            std::array::from_fn(|i| {
+                let (of_j, of_k) = corners[i];
+                let at = known.value(&self.corner(&nodes, j, k, (of_j, of_k))?, characteristic)?;
+                let (u, at_j) = self.axis_value(known, characteristic, j, nodes[j].on(of_j)?)?;
+                let (v, at_k) = self.axis_value(known, characteristic, k, nodes[k].on(of_k)?)?;
+                Some((u, v, at - at_j - at_k + centre?))
+            })
+        };
+        pairs.iter().map(twist).collect()
+    }
+
     /// The node in sigmas and the value there.
     fn axis_value(&self, known: &Known, characteristic: usize, position: usize, node: u32) -> Option<(f64, f64)> {
         let d = self.varying[position];
@@ -358,6 +417,9 @@ impl DifferencePlan {
         Some((self.axes[d].nodes[node as usize].u, value))
     }
 }
+
+/// A corner of a pair: both places in sigmas, and `f(j, k) - f(j) - f(k) + f(centre)`.
+pub type Corner = (f64, f64, f64);
 
 /// A mixed derivative in sigma units.
 #[derive(Debug, Clone, Copy, PartialEq)]

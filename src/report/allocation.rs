@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::simulation::SimulatedReport;
-use super::{About, CharacteristicReport, SCHEMA, WarningReport};
+use super::{About, CharacteristicReport, Head, WarningReport};
 use crate::allocation::{Allocated, Allocation, Attainable, Bound, JointYield, Requirement, Status};
 use crate::problem::Problem;
 use crate::warning::Warning;
@@ -11,16 +11,9 @@ use crate::warning::Warning;
 /// What an allocation found out. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AllocationReport {
-    /// The version of this shape.
-    pub schema: u32,
-    /// The version of the program.
-    pub sensitol: &'static str,
-    /// The study's title.
-    pub title: Option<String>,
-    /// SHA-256 of the study file and the files of measured values that it reads.
-    pub study_sha256: String,
-    /// The command that made the report.
-    pub command: &'static str,
+    /// What every report begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// The method by which derivatives were taken.
     pub method: &'static str,
     /// `optimal`, `almost-optimal`, `infeasible` or `out-of-time`.
@@ -299,11 +292,7 @@ impl AllocationReport {
         }
         warnings.extend(missed(problem, allocation).iter().map(WarningReport::of));
         Self {
-            schema: SCHEMA,
-            sensitol: env!("CARGO_PKG_VERSION"),
-            title: about.title,
-            study_sha256: about.sha256,
-            command: "allocate",
+            head: Head::of("allocate", &about),
             method: found.method.name(),
             status: allocation.status.name(),
             confirmed: allocation.confirmed,

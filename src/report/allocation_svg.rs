@@ -4,14 +4,15 @@ use std::fmt::Write;
 
 use super::allocation::AllocationReport;
 use super::number::significant;
+use super::svg::{escaped, opened};
 
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 420.0;
 /// Left, right, above, below.
 const MARGIN: [f64; 4] = [80.0, 40.0, 48.0, 56.0];
 
-/// What is required across, by the sigmas that reject as many on both sides together, or the Cpk; cost upwards. The open circle is the
-/// present state's cost at what is required now.
+/// What is required across, by the sigmas that reject as many on both sides together, or the Cpk; cost upwards. The open circle is what the
+/// tolerances before keep and cost.
 pub fn allocation_svg(report: &AllocationReport) -> String {
     let points: Vec<(f64, f64, String)> = (report.front.iter())
         .filter_map(|point| {
@@ -21,11 +22,7 @@ pub fn allocation_svg(report: &AllocationReport) -> String {
         })
         .collect();
     let [left, right, above, below] = MARGIN;
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
-         font-family=\"sans-serif\" font-size=\"12\" role=\"img\">\n<title>Cost against what is required</title>\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
-    );
+    let mut svg = opened("Cost against what is required", WIDTH, HEIGHT);
     let now = present(report);
     let costs = points.iter().map(|point| point.1).chain(now.as_ref().map(|now| now.1));
     let across = range(points.iter().map(|point| point.0).chain(now.as_ref().map(|now| now.0)));
@@ -37,7 +34,7 @@ pub fn allocation_svg(report: &AllocationReport) -> String {
     let _ = writeln!(
         svg,
         "<text x=\"{left}\" y=\"24\" font-size=\"15\" font-weight=\"bold\">{}</text>",
-        escaped(report.title.as_deref().unwrap_or("Cost against what is required"))
+        escaped(report.head.title.as_deref().unwrap_or("Cost against what is required"))
     );
     for part in 0..=4 {
         let value = up[0] + (up[1] - up[0]) * f64::from(part) / 4.0;
@@ -113,9 +110,4 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
         (true, false) => [low - 1.0, low + 1.0],
         _ => [0.0, 1.0],
     }
-}
-
-/// Titles come from studies: nothing in them is markup.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -9,7 +9,7 @@ use super::page::{Grid, Page, Style, clean, short};
 /// An allocation as text: what it came to, tolerances, requirements, characteristics, and what to paste into the study.
 pub fn allocation_text(report: &AllocationReport, style: Style) -> String {
     let mut page = Page::new(style);
-    if let Some(title) = &report.title {
+    if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
     heading(&mut page, report);

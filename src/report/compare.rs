@@ -3,22 +3,15 @@
 use serde::Serialize;
 
 use super::simulation::SimulatedReport;
-use super::{About, SCHEMA};
+use super::{About, Head};
 use crate::compare::{Comparison, Contender, Errors, Figures, Ran};
 
 /// The report of a comparison, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CompareReport {
-    /// The version of this shape.
-    pub schema: u32,
-    /// The version of the program.
-    pub sensitol: &'static str,
-    /// The study's title.
-    pub title: Option<String>,
-    /// SHA-256 of the study file.
-    pub study_sha256: String,
-    /// The command that made the report.
-    pub command: &'static str,
+    /// What every report begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// Seconds in all.
     pub wall_s: f64,
     /// The seed.
@@ -124,11 +117,7 @@ impl CompareReport {
             methods: comparison.ran.iter().map(|ran| MethodReport::of(ran, c)).collect(),
         });
         Self {
-            schema: SCHEMA,
-            sensitol: env!("CARGO_PKG_VERSION"),
-            title: about.title,
-            study_sha256: about.sha256,
-            command: "compare",
+            head: Head::of("compare", &about),
             wall_s: about.wall_s,
             seed: about.seed,
             reference_samples: reference.samples,

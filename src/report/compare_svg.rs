@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::compare::{CompareReport, ComparedReport};
+use super::svg::{escaped, opened};
 
 const WIDTH: f64 = 720.0;
 /// Height of one characteristic's chart.
@@ -14,11 +15,7 @@ const MARGIN: [f64; 4] = [80.0, 150.0, 48.0, 56.0];
 /// resolve; the dashed line is what it resolves; the line joins the methods that no other beats.
 pub fn compare_svg(report: &CompareReport) -> String {
     let height = HEIGHT * report.characteristics.len() as f64;
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
-         font-family=\"sans-serif\" font-size=\"12\" role=\"img\">\n<title>Evaluations against error</title>\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
-    );
+    let mut svg = opened("Evaluations against error", WIDTH, height);
     for (index, one) in report.characteristics.iter().enumerate() {
         let _ = writeln!(svg, "<g transform=\"translate(0 {})\">", HEIGHT * index as f64);
         chart(&mut svg, one);
@@ -136,9 +133,4 @@ fn power(decade: i32) -> String {
         0..=3 => 10u32.pow(decade as u32).to_string(),
         _ => format!("10<tspan baseline-shift=\"super\" font-size=\"9\">{decade}</tspan>"),
     }
-}
-
-/// Names come from studies: nothing in them is markup.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -8,7 +8,7 @@ use crate::compare::RESOLVED;
 /// A comparison as text: a table for every characteristic, fewest evaluations first.
 pub fn compare_text(report: &CompareReport, style: Style) -> String {
     let mut page = Page::new(style);
-    if let Some(title) = &report.title {
+    if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
     page.line(&format!("reference: {} with {} points", report.reference_method, report.reference_samples));

@@ -10,16 +10,22 @@ mod compare_svg;
 mod compare_text;
 mod csv;
 mod distribution;
+mod estimate;
 mod extremes;
+mod head;
 mod limits;
 pub(crate) mod number;
 mod page;
+mod rare;
+mod rare_csv;
+mod rare_text;
 mod sampling;
 mod simulation;
 mod simulation_csv;
 mod simulation_text;
 mod sketch;
 mod stack;
+mod svg;
 mod table;
 mod text;
 
@@ -37,8 +43,13 @@ pub use compare_svg::compare_svg;
 pub use compare_text::compare_text;
 pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
+pub use estimate::{ErrorEstimateReport, ModelSamplingReport};
+pub use head::Head;
 pub use limits::law_text;
 pub use page::{Detail, Style};
+pub use rare::{BeyondReport, DesignPointReport, RareCharacteristicReport, RareReport};
+pub use rare_csv::rare_csv;
+pub use rare_text::rare_text;
 pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
 pub use simulation_csv::simulation_csv;
@@ -52,6 +63,7 @@ use crate::analysis::{Analysis, CharacteristicAnalysis};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
 use crate::extremes::{Extreme, Extremes};
+use crate::method::{Basis, DerivativeSource};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -61,22 +73,20 @@ pub const SCHEMA: u32 = 1;
 /// The report of an analysis, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
-    /// The version of this shape.
-    pub schema: u32,
-    /// The version of the program.
-    pub sensitol: &'static str,
-    /// The study's title.
-    pub title: Option<String>,
-    /// SHA-256 of the study file and the files of measured values that it reads.
-    pub study_sha256: String,
-    /// The command that made the report.
-    pub command: &'static str,
+    /// What every report begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// The method that was run.
     pub method: &'static str,
     /// Dimensions that vary and matter, N.
     pub varying: usize,
-    /// Where the derivatives that the moments rest on come from: `exact` or `difference`.
-    pub derivatives: &'static str,
+    /// What `auto` found and bought, in words; null for any other method.
+    pub account: Option<String>,
+    /// Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on none.
+    pub derivatives: Option<&'static str>,
+    /// What the moments rest on, to be printed.
+    #[serde(skip)]
+    pub basis: Basis,
     /// Every point sent to the model.
     pub evaluations: usize,
     /// Answers taken from an earlier run.
@@ -140,6 +150,21 @@ pub struct SurrogateSamplingReport {
     pub kurtosis: f64,
 }
 
+/// How well a surface of least squares fits.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LeastSquaresReport {
+    /// What it misses of the values, in the characteristic's unit; null without degrees of freedom.
+    pub residual_standard_error: Option<f64>,
+    /// Standard error of the mean that follows from it; null where it is unknown.
+    pub mean_standard_error: Option<f64>,
+    /// Standard error of sigma that follows from it.
+    pub sigma_standard_error: Option<f64>,
+    /// Points that it was fitted to.
+    pub points: usize,
+    /// Coefficients.
+    pub coefficients: usize,
+}
+
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CharacteristicReport {
@@ -159,8 +184,12 @@ pub struct CharacteristicReport {
     pub kurtosis: Option<f64>,
     /// What sampling left uncertain of these; null where they are exact for the surrogate.
     pub surrogate_sampling: Option<SurrogateSamplingReport>,
-    /// How far the results may be off; not estimated yet.
-    pub error_estimate: Option<()>,
+    /// How well a surface of least squares fits; null where none was fitted.
+    pub least_squares: Option<LeastSquaresReport>,
+    /// How far the results may be off, by what the method did not see; null without moments.
+    pub error_estimate: Option<ErrorEstimateReport>,
+    /// Points of the model that the moments rest on, where `auto` did not trust its surrogate.
+    pub model_sampling: Option<ModelSamplingReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
     /// Intervals that no assembly leaves.
@@ -336,14 +365,16 @@ impl Report {
     /// The report of an analysis.
     pub fn of(problem: &Problem, analysis: &Analysis, about: About) -> Self {
         Self {
-            schema: SCHEMA,
-            sensitol: env!("CARGO_PKG_VERSION"),
-            title: about.title,
-            study_sha256: about.sha256,
-            command: "analyze",
+            head: Head::of("analyze", &about),
             method: analysis.method.name(),
             varying: analysis.varying,
-            derivatives: analysis.derivatives.name(),
+            account: analysis.account.clone(),
+            derivatives: match analysis.basis {
+                Basis::Exact => Some(DerivativeSource::Exact.name()),
+                Basis::Differences => Some(DerivativeSource::Difference.name()),
+                Basis::LeastSquares | Basis::Quadrature => None,
+            },
+            basis: analysis.basis,
             evaluations: analysis.evaluations,
             reused: analysis.reused,
             failed: analysis.failed,
@@ -406,7 +437,15 @@ impl CharacteristicReport {
                 skewness: sampled.skewness,
                 kurtosis: sampled.kurtosis,
             }),
-            error_estimate: None,
+            least_squares: analysis.residual.map(|residual| LeastSquaresReport {
+                residual_standard_error: residual.standard_error,
+                mean_standard_error: residual.mean,
+                sigma_standard_error: residual.sigma,
+                points: residual.points,
+                coefficients: residual.coefficients,
+            }),
+            error_estimate: analysis.error_estimate.as_ref().map(ErrorEstimateReport::of),
+            model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
             worst_case: WorstCaseReport::of(analysis),
             middle: analysis.middle,

@@ -54,6 +54,24 @@ impl Page {
         self.text.push('\n');
     }
 
+    /// A text that may take several lines, those after the first indented by four; a percent sign stays with its number.
+    pub(super) fn wrapped(&mut self, text: &str) {
+        let indent = text.len() - text.trim_start().len();
+        let mut line = " ".repeat(indent);
+        let text = self.signs(text).replace(" %", "\u{a0}%");
+        for word in text.split([' ', '\n']).filter(|word| !word.is_empty()) {
+            if line.trim().is_empty() {
+                line += word;
+            } else if line.chars().count() + 1 + word.chars().count() <= WIDTH {
+                line = line + " " + word;
+            } else {
+                self.line(&line.replace('\u{a0}', " "));
+                line = format!("    {word}");
+            }
+        }
+        self.line(&line.replace('\u{a0}', " "));
+    }
+
     /// Prints a table that is indented by two and no wider than the page: names, in the first column, give way.
     pub(super) fn print<const N: usize>(&mut self, table: &Grid<N>) {
         let mut widths = [0; N];

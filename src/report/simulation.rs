@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::distribution::{NAMES, OptionalQuantiles};
-use super::{About, CorrelationReport, DimensionReport, SCHEMA, WarningReport, correlation};
+use super::{About, CorrelationReport, DimensionReport, Head, WarningReport, correlation};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation};
@@ -12,16 +12,9 @@ use crate::warning::Warning;
 /// The report of a simulation, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SimulationReport {
-    /// The version of this shape.
-    pub schema: u32,
-    /// The version of the program.
-    pub sensitol: &'static str,
-    /// The study's title.
-    pub title: Option<String>,
-    /// SHA-256 of the study file.
-    pub study_sha256: String,
-    /// The command that made the report.
-    pub command: &'static str,
+    /// What every report begins with.
+    #[serde(flatten)]
+    pub head: Head,
     /// `monte-carlo` or `quasi-monte-carlo`.
     pub method: &'static str,
     /// `random` or `sobol`.
@@ -30,6 +23,8 @@ pub struct SimulationReport {
     pub samples: u64,
     /// Every point sent to the model.
     pub evaluations: u64,
+    /// Those of the surrogate that stands beside the model; null where there is none.
+    pub surrogate_evaluations: Option<u64>,
     /// Answers taken from an earlier run.
     pub reused: u64,
     /// Points that lost at least one asked characteristic.
@@ -100,6 +95,28 @@ pub struct SimulatedReport {
     pub cpk: Option<f64>,
     /// The sample in intervals.
     pub histogram: Option<HistogramReport>,
+    /// The surrogate as control variate; null where there is none.
+    pub control: Option<ControlReport>,
+}
+
+/// What a surrogate as control variate has done.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ControlReport {
+    /// The method that it comes from.
+    pub method: &'static str,
+    /// The evaluations that it took, of all characteristics together.
+    pub evaluations: usize,
+    /// By how much standard errors have shrunk.
+    pub reduction: Reduction,
+}
+
+/// The standard error without the surrogate by that with it; null where that is unknown or 0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Reduction {
+    /// Of the mean.
+    pub mean: Option<f64>,
+    /// Of sigma.
+    pub sigma: Option<f64>,
 }
 
 /// Standard errors, and the 95 % interval of the yield.
@@ -144,15 +161,12 @@ impl SimulationReport {
         let (method, sampler) = names(simulation.sampler);
         let found: Vec<Warning> = simulation.characteristics.iter().filter_map(failed).collect();
         Self {
-            schema: SCHEMA,
-            sensitol: env!("CARGO_PKG_VERSION"),
-            title: about.title,
-            study_sha256: about.sha256,
-            command: "simulate",
+            head: Head::of("simulate", &about),
             method,
             sampler,
             samples: simulation.samples,
             evaluations: simulation.evaluations,
+            surrogate_evaluations: simulation.surrogate_evaluations,
             reused: simulation.reused,
             failed: simulation.failed,
             stopped: simulation.stopped,
@@ -233,6 +247,11 @@ impl SimulatedReport {
             cp: index(lower.zip(upper).map(|(lower, upper)| 0.5 * (upper - lower))),
             cpk: index(sides.into_iter().flatten().reduce(f64::min)),
             histogram: one.histogram.clone().map(|Histogram { edges, counts }| HistogramReport { edges, counts }),
+            control: one.control.map(|control| ControlReport {
+                method: control.method.name(),
+                evaluations: control.evaluations,
+                reduction: Reduction { mean: control.mean, sigma: control.sigma },
+            }),
         }
     }
 }

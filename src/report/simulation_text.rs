@@ -11,7 +11,7 @@ const BAR: usize = 50;
 /// A simulation as text: every number with its standard error.
 pub fn simulation_text(report: &SimulationReport, style: Style) -> String {
     let mut page = Page::new(style);
-    if let Some(title) = &report.title {
+    if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
     let failed = if report.failed > 0 { format!(", {} failed", report.failed) } else { String::new() };
@@ -43,6 +43,19 @@ fn characteristic(page: &mut Page, one: &SimulatedReport) {
         table.row([format!("quantile {p}"), digits(*value, *error), uncertainty(*error)]);
     }
     page.print(&table);
+    if let Some(control) = &one.control {
+        let times = |value: Option<f64>, name: &str| value.map(|value| format!("{name} {}", significant(value, 3)));
+        let shrunk: Vec<String> = [times(control.reduction.mean, "mean"), times(control.reduction.sigma, "sigma")]
+            .into_iter()
+            .flatten()
+            .collect();
+        let shrunk = if shrunk.is_empty() {
+            String::new()
+        } else {
+            format!(": standard errors shrunk by {}", shrunk.join(", "))
+        };
+        page.line(&format!("  control: {} surrogate, {} evaluations{shrunk}", control.method, control.evaluations));
+    }
     if let Some(yield_) = one.yield_ {
         limits(page, one, yield_);
     }
@@ -54,12 +67,7 @@ fn limits(page: &mut Page, one: &SimulatedReport, yield_: f64) {
         .standard_error
         .yield_
         .map_or(String::new(), |[low, high]| format!(", 95 % interval {} to {}", share(1.0 - low), share(1.0 - high)));
-    let target = match (one.target_yield, one.met) {
-        (Some(target), Some(true)) => format!(", target {}: met", share(1.0 - target)),
-        (Some(target), Some(false)) => format!(", target {}: MISSED", share(1.0 - target)),
-        (Some(target), None) => format!(", target {}: the sample does not tell", share(1.0 - target)),
-        (None, _) => String::new(),
-    };
+    let target = judged(one.target_yield, one.met);
     page.line(&format!("  yield {}{interval}{target}", share(1.0 - yield_)));
     if let Some([low, high]) = one.yield_bounds {
         let points = one.failed;
@@ -71,6 +79,17 @@ fn limits(page: &mut Page, one: &SimulatedReport, yield_: f64) {
     let figures =
         [ppm(one.ppm_below, "below"), ppm(one.ppm_above, "above"), index(one.cp, "Cp"), index(one.cpk, "Cpk")];
     page.line(&format!("  {}", figures.into_iter().flatten().collect::<Vec<_>>().join("  ")));
+}
+
+/// Whether a sample shows that a target is met.
+pub(super) fn judged(target: Option<f64>, met: Option<bool>) -> String {
+    let Some(target) = target else { return String::new() };
+    let verdict = match met {
+        Some(true) => "met",
+        Some(false) => "MISSED",
+        None => "the sample does not tell",
+    };
+    format!(", target {}: {verdict}", share(1.0 - target))
 }
 
 /// As many digits as the standard error leaves: two of its own.

@@ -6,6 +6,7 @@ use super::number::{UNKNOWN, beside, percent, plain, significant, unsigned_zero}
 use super::page::{Detail, Grid, Page, Style, clean, short};
 use super::sampling::sampling;
 use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
+use crate::method::Basis;
 
 /// Contributions and interactions that are shown unless all are asked for.
 const CONTRIBUTIONS: usize = 30;
@@ -16,10 +17,13 @@ const NEWS: f64 = 1e-4;
 /// The report as text, without its warnings.
 pub fn text(report: &Report, style: Style) -> String {
     let mut page = Page::new(style);
-    if let Some(title) = &report.title {
+    if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
     page.line(&summary(report));
+    if let Some(account) = &report.account {
+        page.wrapped(account);
+    }
     page.line("");
     verdicts(&mut page, report);
     for characteristic in &report.characteristics {
@@ -101,6 +105,18 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
         table.row([name, value, other, text].map(str::to_owned));
     }
     page.print(&table);
+    if let Some(fit) = &one.least_squares {
+        let error = |error: Option<f64>| error.map_or(UNKNOWN.to_owned(), |error| significant(error, 2));
+        page.line(&format!(
+            "  {} coefficients fitted to {} points: residual standard error {}, of the mean {}, of sigma {}",
+            fit.coefficients,
+            fit.points,
+            error(fit.residual_standard_error),
+            error(fit.mean_standard_error),
+            error(fit.sigma_standard_error)
+        ));
+    }
+    estimate(page, one);
     if let Some(sampled) = &one.surrogate_sampling {
         page.line(&format!(
             "  sampled from the surrogate, {} points: standard error of sigma {}, skewness {}, kurtosis {}",
@@ -108,6 +124,37 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
             significant(sampled.sigma, 2),
             significant(sampled.skewness, 2),
             significant(sampled.kurtosis, 2)
+        ));
+    }
+}
+
+/// How far all that may be off.
+fn estimate(page: &mut Page, one: &CharacteristicReport) {
+    let Some(estimate) = &one.error_estimate else { return };
+    let part = |name: &str, value: Option<f64>| match value {
+        Some(value) => format!("{name} {}", significant(value, 2)),
+        None => format!("{name} {UNKNOWN}"),
+    };
+    let sigma = match (estimate.sigma, one.sigma) {
+        (Some(error), Some(sigma)) if sigma > 0.0 => {
+            format!("sigma {} ({} %)", significant(error, 2), percent(error / sigma))
+        }
+        (error, _) => part("sigma", error),
+    };
+    let mut parts = vec![part("mean", estimate.mean), sigma];
+    parts.extend([part("skewness", estimate.skewness), part("kurtosis", estimate.kurtosis)]);
+    if one.yield_.is_some() {
+        parts.push(match estimate.yield_ {
+            Some(error) => format!("yield {} %", significant(100.0 * error, 2)),
+            None => part("yield", None),
+        });
+    }
+    page.wrapped(&format!("  estimated errors: {}", parts.join(", ")));
+    page.wrapped(&format!("  they rest on: {}", estimate.basis));
+    if let Some(sampled) = &one.model_sampling {
+        page.wrapped(&format!(
+            "  the surrogate was not trusted: mean to kurtosis from {} points of the model, with it as control variate",
+            sampled.samples
         ));
     }
 }
@@ -181,8 +228,12 @@ fn source(report: &Report, rows: &[(&SensitivityReport, &DimensionReport)]) -> O
         1..=8 => format!(", but by differences for {}", differences.join(", ")),
         many => format!(", but by differences for {many} dimensions"),
     };
-    let rest =
-        if report.derivatives == "exact" { "everything rests on them" } else { "the rest comes from differences" };
+    let rest = match report.basis {
+        Basis::Exact => "everything rests on them",
+        Basis::Differences => "the rest comes from differences",
+        Basis::LeastSquares => "the rest comes from the fitted surface",
+        Basis::Quadrature => "the moments come from quadrature",
+    };
     Some(format!("slopes and curvatures are exact{but}; {rest}"))
 }
 

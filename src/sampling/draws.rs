@@ -1,15 +1,15 @@
 //! Blocks of points of the inputs' joint distribution.
 
 use faer::Mat;
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
+use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::sobol::{SOBOL_DIMENSIONS, Sobol, mixed, scrambled};
 use crate::assembly::Points;
 use crate::correlation::Correlation;
 use crate::dimension::Dimension;
-use crate::distribution::{Probability, standard_normal};
+use crate::distribution::{Probability, behind_normal, standard_normal, ziggurat};
+use crate::elementary::{Work, on_this_processor};
 
 /// How points are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -109,8 +109,11 @@ impl<'a> Draws<'a> {
 
     /// The points of a portion; dimensions that do not vary have their nominal value.
     pub fn points(&self, portion: Portion) -> Points {
-        let nominal: Vec<f64> = self.dimensions.iter().map(Dimension::nominal).collect();
-        let mut points = Points::repeated(&nominal, portion.rows);
+        let mut points = Points::written(portion.rows, self.dimensions.len(), |d, column| {
+            if self.dimensions[d].distribution().is_none() {
+                column.fill(self.dimensions[d].nominal());
+            }
+        });
         let mut digits = vec![0; if self.sobol.is_some() { portion.rows } else { 0 }];
         for (place, &(d, law)) in self.varying.iter().enumerate() {
             if !self.is_correlated(place) {
@@ -140,10 +143,8 @@ impl<'a> Draws<'a> {
         let Some(sobol) = &self.sobol else { return law.fill(&mut self.generator(portion, place), out) };
         sobol.digits(place, portion.first, digits);
         let key = self.key(portion.replicate, place);
-        for (value, &digits) in out.iter_mut().zip(digits.iter()) {
-            let (p, upper) = tail(scrambled(digits, key));
-            *value = if upper { law.upper_quantile(p) } else { law.quantile(p) };
-        }
+        on_this_processor(Tails { digits, key, out: &mut *out });
+        law.quantiles(out);
     }
 
     /// Normal variables, made to vary together, and the inputs that they stand for.
@@ -151,17 +152,17 @@ impl<'a> Draws<'a> {
         let normals: Vec<Vec<f64>> = (correlated.places.iter())
             .map(|&place| match &self.sobol {
                 None => {
-                    let generator = &mut self.generator(portion, place);
-                    (0..portion.rows).map(|_| generator.sample(StandardNormal)).collect()
+                    let mut normals = vec![0.0; portion.rows];
+                    ziggurat::normals(&mut self.generator(portion, place), &mut normals);
+                    normals
                 }
                 Some(sobol) => {
                     sobol.digits(place, portion.first, digits);
                     let key = self.key(portion.replicate, place);
-                    let normal = |&digits: &u64| {
-                        let (p, upper) = tail(scrambled(digits, key));
-                        if upper { standard_normal::upper_quantile(p) } else { standard_normal::quantile(p) }
-                    };
-                    digits.iter().map(normal).collect()
+                    let mut normals = vec![0.0; portion.rows];
+                    on_this_processor(Tails { digits, key, out: &mut normals });
+                    standard_normal::quantiles(&mut normals);
+                    normals
                 }
             })
             .collect();
@@ -177,20 +178,30 @@ impl<'a> Draws<'a> {
                 }
             }
             for value in column {
-                let z = *value;
-                *value = match (transform.is_normal(), z < 0.0) {
-                    (true, _) => mean + sigma * z,
-                    (false, true) => law.quantile(standard_normal::cdf(z)),
-                    (false, false) => law.upper_quantile(standard_normal::sf(z)),
-                };
+                *value = if transform.is_normal() { mean + sigma * *value } else { behind_normal(law, *value) };
             }
         }
     }
 }
 
-/// The probability that these digits stand for, the middle of its cell, counted from the nearer end.
-fn tail(digits: u64) -> (f64, bool) {
-    let upper = digits >> 63 == 1;
-    let digits = if upper { !digits } else { digits };
-    (((digits >> 12) as f64 + 0.5) / (1u64 << 52) as f64, upper)
+/// Scrambled digits as probabilities, each the middle of its cell, counted from the nearer end and negative from above.
+struct Tails<'a> {
+    digits: &'a [u64],
+    key: u64,
+    out: &'a mut [f64],
+}
+
+impl Work for Tails<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        for (value, &digits) in self.out.iter_mut().zip(self.digits) {
+            let digits = scrambled(digits, self.key);
+            let upper = 0u64.wrapping_sub(digits >> 63);
+            let cell = f64::from_bits((digits ^ upper) >> 12 | 0x4330_0000_0000_0000) - (1u64 << 52) as f64;
+            let p = (cell + 0.5) / (1u64 << 52) as f64;
+            *value = f64::from_bits(p.to_bits() | upper << 63);
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! Counts in fine bins: quantiles of any number of values in flat memory.
 
+use crate::elementary::{Work, arsinh, on_this_processor};
+
 /// The bins: equal on the scale of `asinh(u)`, `u` in units of a spread about a middle, so that they are fine in the
 /// centre, wider far out, and reach as far as anything goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,14 +30,43 @@ impl Scale {
     }
 
     /// The bin of a value.
+    #[inline(always)]
     pub fn bin(&self, value: f64) -> u32 {
-        let place = ((value - self.middle) / self.spread).asinh() / WIDTH + SIDE as f64;
-        place.clamp(0.0, (2 * SIDE - 1) as f64) as u32
+        /// Beyond the last bin.
+        const FAR: f64 = 2e6;
+        /// Added, it leaves the nearest whole number, which stands in its last bits.
+        const ROUNDING: f64 = (1u64 << 52) as f64;
+        let u = ((value - self.middle) / self.spread).clamp(-FAR, FAR);
+        let place = (arsinh(u) * (1.0 / WIDTH) + SIDE as f64).clamp(0.0, (2 * SIDE - 1) as f64);
+        let rounded = place + ROUNDING;
+        let down = u32::from(rounded - ROUNDING > place);
+        (rounded.to_bits() as u32).wrapping_sub(down).min(2 * SIDE as u32 - 1)
+    }
+
+    /// The bins of some values.
+    pub fn bins(&self, values: &[f64]) -> Vec<u32> {
+        on_this_processor(Bins { scale: self, values })
     }
 
     /// The lower end of a bin, or a place within one.
     fn edge(&self, place: f64) -> f64 {
         self.middle + self.spread * ((place - SIDE as f64) * WIDTH).sinh()
+    }
+}
+
+struct Bins<'a> {
+    scale: &'a Scale,
+    values: &'a [f64],
+}
+
+impl Work for Bins<'_> {
+    type Output = Vec<u32>;
+
+    #[inline(always)]
+    fn work(self) -> Vec<u32> {
+        let mut bins = vec![0; self.values.len()];
+        bins.iter_mut().zip(self.values).for_each(|(bin, &value)| *bin = self.scale.bin(value));
+        bins
     }
 }
 

@@ -3,6 +3,7 @@
 mod draws;
 mod estimate;
 mod fine;
+mod joint;
 mod sobol;
 mod summary;
 
@@ -10,5 +11,6 @@ pub use draws::{Draws, Portion, Sampler, SamplingError};
 pub use estimate::{Estimate, wilson};
 pub(crate) use estimate::{FEWEST, of_moments};
 pub use fine::{Fine, Scale};
+pub(crate) use joint::Joint;
 pub use sobol::{SOBOL_DIMENSIONS, Sobol};
 pub use summary::Summary;

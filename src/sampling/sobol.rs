@@ -6,8 +6,10 @@ use std::sync::LazyLock;
 const JOE_KUO: &str = include_str!("joe_kuo.txt");
 /// Binary digits of a coordinate: the index of a point has as many.
 const DIGITS: u32 = 52;
-/// Digits that are scrambled one by one; below them all at once, which makes no difference before the 2^40th point.
-const NESTED: u32 = 40;
+/// Digits that are scrambled one by one; below them all at once, which makes no difference before the 2^42nd point.
+const NESTED: u32 = 42;
+/// Digits that take their random bits from one hash: a tree of six levels has 63 nodes.
+const GROUP: u32 = 6;
 
 /// The direction numbers of one dimension, digits from the top of the word down.
 type Directions = [u64; DIGITS as usize];
@@ -98,20 +100,32 @@ fn directions(dimension: usize) -> Directions {
     v
 }
 
-/// Scrambles digits by a key of their dimension: digit by digit, each by a bit that belongs to those above it.
+/// Scrambles digits by a key of their dimension: each is flipped by a random bit that belongs to those above it.
+///
+/// The bits of a tree of [`GROUP`] digits, 63 of them, are those of one hash of the digits above the tree.
+#[inline(always)]
 pub(crate) fn scrambled(digits: u64, key: u64) -> u64 {
     let mut flips = 0;
-    for depth in 0..NESTED {
-        // The digits above this one, with a mark below them that tells how many they are.
-        let above = if depth == 0 { 0 } else { digits >> (64 - depth) << (64 - depth) };
-        let mark = 1 << (63 - depth);
-        flips |= mixed(above ^ mark ^ key) >> depth & mark;
+    for group in 0..NESTED / GROUP {
+        let depth = group * GROUP;
+        let hash = hashed(digits, depth, key);
+        // The digits of this group below a mark: shortened, they number the nodes of the tree from 1 on.
+        let own = digits << depth >> (64 - GROUP) | 1 << GROUP;
+        let bits = (0..GROUP).fold(0, |bits, level| bits << 1 | hash >> (own >> (GROUP - level)) & 1);
+        flips |= bits << (64 - GROUP - depth);
     }
-    let above = digits >> (64 - NESTED) << (64 - NESTED);
-    digits ^ flips ^ mixed(above ^ 1 ^ key) >> NESTED
+    digits ^ flips ^ hashed(digits, NESTED, key) >> NESTED
+}
+
+/// A hash of the digits above a depth, with a mark below them that tells how many they are.
+#[inline(always)]
+fn hashed(digits: u64, depth: u32, key: u64) -> u64 {
+    let above = if depth == 0 { 0 } else { digits >> (64 - depth) << (64 - depth) };
+    mixed(above ^ 1 << (63 - depth) ^ key)
 }
 
 /// A bijection of words that leaves no pattern: the finaliser of SplitMix64 (Steele, Lea and Flood 2014, after Stafford).
+#[inline(always)]
 pub(crate) fn mixed(word: u64) -> u64 {
     let word = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let word = (word ^ word >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

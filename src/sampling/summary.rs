@@ -1,5 +1,7 @@
 //! Mean and central moments of a sample, up to the eighth, that can be merged.
 
+use crate::elementary::{Work, on_this_processor};
+
 /// Highest moment: the standard error of a kurtosis needs the eighth.
 const ORDER: usize = 8;
 
@@ -27,22 +29,7 @@ pub struct Summary {
 impl Summary {
     /// Of these values, in two passes.
     pub fn of(values: &[f64]) -> Self {
-        let Some(&first) = values.first() else { return Self::default() };
-        let count = values.len() as f64;
-        // About the first value, so that the sum of large values does not round.
-        let mean = first + values.iter().map(|value| value - first).sum::<f64>() / count;
-        let mut sums = [0.0; ORDER - 1];
-        let (mut least, mut greatest) = (first, first);
-        for value in values {
-            let deviation = value - mean;
-            let mut power = deviation;
-            for sum in &mut sums {
-                power *= deviation;
-                *sum += power;
-            }
-            (least, greatest) = (least.min(*value), greatest.max(*value));
-        }
-        Self { count: values.len() as u64, mean, sums, least, greatest }
+        if values.is_empty() { Self::default() } else { on_this_processor(Sums(values)) }
     }
 
     /// Takes in another sample.
@@ -121,5 +108,67 @@ impl Summary {
             *moment = (0..order).fold(self.moment(order), |moment, _| moment / sigma);
         }
         Some(moments)
+    }
+}
+
+/// Sums that run beside each other, on any processor as many: a sum belongs to the order in which it is taken.
+const LANES: usize = 4;
+
+/// Values to be summed, at least one.
+struct Sums<'a>(&'a [f64]);
+
+impl Work for Sums<'_> {
+    type Output = Summary;
+
+    #[inline(always)]
+    fn work(self) -> Summary {
+        let (blocks, rest) = self.0.as_chunks::<LANES>();
+        let first = self.0[0];
+        // About the first value, so that the sum of large values does not round.
+        let mut total = [[0.0; LANES]; 2];
+        let (pairs, single) = blocks.as_chunks::<2>();
+        for pair in pairs {
+            for half in 0..2 {
+                for lane in 0..LANES {
+                    total[half][lane] += pair[half][lane] - first;
+                }
+            }
+        }
+        let left = single.as_flattened().iter().chain(rest).map(|value| value - first);
+        let total = total.as_flattened().iter().sum::<f64>() + left.sum::<f64>();
+        let mean = first + total / self.0.len() as f64;
+
+        let mut sums = [[0.0; LANES]; ORDER - 1];
+        let (mut least, mut greatest) = ([first; LANES], [first; LANES]);
+        for block in blocks {
+            let deviation: [f64; LANES] = std::array::from_fn(|lane| block[lane] - mean);
+            let mut power = deviation;
+            for sum in &mut sums {
+                for lane in 0..LANES {
+                    power[lane] *= deviation[lane];
+                    sum[lane] += power[lane];
+                }
+            }
+            for lane in 0..LANES {
+                least[lane] = if block[lane] < least[lane] { block[lane] } else { least[lane] };
+                greatest[lane] = if block[lane] > greatest[lane] { block[lane] } else { greatest[lane] };
+            }
+        }
+        let mut sums = sums.map(|lanes| lanes.iter().sum::<f64>());
+        for value in rest {
+            let deviation = value - mean;
+            let mut power = deviation;
+            for sum in &mut sums {
+                power *= deviation;
+                *sum += power;
+            }
+        }
+        Summary {
+            count: self.0.len() as u64,
+            mean,
+            sums,
+            least: least.iter().chain(rest).copied().fold(first, f64::min),
+            greatest: greatest.iter().chain(rest).copied().fold(first, f64::max),
+        }
     }
 }

@@ -1,9 +1,12 @@
 //! What a simulation knows of one characteristic.
 
+use super::control::Twin;
+use super::difference::{Difference, Shares, moments as controlled, shares};
 use super::tally::{Count, Replicate};
 use crate::assembly::EvaluationError;
 use crate::capability::TAIL;
 use crate::characteristic::{Characteristic, SpecLimits};
+use crate::method::Method;
 use crate::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
 
 /// Estimates for one characteristic, each with its standard error. What is unknown is None.
@@ -37,6 +40,21 @@ pub struct SimulatedCharacteristic {
     pub range: Option<[f64; 2]>,
     /// The sample, counted in some tens of intervals.
     pub histogram: Option<Histogram>,
+    /// The surrogate that stood beside the model; None where none was asked for, or it does not vary.
+    pub control: Option<SurrogateControl>,
+}
+
+/// What a surrogate as control variate has done.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurrogateControl {
+    /// The method that it comes from.
+    pub method: Method,
+    /// The evaluations that it took, of all characteristics together.
+    pub evaluations: usize,
+    /// Standard error of the mean without it by that with it; None where that is unknown, or 0.
+    pub mean: Option<f64>,
+    /// The same of sigma.
+    pub sigma: Option<f64>,
 }
 
 /// The share of assemblies that keep the limits.
@@ -72,12 +90,18 @@ const STUDENT: f64 = 2.131_449_545_559_323;
 const BINS: usize = 40;
 
 impl SimulatedCharacteristic {
-    pub(super) fn of(characteristic: &Characteristic, count: &Count, answered: u64) -> Self {
-        let all = count.summary();
+    pub(super) fn of(characteristic: &Characteristic, count: &Count, twin: Option<&Twin>, answered: u64) -> Self {
+        let evidence = Evidence::of(count, twin, answered);
+        let all = &evidence.all;
         let fine = pooled(&count.replicates);
-        let [mean, sigma, skewness, kurtosis] = moments(&all, &count.replicates);
         let known = all.count();
+        let plain = moments(all, &count.replicates);
+        let [mean, sigma, skewness, kurtosis] = evidence.moments();
+        let shares = evidence.shares();
         let share = |side: usize| {
+            if let Some(shares) = &shares {
+                return Some(shares.outside[side]);
+            }
             let outside: u64 = count.replicates.iter().map(|replicate| replicate.outside[side]).sum();
             (known > 0).then(|| outside as f64 / known as f64)
         };
@@ -96,7 +120,7 @@ impl SimulatedCharacteristic {
             sigma,
             skewness,
             kurtosis,
-            yield_: yield_of(limits, &count.replicates, known, answered),
+            yield_: evidence.yield_of(limits),
             below: limits.lower().and_then(|_| share(0)),
             above: limits.upper().and_then(|_| share(1)),
             histogram: range.zip(fine).zip(low.zip(high)).map(|((range, fine), (low, high))| {
@@ -105,8 +129,79 @@ impl SimulatedCharacteristic {
             }),
             range,
             quantiles,
+            control: evidence.beside.as_ref().map(|(twin, _)| SurrogateControl {
+                method: twin.method,
+                evaluations: twin.evaluations,
+                mean: reduction(plain[0], mean),
+                sigma: reduction(plain[1], sigma),
+            }),
         }
     }
+}
+
+/// What the counts say together, with the surrogate that stands beside the model.
+pub(super) struct Evidence<'a> {
+    count: &'a Count,
+    all: Summary,
+    beside: Option<(&'a Twin, Vec<&'a Difference>)>,
+    answered: u64,
+}
+
+impl<'a> Evidence<'a> {
+    pub(super) fn of(count: &'a Count, twin: Option<&'a Twin>, answered: u64) -> Self {
+        let all = count.summary();
+        let differences = || count.replicates.iter().map(|one| &one.difference).collect();
+        let beside = twin.filter(|_| all.count() > 0).map(|twin| (twin, differences()));
+        Self { count, all, beside, answered }
+    }
+
+    pub(super) fn moments(&self) -> [Option<Estimate>; 4] {
+        match &self.beside {
+            Some((twin, differences)) => controlled(differences, twin),
+            None => moments(&self.all, &self.count.replicates),
+        }
+    }
+
+    /// Those outside the limits, where a surrogate and limits are.
+    fn shares(&self) -> Option<Shares> {
+        let (twin, differences) = self.beside.as_ref()?;
+        shares(differences, twin.outside.as_ref()?, REJECTED * differences.len() as u64)
+    }
+
+    /// The share within the limits; None where there are none, or no value is known.
+    pub(super) fn yield_of(&self, limits: SpecLimits) -> Option<YieldEstimate> {
+        let (known, answered, replicates) = (self.all.count(), self.answered, &self.count.replicates);
+        if !limits.exist() || known == 0 {
+            return None;
+        }
+        if let Some(Shares { outside, interval }) = self.shares() {
+            let value = (1.0 - outside[0] - outside[1]).max(0.0);
+            let within = value * known as f64;
+            let bounds = [within, within + (answered - known) as f64].map(|most| most / answered as f64);
+            return Some(YieldEstimate { value, interval, bounds });
+        }
+        let rejected = |replicate: &Replicate| replicate.outside.iter().sum::<u64>();
+        let outside: u64 = replicates.iter().map(rejected).sum();
+        let within = known - outside;
+        let value = within as f64 / known as f64;
+        let few = outside.min(within) < REJECTED * replicates.len() as u64;
+        let interval = match of_replicates(replicates.iter().map(|replicate| {
+            let n = replicate.summary.count();
+            (n > 0).then(|| 1.0 - rejected(replicate) as f64 / n as f64)
+        })) {
+            Some(error) if !few && error > 0.0 => [(value - 2.0 * error).max(0.0), (value + 2.0 * error).min(1.0)],
+            _ => wilson(within as f64, known as f64),
+        };
+        let bounds = [within, within + (answered - known)].map(|most| most as f64 / answered as f64);
+        Some(YieldEstimate { value, interval, bounds })
+    }
+}
+
+/// By how much the standard error has shrunk.
+fn reduction(plain: Option<Estimate>, controlled: Option<Estimate>) -> Option<f64> {
+    let error = |estimate: Option<Estimate>| estimate.and_then(|estimate| estimate.standard_error);
+    let times = error(plain)? / error(controlled).filter(|&error| error > 0.0)?;
+    times.is_finite().then_some(times)
 }
 
 fn pooled(replicates: &[Replicate]) -> Option<Fine> {
@@ -117,7 +212,7 @@ fn pooled(replicates: &[Replicate]) -> Option<Fine> {
 }
 
 /// Of all points together; the standard errors of the sample where it is random, of the replicates where there are such.
-pub(super) fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
+fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
     let mut estimates = of_moments(all);
     if replicates.len() > 1 {
         let each: Vec<[Option<Estimate>; 4]> =
@@ -135,7 +230,7 @@ pub(super) fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estima
 
 /// The standard error of the mean of independent replicates, widened so that two of it are Student's 95 %; None where one
 /// has no value.
-fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+pub(super) fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let values: Vec<f64> = values.collect::<Option<_>>()?;
     let summary = Summary::of(&values);
     (values.len() > 1).then(|| 0.5 * STUDENT * summary.sigma() / (values.len() as f64).sqrt())
@@ -162,30 +257,4 @@ fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Repl
     // What the interpolation within a bin may have wrong is part of it.
     let standard_error = standard_error.map(|error| error.hypot(fine.blur(p * n)));
     Some(Estimate { value, standard_error })
-}
-
-/// The share within the limits; None where there are none, or no value is known.
-pub(super) fn yield_of(
-    limits: SpecLimits,
-    replicates: &[Replicate],
-    known: u64,
-    answered: u64,
-) -> Option<YieldEstimate> {
-    if !limits.exist() || known == 0 {
-        return None;
-    }
-    let rejected = |replicate: &Replicate| replicate.outside.iter().sum::<u64>();
-    let outside: u64 = replicates.iter().map(rejected).sum();
-    let within = known - outside;
-    let value = within as f64 / known as f64;
-    let few = outside.min(within) < REJECTED * replicates.len() as u64;
-    let interval = match of_replicates(replicates.iter().map(|replicate| {
-        let n = replicate.summary.count();
-        (n > 0).then(|| 1.0 - rejected(replicate) as f64 / n as f64)
-    })) {
-        Some(error) if !few && error > 0.0 => [(value - 2.0 * error).max(0.0), (value + 2.0 * error).min(1.0)],
-        _ => wilson(within as f64, known as f64),
-    };
-    let bounds = [within, within + (answered - known)].map(|most| most as f64 / answered as f64);
-    Some(YieldEstimate { value, interval, bounds })
 }

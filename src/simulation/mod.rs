@@ -1,17 +1,23 @@
 //! Monte Carlo: the assembly function itself on points of the inputs' distribution, with standard errors.
 
 mod characteristic;
+mod control;
+mod difference;
+mod surrogates;
 mod tally;
 
-pub use characteristic::{Histogram, QUANTILES, SimulatedCharacteristic, YieldEstimate};
+pub use characteristic::{Histogram, QUANTILES, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
 use crate::assembly::{Ask, EvaluationError, Responses, Run};
+use crate::method::{MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
+use control::Control;
+pub(crate) use surrogates::{Surrogates, chosen};
 use tally::{Block, Lens, Tally};
 
 /// How a problem is simulated.
@@ -33,11 +39,19 @@ pub struct SimulationOptions {
     pub until: Option<f64>,
     /// Ends when half the interval of every yield is below this.
     pub until_yield: Option<f64>,
+    /// Whether the surrogate of an analysis with these options stands beside the model as control variate: its moments are
+    /// exact, only the difference is sampled, and standard errors shrink by what it explains. `auto` is `full` to 20
+    /// varying dimensions, `six-n` beyond. Quantiles and histogram stay those of the sample.
+    ///
+    /// Where the model fails at some points, their differences are taken to be like the others'. The kurtosis of what is far
+    /// from the surrogate wants more points than a plain one before its standard error is right: of a lognormal with log-sd
+    /// 0.15 two of them hold 89 % at 20 000 random points and 94 % at 100 000.
+    pub control: Option<Options>,
 }
 
 impl Default for SimulationOptions {
     fn default() -> Self {
-        Self { samples: 100_000, sampler: Sampler::Random, seed: 1, until: None, until_yield: None }
+        Self { samples: 100_000, sampler: Sampler::Random, seed: 1, until: None, until_yield: None, control: None }
     }
 }
 
@@ -59,8 +73,10 @@ pub struct Simulation {
     pub seed: u64,
     /// Points that were answered.
     pub samples: u64,
-    /// Points sent to the model, those tried again included.
+    /// Points sent to the model, those tried again and those of the surrogate included.
     pub evaluations: u64,
+    /// Those of the surrogate; None where none was asked for.
+    pub surrogate_evaluations: Option<u64>,
     /// Points whose answers were known from an earlier run.
     pub reused: u64,
     /// Points that lost at least one characteristic.
@@ -129,6 +145,19 @@ pub enum SimulationError {
         /// Why not.
         error: EvaluationError,
     },
+    /// The surrogate's method cannot be run on the problem.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    /// There is no surrogate to stand beside a characteristic.
+    #[error("`{characteristic}` has no surrogate by {method}: {reason}; simulate it by itself")]
+    NoSurrogate {
+        /// The characteristic.
+        characteristic: String,
+        /// The method.
+        method: &'static str,
+        /// What is unknown.
+        reason: String,
+    },
     /// No or too many points.
     #[error("a simulation takes 2 to {most} points, not {samples}")]
     Samples {
@@ -170,8 +199,32 @@ pub fn simulate_within(
     }
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
+    let control = options.control.as_ref().map(|asked| Control::of(problem, asked, options, run)).transpose()?;
+    Ok(drawn(problem, options, (&draws, control.as_ref()), run, pace))
+}
+
+/// Samples the model beside the surrogates of an analysis that has been made; those that it has not stand beside nothing.
+/// Counts what is evaluated now only.
+pub(crate) fn simulate_beside(
+    problem: &Problem,
+    options: &SimulationOptions,
+    outcome: &Outcome,
+    run: &Run<'_>,
+) -> Result<Simulation, SimulationError> {
+    let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
+    let control = Control::beside_of(problem, outcome, options)?;
+    Ok(drawn(problem, options, (&draws, Some(&control)), run, &|_| {}))
+}
+
+fn drawn(
+    problem: &Problem,
+    options: &SimulationOptions,
+    (draws, control): (&Draws<'_>, Option<&Control<'_>>),
+    run: &Run<'_>,
+    pace: &dyn Fn(Pace),
+) -> Simulation {
     let begun = Instant::now();
-    let mut tally = Tally::new(problem, options.sampler);
+    let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly);
     let (mut reached, mut expected) = (None, portions.total as f64);
     while !run.stopped() && !tally.stopped {
@@ -179,7 +232,7 @@ pub fn simulate_within(
         if batch.is_empty() {
             break;
         }
-        let one = |portion: &Portion| block(problem, &draws, *portion, run, tally.lenses());
+        let one = |portion: &Portion| block(problem, draws, *portion, run, (tally.lenses(), control));
         let blocks: Vec<Block> = match portions.costly {
             true => batch.iter().map(one).collect(),
             false => batch.par_iter().map(one).collect(),
@@ -195,17 +248,25 @@ pub fn simulate_within(
             break;
         }
     }
-    let stopped = tally.stopped || reached != Some(true) && !portions.done();
-    Ok(tally.finish(options, stopped, reached))
+    let stopped = tally.stopped || control.is_some_and(Control::stopped) || reached != Some(true) && !portions.done();
+    tally.finish(options, stopped, reached)
 }
 
 /// Evaluates one portion.
-fn block(problem: &Problem, draws: &Draws<'_>, portion: Portion, run: &Run<'_>, lenses: &[Lens]) -> Block {
+fn block(
+    problem: &Problem,
+    draws: &Draws<'_>,
+    portion: Portion,
+    run: &Run<'_>,
+    (lenses, control): (&[Lens], Option<&Control<'_>>),
+) -> Block {
     let points = draws.points(portion);
     let mut out = Responses::open(portion.rows, problem.outputs().len());
     let begun = Instant::now();
     problem.function().evaluate(&Ask::values(&points, problem.outputs()), run, &mut out);
-    Block::of(&out, begun.elapsed(), lenses)
+    let took = begun.elapsed();
+    let beside = control.map_or_else(Vec::new, |control| control.beside(&points));
+    Block::of(&out, took, lenses, &beside)
 }
 
 /// The portions of a sample, a batch at a time, every replicate as far as the others.

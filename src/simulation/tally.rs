@@ -1,8 +1,11 @@
 //! What comes in, counted: the same whatever the order in which threads finish.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
-use super::characteristic::{SimulatedCharacteristic, moments, yield_of};
+use super::characteristic::{Evidence, SimulatedCharacteristic};
+use super::control::{Control, Twin};
+use super::difference::Difference;
 use super::{REPLICATES, Simulation, SimulationOptions};
 use crate::assembly::{EvaluationError, Responses};
 use crate::characteristic::SpecLimits;
@@ -32,6 +35,7 @@ pub(super) struct Block {
 struct Column {
     summary: Summary,
     outside: [u64; 2],
+    difference: Difference,
     values: Values,
     failed: u64,
     error: Option<EvaluationError>,
@@ -44,13 +48,20 @@ enum Values {
 }
 
 impl Block {
-    pub(super) fn of(out: &Responses, took: Duration, lenses: &[Lens]) -> Self {
+    /// `beside` has for every output the surrogate and its rises at the same points, where there is one.
+    pub(super) fn of(out: &Responses, took: Duration, lenses: &[Lens], beside: &[Option<(&Twin, Vec<f64>)>]) -> Self {
         let open = |row: usize| (0..out.outputs()).all(|output| out.is_open(row, output));
-        let answered = (0..out.rows()).filter(|&row| !open(row)).count();
+        let full = |output: usize| out.column(output).iter().fold(true, |all, value| all & !value.is_nan());
+        let answered = match (0..out.outputs()).any(full) {
+            true => out.rows(),
+            false => (0..out.rows()).filter(|&row| !open(row)).count(),
+        };
         let mut lost: Vec<usize> = out.errors().map(|(row, ..)| row).collect();
         lost.dedup();
         Self {
-            columns: lenses.iter().enumerate().map(|(output, lens)| Column::of(out, output, lens)).collect(),
+            columns: (lenses.iter().enumerate())
+                .map(|(output, lens)| Column::of(out, output, lens, beside.get(output).and_then(Option::as_ref)))
+                .collect(),
             answered: answered as u64,
             extra: out.extra(),
             reused: out.count_reused() as u64,
@@ -62,8 +73,11 @@ impl Block {
 }
 
 impl Column {
-    fn of(out: &Responses, output: usize, lens: &Lens) -> Self {
-        let values: Vec<f64> = out.column(output).iter().copied().filter(|value| !value.is_nan()).collect();
+    fn of(out: &Responses, output: usize, lens: &Lens, beside: Option<&(&Twin, Vec<f64>)>) -> Self {
+        let mut values = Cow::Borrowed(out.column(output));
+        if values.iter().fold(false, |any, value| any | value.is_nan()) {
+            values.to_mut().retain(|value| !value.is_nan());
+        }
         let count = |beyond: &dyn Fn(f64) -> bool| values.iter().filter(|&&value| beyond(value)).count() as u64;
         let mut errors = out.errors().filter(|&(_, of, _)| of == output).map(|(_, _, error)| error);
         let error = errors.next().cloned();
@@ -74,11 +88,13 @@ impl Column {
                 lens.limits.lower().map_or(0, |lower| count(&|value| value < lower)),
                 lens.limits.upper().map_or(0, |upper| count(&|value| value > upper)),
             ],
+            difference: beside
+                .map_or_else(Difference::default, |(twin, rises)| Difference::of(out.column(output), rises, twin)),
             failed: u64::from(error.is_some()) + errors.count() as u64,
             error,
             values: match lens.scale {
-                None => Values::Plain(values),
-                Some(scale) => Values::Binned(values.into_iter().map(|value| scale.bin(value)).collect()),
+                None => Values::Plain(values.into_owned()),
+                Some(scale) => Values::Binned(scale.bins(&values)),
             },
         }
     }
@@ -89,6 +105,8 @@ impl Column {
 pub(super) struct Replicate {
     pub(super) summary: Summary,
     pub(super) outside: [u64; 2],
+    /// Nothing where no surrogate stands beside the model.
+    pub(super) difference: Difference,
     pub(super) fine: Option<Fine>,
 }
 
@@ -110,6 +128,7 @@ impl Count {
 
 pub(super) struct Tally<'a> {
     problem: &'a Problem,
+    control: Option<&'a Control<'a>>,
     lenses: Vec<Lens>,
     counts: Vec<Count>,
     answered: u64,
@@ -121,16 +140,18 @@ pub(super) struct Tally<'a> {
 }
 
 impl<'a> Tally<'a> {
-    pub(super) fn new(problem: &'a Problem, sampler: Sampler) -> Self {
+    pub(super) fn new(problem: &'a Problem, control: Option<&'a Control<'a>>, sampler: Sampler) -> Self {
         let replicates = match sampler {
             Sampler::Random => 1,
             Sampler::Sobol => REPLICATES as usize,
         };
-        let nothing = Replicate { summary: Summary::default(), outside: [0, 0], fine: None };
+        let nothing =
+            Replicate { summary: Summary::default(), outside: [0, 0], difference: Difference::default(), fine: None };
         let count = || Count { replicates: vec![nothing.clone(); replicates], failed: 0, error: None };
         let characteristics = problem.characteristics();
         Self {
             problem,
+            control,
             lenses: characteristics.iter().map(|one| Lens { limits: one.limits(), scale: None }).collect(),
             counts: characteristics.iter().map(|_| count()).collect(),
             answered: 0,
@@ -169,10 +190,11 @@ impl<'a> Tally<'a> {
                 replicate.summary.merge(&column.summary);
                 replicate.outside[0] += column.outside[0];
                 replicate.outside[1] += column.outside[1];
+                replicate.difference.merge(&column.difference);
                 let Some(scale) = lens.scale else { continue };
                 let fine = replicate.fine.get_or_insert_with(|| Fine::new(scale));
                 match column.values {
-                    Values::Plain(values) => values.into_iter().for_each(|value| fine.count(scale.bin(value))),
+                    Values::Plain(values) => scale.bins(&values).into_iter().for_each(|bin| fine.count(bin)),
                     Values::Binned(bins) => bins.into_iter().for_each(|bin| fine.count(bin)),
                 }
             }
@@ -200,15 +222,16 @@ impl<'a> Tally<'a> {
             return None;
         }
         let ratio = |(c, count): (usize, &Count)| {
-            let all = count.summary();
+            let evidence = Evidence::of(count, self.twin(c), self.answered);
             let sigma = options.until.map(|wanted| {
-                let [_, sigma, ..] = moments(&all, &count.replicates);
+                let [_, sigma, ..] = evidence.moments();
                 let known = sigma.and_then(|sigma| Some((sigma.value, sigma.standard_error?)));
                 known.map_or(f64::INFINITY, |(value, error)| if error == 0.0 { 0.0 } else { error / value / wanted })
             });
             let limits = self.problem.characteristics()[c].limits();
             let shares = options.until_yield.filter(|_| limits.exist()).map(|wanted| {
-                yield_of(limits, &count.replicates, all.count(), self.answered)
+                evidence
+                    .yield_of(limits)
                     .map_or(f64::INFINITY, |share| 0.5 * (share.interval[1] - share.interval[0]) / wanted)
             });
             sigma.into_iter().chain(shares).fold(0.0, f64::max)
@@ -216,21 +239,31 @@ impl<'a> Tally<'a> {
         Some(self.counts.iter().enumerate().map(ratio).fold(0.0, f64::max))
     }
 
+    fn characteristic(&self, c: usize, count: &Count) -> SimulatedCharacteristic {
+        SimulatedCharacteristic::of(&self.problem.characteristics()[c], count, self.twin(c), self.answered)
+    }
+
+    /// The surrogate that stands beside this characteristic.
+    fn twin(&self, c: usize) -> Option<&Twin> {
+        self.control?.twins.get(c)?.as_ref()
+    }
+
     pub(super) fn finish(self, options: &SimulationOptions, stopped: bool, reached: Option<bool>) -> Simulation {
-        let characteristics = self.problem.characteristics().iter().zip(&self.counts);
+        let characteristics = self.counts.iter().enumerate().map(|(c, count)| self.characteristic(c, count)).collect();
+        let surrogate = self.control.map(|control| &control.outcome.evaluated);
+        let spent = surrogate.map_or(0, |evaluated| evaluated.evaluations as u64);
         Simulation {
             sampler: options.sampler,
             seed: options.seed,
             samples: self.answered,
-            evaluations: self.answered.saturating_add_signed(self.extra),
-            reused: self.reused,
-            failed: self.failed,
+            evaluations: self.answered.saturating_add_signed(self.extra) + spent,
+            surrogate_evaluations: surrogate.map(|_| spent),
+            reused: self.reused + surrogate.map_or(0, |evaluated| evaluated.reused as u64),
+            failed: self.failed + surrogate.map_or(0, |evaluated| evaluated.known.failed_points() as u64),
             stopped,
             reached,
-            in_model: self.in_model,
-            characteristics: characteristics
-                .map(|(characteristic, count)| SimulatedCharacteristic::of(characteristic, count, self.answered))
-                .collect(),
+            in_model: self.in_model + surrogate.map_or(Duration::ZERO, |evaluated| evaluated.in_model),
+            characteristics,
         }
     }
 }

@@ -274,6 +274,9 @@ pub(super) struct AnalysisEntry {
     /// How six-n evaluates an interaction.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::stencils())))]
     pub(super) stencil: Option<Spanned<String>>,
+    /// How many nodes the quadrature rules of dimension-reduction have: 5 unless said otherwise.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = [3, 5, 7])))]
+    pub(super) nodes: Option<Spanned<u64>>,
     /// Whether dimensions without tolerance get a sensitivity too.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::sensitivities())))]
     pub(super) sensitivities: Option<Spanned<String>>,

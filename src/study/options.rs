@@ -3,7 +3,7 @@
 use super::error::{Fault, StudyFault, fault};
 use super::file::{AnalysisEntry, PairsEntry};
 use super::spanned::Spanned;
-use crate::method::{ALL as METHODS, DerivativeSource, Method, Options, Pairs};
+use crate::method::{ALL as METHODS, DerivativeSource, Method, MethodError, Options, Pairs};
 use crate::names::nearest;
 use crate::plan::Stencil;
 use crate::problem::Problem;
@@ -50,6 +50,7 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
         let found = Stencil::by_name(stencil.get_ref());
         options.stencil = Some(found.ok_or_else(|| word(stencil, "stencil", "stencil", &Stencil::NAMES))?);
     }
+    options.nodes = entry.nodes.as_ref().map(|nodes| usize::try_from(*nodes.get_ref()).unwrap_or(usize::MAX));
     if let Some(sensitivities) = &entry.sensitivities {
         options.all_sensitivities = match sensitivities.get_ref().as_str() {
             "all" => true,
@@ -64,10 +65,16 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
             Some(found.ok_or_else(|| word(derivatives, "derivatives", "source of derivatives", known))?);
     }
     // Whether the options fit each other and the study shows at its plan; what is at fault is most likely the pairs.
-    options.method.procedure().plan(problem, &options).map_err(|error| {
+    options.method.procedure().check(problem, &options).map_err(|error| {
         let of_derivatives = entry.derivatives.as_ref().map(Spanned::span);
-        let spans =
-            [entry.pairs.as_ref().map(Spanned::span), entry.stencil.as_ref().map(Spanned::span), of_derivatives];
+        let of_nodes = entry.nodes.as_ref().map(Spanned::span);
+        let of_pairs = entry.pairs.as_ref().map(Spanned::span);
+        let spans = match &error {
+            MethodError::BadNodes { .. } | MethodError::OptionDoesNotApply { option: "nodes", .. } => {
+                [of_nodes, None, None]
+            }
+            _ => [of_pairs, entry.stencil.as_ref().map(Spanned::span), of_derivatives],
+        };
         let span = spans.into_iter().flatten().next().or(entry.method.as_ref().map(Spanned::span));
         Fault { span, key: "analysis".into(), fault: Box::new(error.into()) }
     })?;

@@ -1,7 +1,10 @@
 //! What moments need to know of all inputs together.
 
+use std::sync::Arc;
+
 use super::shape::InputShape;
 use crate::correlation::Correlation;
+use crate::distribution::Rule;
 
 /// The shapes of the inputs, and how they vary together.
 #[derive(Debug, Clone)]
@@ -19,6 +22,12 @@ impl Inputs {
     /// Of independent inputs.
     pub fn independent(shapes: Vec<InputShape>) -> Self {
         Self { shapes, correlation: None }
+    }
+
+    /// With another rule for the input at this position.
+    pub(crate) fn with_rule(mut self, position: usize, rule: Arc<Rule>) -> Self {
+        self.shapes[position].rule = rule;
+        self
     }
 
     /// Their shapes, in order.

@@ -12,6 +12,7 @@ mod relocation;
 mod sampled;
 mod shape;
 mod univariate;
+mod values;
 
 pub use inputs::Inputs;
 pub use relocation::Relocation;

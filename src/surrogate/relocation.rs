@@ -72,8 +72,14 @@ impl Univariate {
         (constant, Self { coefficients, degree: self.degree })
     }
 
+    /// With this much added to the factor of the square.
+    pub(crate) fn with_curvature(mut self, more: f64) -> Self {
+        self.coefficients[1] += more;
+        self
+    }
+
     /// With this much added to the slope.
-    fn with_slope(mut self, more: f64) -> Self {
+    pub(crate) fn with_slope(mut self, more: f64) -> Self {
         self.coefficients[0] += more;
         self
     }

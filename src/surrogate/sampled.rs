@@ -6,7 +6,6 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
 use super::correlated::Parabolas;
-use crate::distribution::Rule;
 use crate::moments::{Contributions, Moments, Sampled};
 
 /// Blocks of the sample: what they differ by is the standard error (delete-one jackknife), and each has its own seed.
@@ -148,7 +147,7 @@ impl<'a> Sampler<'a> {
         for _ in 0..draws {
             independent.iter_mut().for_each(|w| *w = rng.sample(StandardNormal));
             for (j, value) in u.iter_mut().enumerate().filter(|(j, _)| self.parabolas.member[*j].is_none()) {
-                *value = node(&self.parabolas.shape(j).rule, rng.random());
+                *value = self.parabolas.shape(j).rule.at_level(rng.random());
             }
             for (a, z) in z.iter_mut().enumerate() {
                 *z = independent.iter().enumerate().map(|(w, own)| self.factor[(a, w)] * own).sum();
@@ -227,19 +226,6 @@ impl<'a> Sampler<'a> {
         each(&mut shares, &mut |share| *share /= total);
         shares
     }
-}
-
-/// The node of a rule at this level of its distribution: a rule that integrates every power that is asked of it
-/// is as good as the distribution itself.
-fn node(rule: &Rule, level: f64) -> f64 {
-    let mut below = 0.0;
-    for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
-        below += weight;
-        if level < below {
-            return *node;
-        }
-    }
-    rule.nodes[rule.nodes.len() - 1]
 }
 
 impl Sums {

@@ -196,7 +196,9 @@ fn wrong(text: &str, more: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let study = folder.path().join("study.toml");
     std::fs::write(&study, text).unwrap();
-    let arguments: Vec<&str> = ["allocate", study.to_str().unwrap()].into_iter().chain(more.iter().copied()).collect();
+    let study = study.to_str().unwrap();
+    let more = more.iter().map(|&argument| if argument == "STUDY" { study } else { argument });
+    let arguments: Vec<&str> = ["allocate", study].into_iter().chain(more).collect();
     run(&arguments).replace(folder.path().to_str().unwrap(), "")
 }
 
@@ -265,14 +267,19 @@ fn wrong_wishes_are_refused() {
                  b = { nominal = 5, tolerance = 0.1 }\n[characteristics]\n\
                  gap = { formula = \"a - b\", lower = 4.5, target_yield = 0.99 }\n\
                  [costs]\nb = { model = \"reciprocal\", b = 1 }\n";
-    let cases: [(&str, &[&str]); 8] = [
+    let cases: [(&str, &[&str]); 13] = [
         (none, &[]),
         (none, &["--recentre", "aa"]),
         (none, &["--recentre", "b"]),
         (none, &["--recentre", "a", "--front", "5"]),
         (known, &["--front", "1"]),
+        (known, &["--front", "0"]),
         (known, &["--recentre", "a"]),
         (known, &["--confirm", "1000"]),
+        (known, &["--confirm", "0"]),
+        (known, &["--method", "three-point"]),
+        (known, &["--seed", "-1"]),
+        (known, &["--write", "STUDY"]),
         (known, &["--write", "no/such/folder/new.toml"]),
     ];
     let all: Vec<String> = cases

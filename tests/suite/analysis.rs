@@ -60,14 +60,6 @@ fn pairs_that_were_not_examined_are_counted() {
     assert_eq!(message(Method::Rss), None, "first order does not claim to");
 }
 
-#[test]
-fn auto_says_what_it_stands_for() {
-    let problem = Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
-    let analysis = analyze(&problem, &Method::Auto.into()).unwrap();
-    assert_eq!(analysis.method, Method::SecondOrder);
-    assert_eq!(codes(&problem, Method::Auto), ["auto-is-second-order"]);
-}
-
 /// The worst case of an asymmetric band goes to its own ends; RSS to half its width.
 #[test]
 fn asymmetric_bands_have_asymmetric_worst_cases() {

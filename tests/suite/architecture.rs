@@ -10,8 +10,9 @@ const LAYERS: &[&[&str]] = &[
     &["cli"],
     &["error"],
     &["study", "report"],
-    &["compare", "allocation"],
-    &["analysis", "probe", "simulation"],
+    &["compare", "rare", "allocation"],
+    &["analysis", "probe"],
+    &["simulation"],
     &["extremes"],
     &["method"],
     &["evaluation"],
@@ -28,7 +29,7 @@ const LAYERS: &[&[&str]] = &[
     &["dimension", "characteristic"],
     &["distribution", "fits"],
     &["pearson"],
-    &["names"],
+    &["names", "elementary"],
 ];
 
 fn layer(module: &str) -> usize {

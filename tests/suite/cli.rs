@@ -66,8 +66,23 @@ fn analyze_prints_json() {
 fn plan_says_what_would_be_evaluated() {
     insta::assert_snapshot!("plan-six-n", run(&["plan", ENGINE]));
     insta::assert_snapshot!("plan-full", run(&["plan", "examples/shaft-and-bore/study.toml", "-m", "full", "--json"]));
+    insta::assert_snapshot!("plan-auto", run(&["plan", ENGINE, "-m", "auto"]));
+    insta::assert_snapshot!("analyze-auto", run(&["analyze", "examples/stacked-blocks/study.toml", "-m", "auto"]));
+    insta::assert_snapshot!("plan-dimension-reduction", run(&["plan", ENGINE, "-m", "dimension-reduction"]));
+    insta::assert_snapshot!("plan-response-surface", run(&["plan", ENGINE, "-m", "response-surface"]));
+    let matched = "examples/matched-pair/study.toml";
+    insta::assert_snapshot!("plan-bivariate", run(&["plan", matched, "-m", "bivariate-dimension-reduction"]));
     insta::assert_snapshot!("check", run(&["check", "examples/stacked-blocks/study.toml"]));
     insta::assert_snapshot!("models", run(&["models"]) + &run(&["models", "engine-balance"]));
+}
+
+/// What the alternatives to derivatives say, and what they do not.
+#[test]
+fn alternatives_are_reported() {
+    let clearance = "examples/shaft-and-bore/study.toml";
+    for method in ["dimension-reduction", "bivariate-dimension-reduction", "three-point", "response-surface"] {
+        insta::assert_snapshot!(format!("analyze-{method}"), run(&["analyze", clearance, "-m", method]));
+    }
 }
 
 /// The search is counted, its points depend on the answers, and the report says where the extremes are.
@@ -131,12 +146,18 @@ fn wrong_input() {
         &["analyze", ENGINE, "--step", "0"],
         &["analyze", ENGINE, "--step", "nan"],
         &["analyze", ENGINE, "--accuracy", "much"],
+        &["analyze", ENGINE, "--accuracy", "0"],
+        &["analyze", ENGINE, "--method", "auto", "--budget", "18"],
+        &["analyze", ENGINE, "--method", "auto", "--pairs", "adjacent"],
         &["analyze", ENGINE, "--threads", "0"],
         &["analyze", ENGINE, "--pairs", "R"],
         &["analyze", ENGINE, "--pairs", "R:Q"],
         &["analyze", ENGINE, "--pairs", "R:`L"],
         &["analyze", ENGINE, "--method", "full", "--pairs", "adjacent"],
         &["analyze", ENGINE, "--stencil", "nine"],
+        &["analyze", ENGINE, "--method", "dimension-reduction", "--nodes", "4"],
+        &["analyze", ENGINE, "--method", "bivariate-dimension-reduction", "--budget", "10"],
+        &["analyze", ENGINE, "--method", "full", "--nodes", "5"],
         &["analyze", ENGINE, "--extremes", "all"],
         &["analyze", ENGINE, "--extremes", "--points", "points.csv"],
         &["schema", ENGINE],

@@ -4,6 +4,7 @@
 use std::fmt::Write;
 
 use sensitol::plan::Stencil;
+use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Method, Options, Study, analyze};
 
 use super::support::{data, repository};
@@ -43,17 +44,102 @@ fn the_study_in_the_readme_is_the_example() {
 /// The table of evaluations against errors, as the README shows it.
 #[test]
 fn the_measured_table_is_measured() {
-    let table = measured();
-    let path = repository("README.md");
-    let readme = read("README.md");
-    let (begin, end) = ("<!-- measured: begin -->\n", "<!-- measured: end -->");
-    let start = readme.find(begin).unwrap() + begin.len();
-    let stop = readme.find(end).unwrap();
+    generated("README.md", "measured", &measured());
+}
+
+/// What stands in a document between the marks of this name is what was generated now.
+fn generated(document: &str, name: &str, text: &str) {
+    let path = repository(document);
+    let found = read(document);
+    let (begin, end) = (format!("<!-- {name}: begin -->\n"), format!("<!-- {name}: end -->"));
+    let start = found.find(&begin).unwrap() + begin.len();
+    let stop = found.find(&end).unwrap();
     if std::env::var_os("SENSITOL_UPDATE_DOCS").is_some() {
-        std::fs::write(path, format!("{}{table}{}", &readme[..start], &readme[stop..])).unwrap();
+        std::fs::write(path, format!("{}{text}{}", &found[..start], &found[stop..])).unwrap();
         return;
     }
-    assert_eq!(&readme[start..stop], table, "SENSITOL_UPDATE_DOCS=1 writes it anew");
+    assert_eq!(&found[start..stop], text, "{document}: SENSITOL_UPDATE_DOCS=1 writes it anew");
+}
+
+/// A method of the papers: its name there, seconds on their computer, and what it is here.
+struct Published {
+    name: &'static str,
+    seconds: Option<f64>,
+    ours: Ours,
+}
+
+enum Ours {
+    Method(Method),
+    MonteCarlo(u64),
+}
+
+/// The trade of evaluations against accuracy beside the times of Table 7 of the stacked-blocks paper, whose computer time is
+/// that of the CAD system: a time there is a number of evaluations here.
+#[test]
+fn the_trade_beside_the_paper_is_measured() {
+    let method = |name, seconds, method| Published { name, seconds, ours: Ours::Method(method) };
+    let drawn = |samples, seconds| Published { name: "Monte Carlo", seconds, ours: Ours::MonteCarlo(samples) };
+    let blocks = [
+        drawn(30_000, Some(1670.36)),
+        method("full factorial (Seo and Kwak)", Some(342.13), Method::ThreePoint),
+        method("dimension reduction", Some(6.128), Method::DimensionReduction),
+        method("improved second order", Some(2.24), Method::SixN),
+        method("direct linearisation", Some(1.35), Method::Rss),
+    ];
+    let truth = &data("stacked-blocks.json")["moments"];
+    generated("examples/stacked-blocks/README.md", "trade", &trade("stacked-blocks", "gap", truth, &blocks, true));
+    let engine = [
+        drawn(100_000, None),
+        method("full factorial", None, Method::ThreePoint),
+        method("dimension reduction", None, Method::DimensionReduction),
+        method("improved second order", None, Method::SixN),
+        method("every interaction", None, Method::Full),
+        method("root of the sum of squares", None, Method::Rss),
+    ];
+    let truth = &data("engine-balance.json")["table-3"]["F"];
+    generated("examples/engine-balance/README.md", "trade", &trade("engine-balance", "F", truth, &engine, false));
+}
+
+fn trade(example: &str, characteristic: &str, truth: &serde_json::Value, rows: &[Published], seconds: bool) -> String {
+    let study = Study::read(&repository("examples").join(example).join("study.toml")).unwrap();
+    let problem = study.problem.only(&[characteristic]).unwrap();
+    let expected = |key: &str| truth[key].as_f64().unwrap();
+    let figures = |ours: &Ours| match ours {
+        Ours::Method(method) => {
+            let found = analyze(&problem, &Options::from(*method)).unwrap();
+            let moments = found.characteristics[0].moments.unwrap();
+            let (skewness, kurtosis) = (moments.skewness().unwrap(), moments.kurtosis().unwrap());
+            (method.name().to_owned(), found.evaluations as u64, [moments.mean(), moments.sigma(), skewness, kurtosis])
+        }
+        Ours::MonteCarlo(samples) => {
+            let options = SimulationOptions { samples: *samples, ..SimulationOptions::default() };
+            let one = simulate(&problem, &options).unwrap().characteristics.remove(0);
+            let values = [one.mean, one.sigma, one.skewness, one.kurtosis].map(|estimate| estimate.unwrap().value);
+            ("monte-carlo".to_owned(), *samples, values)
+        }
+    };
+    let found: Vec<_> = rows.iter().map(|row| figures(&row.ours)).collect();
+    let base = rows.iter().position(|row| matches!(row.ours, Ours::Method(Method::SixN))).unwrap();
+    let (spent, took) = (found[base].1 as f64, rows[base].seconds.unwrap_or(1.0));
+    let (columns, line) = if seconds { ("published | ratio | ", "--:|--:|") } else { ("", "") };
+    let mut table = format!(
+        "| in the paper | {columns}ours | evaluations | ratio | mean | sigma | skewness | kurtosis |\n\
+         |---|{line}---|--:|--:|--:|--:|--:|--:|\n"
+    );
+    for (row, (name, evaluations, [mean, sigma, skewness, kurtosis])) in rows.iter().zip(found) {
+        let published = row.seconds.map_or(String::new(), |seconds| format!(" {seconds} s | {:.1} |", seconds / took));
+        let errors = [
+            (mean - expected("mean")) / expected("sigma"),
+            sigma / expected("sigma") - 1.0,
+            skewness - expected("skewness"),
+            kurtosis - expected("kurtosis"),
+        ]
+        .map(|error| one_digit(error.abs()));
+        let ratio = evaluations as f64 / spent;
+        let errors = errors.join(" | ");
+        writeln!(table, "| {} |{published} `{name}` | {evaluations} | {ratio:.1} | {errors} |", row.name).unwrap();
+    }
+    table
 }
 
 /// Errors against quadrature: of the mean in sigmas, of sigma relative.
@@ -65,6 +151,10 @@ fn measured() -> String {
         ("`six-n`", Method::SixN.into()),
         ("`full`", Method::Full.into()),
         ("`classic`", Method::Classic.into()),
+        ("`dimension-reduction`", Method::DimensionReduction.into()),
+        ("`bivariate-dimension-reduction`", Method::BivariateDimensionReduction.into()),
+        ("`three-point`", Method::ThreePoint.into()),
+        ("`response-surface`", Method::ResponseSurface.into()),
     ];
     let (clearance, engine, blocks) =
         (data("shaft-and-bore.json"), data("engine-balance.json"), data("stacked-blocks.json"));
@@ -121,6 +211,7 @@ fn documents() -> Vec<String> {
         "CONTRIBUTING.md",
         "CHANGELOG.md",
         "benches/README.md",
+        "docs/accuracy.md",
         "adapters/PROTOCOL.md",
         "adapters/python/README.md",
     ];

@@ -5,6 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::assembly::implicit::AssemblyFailure;
 use sensitol::assembly::{Ask, Derivatives, Directions, EvaluationError, Points, Responses, Run};
+use sensitol::method::Basis;
 use sensitol::{DerivativeSource, Method, MethodError, Options, Problem, Study, analyze};
 
 use super::support::{close, data, repository};
@@ -156,7 +157,7 @@ fn sensitivities_are_exact() {
     let linear = Options { derivatives: Some(DerivativeSource::Exact), ..Method::Rss.into() };
     assert_eq!(options, linear);
     let analysis = analyze(&problem, &linear).unwrap();
-    assert_eq!((analysis.evaluations, analysis.derivatives), (1, DerivativeSource::Exact));
+    assert_eq!((analysis.evaluations, analysis.basis), (1, Basis::Exact));
     let gap = &analysis.characteristics[0];
     let rss = |d: usize| derivatives.first[d].unwrap() * problem.dimensions()[d].half_band();
     let expected = (0..x.len()).map(|d| rss(d).powi(2)).sum::<f64>().sqrt();

@@ -1,11 +1,14 @@
 //! Every test of the project, a module per theme; `cargo test --test suite moments::` runs one theme.
 
+mod accuracy;
 mod allocation;
 mod allocation_cli;
 mod analysis;
 mod architecture;
+mod auto;
 mod capability;
 mod cli;
+mod control;
 mod correlation;
 mod derivatives;
 mod distributions;
@@ -24,6 +27,9 @@ mod plans;
 mod probe;
 mod process;
 mod published;
+mod quadratures;
+mod rare;
+mod response_surface;
 mod sampled_cli;
 mod sampling;
 mod schema;

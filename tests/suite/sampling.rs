@@ -99,6 +99,98 @@ fn scrambling_is_uniform() {
     close(product / n, -1.0 / 16.0, 4.0 * 0.05 / n.sqrt(), 1.0);
 }
 
+/// The bit that flips a digit belongs to the digits above it and to nothing else: any two nodes of the tree have independent
+/// ones, near the root and below, in one tree of hashed digits and in the next.
+#[test]
+fn every_node_has_a_random_bit_of_its_own() {
+    const POINTS: usize = 64;
+    const LEVELS: u32 = 14;
+    let sobol = Sobol::new(1).unwrap();
+    let digits = |key: Option<u64>| -> Vec<u64> {
+        column(&sobol, 0, key, POINTS).iter().map(|x| (x * f64::from(1 << LEVELS)) as u64).collect()
+    };
+    let plain = digits(None);
+    let mut nodes: Vec<(u32, u64, usize)> = Vec::new();
+    for level in 0..LEVELS {
+        for (point, digits) in plain.iter().enumerate() {
+            let above = digits >> (LEVELS - level);
+            if !nodes.iter().any(|&(of, prefix, _)| (of, prefix) == (level, above)) {
+                nodes.push((level, above, point));
+            }
+        }
+    }
+    assert_eq!(nodes.len(), 63 + 8 * POINTS);
+    let keys = 4096usize;
+    let mut flips: Vec<Vec<u64>> = vec![vec![0; keys / 64]; nodes.len()];
+    for key in 0..keys {
+        let scrambled = digits(Some(key as u64 * 0x1_0001));
+        for (flips, &(level, _, point)) in flips.iter_mut().zip(&nodes) {
+            let bit = (scrambled[point] ^ plain[point]) >> (LEVELS - 1 - level) & 1;
+            flips[key / 64] |= bit << (key % 64);
+        }
+    }
+    // Six standard errors of a fair coin: of the 165 000 pairs one in 3000 runs would have one beyond.
+    let fair = |ones: u32| (f64::from(ones) - keys as f64 / 2.0).abs() < 6.0 * (keys as f64).sqrt() / 2.0;
+    for (j, one) in flips.iter().enumerate() {
+        assert!(fair(one.iter().map(|word| word.count_ones()).sum()), "{:?}", nodes[j]);
+        for (k, other) in flips[..j].iter().enumerate() {
+            let differ = one.iter().zip(other).map(|(a, b)| (a ^ b).count_ones()).sum();
+            assert!(fair(differ), "{:?} and {:?}", nodes[j], nodes[k]);
+        }
+    }
+    // The same digits above, the same flips: points that part at one level agree before.
+    for (point, other) in (0..POINTS).flat_map(|a| (0..a).map(move |b| (a, b))) {
+        let scrambled = digits(Some(77));
+        let shared = |a: u64, b: u64| (a ^ b).leading_zeros();
+        assert_eq!(shared(plain[point], plain[other]), shared(scrambled[point], scrambled[other]));
+    }
+}
+
+/// Counts of random normal values in cells of one sigma's tenth and in the far tails, against the distribution function.
+#[test]
+fn random_normals_are_normal() {
+    let one = [Dimension::normal("z", 0.0, 3.0).unwrap()];
+    let law = one[0].distribution().unwrap().probability().unwrap();
+    let draws = Draws::new(&one, None, Sampler::Random, 3).unwrap();
+    // Far out one edge is where the tail of the ziggurat begins.
+    let far = [-4.5, -4.0, -3.654_152_885_361_009];
+    let middle = (-35..=35).map(|i| f64::from(i) / 10.0);
+    let edges: Vec<f64> = far.into_iter().chain(middle).chain(far.into_iter().rev().map(|edge| -edge)).collect();
+    let mut counts = vec![0u64; edges.len() + 1];
+    let portions = 2048u64;
+    for portion_of in 0..portions {
+        for value in draws.points(portion(portion_of * 1024, 1024)).column(0) {
+            counts[edges.partition_point(|edge| edge < value)] += 1;
+        }
+    }
+    let n = (portions * 1024) as f64;
+    let below = |i: usize| if i < edges.len() { law.cdf(edges[i]) } else { 1.0 };
+    let mut chi_square = 0.0;
+    for (i, &count) in counts.iter().enumerate() {
+        let share = below(i) - if i == 0 { 0.0 } else { below(i - 1) };
+        chi_square += (count as f64 - n * share).powi(2) / (n * share);
+    }
+    // 77 degrees of freedom: mean 77, sigma 12.4; five of these either way.
+    assert!((15.0..139.0).contains(&chi_square), "{chi_square}");
+}
+
+/// Quantiles of many probabilities at once are those of each, in the centre, the tails and far out.
+#[test]
+fn quantiles_by_the_block_are_those_one_by_one() {
+    let one = Dimension::normal("z", 5.0, 0.3).unwrap();
+    let law = one.distribution().unwrap().probability().unwrap();
+    let p = (1..700).map(|i| if i < 500 { f64::from(i) / 1000.0 } else { 10f64.powi(-(i - 480)) });
+    let tails: Vec<f64> = p.flat_map(|p| [p, -p]).collect();
+    for length in [1, 2, 255, 256, 257, tails.len()] {
+        let mut found = tails[..length].to_vec();
+        law.quantiles(&mut found);
+        for (&tail, found) in tails.iter().zip(found) {
+            let expected = if tail < 0.0 { law.upper_quantile(-tail) } else { law.quantile(tail) };
+            assert_eq!(found, expected, "{tail:e}");
+        }
+    }
+}
+
 proptest! {
     /// Merged in any parts, a sample is itself.
     #[test]
@@ -129,6 +221,7 @@ proptest! {
         let scale = Scale::about(0.5, 2.0);
         let mut fine = Fine::new(scale);
         values.iter().for_each(|&value| fine.count(scale.bin(value)));
+        prop_assert_eq!(scale.bins(&values), values.iter().map(|&value| scale.bin(value)).collect::<Vec<_>>());
         let mut sorted = values.clone();
         sorted.sort_unstable_by(f64::total_cmp);
         let rank = (p * values.len() as f64).ceil();

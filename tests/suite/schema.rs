@@ -79,6 +79,9 @@ fn every_form_is_valid() {
     for analysis in [
         "method = \"six-n\"\npairs = [[\"a\", \"b\"]]",
         "method = \"six-n\"\npairs = \"adjacent\"\nstencil = \"four-point\"",
+        "method = \"dimension-reduction\"\nnodes = 7",
+        "method = \"three-point\"",
+        "method = \"response-surface\"\nstep = 1.5",
         "extremes = true\nbudget = 100\nseed = 1\nsensitivities = \"all\"",
     ] {
         let text = format!(
@@ -128,6 +131,7 @@ fn wrong_studies_are_invalid() {
         with("[analysis]\nbudget = -1"),
         with("[analysis]\npairs = [[\"a\"]]"),
         with("[analysis]\nstencil = \"nine\""),
+        with("[analysis]\nmethod = \"dimension-reduction\"\nnodes = 4"),
         with("[analysis]\nsensitivities = \"none\""),
         dimension("{ nominal = 10, tolerance = 0.1, distribution = { kind = \"beta\", alpha = 2, gamma = 3 } }"),
         dimension("{ nominal = 10, tolerance = \"two percent\" }"),

@@ -270,6 +270,8 @@ fn names_and_formulas_at_fault() {
         with("[analysis]\nmethod = \"six-n\"\npairs = [[\"a\", \"c\"]]\n[characteristics]\ny = { formula = \"a\" }\n"),
         with("[analysis]\nmethod = \"full\"\npairs = \"adjacent\"\n[characteristics]\ny = { formula = \"a\" }\n"),
         with("[analysis]\nstencil = \"9-point\"\n[characteristics]\ny = { formula = \"a\" }\n"),
+        with("[analysis]\nmethod = \"dimension-reduction\"\nnodes = 4\n[characteristics]\ny = { formula = \"a\" }\n"),
+        with("[analysis]\nmethod = \"full\"\nnodes = 5\n[characteristics]\ny = { formula = \"a\" }\n"),
         with("[analysis]\nsensitivities = \"some\"\n[characteristics]\ny = { formula = \"a\" }\n"),
     ];
     insta::assert_snapshot!(faults(&texts.iter().map(String::as_str).collect::<Vec<_>>()));

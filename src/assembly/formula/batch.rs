@@ -2,6 +2,7 @@
 
 use super::functions::{Binary, Unary, select};
 use super::program::{Branch, Operand, Program, Step};
+use crate::elementary::{self, Elementary, Work, on_this_processor};
 
 /// Rows that go through the program together: few enough that all registers stay in the nearest cache.
 pub(super) const LANES: usize = 256;
@@ -29,14 +30,14 @@ impl<'a> Machine<'a> {
         &mut self,
         rows: usize,
         variable: &impl Fn(usize) -> &'v [f64],
-        mut result: impl FnMut(usize, &mut dyn Iterator<Item = f64>),
+        mut result: impl FnMut(usize, &[f64]),
     ) {
         assert!(rows <= LANES, "a block of at most {LANES} rows");
         self.steps(&self.program.steps, rows, variable);
         for (index, &operand) in self.program.results.iter().enumerate() {
             match self.values(operand, rows, variable) {
-                Values::Same(value) => result(index, &mut std::iter::repeat_n(value, rows)),
-                Values::Each(values) => result(index, &mut values.iter().copied()),
+                Values::Same(value) => result(index, &[value; LANES][..rows]),
+                Values::Each(values) => result(index, values),
             }
         }
     }
@@ -127,11 +128,24 @@ impl Values<'_> {
 /// A loop per function, so that the compiler sees each one alone.
 fn unary(function: Unary, a: Values<'_>, out: &mut [f64]) {
     macro_rules! each {
-        ($($name:ident),*) => {
-            match function { $(Unary::$name => map(a, out, |x| Unary::$name.apply(x)),)* }
+        ($($name:ident),*; $($block:ident),*) => {
+            match function {
+                $(Unary::$name => map(a, out, |x| Unary::$name.apply(x)),)*
+                $(Unary::$block => block::<elementary::$block>(a, out),)*
+            }
         };
     }
-    each!(Negate, Abs, Sqrt, Exp, Ln, Log10, Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh, Tanh, Floor, Ceil, Sign);
+    each!(
+        Negate, Abs, Sqrt, Log10, Asin, Atan, Sinh, Cosh, Tanh, Floor, Ceil, Sign;
+        Exp, Ln, Sin, Cos, Tan, Acos
+    );
+}
+
+fn block<E: Elementary>(a: Values<'_>, out: &mut [f64]) {
+    match a {
+        Values::Same(x) => out.fill(E::of(x)),
+        Values::Each(a) => E::map(a, out),
+    }
 }
 
 fn map(a: Values<'_>, out: &mut [f64], function: impl Fn(f64) -> f64) {
@@ -144,7 +158,9 @@ fn map(a: Values<'_>, out: &mut [f64], function: impl Fn(f64) -> f64) {
 fn binary(function: Binary, a: Values<'_>, b: Values<'_>, out: &mut [f64]) {
     macro_rules! each {
         ($($name:ident),*) => {
-            match function { $(Binary::$name => zip(a, b, out, |x, y| Binary::$name.apply(x, y)),)* }
+            match function {
+                $(Binary::$name => on_this_processor(Zip { a, b, out, function: |x, y| Binary::$name.apply(x, y) }),)*
+            }
         };
     }
     each!(
@@ -166,13 +182,26 @@ fn binary(function: Binary, a: Values<'_>, b: Values<'_>, out: &mut [f64]) {
     );
 }
 
-fn zip(a: Values<'_>, b: Values<'_>, out: &mut [f64], function: impl Fn(f64, f64) -> f64) {
-    match (a, b) {
-        (Values::Each(a), Values::Each(b)) => {
-            out.iter_mut().zip(a).zip(b).for_each(|((out, &x), &y)| *out = function(x, y));
+struct Zip<'a, F> {
+    a: Values<'a>,
+    b: Values<'a>,
+    out: &'a mut [f64],
+    function: F,
+}
+
+impl<F: Fn(f64, f64) -> f64> Work for Zip<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        let Self { a, b, out, function } = self;
+        match (a, b) {
+            (Values::Each(a), Values::Each(b)) => {
+                out.iter_mut().zip(a).zip(b).for_each(|((out, &x), &y)| *out = function(x, y));
+            }
+            (Values::Each(a), Values::Same(y)) => out.iter_mut().zip(a).for_each(|(out, &x)| *out = function(x, y)),
+            (Values::Same(x), Values::Each(b)) => out.iter_mut().zip(b).for_each(|(out, &y)| *out = function(x, y)),
+            (Values::Same(x), Values::Same(y)) => out.fill(function(x, y)),
         }
-        (Values::Each(a), Values::Same(y)) => out.iter_mut().zip(a).for_each(|(out, &x)| *out = function(x, y)),
-        (Values::Same(x), Values::Each(b)) => out.iter_mut().zip(b).for_each(|(out, &y)| *out = function(x, y)),
-        (Values::Same(x), Values::Same(y)) => out.fill(function(x, y)),
     }
 }

@@ -1,5 +1,7 @@
 //! The functions and operators that formulas know, on numbers.
 
+use crate::elementary::{self, Elementary};
+
 /// A function or operator of one argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Unary {
@@ -142,14 +144,14 @@ impl Unary {
             Self::Negate => -x,
             Self::Abs => x.abs(),
             Self::Sqrt => x.sqrt(),
-            Self::Exp => x.exp(),
-            Self::Ln => x.ln(),
+            Self::Exp => elementary::Exp::of(x),
+            Self::Ln => elementary::Ln::of(x),
             Self::Log10 => x.log10(),
-            Self::Sin => x.sin(),
-            Self::Cos => x.cos(),
-            Self::Tan => x.tan(),
+            Self::Sin => elementary::Sin::of(x),
+            Self::Cos => elementary::Cos::of(x),
+            Self::Tan => elementary::Tan::of(x),
             Self::Asin => x.asin(),
-            Self::Acos => x.acos(),
+            Self::Acos => elementary::Acos::of(x),
             Self::Atan => x.atan(),
             Self::Sinh => x.sinh(),
             Self::Cosh => x.cosh(),

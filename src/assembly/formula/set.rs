@@ -168,12 +168,25 @@ impl FormulaSet {
         variable: impl Fn(usize) -> &'v [f64],
         mut result: impl FnMut(usize, usize, f64),
     ) {
+        self.evaluate_blocks(formulas, rows, variable, |formula, first, values| {
+            values.iter().enumerate().for_each(|(lane, &value)| result(formula, first + lane, value));
+        });
+    }
+
+    /// The same, handing out the values of some rows together, from a first row on.
+    pub(crate) fn evaluate_blocks<'v>(
+        &self,
+        formulas: &[usize],
+        rows: usize,
+        variable: impl Fn(usize) -> &'v [f64],
+        mut result: impl FnMut(usize, usize, &[f64]),
+    ) {
         let program = self.program(formulas);
         let mut machine = Machine::new(&program);
         for first in (0..rows).step_by(LANES) {
             let lanes = LANES.min(rows - first);
             machine.run(lanes, &|index| &variable(index)[first..], |formula, values| {
-                values.enumerate().for_each(|(lane, value)| result(formula, first + lane, value));
+                result(formula, first, values);
             });
         }
     }

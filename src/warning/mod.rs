@@ -1,5 +1,7 @@
 //! Warnings: where an assumption of the method fails, what that means, and what to try.
 
+mod message;
+
 /// Something that a reader of the results must know.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -55,6 +57,58 @@ pub enum Warning {
         samples: u64,
         /// Why, of the first.
         error: String,
+    },
+    /// Most of a small probability rests on one drawn point.
+    HeavyPoint {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit that it lies beyond.
+        limit: f64,
+        /// The part of the estimate that is this point's.
+        part: f64,
+    },
+    /// No drawn point lies beyond a limit.
+    NothingBeyond {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit.
+        limit: f64,
+        /// Points drawn.
+        points: u64,
+        /// What the probability may be at most.
+        most: f64,
+    },
+    /// What importance sampling found, plain sampling would have found with fewer points.
+    PlainSampling {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit.
+        limit: f64,
+        /// Points that a plain sample would have taken.
+        plain: f64,
+        /// Points that were evaluated.
+        evaluations: u64,
+    },
+    /// Moments could not be had by a method that is no difference plan.
+    LostMoments {
+        /// The characteristic.
+        characteristic: String,
+        /// Why not, in words.
+        because: String,
+    },
+    /// Rules of three nodes do not integrate high powers of what is curved.
+    ShallowRules {
+        /// The characteristic.
+        characteristic: String,
+        /// The share of its variance that curvature adds.
+        share: f64,
+    },
+    /// A surface of least squares misses the values that it was fitted to.
+    PoorFit {
+        /// The characteristic.
+        characteristic: String,
+        /// The residual standard error, in sigmas.
+        residual: f64,
     },
     /// A derivative could not be had.
     LostDerivative {
@@ -212,6 +266,8 @@ pub enum Warning {
     NoSamplingInterval {
         /// The dimension.
         dimension: String,
+        /// Whether because dimensions are correlated; else because the method has no surrogate.
+        correlated: bool,
     },
     /// Measured values that are rounded too coarsely.
     CoarseResolution {
@@ -252,18 +308,91 @@ pub enum Warning {
         /// An interval that no assembly leaves, and the boxes of interval arithmetic that it took; for formulas.
         bounds: Option<([f64; 2], usize)>,
     },
-    /// `auto` was asked for.
-    AutoIsSecondOrder,
-}
-
-fn lie(count: usize) -> &'static str {
-    if count == 1 { "lies" } else { "lie" }
-}
-
-/// Values with their lines, and whether there are more of them.
-fn values_and_lines(first: &[(f64, u64)], count: usize) -> String {
-    let named: Vec<String> = first.iter().map(|(value, line)| format!("{value} (line {line})")).collect();
-    format!("{}{}", named.join(", "), if count > first.len() { ", ..." } else { "" })
+    /// Two slopes of a characteristic meet within reach.
+    Kink {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which they do.
+        dimension: String,
+        /// On the left and on the right, per sigma of the dimension, in sigmas of the characteristic.
+        slopes: [f64; 2],
+        /// Between which places, in sigmas off the mean.
+        between: [f64; 2],
+    },
+    /// A characteristic jumps within reach.
+    Discontinuity {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which it does.
+        dimension: String,
+        /// By how many of its sigmas.
+        by: f64,
+        /// Between which places, in sigmas off the mean.
+        between: [f64; 2],
+    },
+    /// Powers beyond the second have a visible part.
+    HigherOrder {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which they have.
+        dimension: String,
+        /// Third and fourth coefficient, in sigmas of the characteristic.
+        coefficients: [f64; 2],
+        /// Whether the surrogate has them.
+        held: bool,
+    },
+    /// Answers next to the means scatter.
+    Scatter {
+        /// The characteristic.
+        characteristic: String,
+        /// What they scatter by, in sigmas of the characteristic.
+        scatter: f64,
+        /// Dimensions whose second difference is no more than that makes.
+        drowned: usize,
+    },
+    /// The model has no value at points of the distribution, though it has one wherever differences were taken.
+    DomainEdgeWithin {
+        /// The characteristic.
+        characteristic: String,
+        /// At how many points.
+        failed: usize,
+        /// Of how many that check.
+        points: usize,
+    },
+    /// Interactions, or what else the surrogate does not have, are in the variance as an unexplained part.
+    InteractionsLeftOut {
+        /// The characteristic.
+        characteristic: String,
+        /// Their share of the variance.
+        share: f64,
+    },
+    /// Model and surrogate differ at the points that check.
+    UntrustedSurrogate {
+        /// The characteristic.
+        characteristic: String,
+        /// The share of the variance that the surrogate does not have.
+        share: f64,
+        /// Points of the model on which the moments rest instead; None where there was no money for them.
+        sampled: Option<u64>,
+    },
+    /// The estimated error is larger than wanted.
+    UnderResolved {
+        /// The characteristic.
+        characteristic: String,
+        /// The relative error of sigma, as estimated.
+        error: f64,
+        /// As wanted.
+        wanted: f64,
+        /// Whether the budget was the reason.
+        budget: bool,
+    },
+    /// Four moments that a distribution with several peaks has.
+    SeveralModes {
+        /// The characteristic.
+        characteristic: String,
+        /// `(skewness^2 + 1)/kurtosis`: 5/9 for a uniform distribution, 1 for one with two values.
+        coefficient: f64,
+    },
 }
 
 /// How a search for extremes ended.
@@ -299,6 +428,12 @@ impl Warning {
             Self::UnusedDimension { .. } => "unused-dimension",
             Self::UnusedName { .. } => "unused-name",
             Self::FailedPoints { .. } | Self::FailedSamples { .. } => "failed-points",
+            Self::HeavyPoint { .. } => "untrusted-surrogate",
+            Self::NothingBeyond { .. } => "under-resolved",
+            Self::PlainSampling { .. } => "plain-sampling",
+            Self::LostMoments { .. } => "lost-moments",
+            Self::ShallowRules { .. } => "higher-order",
+            Self::PoorFit { .. } => "untrusted-surrogate",
             Self::LostDerivative { .. } => "lost-derivative",
             Self::DomainEdge { .. } => "domain-edge",
             Self::SupportEdge { .. } => "support-edge",
@@ -323,7 +458,15 @@ impl Warning {
             Self::FitReplaced { .. } => "fit-replaced",
             Self::NotConfirmed => "not-confirmed",
             Self::ConfirmationMisses { .. } => "confirmation-misses",
-            Self::AutoIsSecondOrder => "auto-is-second-order",
+            Self::Kink { .. } => "kink",
+            Self::Discontinuity { .. } => "discontinuity",
+            Self::HigherOrder { .. } => "higher-order",
+            Self::Scatter { .. } => "noise",
+            Self::DomainEdgeWithin { .. } => "domain-edge",
+            Self::InteractionsLeftOut { .. } => "interactions-left-out",
+            Self::UntrustedSurrogate { .. } => "untrusted-surrogate",
+            Self::UnderResolved { .. } => "under-resolved",
+            Self::SeveralModes { .. } => "several-modes",
         }
     }
 
@@ -332,6 +475,12 @@ impl Warning {
         match self {
             Self::FailedPoints { characteristic, .. }
             | Self::FailedSamples { characteristic, .. }
+            | Self::HeavyPoint { characteristic, .. }
+            | Self::NothingBeyond { characteristic, .. }
+            | Self::PlainSampling { characteristic, .. }
+            | Self::LostMoments { characteristic, .. }
+            | Self::ShallowRules { characteristic, .. }
+            | Self::PoorFit { characteristic, .. }
             | Self::LostDerivative { characteristic, .. }
             | Self::DomainEdge { characteristic, .. }
             | Self::LongTail { characteristic, .. }
@@ -343,6 +492,15 @@ impl Warning {
             | Self::NearInfeasibleMoments { characteristic, .. }
             | Self::NotProven { characteristic, .. }
             | Self::ConfirmationMisses { characteristic, .. }
+            | Self::Kink { characteristic, .. }
+            | Self::Discontinuity { characteristic, .. }
+            | Self::HigherOrder { characteristic, .. }
+            | Self::Scatter { characteristic, .. }
+            | Self::DomainEdgeWithin { characteristic, .. }
+            | Self::InteractionsLeftOut { characteristic, .. }
+            | Self::UntrustedSurrogate { characteristic, .. }
+            | Self::UnderResolved { characteristic, .. }
+            | Self::SeveralModes { characteristic, .. }
             | Self::RssInvalid { characteristic, .. } => Some(characteristic),
             _ => None,
         }
@@ -357,192 +515,16 @@ impl Warning {
             | Self::MissingValues { dimension, .. }
             | Self::Outliers { dimension, .. }
             | Self::SmallSample { dimension, .. }
-            | Self::NoSamplingInterval { dimension }
+            | Self::NoSamplingInterval { dimension, .. }
             | Self::CoarseResolution { dimension, .. }
             | Self::OutsideBand { dimension, .. }
             | Self::FitReplaced { dimension }
+            | Self::Kink { dimension, .. }
+            | Self::Discontinuity { dimension, .. }
+            | Self::HigherOrder { dimension, .. }
             | Self::SupportEdge { dimension, .. } => Some(dimension),
             Self::LostDerivative { dimensions, .. } => dimensions.first().map(String::as_str),
             _ => None,
-        }
-    }
-
-    /// Cause, consequence, and what to try.
-    pub fn message(&self) -> String {
-        match self {
-            Self::UnusedDimension { dimension } => {
-                format!("no asked characteristic depends on dimension `{dimension}`: it has no part in the result")
-            }
-            Self::UnusedName { what, name } => format!("no characteristic uses the {what} `{name}`"),
-            Self::FailedPoints { characteristic, failed, points, point, error } => {
-                format!("`{characteristic}` has no value at {failed} of {points} points; first at {point}: {error}")
-            }
-            Self::FailedSamples { characteristic, failed, samples, error } => format!(
-                "`{characteristic}` has no value at {failed} of {samples} points, and everything said of it is about the \
-                 others; the first: {error}"
-            ),
-            Self::LostDerivative { characteristic, dimensions, loss } => {
-                let to = dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ");
-                match loss {
-                    Loss::Centre => format!(
-                        "`{characteristic}` has no value at the means, from which every difference is taken: it has no \
-                         derivatives and no moments; check the nominal dimensions"
-                    ),
-                    Loss::Slope => format!(
-                        "`{characteristic}` could not be differentiated by {to}: it has no moments; \
-                         keep the model defined around the mean, or give the dimension a smaller step"
-                    ),
-                    Loss::Curvature => format!(
-                        "`{characteristic}` could be differentiated by {to} on one side only: its curvature there is \
-                         unknown and left out of the moments; a smaller --step may help"
-                    ),
-                    Loss::Mixed => format!(
-                        "the interaction of {to} in `{characteristic}` could not be evaluated and is left out of the \
-                         moments; a smaller --step may help"
-                    ),
-                    Loss::OneSidedMixed => format!(
-                        "the interaction of {to} in `{characteristic}` could be evaluated at some of its corners only: \
-                         it is less exact"
-                    ),
-                }
-            }
-            Self::DomainEdge { characteristic, dimension, failed, used } => format!(
-                "`{characteristic}` has no value with `{dimension}` at {failed:+.3} sigma: {used:+.3} sigma was used, and \
-                 part of the assemblies may have no value at all"
-            ),
-            Self::SupportEdge { dimension, from, to } => format!(
-                "the node of `{dimension}` at {from:+.3} sigma lies outside its distribution and was moved to \
-                 {to:+.3}, its partner with it: its fourth moment is matched less exactly"
-            ),
-            Self::LongTail { characteristic, dimension, farthest, reach, share } => format!(
-                "`{characteristic}` is curved along `{dimension}` ({:.1} % of its variance), whose tail counts up to \
-                 {reach:.0} sigma, while the model was evaluated up to {farthest:.1}: skewness, kurtosis and yield rest on what \
-                 it does beyond; compare --method second-order with six-n",
-                100.0 * share
-            ),
-            Self::NoReaction { characteristic } => format!(
-                "`{characteristic}` is the same at every point that was evaluated: check that the model uses the dimensions, and examine interactions \
-                 (--method full)"
-            ),
-            Self::Atom { characteristic, points } => format!(
-                "`{characteristic}` is exactly 0 at {points} points: a distance that ends at contact hides interference; \
-                 let the model offer a signed measure"
-            ),
-            Self::Noise { characteristic, rounding } => format!(
-                "one rounding error of `{characteristic}` is {rounding:.1e} of its sigma: differences lose that much; \
-                 measure it from a nearer datum"
-            ),
-            Self::PairsNotExamined { examined, possible } => format!(
-                "{examined} of {possible} interactions were examined: what the others add to sigma is unknown; \
-                 --method full examines all"
-            ),
-            Self::RssInvalid { characteristic, mean_shift, variance } => format!(
-                "`{characteristic}` is curved: second order moves its mean by {mean_shift:+.2} sigma and adds {:.1} % to \
-                 its variance; use --method second-order",
-                100.0 * variance
-            ),
-            Self::History { output, expected, found, flip, times, points, suspects } => {
-                let value = |value: &Option<f64>| value.map_or("no value".to_owned(), |value| value.to_string());
-                let cause = match flip {
-                    true => "the model seems to have settled in another solution: reset it before every point",
-                    false => "its answers depend on what it was asked before: reset it before every point",
-                };
-                let times = if *times == 1 { "once".to_owned() } else { format!("{times} times") };
-                format!(
-                    "`{output}` at the nominal dimensions was {} at first and {} later ({times}): {cause}; {points} points were \
-                     evaluated again by a fresh process{}",
-                    value(expected),
-                    value(found),
-                    if suspects.is_empty() { String::new() } else { format!(", among them {}", suspects.join("; ")) }
-                )
-            }
-            Self::NearSingular { unknown, condition } => format!(
-                "the nominal position is nearly singular: the conditions hardly hold `{unknown}` (condition number \
-                 {condition:.1e}); small deviations move it far, and some assemblies may not close at all"
-            ),
-            Self::InfeasibleMoments { characteristic, reason } => format!(
-                "`{characteristic}` has no yield: {reason}. Either it has two values indeed, or a strong interaction was \
-                 not examined (try --method full), or the `moments` of a dimension are rounded"
-            ),
-            Self::NearInfeasibleMoments { characteristic, skewness, kurtosis } => format!(
-                "the kurtosis {kurtosis:.4} of `{characteristic}` is hardly above 1 + skewness^2 = {:.4}, the least that there \
-                 is: it has nearly two values only, and its yield hangs on every digit of that",
-                1.0 + skewness * skewness
-            ),
-            Self::MissingValues { dimension, file, missing, rows, lines } => {
-                let named = lines.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
-                let more = if missing > &lines.len() { ", ..." } else { "" };
-                format!(
-                    "{missing} of {rows} values of `{dimension}` {} missing in {file} (lines {named}{more}): the others \
-                     stand for all",
-                    if *missing == 1 { "is" } else { "are" }
-                )
-            }
-            Self::Outliers { dimension, file, count, values, first } => format!(
-                "{count} of {values} values of `{dimension}` in {file} {} farther out than a normal sample of this size \
-                 reaches: {}; kept all the same, as a skewed law may have such values: take out what was measured wrongly",
-                lie(*count),
-                values_and_lines(first, *count)
-            ),
-            Self::SmallSample { dimension, values, enough } => format!(
-                "`{dimension}` is known by {values} values: its skewness and everything beyond are guesses below {enough}; \
-                 mind the sampling interval"
-            ),
-            Self::NoSamplingInterval { dimension } => format!(
-                "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed where dimensions are \
-                 correlated; leave [[correlation]] out to see it"
-            ),
-            Self::CoarseResolution { dimension, resolution, sigma, distinct } => format!(
-                "the {distinct} different values of `{dimension}` lie {:.2} sigma apart or more: rounding has a part in sigma; \
-                 measure with a finer resolution",
-                resolution / sigma
-            ),
-            Self::OutsideBand { dimension, count, values, first, mean_too } => format!(
-                "{count} of {values} measured values of `{dimension}` {} outside its tolerance: {}{}",
-                lie(*count),
-                values_and_lines(first, *count),
-                if *mean_too { "; so does their mean: check column and unit" } else { "" }
-            ),
-            Self::NotProven { characteristic, evaluations, ended, failed, failure, bounds } => {
-                let doubt = match bounds {
-                    Some(([lower, upper], boxes)) => format!(
-                        "interval arithmetic on {boxes} boxes shows only that no assembly lies outside {lower} .. {upper}"
-                    ),
-                    None => "an assembly beyond them cannot be ruled out, as it can for formulas".to_owned(),
-                };
-                let cut = match ended {
-                    Ended::Converged => "",
-                    Ended::Budget => "; the budget ended the search: allow more evaluations with --budget",
-                    Ended::Stopped => "; the search was stopped before its end",
-                };
-                let lost = match failure {
-                    Some(reason) => format!("; {failed} of its points have no value and were left out: {reason}"),
-                    None => String::new(),
-                };
-                format!(
-                    "the extremes of `{characteristic}` are the best of {evaluations} evaluations and not proven: {doubt}\
-                     {cut}{lost}"
-                )
-            }
-            Self::FitReplaced { dimension } => format!(
-                "`{dimension}` was a fit of ISO 286 and is a plain tolerance now: choose the class that is nearest, and require it \
-                 as a process, if it has to be one"
-            ),
-            Self::ConfirmationMisses { characteristic, required, interval: [low, high] } => format!(
-                "`{characteristic}` keeps its limits in {:.4} .. {:.4} % of the model's own sample, and {:.4} % are required: four moments \
-                 do not say enough of its tails; require more, or a Cpk",
-                100.0 * low,
-                100.0 * high,
-                100.0 * required
-            ),
-            Self::NotConfirmed => {
-                "the tolerances rest on derivatives at others: the budget or the time did not allow to ask the model there; \
-                 allow more, or analyze the study that --write writes"
-                    .into()
-            }
-            Self::AutoIsSecondOrder => {
-                "method auto is not built yet and stands for second-order; --method full adds every interaction".into()
-            }
         }
     }
 }

@@ -1,0 +1,167 @@
+//! Where a surrogate is not trusted: points of the model itself, with the surrogate as control variate.
+
+use super::CharacteristicAnalysis;
+use super::errors::of_yield;
+use crate::assembly::Run;
+use crate::capability::{Capability, Law};
+use crate::method::{Climbed, ErrorEstimate, Options, Outcome, Source};
+use crate::moments::Moments;
+use crate::problem::Problem;
+use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler};
+use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
+
+/// Points of a cheap model, at most;
+const MOST: u64 = 1 << 18;
+/// and with fewer of a costly one it is better not begun.
+const FEWEST: u64 = 48;
+/// Points of the first attempt, at the least.
+const FIRST: u64 = 1 << 10;
+/// Points are drawn until a standard error is this part of what is wanted, so that two of them keep it.
+const PART: f64 = 0.5;
+/// By how much a second attempt exceeds the first.
+const MORE: u64 = 4;
+
+/// Points of the model in place of a surrogate that was not trusted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledModel {
+    /// Points.
+    pub samples: u64,
+    /// Points at which the model has no value, beside these.
+    pub failed: u64,
+    /// Why not, of the first.
+    pub error: Option<String>,
+    /// The share of the variance that the surrogate left unexplained at the check.
+    pub left: f64,
+    /// Standard errors of mean, sigma, skewness and kurtosis, as far as they are known.
+    pub standard_errors: [Option<f64>; 4],
+    /// The share of the sample within the limits with its 95 % interval.
+    pub yield_: Option<(f64, [f64; 2])>,
+}
+
+/// What the fallback cost.
+#[derive(Debug, Default)]
+pub(super) struct Spent {
+    pub(super) evaluations: usize,
+    pub(super) reused: usize,
+    pub(super) failed: usize,
+    pub(super) stages: usize,
+    pub(super) stopped: bool,
+    pub(super) in_model: std::time::Duration,
+}
+
+/// Replaces moments that are not known as well as they were wanted, where that can be paid.
+pub(super) fn fall_back(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    characteristics: &mut [CharacteristicAnalysis],
+    run: &Run<'_>,
+) -> Spent {
+    let mut spent = Spent::default();
+    let Some(climbed) = outcome.climbed.as_ref().filter(|_| !outcome.evaluated.stopped) else { return spent };
+    let short: Vec<usize> =
+        (0..characteristics.len()).filter(|&c| shortfall(&characteristics[c], climbed, c).is_some()).collect();
+    if short.is_empty() {
+        return spent;
+    }
+    let costly = problem.function().signature().costly;
+    let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations) as u64);
+    // A model whose evaluations cost something is sampled only from what was allowed for it.
+    let most = match (costly, left) {
+        (true, None) => 0,
+        (true, Some(left)) => left,
+        (false, left) => left.unwrap_or(MOST).min(MOST),
+    };
+    if most < FEWEST {
+        return spent;
+    }
+    let wanted = PART * climbed.accuracy;
+    let needed = short.iter().filter_map(|&c| shortfall(&characteristics[c], climbed, c)).fold(0.0, f64::max);
+    let few = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count() <= SOBOL_DIMENSIONS;
+    let sampler = if costly || !few { Sampler::Random } else { Sampler::Sobol };
+    let mut samples = ((needed / wanted).powi(2) as u64).clamp(FIRST, MOST).min(most);
+    while spent.evaluations as u64 + samples <= most {
+        // Sobol's points come in powers of two: not more of them than may be.
+        let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
+        let seed = Options::SEED;
+        let wish = SimulationOptions { samples: points.max(2), sampler, seed, ..SimulationOptions::default() };
+        let Ok(found) = simulate_beside(problem, &wish, outcome, run) else { return spent };
+        spent.add(&found);
+        if found.stopped {
+            return spent;
+        }
+        let enough = short.iter().all(|&c| known(&found.characteristics[c]).is_some_and(|error| error <= wanted));
+        let last = enough || spent.evaluations as u64 + MORE * samples > most;
+        if last {
+            for &c in &short {
+                replace(&mut characteristics[c], climbed, c, &found.characteristics[c]);
+            }
+            return spent;
+        }
+        samples *= MORE;
+    }
+    spent
+}
+
+/// How far off sigma may be, as a part of it, where that is more than wanted; None where it is not.
+fn shortfall(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> Option<f64> {
+    let (moments, check) = (one.moments?, climbed.checked[c].as_ref()?);
+    let error = one.error_estimate.as_ref()?.sigma?;
+    let variance = moments.variance();
+    // What is left alone decides how many points a control variate takes.
+    (error > climbed.accuracy * moments.sigma()).then(|| (check.variance / variance).sqrt().clamp(0.01, 1.0))
+}
+
+/// The relative standard error of sigma.
+fn known(found: &SimulatedCharacteristic) -> Option<f64> {
+    let sigma = found.sigma?;
+    Some(sigma.standard_error? / sigma.value)
+}
+
+fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found: &SimulatedCharacteristic) {
+    let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return };
+    let (Some(skewness), Some(kurtosis)) = (found.skewness, found.kurtosis) else { return };
+    let before = one.moments.map_or(0.0, |moments| moments.variance());
+    let moments = Moments::new(mean.value, sigma.value, skewness.value, kurtosis.value - 3.0);
+    let limits = one.characteristic.limits();
+    let capability = |law: &Law| Capability::of(law, moments.mean(), moments.sigma(), limits);
+    let law = Law::fit(&moments);
+    one.capability = law.as_ref().ok().map(capability);
+    one.normal = Law::normal(&moments).ok().map(|law| capability(&law));
+    let error = |estimate: Estimate| estimate.standard_error;
+    let standard_errors = [error(mean), error(sigma), error(skewness), error(kurtosis)];
+    let sources = vec![Source::Sampled { points: found.samples }];
+    let [mean, sigma, skewness, kurtosis] = standard_errors;
+    let estimate = ErrorEstimate { mean, sigma, skewness, kurtosis, yield_: None, sources };
+    let yield_ = found.yield_.map(|share| (share.value, share.interval));
+    // The fit of four moments is off the sample itself by what it is off, and the sample by its interval.
+    let of_fit = one.capability.and_then(|capability| capability.yield_()).zip(yield_);
+    let off = of_fit.map(|(fit, (value, [low, high]))| (fit - value).abs() + 0.25 * (high - low));
+    let of_moments = of_yield(&estimate, &moments, limits);
+    one.error_estimate =
+        Some(ErrorEstimate { yield_: of_moments.map(|error| error.max(off.unwrap_or(0.0))), ..estimate });
+    one.law = Some(law);
+    one.moments = Some(moments);
+    one.sampled = None;
+    let left =
+        climbed.checked[c].as_ref().map_or(0.0, |check| if before > 0.0 { check.variance / before } else { 1.0 });
+    one.model_sampled = Some(SampledModel {
+        samples: found.samples,
+        failed: found.failed,
+        error: found.error.as_ref().map(ToString::to_string),
+        left: left.min(1.0),
+        standard_errors,
+        yield_,
+    });
+}
+
+impl Spent {
+    fn add(&mut self, found: &Simulation) {
+        self.evaluations += found.evaluations as usize;
+        self.reused += found.reused as usize;
+        self.failed += found.failed as usize;
+        self.stages += 1;
+        self.stopped |= found.stopped;
+        self.in_model += found.in_model;
+    }
+}

@@ -1,0 +1,79 @@
+//! What the variance is made of, wherever a method has it from.
+
+use crate::method::{Fitted, Integrated};
+use crate::moments::{Contributions, Moments, Sampled};
+use crate::surrogate::Inputs;
+
+/// Moments and contributions: of a surrogate, or integrated without one.
+pub(super) enum Shares {
+    Surrogate(Contributions),
+    Integrated(Integrated),
+}
+
+impl Shares {
+    pub(super) fn of(fitted: &Fitted, inputs: &Inputs) -> Option<Self> {
+        match &fitted.integrated {
+            Some(integrated) => Some(Self::Integrated(integrated.clone())),
+            None => fitted.surrogate.as_ref()?.contributions(inputs).map(Self::Surrogate),
+        }
+    }
+
+    /// Beside an independent part with this variance.
+    pub(super) fn beside(self, variance: Option<f64>) -> Self {
+        match (self, variance) {
+            (Self::Surrogate(contributions), Some(variance)) => Self::Surrogate(contributions.beside(variance)),
+            (shares, _) => shares,
+        }
+    }
+
+    pub(super) fn moments(&self) -> Moments {
+        match self {
+            Self::Surrogate(contributions) => contributions.moments,
+            Self::Integrated(integrated) => integrated.moments,
+        }
+    }
+
+    pub(super) fn sampled(&self) -> Option<Sampled> {
+        match self {
+            Self::Surrogate(contributions) => contributions.sampled,
+            Self::Integrated(_) => None,
+        }
+    }
+
+    pub(super) fn linear(&self, position: usize) -> Option<f64> {
+        match self {
+            Self::Surrogate(contributions) => Some(contributions.linear[position]),
+            Self::Integrated(integrated) => Some(integrated.own[position]?.linear),
+        }
+    }
+
+    pub(super) fn curvature(&self, position: usize) -> Option<f64> {
+        match self {
+            Self::Surrogate(contributions) => Some(contributions.curvature[position]),
+            Self::Integrated(integrated) => Some(integrated.own[position]?.curvature),
+        }
+    }
+
+    pub(super) fn mean_shift(&self, position: usize) -> Option<f64> {
+        match self {
+            Self::Surrogate(contributions) => Some(contributions.mean_shift[position]),
+            Self::Integrated(integrated) => integrated.own[position]?.mean_shift,
+        }
+    }
+
+    /// Of the pair at this place among those examined, with its coefficient.
+    pub(super) fn pair(&self, index: usize, (j, k): (usize, usize), coefficient: Option<f64>) -> Option<f64> {
+        match self {
+            Self::Surrogate(contributions) => Some(contributions.share(j, k, coefficient?)),
+            Self::Integrated(integrated) => Some(integrated.pairs[index]?.share),
+        }
+    }
+
+    /// How far the pair at this place moves the mean, with its coefficient and the correlation of the two.
+    pub(super) fn pair_shift(&self, index: usize, coefficient: Option<f64>, together: f64) -> Option<f64> {
+        match self {
+            Self::Surrogate(_) => Some(coefficient? * together),
+            Self::Integrated(integrated) => integrated.pairs[index]?.mean_shift,
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Where a surrogate does not do what the moments take it to do.
+
+use super::CharacteristicAnalysis;
+use super::shapes::{Shape, higher, shape};
+use crate::method::{Climbed, Outcome, Rest};
+use crate::plan::Point;
+use crate::problem::Problem;
+use crate::warning::Warning;
+
+/// A second difference below this part of sigma does not matter: what it bends is far below what anybody wants to know.
+const BEND: f64 = 1e-3;
+/// The share of the variance from which powers beyond the second are worth a warning, where the surrogate has them,
+const HELD: f64 = 0.01;
+/// and where it has not, by how much they move sigma.
+const SCATTER: f64 = 1e-4;
+/// Variance that is left unexplained is worth a warning from here on,
+const LEFT_OUT: f64 = 1e-3;
+/// and from here on the surrogate is no surrogate.
+const UNTRUSTED: f64 = 0.05;
+
+pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Vec<Warning> {
+    let Some(sigma) = analysis.moments.map(|moments| moments.sigma()).filter(|&sigma| sigma > 0.0) else {
+        return Vec::new();
+    };
+    let mut warnings = axes(problem, outcome, c, sigma);
+    if let Some(climbed) = &outcome.climbed {
+        warnings.extend(climb(outcome, climbed, c, (analysis, sigma)));
+    }
+    warnings
+}
+
+/// Kinks, jumps and higher powers along the axes that have five points.
+fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warning> {
+    let plan = &outcome.plan;
+    let characteristic = || problem.characteristics()[c].name().to_owned();
+    let least = BEND * sigma + 64.0 * f64::EPSILON * outcome.fitted[c].centre.unwrap_or(0.0).abs();
+    let mut warnings = Vec::new();
+    for (position, &d) in plan.varying().iter().enumerate() {
+        let Some(samples) = plan.samples(&outcome.evaluated.known, c, d).filter(|_| plan.depends(c, d)) else {
+            continue;
+        };
+        let dimension = || problem.dimensions()[d].name().to_owned();
+        match shape(&samples, least) {
+            Some(Shape::Kink { slopes, between }) => {
+                let slopes = slopes.map(|slope| slope / sigma);
+                warnings.push(Warning::Kink {
+                    characteristic: characteristic(),
+                    dimension: dimension(),
+                    slopes,
+                    between,
+                });
+                continue;
+            }
+            Some(Shape::Jump { by, between }) => {
+                let by = by / sigma;
+                warnings.push(Warning::Discontinuity {
+                    characteristic: characteristic(),
+                    dimension: dimension(),
+                    by,
+                    between,
+                });
+                continue;
+            }
+            None => {}
+        }
+        let Some([third, fourth]) = outcome.fitted[c].parts[d].as_ref().and_then(higher) else { continue };
+        let coefficients = [third / sigma, fourth / sigma];
+        let rule = &plan.inputs().shapes()[position].rule;
+        // As far as no parabola has them: the powers by themselves, less their best straight line and constant.
+        let share = rule.mean(|u| {
+            (coefficients[0] * (u.powi(3) - 3.0 * u) + coefficients[1] * (u.powi(4) - 6.0 * u * u + 3.0)).powi(2)
+        });
+        if share > HELD {
+            let (characteristic, dimension) = (characteristic(), dimension());
+            warnings.push(Warning::HigherOrder { characteristic, dimension, coefficients, held: true });
+        }
+    }
+    warnings
+}
+
+/// What `auto` has found out about its surrogate.
+fn climb(
+    outcome: &Outcome,
+    climbed: &Climbed,
+    c: usize,
+    (analysis, sigma): (&CharacteristicAnalysis, f64),
+) -> Vec<Warning> {
+    let characteristic = || analysis.characteristic.name().to_owned();
+    let mut warnings = Vec::new();
+    if let Some(scatter) = climbed.noise[c].map(|scatter| scatter / sigma).filter(|&scatter| scatter > SCATTER) {
+        // A second difference of values that scatter: root of six of it.
+        let drowned = |&&d: &&usize| {
+            let samples = outcome.plan.samples(&outcome.evaluated.known, c, d).unwrap_or_default();
+            let sum = |u: f64| samples.iter().find(|(node, _)| *node == u).map(|(_, rise)| rise / sigma);
+            let inner = outcome
+                .plan
+                .axis(d)
+                .inner
+                .each_ref()
+                .map(|slot| slot.as_ref().map(|slot| outcome.plan.axis(d).nodes[slot[0] as usize].u));
+            let [Some(left), Some(right)] = inner else { return false };
+            sum(left).zip(sum(right)).is_some_and(|(a, b)| (a + b).abs() < 2.0 * 6f64.sqrt() * scatter)
+        };
+        let drowned = outcome.plan.varying().iter().filter(|&&d| outcome.plan.depends(c, d)).filter(drowned).count();
+        warnings.push(Warning::Scatter { characteristic: characteristic(), scatter, drowned });
+    }
+    let Some(check) = &climbed.checked[c] else { return warnings };
+    let beyond = usize::from(climbed.tails[c].is_some_and(f64::is_infinite));
+    if check.failed + beyond > 0 && outcome.evaluated.known.value(&Point::Centre, c).is_some() {
+        let (failed, points) = (check.failed + beyond, check.failed + check.points + beyond);
+        warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points });
+    }
+    let sampled = analysis.model_sampled.as_ref();
+    if let Some((sampled, error)) = sampled.and_then(|sampled| Some((sampled, sampled.error.as_ref()?))) {
+        warnings.push(Warning::FailedSamples {
+            characteristic: characteristic(),
+            failed: sampled.failed,
+            samples: sampled.samples + sampled.failed,
+            error: error.clone(),
+        });
+    }
+    let share = sampled.map_or(check.variance / (sigma * sigma), |sampled| sampled.left);
+    if share > UNTRUSTED {
+        let sampled = sampled.map(|sampled| sampled.samples);
+        warnings.push(Warning::UntrustedSurrogate { characteristic: characteristic(), share, sampled });
+    } else if share > LEFT_OUT && sampled.is_none() {
+        warnings.push(Warning::InteractionsLeftOut { characteristic: characteristic(), share });
+    }
+    let error = analysis.error_estimate.as_ref().and_then(|estimate| Some(estimate.sigma? / sigma));
+    if let Some(error) = error.filter(|&error| error > climbed.accuracy) {
+        let (wanted, budget) = (climbed.accuracy, climbed.rest == Rest::Budget);
+        warnings.push(Warning::UnderResolved { characteristic: characteristic(), error, wanted, budget });
+    }
+    warnings
+}

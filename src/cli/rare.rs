@@ -1,0 +1,62 @@
+//! `sensitol simulate --rare`.
+
+use super::args::SimulateArgs;
+use super::csv::CsvFolder;
+use super::failure::{Exit, Failure};
+use super::interrupt;
+use super::output::{Destination, Look, json};
+use super::running::Clock;
+use super::simulate::{sampling, surrogate};
+use crate::method::Options;
+use crate::rare::{RareOptions, rare_within};
+use crate::report::{CsvFile, RareCharacteristicReport, RareReport, rare_csv, rare_text};
+use crate::study::Study;
+
+/// Points unless the user says otherwise, of a cheap model and of a costly one.
+const SAMPLES: [u64; 2] = [10_000, 1000];
+
+pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exit, Failure> {
+    let destination = Destination::open(&asked.output)?;
+    let names = ["rare.csv".to_owned()];
+    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
+    let costly = study.problem.function().signature().costly;
+    let options = RareOptions {
+        samples: asked.samples.unwrap_or(SAMPLES[usize::from(costly)]),
+        seed: asked.of.seed.or(study.seed).unwrap_or(Options::SEED),
+        until: asked.until,
+        surrogate: surrogate(study, asked),
+    };
+    let clock = Clock::start(asked.of.time);
+    let threads = asked.of.threads;
+    let found = sampling(threads, &clock, look, |run, pace| rare_within(&study.problem, &options, run, pace))??;
+    let about = clock.about(study, Some(options.seed));
+    let report = RareReport::of(&study.problem, &found, about);
+    let written = destination.write(&if asked.output.json { json(&report) } else { rare_text(&report, look.style()) });
+    let written = written.and(folder.map_or(Ok(()), |folder| {
+        let [name] = names;
+        folder.write(&[CsvFile { name, text: rare_csv(&report) }])
+    }));
+    for warning in &report.warnings {
+        look.warn(warning.code, &warning.message);
+    }
+    let after = format!("after {} points", found.samples);
+    if interrupt::stopped() {
+        look.warn("stopped", &format!("interrupted {after}"));
+        written?;
+        return Ok(Exit::Interrupted);
+    }
+    if found.reached == Some(false) {
+        look.warn("under-resolved", &format!("{after} the standard errors are larger than wanted"));
+    } else if found.stopped {
+        look.warn("stopped", &format!("stopped by --time {after}"));
+    }
+    written?;
+    let nothing = |one: &RareCharacteristicReport| {
+        one.lower.or(one.upper).is_some() && one.below.is_none() && one.above.is_none()
+    };
+    if report.characteristics.iter().any(nothing) {
+        return Ok(Exit::NoResult);
+    }
+    let missed = report.characteristics.iter().any(|one| one.target_yield.is_some() && one.met != Some(true));
+    Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
+}

@@ -1,0 +1,148 @@
+//! Random normal and uniform values, a block at a time.
+
+use std::sync::LazyLock;
+
+use rand::{Rng, RngExt};
+use rand_distr::Open01;
+
+use crate::elementary::{Elementary, Exp, Ln, Work, on_this_processor};
+
+/// Layers: the density is cut into as many pieces of one area.
+const LAYERS: usize = 256;
+/// Where the tail begins, which with its rectangle is the first piece.
+const TAIL: f64 = 3.654_152_885_361_009;
+/// Fewer values than this are not worth a block.
+const FEW: usize = 8;
+/// Random words that are drawn at once.
+const WORDS: usize = 64;
+
+/// Widths of the layers and the density at their ends.
+struct Layers {
+    width: [f64; LAYERS + 1],
+    height: [f64; LAYERS + 1],
+}
+
+static NORMAL: LazyLock<Layers> = LazyLock::new(|| {
+    let density = |x: f64| Exp::of(-0.5 * x * x);
+    let beyond = (0.5 * std::f64::consts::PI).sqrt() * libm::erfc(TAIL * std::f64::consts::FRAC_1_SQRT_2);
+    let area = TAIL * density(TAIL) + beyond;
+    let mut width = [0.0; LAYERS + 1];
+    (width[0], width[1]) = (area / density(TAIL), TAIL);
+    for layer in 2..LAYERS {
+        let height = area / width[layer - 1] + density(width[layer - 1]);
+        width[layer] = (-2.0 * Ln::of(height)).sqrt();
+    }
+    Layers { width, height: width.map(density) }
+});
+
+/// Fills `out` with independent values of the standard normal distribution, by the ziggurat (Marsaglia and Tsang 2000) in the
+/// form of Doornik (2005): a layer by eight bits of a word, a place in it by 52 others.
+///
+/// `rand_distr` has the same, one value after the other; most of the time is the call. Here one in 80 wants more than a table
+/// and a comparison, and comes after the block.
+pub(crate) fn normals(rng: &mut dyn Rng, out: &mut [f64]) {
+    let layers = &*NORMAL;
+    if out.len() < FEW {
+        return out.iter_mut().for_each(|value| *value = layers.draw(rng));
+    }
+    let (mut words, mut doubtful) = ([[0; 8]; WORDS], [false; WORDS]);
+    for out in out.chunks_mut(WORDS) {
+        let (words, doubtful) = (&mut words[..out.len()], &mut doubtful[..out.len()]);
+        rng.fill_bytes(words.as_flattened_mut());
+        on_this_processor(Inner { layers, words: &*words, out: &mut *out, doubtful: &mut *doubtful });
+        for (eighth, doubtful) in doubtful.chunks(8).enumerate() {
+            if doubtful.iter().fold(false, |any, one| any | one) {
+                for place in (8 * eighth..).take(doubtful.len()).filter(|place| doubtful[place - 8 * eighth]) {
+                    let settled = layers.settled(u64::from_le_bytes(words[place]), rng);
+                    out[place] = settled.unwrap_or_else(|| layers.draw(rng));
+                }
+            }
+        }
+    }
+}
+
+/// The values of words that lie in the inner part of their layer, and which do not.
+struct Inner<'a> {
+    layers: &'a Layers,
+    words: &'a [[u8; 8]],
+    out: &'a mut [f64],
+    doubtful: &'a mut [bool],
+}
+
+impl Work for Inner<'_> {
+    type Output = ();
+
+    /// Tables first, one by one; then what goes side by side.
+    #[inline(always)]
+    fn work(self) {
+        let Self { layers, words, out, doubtful } = self;
+        let (mut outer, mut inner) = ([0.0; WORDS], [0.0; WORDS]);
+        for ((outer, inner), word) in outer.iter_mut().zip(&mut inner).zip(words) {
+            let layer = usize::from(word[0]);
+            (*outer, *inner) = (layers.width[layer], layers.width[layer + 1]);
+        }
+        for ((out, word), outer) in out.iter_mut().zip(words).zip(&outer) {
+            *out = symmetric(u64::from_le_bytes(*word)) * outer;
+        }
+        for ((doubtful, x), inner) in doubtful.iter_mut().zip(&*out).zip(&inner) {
+            *doubtful = x.abs() >= *inner;
+        }
+    }
+}
+
+impl Layers {
+    #[inline(always)]
+    fn place(&self, word: u64) -> (usize, f64) {
+        let layer = (word & (LAYERS as u64 - 1)) as usize;
+        (layer, symmetric(word) * self.width[layer])
+    }
+
+    fn draw(&self, rng: &mut dyn Rng) -> f64 {
+        loop {
+            let word = rng.next_u64();
+            let (layer, x) = self.place(word);
+            if x.abs() < self.width[layer + 1] {
+                return x;
+            }
+            if let Some(x) = self.settled(word, rng) {
+                return x;
+            }
+        }
+    }
+
+    /// The value of a word that lies in no layer's inner part; None where it is rejected.
+    #[cold]
+    fn settled(&self, word: u64, rng: &mut dyn Rng) -> Option<f64> {
+        let (layer, x) = self.place(word);
+        if layer > 0 {
+            let [low, high] = [self.height[layer], self.height[layer + 1]];
+            let height = low + (high - low) * rng.random::<f64>();
+            return (height < Exp::of(-0.5 * x * x)).then_some(x);
+        }
+        loop {
+            // Marsaglia's (1964) tail.
+            let beyond = -Ln::of(rng.sample(Open01)) / TAIL;
+            if -2.0 * Ln::of(rng.sample(Open01)) >= beyond * beyond {
+                return Some((TAIL + beyond).copysign(x));
+            }
+        }
+    }
+}
+
+/// A number from -1 to below 1 in steps of 2^-51, by the upper bits of a word.
+#[inline(always)]
+fn symmetric(word: u64) -> f64 {
+    f64::from_bits(word >> 12 | 0x4000_0000_0000_0000) - 3.0
+}
+
+/// Fills `out` with independent numbers evenly spread between -1 and 1.
+pub(crate) fn uniforms(rng: &mut dyn Rng, out: &mut [f64]) {
+    /// Half a step, so that -1 is as far as 1.
+    const MIDDLE: f64 = 1.0 / (1u64 << 52) as f64;
+    let mut bytes = [[0; 8]; WORDS];
+    for out in out.chunks_mut(WORDS) {
+        let bytes = &mut bytes[..out.len()];
+        rng.fill_bytes(bytes.as_flattened_mut());
+        out.iter_mut().zip(bytes).for_each(|(value, bytes)| *value = symmetric(u64::from_le_bytes(*bytes)) + MIDDLE);
+    }
+}

@@ -1,0 +1,469 @@
+//! Which points to buy next: from what is known to the next stage, evaluating nothing.
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::view::{Bought, Probe, View, skewed};
+use crate::plan::{DifferencePlan, Known, Point, Purpose, Stage, scattered};
+use crate::problem::Problem;
+
+/// Mirrored pairs of points in a set that checks: twelve points.
+const CHECKS: usize = 6;
+/// An estimated error above this part of what is wanted is worth a second set, where there are so many dimensions.
+const CONFIRM: f64 = 0.1;
+const CONFIRM_FROM: usize = 5;
+/// Sets that may sharpen an estimate which is no more than so many times what is wanted.
+const SETS: usize = 3;
+const NEAR: f64 = 2.0;
+/// Even powers above this part of what is wanted may be interactions that count.
+const PAIRS: f64 = 0.1;
+/// Characteristics that are looked at three sigma out along their steepest line, and how far within the support.
+const LINES: usize = 4;
+const FAR_OUT: f64 = 3.0;
+const WITHIN: f64 = 0.98;
+/// Curvature of this share of the variance has a line of its own, unless the cosine between the two is above that.
+const BENT: f64 = 1e-6;
+const PARALLEL: f64 = 0.9;
+/// Points next to the means stand this far off, in sigmas of every dimension.
+const NEXT_TO: f64 = 1e-3;
+/// Up to so many dimensions pairs are bought one by one: 2 x 18 probes would cost as much.
+const DIRECT: usize = 12;
+/// Probes that judge, and the first that are fitted.
+const JUDGING: usize = 12;
+const FITTED: usize = 6;
+/// By how much the probes that are fitted grow.
+const GROWTH: f64 = 1.25;
+/// Evaluations beyond which nothing is worth its price any more: so many times those of every second derivative, and these.
+const OVER_FULL: f64 = 1.3;
+const ON_TOP: usize = 16;
+/// The signs are the same for every study of as many dimensions, and no seed of anybody's.
+const KEY: u64 = 0x5e_75_17_02;
+
+/// How a climb ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rest {
+    /// Every characteristic is known as well as it was wanted, by the estimate.
+    Reached,
+    /// The budget does not allow what would be next.
+    Budget,
+    /// Nothing that could be bought is expected to help.
+    Exhausted,
+}
+
+/// Evaluations of derivatives beyond which it does not go, failed points apart.
+pub(super) fn most(n: usize) -> usize {
+    (OVER_FULL * (n * n + 3 * n + 1) as f64) as usize + ON_TOP
+}
+
+/// The state of a climb.
+pub(super) struct Climb<'p> {
+    problem: &'p Problem,
+    pub(super) plan: DifferencePlan,
+    pub(super) bought: Bought,
+    accuracy: f64,
+    budget: usize,
+    /// Evaluated so far, and what has been chosen since.
+    spent: usize,
+    /// Positions with five points, and those that have no five.
+    pub(super) refined: Vec<bool>,
+    sets: usize,
+    looked_out: bool,
+    /// Pairs are bought with all four corners.
+    squares: bool,
+    /// Every interaction is bought one by one.
+    pub(super) dense: bool,
+    short_of_budget: bool,
+    pub(super) rest: Option<Rest>,
+}
+
+impl<'p> Climb<'p> {
+    pub(super) fn new(problem: &'p Problem, plan: DifferencePlan, accuracy: f64, budget: Option<usize>) -> Self {
+        let refined = vec![false; plan.varying().len()];
+        let budget = budget.unwrap_or(usize::MAX);
+        let mut climb = Self {
+            problem,
+            plan,
+            bought: Bought::default(),
+            accuracy,
+            budget,
+            spent: 0,
+            refined,
+            sets: 0,
+            looked_out: false,
+            squares: false,
+            dense: false,
+            short_of_budget: false,
+            rest: None,
+        };
+        climb.spent = climb.plan.cost().0;
+        if !climb.plan.varying().is_empty() {
+            climb.check();
+            climb.listen();
+        }
+        climb.spent = 0;
+        climb
+    }
+
+    /// The next points, or None when the climb is over; `evaluated` counts the points so far.
+    pub(super) fn next(&mut self, known: &Known, evaluated: usize) -> Option<Stage> {
+        self.spent = evaluated;
+        loop {
+            let mut stage = self.wanted(known);
+            if !stage.points.is_empty() {
+                let left = self.budget.saturating_sub(evaluated);
+                if stage.points.len() > left {
+                    // Failed points are replaced beyond what was planned.
+                    stage.points.truncate(left);
+                    self.rest = Some(Rest::Budget);
+                }
+                return (!stage.points.is_empty()).then_some(stage);
+            }
+            if self.rest.is_some() || !self.choose(known) {
+                return None;
+            }
+        }
+    }
+
+    /// What every characteristic is known to be.
+    pub(super) fn views(&self, known: &Known) -> Vec<Option<View>> {
+        let characteristics = 0..self.problem.characteristics().len();
+        characteristics.map(|c| View::of(&self.plan, known, &self.bought, c, self.accuracy)).collect()
+    }
+
+    /// What has been chosen and is not known.
+    pub(super) fn wanted(&self, known: &Known) -> Stage {
+        let mut stage = self.plan.next(known).unwrap_or_default();
+        let checks = self.bought.checks.iter().flatten().map(|point| (point, Purpose::Check));
+        let noise = self.bought.noise.iter().flatten().map(|point| (point, Purpose::Noise));
+        let tails = self.bought.tails.iter().flat_map(|(_, points)| points).map(|point| (point, Purpose::Check));
+        let probes = self.bought.judging.iter().chain(&self.bought.fitted).flat_map(|probe| &probe.points);
+        let probes = probes.map(|point| (point, Purpose::Probe));
+        let mut seen: std::collections::HashSet<Point> = stage.points.iter().map(|(point, _)| point.clone()).collect();
+        for (point, purpose) in checks.chain(noise).chain(tails).chain(probes) {
+            if !known.tried(point) && seen.insert(point.clone()) {
+                stage.points.push((point.clone(), purpose));
+            }
+        }
+        stage
+    }
+
+    fn positions(&self) -> usize {
+        self.plan.varying().len()
+    }
+
+    /// How many of `most` purchases of `each` evaluations there is money for; takes it.
+    fn afford(&mut self, most: usize, each: usize) -> usize {
+        let count = most.min(self.budget.saturating_sub(self.spent) / each);
+        self.short_of_budget |= count < most;
+        self.spent += count * each;
+        count
+    }
+
+    /// Buys what lowers the error; whether there was anything.
+    fn choose(&mut self, known: &Known) -> bool {
+        self.short_of_budget = false;
+        let views: Vec<View> = self.views(known).into_iter().flatten().collect();
+        if !self.looked_out {
+            self.looked_out = true;
+            if self.look_out(&views) {
+                return true;
+            }
+        }
+        let short: Vec<&View> = views.iter().filter(|view| view.error() > self.accuracy).collect();
+        if short.is_empty() {
+            let doubtful = views.iter().any(|view| view.error() > CONFIRM * self.accuracy);
+            if doubtful && self.sets == 1 && self.positions() >= CONFIRM_FROM && self.check() {
+                return true;
+            }
+            self.rest = Some(Rest::Reached);
+            return false;
+        }
+        let curved = self.refine_hidden(&short);
+        let near = short.iter().all(|view| view.error() < NEAR * self.accuracy);
+        let found = self.examine(&short, known)
+            || curved
+            || self.refine_rest(&short)
+            || self.examine_rest(&short)
+            || near && self.sets < SETS && self.spent + 2 * CHECKS <= most(self.positions()) && self.check();
+        if !found {
+            self.rest = Some(if self.short_of_budget { Rest::Budget } else { Rest::Exhausted });
+        }
+        found
+    }
+
+    /// Another set of points that check.
+    fn check(&mut self) -> bool {
+        let pairs = self.afford(CHECKS, 2);
+        if pairs == 0 {
+            return false;
+        }
+        let set = self.sets as u64;
+        self.sets += 1;
+        let points = scattered(&mut self.plan, self.problem.dimensions(), set, pairs);
+        self.bought.checks.extend(points);
+        true
+    }
+
+    /// How many points the look along the steepest lines takes, where the budget allows, and every characteristic has a slope.
+    pub(super) fn looks_out(&self, characteristics: usize) -> usize {
+        let wanted = if self.plan.varying().is_empty() { 0 } else { 2 * characteristics.min(LINES) };
+        let begun = self.wanted(&Known::nothing(characteristics)).points.len();
+        wanted.min(self.budget.saturating_sub(begun) / 2 * 2)
+    }
+
+    /// Two points far out along the steepest line of every characteristic, and two along the one that bends it, where that is
+    /// another.
+    fn look_out(&mut self, views: &[View]) -> bool {
+        for view in views.iter().take(LINES) {
+            let steepest: Vec<f64> = (0..self.positions()).map(|j| view.bends.slope(j)).collect();
+            let bent: Vec<f64> = (0..self.positions()).map(|j| view.bends.bend(j)).collect();
+            let size = |line: &[f64]| line.iter().fold(0.0, |size: f64, part| size.hypot(*part));
+            let along = steepest.iter().zip(&bent).map(|(a, b)| a * b).sum::<f64>().abs();
+            let apart =
+                size(&bent).powi(4) > BENT * view.variance() && along < PARALLEL * size(&steepest) * size(&bent);
+            let lines = [(steepest, true), (bent, apart)];
+            for (line, _) in lines.into_iter().filter(|(line, wanted)| *wanted && size(line) > 0.0) {
+                if self.afford(1, 2) == 0 {
+                    continue;
+                }
+                let size = size(&line);
+                let points = [1.0, -1.0].map(|side| {
+                    let at = self.plan.varying().iter().zip(&line).map(|(&d, part)| {
+                        let dimension = &self.problem.dimensions()[d];
+                        let (mean, sigma) = (dimension.mean(), dimension.sigma());
+                        let [lower, upper] = dimension.distribution().map_or([mean; 2], |law| law.support());
+                        let edge = |edge: f64| mean + WITHIN * (edge - mean);
+                        (d, (mean + side * FAR_OUT * part / size * sigma).clamp(edge(lower), edge(upper)))
+                    });
+                    let at: Vec<(usize, f64)> = at.collect();
+                    self.plan.point_at(at)
+                });
+                self.bought.tails.push((view.characteristic, points));
+            }
+        }
+        !self.bought.tails.is_empty()
+    }
+
+    /// Two points next to the means.
+    fn listen(&mut self) {
+        if self.afford(1, 2) == 0 {
+            return;
+        }
+        let signs = self.signs(0, 0);
+        let varying = self.plan.varying().to_vec();
+        let dimensions = self.problem.dimensions();
+        let points = [1.0, -1.0].map(|side| {
+            let at = varying.iter().zip(&signs).map(|(&d, sign)| {
+                let dimension = &dimensions[d];
+                (d, dimension.mean() + side * sign * NEXT_TO * dimension.sigma())
+            });
+            self.plan.point_at(at.collect::<Vec<_>>())
+        });
+        // Where a mean is so large that nothing lies next to it, there is nothing to hear.
+        self.bought.noise = points.iter().all(|point| *point != Point::Centre).then_some(points);
+    }
+
+    /// What even and odd powers leave, as shares of the variance.
+    fn left(&self, view: &View) -> [f64; 2] {
+        let Some(check) = &view.check else { return [0.0; 2] };
+        if self.plan.inputs().shapes().iter().any(|shape| skewed(&shape.moments)) {
+            return [view.share(check.variance); 2];
+        }
+        [view.share(check.even), view.share(check.odd)]
+    }
+
+    /// Whether odd powers are left that may be slopes unseen: some twelve points see a third of that.
+    fn too_odd(&self, odd: f64) -> bool {
+        odd > 4.0 * self.accuracy * self.accuracy
+    }
+
+    /// The same of even powers, as far as the surrogate is even itself.
+    fn too_even(&self, view: &View) -> bool {
+        let curved = view.check.as_ref().map_or(0.0, |check| check.curved);
+        self.too_odd(self.left(view)[0] * curved)
+    }
+
+    /// Whether odd powers are left that no axis can have, but the corners of pairs.
+    fn twisted(&self, view: &View) -> bool {
+        let strong = |j: usize| view.shares[j][0] > 0.01;
+        let axes = (0..self.positions()).all(|j| self.refined[j] || !strong(j));
+        self.positions() <= DIRECT && axes && self.too_odd(self.left(view)[1])
+    }
+
+    /// Five points where three hide too much.
+    fn refine_hidden(&mut self, short: &[&View]) -> bool {
+        let mut wanted = vec![false; self.positions()];
+        for view in short {
+            let [_, odd] = self.left(view);
+            if view.truncation() <= self.accuracy / 3.0 && !self.too_odd(odd) {
+                continue;
+            }
+            let mut order: Vec<(f64, usize)> = (0..self.positions())
+                .filter(|&j| !self.refined[j])
+                .map(|j| (0.5 * view.share(view.hidden[j]), j))
+                .collect();
+            order.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let mut rest: f64 = order.iter().map(|(hidden, _)| hidden).sum();
+            for (hidden, j) in order {
+                if rest <= 0.3 * self.accuracy {
+                    break;
+                }
+                rest -= hidden;
+                wanted[j] = true;
+            }
+        }
+        self.refine(&wanted)
+    }
+
+    /// Five points for the strongest that have three, where nothing else explains what is left.
+    fn refine_rest(&mut self, short: &[&View]) -> bool {
+        let mut wanted = vec![false; self.positions()];
+        for view in short {
+            let [even, odd] = self.left(view);
+            let curved = odd < 0.25 * even;
+            let strength = |j: usize| if self.refined[j] { 0.0 } else { view.shares[j][usize::from(curved)] };
+            let strongest = (0..self.positions()).map(strength).fold(0.0, f64::max);
+            // A part does not hide more than it is.
+            if strongest > 0.01 * self.accuracy {
+                (0..self.positions()).for_each(|j| wanted[j] |= strength(j) >= 0.3 * strongest);
+            }
+        }
+        self.refine(&wanted)
+    }
+
+    fn refine(&mut self, wanted: &[bool]) -> bool {
+        let mut found = false;
+        for (j, &wanted) in wanted.iter().enumerate() {
+            if !wanted || self.refined[j] || self.afford(1, 2) == 0 {
+                continue;
+            }
+            self.refined[j] = true;
+            let d = self.plan.varying()[j];
+            found |= self.plan.refine(&self.problem.dimensions()[d], d);
+        }
+        found
+    }
+
+    /// Interactions where even powers are left.
+    fn examine(&mut self, short: &[&View], known: &Known) -> bool {
+        let lacking: Vec<&View> = short
+            .iter()
+            .copied()
+            .filter(|view| self.left(view)[0] > 0.5 * self.accuracy || self.too_even(view) || self.twisted(view))
+            .collect();
+        if lacking.is_empty() || self.positions() < 2 {
+            return false;
+        }
+        if self.positions() <= DIRECT || self.dense {
+            let batch = if self.dense { usize::MAX } else { self.positions().max(3) };
+            return self.examine_strongest(&lacking, batch);
+        }
+        self.screen(&lacking, known)
+    }
+
+    /// Further pairs of few dimensions, where nothing else is left to buy.
+    fn examine_rest(&mut self, short: &[&View]) -> bool {
+        let left = |view: &&View| self.left(view)[0] > PAIRS * self.accuracy;
+        let lacking: Vec<&View> = short.iter().copied().filter(left).collect();
+        !lacking.is_empty() && self.positions() <= DIRECT && self.examine_strongest(&lacking, self.positions().max(3))
+    }
+
+    /// The pairs with the largest product of two shares that have not been bought.
+    fn examine_strongest(&mut self, lacking: &[&View], most: usize) -> bool {
+        let mut ranked: Vec<(f64, usize, usize)> = Vec::new();
+        for j in 0..self.positions() {
+            for k in j + 1..self.positions() {
+                if self.bought.direct.binary_search(&(j, k)).is_ok() {
+                    continue;
+                }
+                let score = |view: &&View| {
+                    self.plan.joint(view.characteristic, j, k).then(|| view.shares[j][0] * view.shares[k][0])
+                };
+                if let Some(score) = lacking.iter().filter_map(score).reduce(f64::max) {
+                    ranked.push((score, j, k));
+                }
+            }
+        }
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        ranked.truncate(most);
+        let square = |&(_, j, k): &(f64, usize, usize)| {
+            lacking.iter().any(|view| view.bends.square(j, k) && self.plan.joint(view.characteristic, j, k))
+        };
+        if !self.dense && !self.squares && ranked.iter().any(square) {
+            // The pairs that there are get their other corners too.
+            self.squares = self.afford(self.bought.direct.len().max(1), 2) >= self.bought.direct.len();
+            if self.squares {
+                self.plan.use_four_corners();
+            }
+        }
+        let count = self.afford(ranked.len(), if self.squares { 4 } else { 2 });
+        let pairs: Vec<(usize, usize)> = ranked.into_iter().take(count).map(|(_, j, k)| (j, k)).collect();
+        self.plan.examine(pairs.iter().copied());
+        self.bought.direct.extend(pairs);
+        self.bought.direct.sort_unstable();
+        count > 0
+    }
+
+    /// Probes: the first, more, or every pair instead where that is nearly as cheap.
+    fn screen(&mut self, lacking: &[&View], known: &Known) -> bool {
+        if self.bought.judging.is_empty() {
+            let judging = self.afford(JUDGING, 2);
+            let fitted = if judging < JUDGING { 0 } else { self.afford(FITTED, 2) };
+            self.bought.judging = self.probes(known, 1, 0, judging);
+            self.bought.fitted = self.probes(known, 2, 0, fitted);
+            return fitted > 0;
+        }
+        // Of the variance that may be left in all, half for what is not found here.
+        let unfound = lacking.iter().any(|view| view.unscreened.is_some_and(|left| left > 0.5 * self.accuracy));
+        if !unfound {
+            return false;
+        }
+        let (n, m) = (self.positions(), self.bought.fitted.len());
+        let most = most(n);
+        let more = (m as f64 * GROWTH).ceil() as usize + 1 - m;
+        let pairs = n * (n - 1);
+        let within = self.spent + 2 * more + pairs <= most;
+        let hopeless = m >= (2 * n).max((6 * n).min(pairs / 6)) && lacking.iter().any(|view| self.hopeless(view));
+        if within && !hopeless {
+            let more = self.afford(more, 2);
+            let probes = self.probes(known, 2, m, more);
+            self.bought.fitted.extend(probes);
+            return more > 0;
+        }
+        if self.budget.saturating_sub(self.spent) < pairs {
+            self.short_of_budget = true;
+            return false;
+        }
+        self.dense = true;
+        self.bought.judging.clear();
+        self.bought.fitted.clear();
+        self.examine_strongest(lacking, usize::MAX)
+    }
+
+    /// Whether the fit leaves more than a tenth of what interactions there are.
+    fn hopeless(&self, view: &View) -> bool {
+        let found: f64 = view.products.values().map(|mixed| mixed.value.powi(2)).sum();
+        view.unscreened.is_some_and(|left| left > 0.1 * (left + view.share(found)))
+    }
+
+    /// Probes `first ..` of one kind.
+    fn probes(&self, known: &Known, kind: u64, first: usize, count: usize) -> Vec<Probe> {
+        let corners = self.plan.corners(known);
+        let probe = |index: usize| {
+            let signs = self.signs(kind, index);
+            let points = [1.0, -1.0].map(|side| {
+                let end = |(ends, sign): (&[Option<(crate::plan::At, f64)>; 2], &f64)| {
+                    ends[usize::from(sign * side > 0.0)].map(|(at, _)| at)
+                };
+                Point::of(&corners.iter().zip(&signs).filter_map(end).collect::<Vec<_>>())
+            });
+            Probe { signs, points }
+        };
+        (first..first + count).map(probe).collect()
+    }
+
+    fn signs(&self, kind: u64, index: usize) -> Vec<f64> {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(KEY ^ (kind << 56) ^ ((index as u64) << 8));
+        (0..self.positions()).map(|_| if rng.random() { 1.0 } else { -1.0 }).collect()
+    }
+}

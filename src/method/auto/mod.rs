@@ -1,0 +1,230 @@
+//! `auto`: as few evaluations as the wanted accuracy takes.
+//!
+//! It starts as `second-order`, with parabolas for 2N+1 evaluations, and with twelve points of the dimensions' distribution (a
+//! Latin hypercube in mirrored pairs) at which the surrogate is compared with the model. As long as what is left there, and what
+//! polynomials may hide, is more than the wanted error of sigma, it buys what is expected to help:
+//!
+//! - two nodes more for dimensions that three points hide too much of;
+//! - interactions where even powers are left: up to twelve dimensions pair by pair, strongest first; beyond, probes that move
+//!   all dimensions at once and a sparse fit to them, growing, until every pair for itself is nearly as cheap;
+//! - two nodes more for the strongest of the others, where odd powers are left.
+//!
+//! What is left in the end adds to the variance as the unexplained part that it is, and is the estimate of the error. All points
+//! are those of a fixed design: the same study gives the same numbers, whatever the seed.
+
+mod atoms;
+mod climb;
+mod screening;
+mod start;
+mod view;
+
+pub use climb::Rest;
+
+use std::sync::Arc;
+
+use super::check::Check;
+use super::exact::ExactDerivatives;
+use super::ladder::{Examined, Ladder, Order};
+use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
+use crate::assembly::Run;
+use crate::evaluation::Evaluated;
+use crate::plan::{Mixed, Plan, Point, Spread};
+use crate::problem::Problem;
+use climb::Climb;
+use start::Start;
+use view::View;
+
+/// The relative error of sigma that is wanted unless said otherwise.
+pub const ACCURACY: f64 = 0.01;
+/// Pairs that are listed where a product of all slopes has made them all.
+const LISTED: usize = 20_000;
+
+pub(super) struct Auto;
+
+pub(super) const AUTO: Auto = Auto;
+
+/// What it begins with.
+const BASE: Ladder = Ladder {
+    method: Method::Auto,
+    runs: Method::Auto,
+    name: "auto",
+    about: "the default: buys evaluations where they lower the error of sigma most, until it is known well enough",
+    count: "2N+17 for what is linear or a parabola",
+    spread: Spread::Pair,
+    interactions: Examined::None,
+    order: Order::Second,
+};
+
+/// Where derivatives are exact, all of them cost one evaluation.
+const EXACT: Ladder = Ladder { interactions: Examined::All(crate::plan::Stencil::TwoPoint), ..BASE };
+
+/// How `auto` came to its result.
+#[derive(Debug, Clone)]
+pub struct Climbed {
+    /// The relative error of sigma that was wanted.
+    pub accuracy: f64,
+    /// Why it ended.
+    pub rest: Rest,
+    /// Positions of varying dimensions with five points.
+    pub refined: Vec<usize>,
+    /// Pairs bought for themselves.
+    pub direct: usize,
+    /// Probes that moved all dimensions, of two evaluations each.
+    pub probes: usize,
+    /// Points that checked.
+    pub checks: usize,
+    /// Whether every pair was examined.
+    pub all_pairs: bool,
+    /// For every characteristic what the check says; None where it has no surrogate, or nothing was checked.
+    pub checked: Vec<Option<Check>>,
+    /// What answers next to the means scatter by.
+    pub noise: Vec<Option<f64>>,
+    /// How many sigmas model and surrogate differ by three sigma out along the steepest line, infinite where the model has no
+    /// value there; None where nobody looked.
+    pub tails: Vec<Option<f64>>,
+    /// The share of the variance that interactions have which the screening did not find, where it was needed.
+    pub unscreened: Vec<Option<f64>>,
+}
+
+impl Climbed {
+    /// The variance that the surrogate of a characteristic does not have, by the check; None where nothing was checked.
+    pub fn unexplained(&self, c: usize) -> Option<f64> {
+        self.checked[c].as_ref().filter(|check| check.points > 1).map(|check| check.variance)
+    }
+}
+
+impl Procedure for Auto {
+    fn method(&self) -> Method {
+        Method::Auto
+    }
+
+    fn name(&self) -> &'static str {
+        BASE.name
+    }
+
+    fn about(&self) -> &'static str {
+        BASE.about
+    }
+
+    fn count(&self) -> &'static str {
+        BASE.count
+    }
+
+    fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {
+        if options.derivatives == Some(DerivativeSource::Exact) {
+            return EXACT.plan(problem, options);
+        }
+        let climb = climb(problem, options)?;
+        Ok(Arc::new(Start::of(climb, problem.characteristics().len())))
+    }
+
+    fn fits(&self, problem: &Problem, options: &Options) -> Result<Cost, MethodError> {
+        if options.derivatives == Some(DerivativeSource::Exact) {
+            return EXACT.fits(problem, options);
+        }
+        // It makes do with less than it would like.
+        Cost::of(&BASE.differences(problem, options)?).within(BASE.name, problem, options)?;
+        Ok(Cost::of(&*self.plan(problem, options)?))
+    }
+
+    fn range(&self, problem: &Problem, options: &Options) -> Option<[usize; 2]> {
+        if options.derivatives == Some(DerivativeSource::Exact) {
+            return None;
+        }
+        let plan = self.plan(problem, options).ok()?;
+        let least = plan.cost().0;
+        Some([least, climb::most(plan.varying().len()).max(least).min(options.budget.unwrap_or(usize::MAX))])
+    }
+
+    fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
+        if options.derivatives == Some(DerivativeSource::Exact) {
+            return EXACT.run(problem, options, run);
+        }
+        self.fits(problem, options)?;
+        problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
+        let mut climb = climb(problem, options)?;
+        let mut evaluated = Evaluated::nothing(problem);
+        while let Some(stage) = climb.next(&evaluated.known, evaluated.evaluations) {
+            evaluated.add(problem, &climb.plan, &stage, run);
+            if evaluated.stopped {
+                break;
+            }
+        }
+        Ok(outcome(problem, options, climb, evaluated))
+    }
+}
+
+fn climb<'p>(problem: &'p Problem, options: &Options) -> Result<Climb<'p>, MethodError> {
+    let accuracy = options.accuracy.unwrap_or(ACCURACY);
+    if !(accuracy.is_finite() && accuracy > 0.0) {
+        return Err(MethodError::BadAccuracy { accuracy });
+    }
+    Ok(Climb::new(problem, BASE.differences(problem, options)?, accuracy, options.budget))
+}
+
+/// What the climb has found out.
+fn outcome(problem: &Problem, options: &Options, climb: Climb<'_>, evaluated: Evaluated) -> Outcome {
+    let known = &evaluated.known;
+    let views = climb.views(known);
+    let plan = &climb.plan;
+    let pairs = listed(&climb, &views);
+    let exact = ExactDerivatives::beside(problem, plan, options, &pairs);
+    let fit = |(c, (view, exact)): (usize, (&Option<View>, Option<ExactDerivatives>))| {
+        let part = |d: usize| plan.part(known, c, d);
+        let mixed = |pair: &(usize, usize)| {
+            let nothing = Some(Mixed { value: 0.0, complete: true });
+            match view {
+                Some(view) if climb.bought.direct.binary_search(pair).is_ok() => view.products.get(pair).copied(),
+                Some(view) => view.products.get(pair).copied().or(nothing),
+                None => None,
+            }
+        };
+        Fitted {
+            nominal: known.value(plan.nominal(), c),
+            centre: known.value(&Point::Centre, c),
+            exact,
+            parts: (0..problem.dimensions().len()).map(part).collect(),
+            mixed: pairs.iter().map(mixed).collect(),
+            surrogate: view.as_ref().map(|view| view.surrogate.clone()),
+            ..Fitted::default()
+        }
+    };
+    let fitted = views.iter().zip(exact).enumerate().map(fit).collect();
+    let of = |what: fn(&View) -> Option<f64>| views.iter().map(|view| what(view.as_ref()?)).collect();
+    let climbed = Climbed {
+        accuracy: options.accuracy.unwrap_or(ACCURACY),
+        rest: climb.rest.unwrap_or(Rest::Budget),
+        refined: (0..climb.refined.len()).filter(|&j| climb.refined[j]).collect(),
+        direct: climb.bought.direct.len(),
+        probes: climb.bought.judging.len() + climb.bought.fitted.len(),
+        checks: 2 * climb.bought.checks.len(),
+        all_pairs: climb.bought.direct.len() == plan.possible_pairs(),
+        noise: of(|view| view.noise),
+        tails: of(|view| view.tail),
+        unscreened: of(|view| view.unscreened),
+        checked: views.iter().map(|view| view.as_ref()?.check.clone()).collect(),
+    };
+    Outcome {
+        asked: Method::Auto,
+        method: Method::Auto,
+        basis: Basis::Differences,
+        plan: Arc::new(climb.plan),
+        evaluated,
+        order: Order::Second,
+        fitted,
+        pairs,
+        climbed: Some(climbed),
+    }
+}
+
+/// The pairs that some surrogate has, or that were examined; of more than can be read, those examined for themselves.
+fn listed(climb: &Climb<'_>, views: &[Option<View>]) -> Vec<(usize, usize)> {
+    let mut pairs = climb.bought.direct.clone();
+    let found: usize = views.iter().flatten().map(|view| view.products.len()).sum();
+    if found <= LISTED {
+        pairs.extend(views.iter().flatten().flat_map(|view| view.products.keys().copied()));
+        pairs.sort_unstable();
+        pairs.dedup();
+    }
+    pairs
+}

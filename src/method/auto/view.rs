@@ -1,0 +1,335 @@
+//! What is known of one characteristic on the way: its surrogate, and how far that may be off.
+
+use std::collections::BTreeMap;
+
+use super::atoms::{Bends, atoms};
+use super::screening::{self, Fit, Probed};
+use crate::distribution::StandardMoments;
+use crate::method::check::{Check, failed};
+use crate::method::hidden::hidden;
+use crate::moments::{Interactions, Moments};
+use crate::plan::{DifferencePlan, Known, Mixed, Plan, Point};
+use crate::surrogate::{Surrogate, Univariate};
+
+/// Mixed derivatives by pair.
+type Products = BTreeMap<(usize, usize), Mixed>;
+
+/// Every dimension up or down, and all turned round.
+#[derive(Debug, Clone)]
+pub(super) struct Probe {
+    pub(super) signs: Vec<f64>,
+    pub(super) points: [Point; 2],
+}
+
+/// What has been bought beside the axes.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Bought {
+    /// Points of the distribution, in mirrored pairs.
+    pub(super) checks: Vec<[Point; 2]>,
+    /// Two points next to the means, opposite to each other.
+    pub(super) noise: Option<[Point; 2]>,
+    /// For every characteristic that is looked at so, points far out along its steepest line.
+    pub(super) tails: Vec<(usize, [Point; 2])>,
+    /// Pairs with two evaluations of their own.
+    pub(super) direct: Vec<(usize, usize)>,
+    /// Probes that judge, and probes that are fitted.
+    pub(super) judging: Vec<Probe>,
+    pub(super) fitted: Vec<Probe>,
+}
+
+/// One characteristic as far as it is known.
+pub(super) struct View {
+    pub(super) characteristic: usize,
+    pub(super) surrogate: Surrogate,
+    /// Of the surrogate.
+    pub(super) moments: Moments,
+    pub(super) check: Option<Check>,
+    /// What parts may hide, by position: variance.
+    pub(super) hidden: Vec<f64>,
+    /// Variance of every part, and what of it is curved, as a share of the surrogate's.
+    pub(super) shares: Vec<[f64; 2]>,
+    /// Products of two positions, with what is not complete.
+    pub(super) products: BTreeMap<(usize, usize), Mixed>,
+    /// Mean square of what the screening's fit left at the probes that judge it, as a share of the variance.
+    pub(super) unscreened: Option<f64>,
+    /// What answers scatter by.
+    pub(super) noise: Option<f64>,
+    /// The largest difference of model and surrogate along the steepest line, in sigmas; infinite where the model fails.
+    pub(super) tail: Option<f64>,
+    pub(super) bends: Bends,
+}
+
+impl View {
+    /// None without a value at the means, or where a part is unknown.
+    pub(super) fn of(plan: &DifferencePlan, known: &Known, bought: &Bought, c: usize, accuracy: f64) -> Option<Self> {
+        let centre = known.value(&Point::Centre, c)?;
+        let mut parts: Vec<Option<Univariate>> = plan.varying().iter().map(|&d| plan.part(known, c, d)).collect();
+        let n = parts.len();
+        let bends = Bends::of(&parts);
+        let mut products: BTreeMap<(usize, usize), Mixed> = BTreeMap::new();
+        let mixed = plan.mixed(known, c, &bought.direct);
+        for (&pair, mixed) in bought.direct.iter().zip(mixed) {
+            if let Some(mixed) = mixed {
+                products.insert(pair, mixed);
+            }
+        }
+        let mut base = centre;
+        let left_by = |base: f64, parts: &[Option<Univariate>], products: &BTreeMap<(usize, usize), Mixed>| {
+            let left = left_at(plan, known, c, bought, &surrogate_of(base, parts, products))?;
+            Some(left.into_iter().flatten().map(|left| left * left).sum::<f64>())
+        };
+        if !bought.direct.is_empty() {
+            // What corners say beside products is taken where the points that check agree.
+            let (mut other, mut twisted, mut lower) = (parts.clone(), products.clone(), centre);
+            for (&(j, k), corners) in bought.direct.iter().zip(plan.twists(known, c, &bought.direct)) {
+                let Some(twist) = bends.twist((j, k), &corners) else { continue };
+                if let Some(mixed) = twisted.get_mut(&(j, k)) {
+                    mixed.value = twist.product;
+                }
+                for (position, slope) in [(j, twist.slopes[0]), (k, twist.slopes[1])] {
+                    other[position] = other[position].map(|part| part.with_slope(slope).with_curvature(twist.square));
+                }
+                lower -= twist.square;
+            }
+            let agree = left_by(lower, &other, &twisted).zip(left_by(centre, &parts, &products));
+            if agree.is_some_and(|(twisted, plain)| twisted < plain) {
+                (parts, products, base) = (other, twisted, lower);
+            }
+        }
+        let own = |j: usize| parts[j].map_or(0.0, |part| part.term(&plan.inputs().shapes()[j]).variance(1.0));
+        let own: Vec<f64> = (0..n).map(own).collect();
+        let alone: f64 = own.iter().sum::<f64>() + products.values().map(|mixed| mixed.value.powi(2)).sum::<f64>();
+        let screened = Screened::of(plan, known, bought, c, (centre, &parts, &products));
+        let (mut unscreened, mut together) = (None, None);
+        if let Some(screened) = screened {
+            let fit = screened.fit(0.5 * accuracy * alone);
+            screened.add(&fit, &mut products);
+            unscreened = Some(fit.left / screened.unit);
+            together = Some(fit.together);
+        }
+        let surrogate = surrogate_of(base, &parts, &products);
+        let left = left_at(plan, known, c, bought, &surrogate)?;
+        let atoms = atoms(plan, bought, &bends, &left, together);
+        if let Some(together) = atoms.together {
+            let slope = |j: usize| bends.slope(j);
+            for j in 0..n {
+                for k in j + 1..n {
+                    let value = together * slope(j) * slope(k);
+                    if value != 0.0 && plan.joint(c, j, k) {
+                        products.entry((j, k)).or_insert(Mixed { value, complete: true });
+                    }
+                }
+            }
+        }
+        if let Some(slopes) = &atoms.slopes {
+            add_slopes(&mut parts, slopes);
+        }
+        let surrogate = match (atoms.together, &atoms.slopes) {
+            (None, None) => surrogate,
+            _ => surrogate_of(base, &parts, &products),
+        };
+        let moments = surrogate.contributions(plan.inputs())?.moments;
+        let variance = moments.variance();
+        let share = |value: f64| if variance > 0.0 { value / variance } else { 0.0 };
+        let part = |j: usize| {
+            let part = surrogate.parts[j].expect("moments need every part");
+            let (d, shape) = (plan.varying()[j], &plan.inputs().shapes()[j]);
+            let hidden = plan
+                .samples(known, c, d)
+                .filter(|_| plan.depends(c, d))
+                .and_then(|samples| hidden(&part, &samples, centre, shape));
+            (hidden.map_or(0.0, |hidden| hidden.variance), [share(own[j]), share(part.term(shape).part(1.0).curved)])
+        };
+        let (hidden, shares) = (0..n).map(part).unzip();
+        let check = Check::of(plan, known, c, &bought.checks, (&surrogate, &moments));
+        let tail = tail(plan, known, c, bought, (&surrogate, moments.sigma()));
+        let noise = bought.noise.as_ref().and_then(|points| scatter(plan, known, c, points, &surrogate));
+        let unscreened = unscreened.map(share);
+        Some(Self {
+            characteristic: c,
+            surrogate,
+            moments,
+            check,
+            hidden,
+            shares,
+            products,
+            unscreened,
+            noise,
+            tail,
+            bends,
+        })
+    }
+
+    pub(super) fn variance(&self) -> f64 {
+        self.moments.variance()
+    }
+
+    /// A part of the variance as a share of it.
+    pub(super) fn share(&self, part: f64) -> f64 {
+        if self.variance() > 0.0 {
+            part / self.variance()
+        } else if part > 0.0 {
+            f64::INFINITY
+        } else {
+            0.0
+        }
+    }
+
+    /// What is left at the check, as a share of the variance; nothing is known without one.
+    pub(super) fn left(&self) -> Option<f64> {
+        self.check.as_ref().map(|check| self.share(check.variance))
+    }
+
+    /// The relative error of sigma by what polynomials hide; what the check has not seen is not there.
+    pub(super) fn truncation(&self) -> f64 {
+        let hidden = 0.5 * self.share(self.hidden.iter().sum());
+        self.left().map_or(hidden, |left| hidden.min(1.5 * left.sqrt()))
+    }
+
+    /// The estimated relative error of sigma.
+    pub(super) fn error(&self) -> f64 {
+        let sigma = self.moments.sigma().max(f64::MIN_POSITIVE);
+        let unseen = |check: &Check| check.unseen(self.variance()) + check.shown(1) / sigma;
+        let tail = self.tail.map_or(0.0, Check::far_out);
+        self.truncation() + self.left().unwrap_or(0.0) + self.check.as_ref().map_or(0.0, unseen) + tail
+    }
+}
+
+fn surrogate_of(centre: f64, parts: &[Option<Univariate>], products: &BTreeMap<(usize, usize), Mixed>) -> Surrogate {
+    let pairs = products.iter().map(|(&(j, k), mixed)| (j, k, mixed.value)).filter(|&(.., value)| value != 0.0);
+    let interactions = Interactions::of_pairs(parts.len(), pairs.collect::<Vec<_>>());
+    Surrogate { centre, parts: parts.to_vec(), interactions }
+}
+
+fn add_slopes(parts: &mut [Option<Univariate>], more: &[f64]) {
+    for (part, &more) in parts.iter_mut().zip(more).filter(|(_, more)| **more != 0.0) {
+        *part = part.map(|part| part.with_slope(more));
+    }
+}
+
+/// What the surrogate leaves at the points that check.
+fn left_at(
+    plan: &DifferencePlan,
+    known: &Known,
+    c: usize,
+    bought: &Bought,
+    surrogate: &Surrogate,
+) -> Option<Vec<Option<f64>>> {
+    let points: Vec<&Point> = bought.checks.iter().flatten().collect();
+    let places: Vec<Vec<f64>> = points.iter().map(|point| plan.standardised(point)).collect();
+    let column = |position: usize| places.iter().map(|place| place[position]).collect::<Vec<f64>>();
+    let inputs: Vec<Vec<f64>> = (0..plan.varying().len()).map(column).collect();
+    let rises = surrogate.rises(&inputs)?;
+    let left = |(point, rise): (&&Point, &f64)| Some((known.value(point, c)? - surrogate.centre) - rise);
+    Some(points.iter().zip(&rises).map(left).collect())
+}
+
+/// What answers next to the means scatter by, beyond what the surrogate says of them.
+fn scatter(plan: &DifferencePlan, known: &Known, c: usize, points: &[Point; 2], surrogate: &Surrogate) -> Option<f64> {
+    let places = [0, 1].map(|i| plan.standardised(&points[i]));
+    let inputs: Vec<[f64; 2]> = (0..plan.varying().len()).map(|j| [places[0][j], places[1][j]]).collect();
+    let rises = surrogate.rises(&inputs)?;
+    let rise = |i: usize| Some((known.value(&points[i], c)? - surrogate.centre) - rises[i]);
+    // The second difference of three values of one scatter has six times its square.
+    Some((rise(0)? + rise(1)?).abs() / 6f64.sqrt())
+}
+
+/// What model and surrogate differ by far out along the lines on which it was looked.
+fn tail(
+    plan: &DifferencePlan,
+    known: &Known,
+    c: usize,
+    bought: &Bought,
+    (surrogate, sigma): (&Surrogate, f64),
+) -> Option<f64> {
+    let off = |point: &Point| {
+        let place = plan.standardised(point);
+        let rise = surrogate.rises(&place.iter().map(std::slice::from_ref).collect::<Vec<_>>())?[0];
+        match known.value(point, c) {
+            Some(value) => Some(((value - surrogate.centre) - rise).abs() / sigma),
+            None => failed(known, point, c).then_some(f64::INFINITY),
+        }
+    };
+    let points = bought.tails.iter().filter(|(of, _)| *of == c).flat_map(|(_, points)| points);
+    points.filter_map(off).filter(|_| sigma > 0.0).reduce(f64::max)
+}
+
+/// The probes as one characteristic has answered them.
+struct Screened<'a> {
+    fitted: Probed<'a>,
+    judging: Probed<'a>,
+    /// Half the distance of the two nodes, by position.
+    half: Vec<f64>,
+    slopes: Vec<f64>,
+    /// What a mean square of the probes is to a variance.
+    unit: f64,
+}
+
+impl<'a> Screened<'a> {
+    fn of(
+        plan: &DifferencePlan,
+        known: &Known,
+        bought: &'a Bought,
+        c: usize,
+        (centre, parts, products): (f64, &[Option<Univariate>], &Products),
+    ) -> Option<Self> {
+        if bought.judging.is_empty() {
+            return None;
+        }
+        let corners = plan.corners(known);
+        let ends = |j: usize| Some([corners[j][0]?, corners[j][1]?]);
+        let half: Vec<f64> =
+            (0..parts.len()).map(|j| ends(j).map_or(0.0, |[left, right]| 0.5 * (right.1 - left.1))).collect();
+        let bends: f64 = (0..parts.len())
+            .filter_map(|j| {
+                let rise = |(at, _): (crate::plan::At, f64)| Some(known.value(&Point::of(&[at]), c)? - centre);
+                let [left, right] = ends(j)?;
+                Some(0.5 * (rise(left)? + rise(right)?))
+            })
+            .sum();
+        let seen = |probe: &Probe| {
+            let rise = |point: &Point| Some(known.value(point, c)? - centre);
+            let direct: f64 = products
+                .iter()
+                .map(|(&(j, k), mixed)| mixed.value * half[j] * half[k] * probe.signs[j] * probe.signs[k])
+                .sum();
+            Some(0.5 * (rise(&probe.points[0])? + rise(&probe.points[1])?) - bends - direct)
+        };
+        let probed = |probes: &'a [Probe]| {
+            let (signs, seen) = probes.iter().filter_map(|probe| Some((probe.signs.as_slice(), seen(probe)?))).unzip();
+            Probed { signs, seen }
+        };
+        let slope = |j: usize| half[j] * parts[j].map_or(0.0, |part| part.slope());
+        let squares = half.iter().map(|half| half * half).sum::<f64>() / half.len().max(1) as f64;
+        let (fitted, judging) = (probed(&bought.fitted), probed(&bought.judging));
+        let enough = !judging.seen.is_empty() && fitted.seen.len() >= 2;
+        let slopes = (0..parts.len()).map(slope).collect();
+        enough.then_some(Self { fitted, judging, half, slopes, unit: squares * squares })
+    }
+
+    /// The best fit; `enough` is the variance that may be left.
+    fn fit(&self, enough: f64) -> Fit {
+        screening::fit(&self.fitted, &self.judging, &self.slopes, enough * self.unit)
+    }
+
+    fn add(&self, fit: &Fit, products: &mut BTreeMap<(usize, usize), Mixed>) {
+        let mut add = |j: usize, k: usize, value: f64| {
+            let over = self.half[j] * self.half[k];
+            if over != 0.0 && value != 0.0 {
+                let mixed = products.entry((j, k)).or_insert(Mixed { value: 0.0, complete: true });
+                mixed.value += value / over;
+            }
+        };
+        if fit.together != 0.0 {
+            for j in 0..self.slopes.len() {
+                (j + 1..self.slopes.len()).for_each(|k| add(j, k, fit.together * self.slopes[j] * self.slopes[k]));
+            }
+        }
+        fit.pairs.iter().for_each(|&(j, k, value)| add(j, k, value));
+    }
+}
+
+/// Whether a distribution is so skewed that mirrored points do not tell even from odd powers.
+pub(super) fn skewed(moments: &StandardMoments) -> bool {
+    moments.skewness.abs() > 0.3
+}

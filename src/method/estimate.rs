@@ -1,0 +1,391 @@
+//! How far the results of a method may be off, by what it did not see.
+//!
+//! Every source changes the surrogate as what it stands for might, and the change of the moments is its part in the estimate; parts
+//! of different sources add. What nothing is known of makes the estimate None.
+
+use super::hidden::{hidden, ratio};
+use super::{Basis, Check, Climbed, Order, Outcome};
+use crate::assembly::Directions;
+use crate::moments::{Interactions, Moments, Term, contributions};
+use crate::problem::Problem;
+use crate::surrogate::{Inputs, Surrogate, Univariate};
+
+/// Interactions of which the exact derivatives are worth their time.
+const EXACT: usize = 2000;
+/// The factor `t` of terms that twist an interaction, and a curvature beside which a slope is none.
+const TWIST: f64 = 1.5;
+const BENT: f64 = 0.3;
+/// Interactions of three are estimated up to this part of those of two.
+const MOST: f64 = 0.5;
+
+/// The estimated error of each result, in its own unit; None where nothing is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorEstimate {
+    /// Of the mean.
+    pub mean: Option<f64>,
+    /// Of sigma.
+    pub sigma: Option<f64>,
+    /// Of the skewness.
+    pub skewness: Option<f64>,
+    /// Of the kurtosis.
+    pub kurtosis: Option<f64>,
+    /// Of the share within the limits.
+    pub yield_: Option<f64>,
+    /// What it rests on.
+    pub sources: Vec<Source>,
+}
+
+/// What an estimate rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Source {
+    /// Model against surrogate at points of the dimensions' distribution.
+    Checked {
+        /// How many.
+        points: usize,
+    },
+    /// Powers beyond those of the polynomials, from how fast these fall.
+    Powers {
+        /// Nodes of the axes with the fewest, the mean included.
+        nodes: usize,
+    },
+    /// Powers beyond the second, from exact derivatives.
+    Taylor,
+    /// What curvature would add to a first-order method.
+    Curvature,
+    /// Interactions that were not examined, from exact derivatives.
+    ExactPairs {
+        /// How many.
+        pairs: usize,
+    },
+    /// Interactions that were not examined, from those that were.
+    SimilarPairs {
+        /// How many.
+        pairs: usize,
+    },
+    /// Interactions of which nothing is known.
+    UnknownPairs {
+        /// How many.
+        pairs: usize,
+    },
+    /// Interactions of three and more, from those of two.
+    Triples,
+    /// What answers scatter by.
+    Scatter,
+    /// A derivative that could not be had.
+    Lost,
+    /// Standard errors of points of the model.
+    Sampled {
+        /// How many.
+        points: u64,
+    },
+}
+
+impl Source {
+    /// In words.
+    pub fn words(self) -> String {
+        match self {
+            Self::Checked { points } => format!("model against surrogate at {points} points of the distribution"),
+            Self::Powers { nodes } => format!("powers that {nodes} points a dimension do not show, extrapolated"),
+            Self::Taylor => "powers beyond the second derivative, extrapolated".to_owned(),
+            Self::Curvature => "curvature, which the method leaves out".to_owned(),
+            Self::ExactPairs { pairs } => format!("{pairs} interactions not examined, by exact derivatives"),
+            Self::SimilarPairs { pairs } => format!("{pairs} interactions not examined, taken to be like the others"),
+            Self::UnknownPairs { pairs } => format!("nothing is known of {pairs} interactions"),
+            Self::Triples => "interactions of three, extrapolated".to_owned(),
+            Self::Scatter => "scatter of the answers".to_owned(),
+            Self::Lost => "a derivative is lost".to_owned(),
+            Self::Sampled { points } => format!("standard errors of {points} points of the model"),
+        }
+    }
+}
+
+impl ErrorEstimate {
+    /// What it rests on, in words.
+    pub fn basis(&self) -> String {
+        self.sources.iter().map(|source| source.words()).collect::<Vec<_>>().join("; ")
+    }
+}
+
+/// What terms `u_j^2 u_k` may add to half the variance: in a product of functions, and in a function of a sum, they are `t a_j A_jk/b_j`
+/// with slopes `b` and curvatures `a` and `t` from 1 to 3, and a slope of `k` by their mean. Where two dimensions act by their
+/// squares, two corners cannot tell `u_j^2 u_k^2` from the product, and all of that is in doubt. And what `u_j^2 u_k^2`, in such
+/// functions `a_j a_k A_jk/(b_j b_k)`, may move the mean by.
+fn twists(parts: &[Univariate], products: &[(usize, usize, f64)]) -> [f64; 2] {
+    let [slopes, curvatures]: [Vec<f64>; 2] =
+        [0, 1].map(|i| parts.iter().map(|part| part.coefficients()[i].abs()).collect());
+    let bend = |j: usize| if slopes[j] > 0.0 { (curvatures[j] / slopes[j]).min(BENT) } else { BENT };
+    let term = |&(j, k, value): &(usize, usize, f64)| {
+        let value = value.abs();
+        let squares = curvatures[j] * curvatures[k] > BENT * slopes[j] * slopes[k];
+        let doubt = if squares { 0.5 * value * value + value * (curvatures[j] + curvatures[k]) / 1.5 } else { 0.0 };
+        let lines = TWIST * value * (bend(j) * slopes[k] + bend(k) * slopes[j]) + doubt;
+        [lines, value * if squares { 1.0 / 3.0 } else { bend(j) * bend(k) }]
+    };
+    products.iter().map(term).fold([0.0; 2], |sum, more| [sum[0] + more[0], sum[1] + more[1]])
+}
+
+/// Parts of the errors of mean, sigma, skewness and kurtosis.
+type Errors = [f64; 4];
+
+fn figures(moments: &Moments) -> Errors {
+    [moments.mean(), moments.sigma(), moments.skewness().unwrap_or(0.0), moments.excess().unwrap_or(0.0)]
+}
+
+fn apart(a: &Moments, b: &Moments) -> Errors {
+    let (a, b) = (figures(a), figures(b));
+    std::array::from_fn(|i| (a[i] - b[i]).abs())
+}
+
+fn add(sum: &mut Errors, more: Errors) {
+    sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+}
+
+/// Estimates for the moments of a characteristic, as the method gives them; None where it has none.
+pub fn estimate(problem: &Problem, outcome: &Outcome, c: usize, moments: &Moments) -> Option<ErrorEstimate> {
+    if !matches!(outcome.basis, Basis::Exact | Basis::Differences) {
+        return None;
+    }
+    let surrogate = outcome.fitted[c].surrogate.as_ref()?;
+    let mut of = Estimate { problem, outcome, c, surrogate, errors: [0.0; 4], known: [true; 4], sources: Vec::new() };
+    let checked = outcome.climbed.as_ref().and_then(|climbed| Some((climbed, climbed.checked[c].as_ref()?)));
+    match of.hidden(moments) {
+        None => {
+            of.known = [false; 4];
+            of.sources.push(Source::Lost);
+        }
+        Some(hidden) => match checked {
+            Some((climbed, check)) if check.points > 1 => of.checked(climbed, check, hidden, moments),
+            _ => of.unchecked(hidden, moments),
+        },
+    }
+    of.rounding(moments);
+    let value = |i: usize| of.known[i].then_some(of.errors[i]);
+    Some(ErrorEstimate {
+        mean: value(0),
+        sigma: value(1),
+        skewness: value(2).filter(|_| moments.skewness().is_some()),
+        kurtosis: value(3).filter(|_| moments.kurtosis().is_some()),
+        yield_: None,
+        sources: of.sources,
+    })
+}
+
+struct Estimate<'a> {
+    problem: &'a Problem,
+    outcome: &'a Outcome,
+    c: usize,
+    surrogate: &'a Surrogate,
+    errors: Errors,
+    known: [bool; 4],
+    sources: Vec<Source>,
+}
+
+impl Estimate<'_> {
+    /// The parts as they are known, of a first-order method too.
+    fn parts(&self) -> Option<Vec<Univariate>> {
+        self.outcome.plan.varying().iter().map(|&d| self.outcome.fitted[self.c].parts[d]).collect()
+    }
+
+    /// What powers beyond the polynomials may add; None where a part is not even a parabola.
+    fn hidden(&self, moments: &Moments) -> Option<Errors> {
+        let plan = &self.outcome.plan;
+        let parts = self.parts()?;
+        let mut values = Vec::with_capacity(parts.len());
+        for ((part, shape), &d) in parts.iter().zip(plan.inputs().shapes()).zip(plan.varying()) {
+            let samples = match self.outcome.basis == Basis::Exact {
+                // Exact derivatives are differences over no distance.
+                true => vec![(0.0, 0.0); 2],
+                false => plan.samples(&self.outcome.evaluated.known, self.c, d)?,
+            };
+            let samples = if plan.depends(self.c, d) { samples } else { vec![(0.0, 0.0); 2] };
+            values.push(hidden(part, &samples, self.surrogate.centre, shape)?);
+        }
+        let shapes = plan.inputs().shapes();
+        let known: Vec<Term<'_>> = parts.iter().zip(shapes).map(|(part, shape)| part.term(shape)).collect();
+        let other = values.iter().zip(shapes).map(|(hidden, shape)| Term::Tabulated {
+            values: hidden.values.clone(),
+            rule: &shape.rule,
+            moments: &shape.moments,
+        });
+        let other: Vec<Term<'_>> = other.collect();
+        let interactions = &self.surrogate.interactions;
+        let known = contributions(0.0, &known, interactions).moments;
+        let mut errors = apart(&contributions(0.0, &other, interactions).moments, &known);
+        // Signs are a guess: what cancels need not.
+        let sigma = moments.sigma();
+        let variance: f64 = values.iter().map(|hidden| hidden.variance).sum();
+        errors[0] = values.iter().map(|hidden| hidden.mean.abs()).sum();
+        if sigma > 0.0 {
+            errors[1] = errors[1].max(0.5 * variance / sigma);
+        }
+        Some(errors)
+    }
+
+    /// Of a surrogate that was compared with the model: what was not seen there is not there.
+    fn checked(&mut self, climbed: &Climbed, check: &Check, hidden: Errors, moments: &Moments) {
+        let sigma = moments.sigma();
+        let left = if sigma > 0.0 { check.variance / (sigma * sigma) } else { 0.0 };
+        let root = left.sqrt();
+        let [mean, spread, skewness, kurtosis] = hidden;
+        add(
+            &mut self.errors,
+            [
+                mean.min(root * sigma) + check.effect(0),
+                spread.min(1.5 * root * sigma) + (left + check.unseen(moments.variance())) * sigma + check.shown(1),
+                skewness.min(3.0 * root) + check.effect(2) + 1.5 * left,
+                kurtosis.min(6.0 * root) + check.effect(3) + 6.0 * left,
+            ],
+        );
+        let far = climbed.tails[self.c].map_or(0.0, Check::far_out);
+        add(&mut self.errors, [far * sigma, far * sigma, 6.0 * far, 20.0 * far]);
+        self.sources.push(Source::Checked { points: check.points });
+        self.powers();
+        let scatter = climbed.noise[self.c].unwrap_or(0.0);
+        if sigma > 0.0 && scatter > 1e-9 * sigma {
+            let (n, part) = (self.surrogate.parts.len() as f64, scatter / sigma);
+            add(
+                &mut self.errors,
+                [scatter * (1.0 + n / 3.0), 0.41 * scatter + 0.08 * n * part * scatter, 2.0 * part, 4.0 * part],
+            );
+            self.sources.push(Source::Scatter);
+        }
+    }
+
+    fn powers(&mut self) {
+        let nodes = |&d: &usize| Some(self.outcome.fitted[self.c].parts[d]?.degree() + 1);
+        let fewest = self.outcome.plan.varying().iter().filter_map(nodes).min().unwrap_or(1);
+        self.sources.push(if self.outcome.basis == Basis::Exact {
+            Source::Taylor
+        } else {
+            Source::Powers { nodes: fewest }
+        });
+    }
+
+    fn unchecked(&mut self, hidden: Errors, moments: &Moments) {
+        let plan = &self.outcome.plan;
+        let parts: Vec<Option<Univariate>> = self.parts().into_iter().flatten().map(Some).collect();
+        let independent = Inputs::independent(plan.inputs().shapes().to_vec());
+        let curved = Surrogate { parts: parts.clone(), ..self.surrogate.clone() };
+        let second = curved.contributions(&independent).map(|found| found.moments);
+        if self.outcome.order == Order::First {
+            let first = self.surrogate.contributions(&independent).map(|found| found.moments);
+            if let Some((first, second)) = first.zip(second) {
+                add(&mut self.errors, apart(&first, &second));
+            }
+            self.sources.push(Source::Curvature);
+        }
+        add(&mut self.errors, hidden);
+        self.powers();
+        let variance = moments.variance();
+        if variance == 0.0 {
+            return;
+        }
+        let n = plan.varying().len();
+        let examined = |pair: &(usize, usize)| self.outcome.pairs.binary_search(pair).is_ok();
+        let left: Vec<(usize, usize)> = (0..n)
+            .flat_map(|j| (j + 1..n).map(move |k| (j, k)))
+            .filter(|&(j, k)| plan.joint(self.c, j, k) && !examined(&(j, k)))
+            .collect();
+        let examined = 0.5 * self.interactions_squared(&curved.interactions) / variance;
+        let mut share = examined;
+        let mut products = curved.interactions.pairs();
+        if !left.is_empty() {
+            share += self.unexamined(&left, (&curved, &independent, second), variance, &mut products);
+        }
+        // Those that are taken to be like others twist as these do.
+        let seen: f64 = products.iter().map(|(.., value)| value * value).sum::<f64>() / variance;
+        let times = if seen > 0.0 { (share / seen).max(1.0) } else { 1.0 };
+        let known: Vec<Univariate> = parts.iter().flatten().copied().collect();
+        let [lines, mean] = twists(&known, &products);
+        let twisted = times * lines / variance;
+        add(&mut self.errors, [times.sqrt() * mean, twisted * moments.sigma(), 3.0 * twisted, 6.0 * twisted]);
+        let ratios: f64 = parts.iter().flatten().map(|part| ratio(part, self.surrogate.centre)).sum();
+        let factor = (5.0 * ratios).max(share).min(MOST);
+        let triples = share * factor;
+        if triples > 0.0 {
+            let root = share.sqrt() * factor;
+            add(
+                &mut self.errors,
+                [0.0, 0.5 * triples * moments.sigma(), 4.0 * root, 24.0 * triples + 10.0 * triples.sqrt()],
+            );
+            self.sources.push(Source::Triples);
+        }
+    }
+
+    fn interactions_squared(&self, interactions: &Interactions) -> f64 {
+        2.0 * interactions.pairs().iter().map(|(.., value)| value * value).sum::<f64>()
+    }
+
+    /// Adds what interactions that were not examined may do; the share of the variance that they are taken to have.
+    fn unexamined(
+        &mut self,
+        left: &[(usize, usize)],
+        (surrogate, independent, moments): (&Surrogate, &Inputs, Option<Moments>),
+        variance: f64,
+        products: &mut Vec<(usize, usize, f64)>,
+    ) -> f64 {
+        let pairs = left.len();
+        if let Some(exact) = self.exact_pairs(left) {
+            let more = left.iter().zip(&exact).map(|(&(j, k), &value)| (j, k, value));
+            let all = surrogate.interactions.pairs().into_iter().chain(more).filter(|&(.., value)| value != 0.0);
+            let interactions = Interactions::of_pairs(surrogate.parts.len(), all);
+            let whole = Surrogate { interactions, ..surrogate.clone() };
+            if let Some((whole, without)) = whole.contributions(independent).map(|found| found.moments).zip(moments) {
+                add(&mut self.errors, apart(&whole, &without));
+            }
+            products.extend(left.iter().zip(&exact).map(|(&(j, k), &value)| (j, k, value)));
+            self.sources.push(Source::ExactPairs { pairs });
+            return exact.iter().map(|value| value * value).sum::<f64>() / variance;
+        }
+        let Some(share) = self.similar_pairs(left, variance) else {
+            self.known = [self.outcome.plan.inputs().correlation().is_none(), false, false, false];
+            self.sources.push(Source::UnknownPairs { pairs });
+            return 0.0;
+        };
+        let sigma = variance.sqrt();
+        add(&mut self.errors, [0.0, 0.5 * share * sigma, 4.0 * share.sqrt(), 24.0 * share]);
+        self.sources.push(Source::SimilarPairs { pairs });
+        share
+    }
+
+    /// The interactions in sigmas, as the assembly function knows them.
+    fn exact_pairs(&self, left: &[(usize, usize)]) -> Option<Vec<f64>> {
+        let plan = &self.outcome.plan;
+        if left.len() > EXACT {
+            return None;
+        }
+        let dimensions: Vec<(usize, usize)> =
+            left.iter().map(|&(j, k)| (plan.varying()[j], plan.varying()[k])).collect();
+        let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &dimensions };
+        let outputs = [self.problem.outputs()[self.c]];
+        let derivatives = self.problem.function().derivatives(&outputs, &directions).into_iter().next()??;
+        let scaled = |(&(j, k), value): (&(usize, usize), &Option<f64>)| {
+            Some(plan.axis(j).scale * plan.axis(k).scale * (*value)?)
+        };
+        dimensions.iter().zip(&derivatives.mixed).map(scaled).collect()
+    }
+
+    /// The share of interactions that are to the shares of their dimensions as those examined are.
+    fn similar_pairs(&self, left: &[(usize, usize)], variance: f64) -> Option<f64> {
+        let plan = &self.outcome.plan;
+        let own: Vec<f64> = (self.parts()?.iter().zip(plan.inputs().shapes()))
+            .map(|(part, shape)| part.term(shape).variance(1.0) / variance)
+            .collect();
+        let expected =
+            |pairs: &mut dyn Iterator<Item = (usize, usize)>| pairs.map(|(j, k)| own[j] * own[k]).sum::<f64>();
+        let seen = expected(&mut self.outcome.pairs.iter().copied().filter(|&(j, k)| plan.joint(self.c, j, k)));
+        if seen <= 0.0 || seen.is_nan() {
+            return None;
+        }
+        let found = 0.5 * self.interactions_squared(&self.surrogate.interactions) / variance;
+        Some(found / seen * expected(&mut left.iter().copied()))
+    }
+
+    /// One rounding of a value in every difference.
+    fn rounding(&mut self, moments: &Moments) {
+        let one = f64::EPSILON * self.surrogate.centre.abs() * (self.surrogate.parts.len() as f64 + 1.0).sqrt();
+        let part = if moments.sigma() > 0.0 { one / moments.sigma() } else { 0.0 };
+        add(&mut self.errors, [one, one, 4.0 * part, 8.0 * part]);
+    }
+}

@@ -1,0 +1,147 @@
+//! What a method found out.
+
+use std::sync::Arc;
+
+use super::{Climbed, ExactDerivatives, Method};
+use crate::evaluation::Evaluated;
+use crate::moments::Moments;
+use crate::plan::{Mixed, Plan};
+use crate::surrogate::{Surrogate, Univariate};
+
+/// How much of the derivatives a method makes use of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// Slopes only.
+    First,
+    /// Curvatures and interactions too.
+    Second,
+}
+
+/// What the moments rest on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// A surrogate of exact derivatives.
+    Exact,
+    /// A surrogate of differences.
+    Differences,
+    /// A surrogate fitted by least squares.
+    LeastSquares,
+    /// Quadrature of the values themselves, without a surrogate.
+    Quadrature,
+}
+
+/// What a method found out.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// The method that was asked for.
+    pub asked: Method,
+    /// The method that was run.
+    pub method: Method,
+    /// What the moments rest on.
+    pub basis: Basis,
+    /// What it planned.
+    pub plan: Arc<dyn Plan>,
+    /// What it evaluated.
+    pub evaluated: Evaluated,
+    /// How much of it the surrogates use.
+    pub order: Order,
+    /// For every characteristic what is known of it.
+    pub fitted: Vec<Fitted>,
+    /// The pairs that were examined, as positions among the varying dimensions.
+    pub pairs: Vec<(usize, usize)>,
+    /// How `auto` came to its result; None for any other method.
+    pub climbed: Option<Climbed>,
+}
+
+/// What is known of one characteristic.
+#[derive(Debug, Clone, Default)]
+pub struct Fitted {
+    /// Its value at the nominal dimensions.
+    pub nominal: Option<f64>,
+    /// Its value with every dimension at its mean.
+    pub centre: Option<f64>,
+    /// The derivatives at the means as the assembly function knows them; None where it does not, or was not asked.
+    pub exact: Option<ExactDerivatives>,
+    /// Every dimension's own part, in the problem's order; None where it is unknown or was not asked for.
+    pub parts: Vec<Option<Univariate>>,
+    /// The mixed derivatives of the pairs examined, in sigma units; None where lost or not differentiated.
+    pub mixed: Vec<Option<Mixed>>,
+    /// The surrogate over the varying dimensions; None without a value at the means, and where a method has none.
+    pub surrogate: Option<Surrogate>,
+    /// The moments of a method that integrates without a surrogate.
+    pub integrated: Option<Integrated>,
+    /// Why a method that is no difference plan has no moments.
+    pub lacking: Option<Lacking>,
+    /// How far a surrogate of least squares misses the values that it was fitted to.
+    pub residual: Option<Residual>,
+}
+
+/// Moments that were integrated from values, and what they are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Integrated {
+    /// The moments.
+    pub moments: Moments,
+    /// For every varying dimension what it does by itself; None for one that is correlated.
+    pub own: Vec<Option<Own>>,
+    /// For every pair examined what the two do together; None where one of them is correlated.
+    pub pairs: Vec<Option<Joint>>,
+    /// The share of the variance that no contribution accounts for.
+    pub left_out: Option<f64>,
+    /// Nodes of the longest rule.
+    pub nodes: usize,
+}
+
+/// What one dimension does by itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Own {
+    /// Share of the variance that the best straight line explains.
+    pub linear: f64,
+    /// Share that the rest of its own part adds.
+    pub curvature: f64,
+    /// How far its own part moves the mean; None where that is not known apart from what others do.
+    pub mean_shift: Option<f64>,
+}
+
+/// What two dimensions do together, beyond what each does by itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Joint {
+    /// Share of the variance.
+    pub share: f64,
+    /// How far it moves the mean; None where that is not known apart from what others do.
+    pub mean_shift: Option<f64>,
+}
+
+/// Why there are no moments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lacking {
+    /// Points of a quadrature have no value.
+    Points {
+        /// How many.
+        lost: usize,
+        /// Of how many.
+        of: usize,
+    },
+    /// Too few points are left to fit the surface.
+    NotEstimable {
+        /// How many are left.
+        left: usize,
+        /// How many coefficients there are.
+        coefficients: usize,
+    },
+}
+
+/// How far a surrogate misses the values that it was fitted to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Residual {
+    /// `sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None where there are no more points
+    /// than coefficients.
+    pub standard_error: Option<f64>,
+    /// What that leaves uncertain of the mean, as a standard error; None where it is unknown or inputs are correlated.
+    pub mean: Option<f64>,
+    /// The same of sigma.
+    pub sigma: Option<f64>,
+    /// Points that were fitted.
+    pub points: usize,
+    /// Coefficients.
+    pub coefficients: usize,
+}

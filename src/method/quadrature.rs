@@ -1,0 +1,411 @@
+//! What the methods share that integrate values instead of derivatives: independent inputs, their rules, and their points.
+//!
+//! An input of its own is one variable, with a quadrature rule of its own distribution. Correlated inputs are functions of
+//! normal variables `z` (Nataf), and these go by the eigenvectors of their correlation `R = V D V'`, group by group:
+//!
+//! ```text
+//! x_j = T_j(z_j),   z = V sqrt(D) w,   w independent standard normal, with a Gauss-Hermite rule each
+//! ```
+//!
+//! A direction of eigenvalue 0 does not vary. All variables at 0 is the point from which cuts are taken: the means, but the
+//! median of a correlated input that is skewed.
+
+use std::sync::Arc;
+
+use faer::{Mat, Side};
+
+use super::{
+    Basis, Cost, DerivativeSource, ExactDerivatives, Fitted, Integrated, Lacking, Method, MethodError, Options, Order,
+    Outcome, cost,
+};
+use crate::assembly::Run;
+use crate::correlation::Correlation;
+use crate::distribution::{Distribution, Normal, Rule, StandardMoments, behind_normal};
+use crate::evaluation::{Evaluated, evaluate};
+use crate::plan::{At, Design, Known, Mixed, Plan, Point, Purpose};
+use crate::problem::Problem;
+use crate::surrogate::Univariate;
+
+/// Points that are ever evaluated by one method.
+pub(super) const MOST: usize = 1_000_000;
+const LIMIT: &str = "more than the 1000000 that are ever done";
+/// An eigenvalue below this is rounding of 0.
+const ZERO: f64 = 1e-12;
+/// A median as near to the mean as this part of sigma is the mean.
+const SAME: f64 = 1e-9;
+/// Derivatives are taken from nodes at least so far from the mean: chords of a shorter step drown in noise.
+const NEAREST: f64 = 0.35;
+
+/// An independent standardised variable.
+#[derive(Debug, Clone)]
+pub(super) struct Variable {
+    pub(super) rule: Rule,
+    pub(super) moments: StandardMoments,
+    moves: Moves,
+}
+
+/// What a variable moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Moves {
+    /// The dimension at this position among the varying ones.
+    One(usize),
+    /// The members of a group, along this one of its directions.
+    Along { group: usize, direction: usize },
+}
+
+/// Dimensions that vary together.
+#[derive(Debug, Clone)]
+struct Group {
+    /// Positions among the varying dimensions.
+    members: Vec<usize>,
+    /// A row a member, a column a variable.
+    directions: Mat<f64>,
+}
+
+/// All variables of a problem.
+#[derive(Debug, Clone)]
+pub(super) struct Variables<'p> {
+    problem: &'p Problem,
+    varying: Vec<usize>,
+    groups: Vec<Group>,
+    pub(super) all: Vec<Variable>,
+}
+
+impl<'p> Variables<'p> {
+    /// With these rules, the first for inputs of their own and the other for the directions of correlated ones.
+    pub(super) fn of(
+        problem: &'p Problem,
+        plan: &dyn Plan,
+        rule: impl Fn(&dyn Distribution) -> Rule,
+        nodes: usize,
+    ) -> Self {
+        let varying = plan.varying().to_vec();
+        let groups: Vec<Group> = plan.inputs().correlation().map_or_else(Vec::new, groups);
+        let normal = Normal::new(0.0, 1.0).expect("the standard normal distribution");
+        let mut all = Vec::new();
+        for (position, &d) in varying.iter().enumerate() {
+            let at_home = groups.iter().position(|group| group.members.contains(&position));
+            match at_home {
+                None => {
+                    let distribution = problem.dimensions()[d].distribution().expect("a dimension that varies");
+                    let moments = distribution.standard_moments();
+                    all.push(Variable { rule: rule(distribution), moments, moves: Moves::One(position) });
+                }
+                // A group stands where its first member does.
+                Some(group) if groups[group].members[0] == position => {
+                    let along = |direction| Variable {
+                        rule: Rule::of(&normal, nodes),
+                        moments: StandardMoments::NORMAL,
+                        moves: Moves::Along { group, direction },
+                    };
+                    all.extend((0..groups[group].directions.ncols()).map(along));
+                }
+                Some(_) => {}
+            }
+        }
+        Self { problem, varying, groups, all }
+    }
+
+    /// The dimension that a variable is, by its position; None for a direction of several.
+    pub(super) fn position(&self, variable: usize) -> Option<usize> {
+        match self.all[variable].moves {
+            Moves::One(position) => Some(position),
+            Moves::Along { .. } => None,
+        }
+    }
+
+    /// The variable that the dimension at this position is; None where it is correlated.
+    pub(super) fn variable(&self, position: usize) -> Option<usize> {
+        self.all.iter().position(|variable| variable.moves == Moves::One(position))
+    }
+
+    /// Whether a characteristic can depend on a variable.
+    pub(super) fn depends(&self, plan: &dyn Plan, characteristic: usize, variable: usize) -> bool {
+        let on = |position: usize| plan.depends(characteristic, self.varying[position]);
+        match self.all[variable].moves {
+            Moves::One(position) => on(position),
+            Moves::Along { group, .. } => self.groups[group].members.iter().any(|&position| on(position)),
+        }
+    }
+
+    /// Nodes of the longest rule.
+    pub(super) fn longest(&self) -> usize {
+        self.all.iter().map(|variable| variable.rule.nodes.len()).max().unwrap_or(0)
+    }
+
+    /// Nodes beside the reference.
+    pub(super) fn nodes_elsewhere(&self, variable: usize) -> usize {
+        self.all[variable].rule.nodes.iter().filter(|&&u| u != 0.0).count()
+    }
+
+    /// The dimensions that are not at their means where these variables are at these nodes and all others at 0.
+    pub(super) fn values(&self, at: &[(usize, usize)]) -> Vec<(usize, f64)> {
+        let mut values = Vec::with_capacity(at.len());
+        let mut z: Vec<Vec<f64>> = self.groups.iter().map(|group| vec![0.0; group.members.len()]).collect();
+        for &(variable, node) in at {
+            let Variable { rule, moves, .. } = &self.all[variable];
+            let u = rule.nodes[node];
+            match *moves {
+                Moves::One(position) => {
+                    let dimension = &self.problem.dimensions()[self.varying[position]];
+                    values.push((self.varying[position], dimension.mean() + u * dimension.sigma()));
+                }
+                Moves::Along { group, direction } => {
+                    let directions = &self.groups[group].directions;
+                    z[group].iter_mut().enumerate().for_each(|(j, z)| *z += directions[(j, direction)] * u);
+                }
+            }
+        }
+        for (group, z) in self.groups.iter().zip(z) {
+            values.extend(group.members.iter().zip(z).map(|(&position, z)| self.behind(position, z)));
+        }
+        values
+    }
+
+    /// The value of a correlated dimension whose normal variable is `z`.
+    fn behind(&self, position: usize, z: f64) -> (usize, f64) {
+        let d = self.varying[position];
+        let dimension = &self.problem.dimensions()[d];
+        let distribution = dimension.distribution().expect("a dimension that varies");
+        let (mean, sigma) = (dimension.mean(), dimension.sigma());
+        let law = distribution.probability().expect("a correlated dimension is known whole");
+        let x = match distribution.name() == Normal::NAME {
+            true => mean + sigma * z,
+            false => behind_normal(law, z),
+        };
+        (d, if (x - mean).abs() <= SAME * sigma { mean } else { x })
+    }
+}
+
+/// Those that are linked by a correlation that is not 0, and the directions of each group, the one of the largest variance first.
+fn groups(correlation: &Correlation) -> Vec<Group> {
+    let (members, normal) = (correlation.members(), correlation.normal());
+    let mut left: Vec<usize> = (0..members.len()).collect();
+    let mut groups = Vec::new();
+    while let Some(&first) = left.first() {
+        let mut linked = vec![first];
+        let mut next = 0;
+        while next < linked.len() {
+            let from = linked[next];
+            let new: Vec<usize> =
+                left.iter().copied().filter(|k| !linked.contains(k) && normal[(from, *k)] != 0.0).collect();
+            linked.extend(new);
+            next += 1;
+        }
+        linked.sort_unstable();
+        left.retain(|place| !linked.contains(place));
+        groups.push(Group {
+            members: linked.iter().map(|&place| members[place]).collect(),
+            directions: directions(&Mat::from_fn(linked.len(), linked.len(), |j, k| normal[(linked[j], linked[k])])),
+        });
+    }
+    groups
+}
+
+/// `V sqrt(D)` of `R = V D V'`, without the directions that do not vary.
+fn directions(correlation: &Mat<f64>) -> Mat<f64> {
+    let m = correlation.nrows();
+    let eigen = correlation.self_adjoint_eigen(Side::Lower).expect("the eigenvalues of a correlation matrix");
+    let mut order: Vec<usize> = (0..m).filter(|&k| eigen.S()[k] > ZERO * m as f64).collect();
+    order.sort_by(|&a, &b| eigen.S()[b].total_cmp(&eigen.S()[a]).then(a.cmp(&b)));
+    // An eigenvector has no sign: its largest component is positive.
+    let sign = |k: usize| {
+        let largest = (0..m).max_by(|&i, &j| eigen.U()[(i, k)].abs().total_cmp(&eigen.U()[(j, k)].abs()));
+        largest.map_or(1.0, |i| eigen.U()[(i, k)].signum())
+    };
+    Mat::from_fn(m, order.len(), |j, place| {
+        let k = order[place];
+        sign(k) * eigen.U()[(j, k)] * eigen.S()[k].sqrt()
+    })
+}
+
+/// What the options of a method that integrates come to: no step, no stencil, no pairs.
+pub(super) fn check(method: &'static str, options: &Options, nodes: bool) -> Result<(), MethodError> {
+    let derivatives = "a method of derivatives";
+    let given = [
+        (options.step.is_some(), "step", derivatives),
+        (options.pairs.is_some(), "pairs", Method::SixN.name()),
+        (options.stencil.is_some(), "stencil", Method::SixN.name()),
+        (options.derivatives == Some(DerivativeSource::Exact), "derivatives", derivatives),
+        (options.nodes.is_some() && !nodes, "nodes", super::NODES),
+    ];
+    if let Some(&(_, option, only)) = given.iter().find(|(given, ..)| *given) {
+        return Err(MethodError::OptionDoesNotApply { method, option, only });
+    }
+    match options.nodes {
+        Some(nodes) if ![3, 5, 7].contains(&nodes) => Err(MethodError::BadNodes { nodes }),
+        _ => Ok(()),
+    }
+}
+
+/// So many points, unless there are too many of them.
+pub(super) fn affordable(
+    method: &'static str,
+    needed: u128,
+    problem: &Problem,
+    options: &Options,
+    dimensions: usize,
+) -> Result<(), MethodError> {
+    match usize::try_from(needed).is_ok_and(|needed| needed <= MOST) {
+        true => Ok(()),
+        false => {
+            let fitting = cost::fitting(problem, options.budget.unwrap_or(MOST));
+            Err(MethodError::TooMany { method, dimensions, needed, limit: LIMIT, fitting })
+        }
+    }
+}
+
+/// What is known of one characteristic: its moments, or why there are none, and the mixed derivatives of the pairs examined.
+pub(super) type Found = (Result<Integrated, Lacking>, Vec<Option<Mixed>>);
+
+/// A design over the variables of a problem.
+#[derive(Debug, Clone)]
+pub(super) struct Quadrature<'p> {
+    pub(super) variables: Variables<'p>,
+    pub(super) design: Design,
+    /// All variables at 0.
+    pub(super) reference: Point,
+}
+
+impl<'p> Quadrature<'p> {
+    /// Without points of its own, but for the reference if it is wanted.
+    pub(super) fn new(
+        problem: &'p Problem,
+        options: &Options,
+        rule: impl Fn(&dyn Distribution) -> Rule,
+        nodes: usize,
+        reference_wanted: bool,
+    ) -> Self {
+        let (dimensions, correlation) = (problem.dimensions(), problem.correlation());
+        let mut design = Design::new(dimensions, correlation, problem.dependence(), options.all_sensitivities);
+        let variables = Variables::of(problem, &design, rule, nodes);
+        let reference = design.point(&variables.values(&[]));
+        if reference_wanted {
+            let purpose = if reference == Point::Centre { Purpose::Centre } else { Purpose::Cut };
+            design.want(reference.clone(), purpose);
+        }
+        for (v, variable) in variables.all.iter().enumerate() {
+            if let Moves::One(position) = variable.moves {
+                let steps: Vec<f64> = (0..variable.rule.nodes.len())
+                    .flat_map(|node| variables.values(&[(v, node)]))
+                    .filter(|(d, _)| *d == variables.varying[position])
+                    .map(|(_, x)| x)
+                    .collect();
+                design.steps(variables.varying[position], steps);
+            }
+        }
+        Self { variables, design, reference }
+    }
+
+    /// The point at which these variables are at these nodes; it is evaluated.
+    pub(super) fn want(&mut self, at: &[(usize, usize)], purpose: Purpose) -> Point {
+        let point = self.design.point(&self.variables.values(at));
+        self.design.want(point.clone(), purpose);
+        point
+    }
+
+    /// Cuts along every variable: for each the points at its nodes.
+    pub(super) fn cuts(&mut self) -> Vec<Vec<Point>> {
+        let nodes: Vec<usize> = self.variables.all.iter().map(|variable| variable.rule.nodes.len()).collect();
+        let cut = |(v, nodes): (usize, usize)| (0..nodes).map(|node| self.want(&[(v, node)], Purpose::Cut)).collect();
+        nodes.into_iter().enumerate().map(cut).collect()
+    }
+
+    /// Evaluates the design, if the budget allows.
+    pub(super) fn evaluated(
+        &self,
+        method: &'static str,
+        problem: &Problem,
+        options: &Options,
+        run: &Run<'_>,
+    ) -> Result<Evaluated, MethodError> {
+        Cost::of(&self.design).within(method, problem, options)?;
+        problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
+        Ok(evaluate(problem, &self.design, run))
+    }
+
+    /// Values of a characteristic at these points above one at another; None for each that is lost.
+    pub(super) fn rises(known: &Known, c: usize, points: &[Point], above: f64) -> Vec<Option<f64>> {
+        points.iter().map(|point| Some(known.value(point, c)? - above)).collect()
+    }
+
+    /// The outcome, with derivatives wherever they are known: exact ones, or those of polynomials through the nodes next to
+    /// the means.
+    pub(super) fn outcome(
+        self,
+        method: Method,
+        options: &Options,
+        evaluated: Evaluated,
+        pairs: Vec<(usize, usize)>,
+        found: Vec<Found>,
+    ) -> Outcome {
+        let Self { variables, design, reference } = self;
+        let problem = variables.problem;
+        let exact = ExactDerivatives::beside(problem, &design, options, &pairs);
+        let at_means = reference == Point::Centre;
+        let fitted = found.into_iter().zip(exact).enumerate().map(|(c, ((integrated, mixed), exact))| {
+            let part = |d: usize| part(&design, &evaluated.known, c, d, at_means);
+            Fitted {
+                nominal: evaluated.known.value(design.nominal(), c),
+                centre: evaluated.known.value(&Point::Centre, c),
+                exact,
+                parts: (0..problem.dimensions().len()).map(part).collect(),
+                mixed,
+                lacking: integrated.as_ref().err().copied(),
+                integrated: integrated.ok(),
+                ..Fitted::default()
+            }
+        });
+        let fitted = fitted.collect();
+        let plan = Arc::new(design);
+        Outcome {
+            asked: method,
+            method,
+            basis: Basis::Quadrature,
+            plan,
+            evaluated,
+            order: Order::Second,
+            fitted,
+            pairs,
+            climbed: None,
+        }
+    }
+}
+
+/// The polynomial through the steps next to the mean, four of them at most; None where there are none, or none was had.
+fn part(design: &Design, known: &Known, c: usize, d: usize, at_means: bool) -> Option<Univariate> {
+    if !design.depends(c, d) {
+        return Some(Univariate::of_coefficients(&[0.0, 0.0]));
+    }
+    let centre = known.value(&Point::Centre, c).filter(|_| at_means)?;
+    let axis = design.axis(d);
+    let mut samples: Vec<(f64, f64)> = (axis.slots.iter())
+        .filter_map(|slot| {
+            let value = known.value(&Point::of(&[At { dimension: d as u32, node: slot[0] }]), c)?;
+            Some((axis.nodes[slot[0] as usize].u, value - centre))
+        })
+        .filter(|(u, _)| u.abs() >= NEAREST)
+        .collect();
+    samples.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    samples.truncate(Univariate::DEGREE);
+    Univariate::through(&samples)
+}
+
+/// Where the two nodes next to the mean are, one on either side; None where a side has none.
+pub(super) fn next_to_the_mean(rule: &Rule) -> [Option<usize>; 2] {
+    let nearest = |right: bool| {
+        let away = |&i: &usize| rule.nodes[i].abs() >= NEAREST && (rule.nodes[i] > 0.0) == right;
+        (0..rule.nodes.len()).filter(away).min_by(|&i, &j| rule.nodes[i].abs().total_cmp(&rule.nodes[j].abs()))
+    };
+    [nearest(false), nearest(true)]
+}
+
+/// How many of these are lost, if any is.
+pub(super) fn complete(values: impl IntoIterator<Item = bool>) -> Result<(), Lacking> {
+    let (mut lost, mut of) = (0, 0);
+    for known in values {
+        of += 1;
+        lost += usize::from(!known);
+    }
+    if lost == 0 { Ok(()) } else { Err(Lacking::Points { lost, of }) }
+}

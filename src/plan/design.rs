@@ -1,0 +1,168 @@
+//! A design: points that are all known beforehand and are evaluated in one stage.
+
+use std::collections::{HashMap, HashSet};
+
+use super::axis::Axis;
+use super::nodes::Spread;
+use super::point::{At, Point};
+use super::stage::{Purpose, Stage};
+use super::{Known, Plan};
+use crate::correlation::Correlation;
+use crate::dimension::Dimension;
+use crate::surrogate::{Inputs, shapes};
+
+/// The points of a method that asks for all of them at once.
+///
+/// It begins with the nominal point and, where they are asked for, the steps of dimensions without tolerance; a method
+/// adds its own. A point that is wanted twice is one point, and a coordinate at its mean is none.
+#[derive(Debug, Clone)]
+pub struct Design {
+    axes: Vec<Axis>,
+    /// For every dimension and value its node.
+    nodes: HashMap<(usize, u64), u32>,
+    nominal: Point,
+    varying: Vec<usize>,
+    fixed: Vec<usize>,
+    inputs: Inputs,
+    /// For every characteristic, whether it can depend on each dimension.
+    depends: Vec<Vec<bool>>,
+    points: Vec<(Point, Purpose)>,
+    wanted: HashSet<Point>,
+}
+
+impl Design {
+    /// For these dimensions, of which every characteristic can depend on those flagged in its row of `depends`. Dimensions
+    /// without tolerance are moved only if `fixed_too`.
+    pub fn new(
+        dimensions: &[Dimension],
+        correlation: Option<&Correlation>,
+        depends: Vec<Vec<bool>>,
+        fixed_too: bool,
+    ) -> Self {
+        let matters = |&d: &usize| depends.iter().any(|row| row[d]);
+        let (varying, fixed): (Vec<usize>, Vec<usize>) =
+            (0..dimensions.len()).filter(matters).partition(|&d| dimensions[d].sigma() > 0.0);
+        let fixed = if fixed_too { fixed } else { Vec::new() };
+        let inputs = Inputs::new(
+            shapes(varying.iter().filter_map(|&d| dimensions[d].distribution())),
+            correlation.and_then(|correlation| correlation.among(&varying)),
+        );
+        let mut axes: Vec<Axis> = dimensions.iter().map(Axis::still).collect();
+        varying.iter().for_each(|&d| axes[d].scale = dimensions[d].sigma());
+        fixed.iter().for_each(|&d| axes[d] = Axis::fixed(&dimensions[d], Spread::Pair));
+        let mut design = Self {
+            axes,
+            nodes: HashMap::new(),
+            nominal: Point::Centre,
+            varying,
+            fixed,
+            inputs,
+            depends,
+            points: Vec::new(),
+            wanted: HashSet::new(),
+        };
+        let nominal: Vec<(usize, f64)> = dimensions.iter().map(Dimension::nominal).enumerate().collect();
+        design.nominal = design.point(&nominal);
+        let purpose = if design.nominal == Point::Centre { Purpose::Centre } else { Purpose::Nominal };
+        design.want(design.nominal.clone(), purpose);
+        for d in design.fixed.clone() {
+            for slot in design.axes[d].slots.clone() {
+                design.want(Point::of(&[At { dimension: d as u32, node: slot[0] }]), Purpose::Sensitivity);
+            }
+        }
+        design
+    }
+
+    /// The point at which these dimensions have these values and all others their means; it is not wanted yet.
+    pub fn point(&mut self, at: &[(usize, f64)]) -> Point {
+        let mut elsewhere = Vec::with_capacity(at.len());
+        for &(dimension, x) in at {
+            if let Some(node) = self.node(dimension, x) {
+                elsewhere.push(At { dimension: dimension as u32, node });
+            }
+        }
+        Point::of(&elsewhere)
+    }
+
+    /// Wants a point.
+    pub fn want(&mut self, point: Point, purpose: Purpose) {
+        if self.wanted.insert(point.clone()) {
+            self.points.push((point, purpose));
+        }
+    }
+
+    /// Makes these values steps of a dimension: those from which its derivatives are taken, and that a plan shows. A value
+    /// that is the mean is no step.
+    pub fn steps(&mut self, dimension: usize, values: impl IntoIterator<Item = f64>) {
+        for x in values {
+            if let Some(node) = self.node(dimension, x) {
+                self.axes[dimension].slots.push(vec![node]);
+            }
+        }
+    }
+
+    /// The pairs of positions on which some characteristic can depend.
+    pub fn pairs(&self) -> Vec<(usize, usize)> {
+        let n = self.varying.len();
+        let matters = |&(j, k): &(usize, usize)| (0..self.depends.len()).any(|c| self.joint(c, j, k));
+        (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k))).filter(matters).collect()
+    }
+
+    /// Takes over what an axis of a difference plan knows beside its nodes: what was moved into the support, and a tail.
+    pub(crate) fn take_notes(&mut self, dimension: usize, axis: Axis) {
+        (self.axes[dimension].moved, self.axes[dimension].tail) = (axis.moved, axis.tail);
+    }
+
+    /// The node of this value, a new one if need be; None at the mean.
+    fn node(&mut self, dimension: usize, x: f64) -> Option<u32> {
+        let axis = &mut self.axes[dimension];
+        if x == axis.mean {
+            return None;
+        }
+        Some(*self.nodes.entry((dimension, x.to_bits())).or_insert_with(|| axis.open_node(x)))
+    }
+}
+
+impl Plan for Design {
+    fn varying(&self) -> &[usize] {
+        &self.varying
+    }
+
+    fn moved(&self) -> Vec<usize> {
+        self.varying.iter().chain(&self.fixed).copied().collect()
+    }
+
+    fn inputs(&self) -> &Inputs {
+        &self.inputs
+    }
+
+    fn axis(&self, dimension: usize) -> &Axis {
+        &self.axes[dimension]
+    }
+
+    fn nominal(&self) -> &Point {
+        &self.nominal
+    }
+
+    fn centre(&self) -> Vec<f64> {
+        self.axes.iter().map(|axis| axis.mean).collect()
+    }
+
+    fn depends(&self, characteristic: usize, dimension: usize) -> bool {
+        self.depends[characteristic][dimension]
+    }
+
+    fn possible_pairs(&self) -> usize {
+        self.pairs().len()
+    }
+
+    fn cost(&self) -> (usize, usize) {
+        (self.points.len(), 1)
+    }
+
+    fn next(&self, known: &Known) -> Option<Stage> {
+        let open = self.points.iter().filter(|(point, _)| !known.tried(point));
+        let points: Vec<(Point, Purpose)> = open.cloned().collect();
+        (!points.is_empty()).then_some(Stage { points })
+    }
+}

@@ -1,0 +1,221 @@
+//! What weighted points say of a small probability.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::sampling::Estimate;
+
+/// Fewer effective points beyond the limit have an interval of counts, not of sums.
+const MANY: f64 = 30.0;
+/// A greatest weight above so many times the average of those beyond says that there are greater ones.
+const HEAVY: f64 = 3.0;
+/// The 97.5 % quantile of the normal distribution.
+const Z: f64 = 1.959_963_984_540_054;
+/// No hit leaves room for so many, with 97.5 %: `-ln 0.025`.
+const UNSEEN: f64 = 3.688_879_454_113_936;
+/// Points of a weight up to so many times the greatest of those beyond the limit lie next to these; farther
+/// where weights differ widely: those not seen differ more.
+const NEXT: f64 = 3.0;
+
+/// Points as they were weighed, and whether each lies beyond the limit.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Weighed {
+    /// The sum and the sum of squares of those beyond.
+    sum: f64,
+    squares: f64,
+    /// Of every stage.
+    stages: Vec<Stage>,
+    /// How many points there are, how many of these beyond, and how many of unknown value.
+    points: u64,
+    hits: u64,
+    /// The greatest weight beyond, of the others ascending, and of those without a value in all.
+    greatest: f64,
+    others: Vec<f64>,
+    unknown: f64,
+}
+
+/// How many points a stage had, the sum of the weights beyond, and the variance of that.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stage {
+    points: f64,
+    sum: f64,
+    variance: f64,
+}
+
+/// Stages that differ by more than so many squared standard errors, on average, do not agree by chance.
+const APART: f64 = 4.0;
+
+/// A probability, as far as it is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Found {
+    /// None where no point lies beyond.
+    pub(super) probability: Option<Estimate>,
+    pub(super) interval: [f64; 2],
+    /// If no point without a value lies beyond, and if all do.
+    pub(super) bounds: [f64; 2],
+    pub(super) hits: u64,
+    pub(super) effective: f64,
+    /// The greatest part of it that is a single point's.
+    pub(super) greatest_part: Option<f64>,
+}
+
+impl Weighed {
+    /// Adds a stage: points with the component that each was drawn from, its weight, and whether it lies beyond, None where
+    /// the model has no value.
+    ///
+    /// How many points a component has is not left to chance, so that the variance is the sum of the components' own.
+    pub(super) fn add(&mut self, components: usize, points: impl Iterator<Item = (usize, f64, Option<bool>)>) {
+        let mut sums = vec![[0.0; 3]; components];
+        for (component, weight, beyond) in points {
+            self.points += 1;
+            sums[component][0] += 1.0;
+            match beyond {
+                Some(true) => {
+                    self.hits += 1;
+                    self.greatest = self.greatest.max(weight);
+                    sums[component][1] += weight;
+                    sums[component][2] += weight * weight;
+                }
+                Some(false) => self.others.push(weight),
+                None => self.unknown += weight,
+            }
+        }
+        let mut stage = Stage::default();
+        for [n, sum, squares] in sums {
+            stage.points += n;
+            stage.sum += sum;
+            self.squares += squares;
+            // Of a single point nothing is known but its square.
+            let apart = if n > 1.0 { (squares - sum * sum / n).max(0.0) * n / (n - 1.0) } else { squares };
+            stage.variance += apart;
+        }
+        self.sum += stage.sum;
+        self.stages.push(stage);
+    }
+
+    /// The variance of the sum: of all components of all stages; more where stages do not agree (Birge 1932), because
+    /// something has been found that some of them knew nothing of.
+    fn variance(&self) -> f64 {
+        let (mean, all) = (self.sum / self.points as f64, self.stages.iter().map(|stage| stage.variance).sum::<f64>());
+        let apart = |stage: &Stage| {
+            // A stage that saw nothing has no variance of its own: it has its part of that of all.
+            let variance = stage.variance.max(all * stage.points / self.points as f64);
+            (stage.sum - mean * stage.points).powi(2) / variance
+        };
+        let ratio = self.stages.iter().map(apart).sum::<f64>() / (self.stages.len() as f64 - 1.0).max(1.0);
+        if ratio > APART { all * ratio } else { all }
+    }
+
+    /// The mean of the weights beyond; its standard error is that of the mean.
+    ///
+    /// The interval is lognormal where many points bear it alike, and that of a weighted count where few do or their weights
+    /// differ widely (Fay and Feuer 1997; with a greater weight than any seen in the second case).
+    /// What lies next to the farthest of them, where no point was beyond, may hold as much as no hit leaves room for: the
+    /// two are joined as Zou and Donner (2008) do. What lies farther is taken to be as the points say: empty.
+    pub(super) fn found(&self) -> Option<Found> {
+        if self.points == 0 {
+            return None;
+        }
+        let n = self.points as f64;
+        let heaviest = || self.others.iter().copied().fold(0.0, f64::max);
+        if self.hits == 0 {
+            let interval = [0.0, (UNSEEN * heaviest().max(self.unknown) / n).min(1.0)];
+            let bounds = [0.0, (self.unknown / n).min(1.0)];
+            return Some(Found { probability: None, interval, bounds, hits: 0, effective: 0.0, greatest_part: None });
+        }
+        let value = self.sum / n;
+        let error = self.variance().sqrt() / n;
+        let effective = self.sum * self.sum / self.squares;
+        let heavy = self.spread() / HEAVY;
+        let [low, high] = match effective >= MANY && heavy <= 1.0 {
+            true => {
+                let ratio = (Z * error / value).exp();
+                [value / ratio, value * ratio]
+            }
+            false => counted(value, self.squares / (n * n), heavy.max(1.0) * self.greatest / n),
+        };
+        let unseen = UNSEEN * self.next() / n;
+        Some(Found {
+            probability: Some(Estimate { value, standard_error: (self.points > 1).then_some(error) }),
+            interval: [low, (value + (high - value).hypot(unseen)).min(1.0)],
+            bounds: [value, value + self.unknown / n].map(|bound| bound.min(1.0)),
+            hits: self.hits,
+            effective,
+            greatest_part: Some(self.greatest / self.sum),
+        })
+    }
+}
+
+impl Weighed {
+    /// The greatest weight beyond by the average of those.
+    fn spread(&self) -> f64 {
+        self.greatest * self.hits as f64 / self.sum
+    }
+
+    /// The weight, on average, of the points next to those beyond the limit, on the side of the means, of which none is
+    /// beyond; of the nearest of them where none is near.
+    fn next(&self) -> f64 {
+        let before = |weight: &&f64| **weight > self.greatest;
+        let times = NEXT * (if self.spread() > HEAVY { self.spread() } else { 1.0 });
+        let near = |weight: &&f64| **weight <= times * self.greatest;
+        let (sum, count) =
+            self.others.iter().filter(before).filter(near).fold((0.0, 0.0), |(sum, n), weight| (sum + weight, n + 1.0));
+        if count > 0.0 {
+            return sum / count;
+        }
+        let nearest = self.others.iter().filter(before).copied().fold(f64::INFINITY, f64::min);
+        if nearest.is_finite() { nearest } else { 0.0 }
+    }
+}
+
+/// The 95 % interval of a sum of weighted counts with this value, this sum of squares and this greatest weight.
+fn counted(value: f64, squares: f64, greatest: f64) -> [f64; 2] {
+    let quantile = |p: f64, freedom: f64| ChiSquared::new(freedom).map_or(f64::NAN, |law| law.inverse_cdf(p));
+    let low = squares / (2.0 * value) * quantile(0.025, 2.0 * value * value / squares);
+    let (more, wide) = (value + greatest, squares + greatest * greatest);
+    [low, wide / (2.0 * more) * quantile(0.975, 2.0 * more * more / wide)]
+}
+
+/// By which part of a function's variance each component of a mixture should be drawn.
+///
+/// Minimises `sum_i w_i / sum_k a_k h_ik`, the second moment of the weights as `hits` estimate it, over the parts `a`: a
+/// convex function, by multiplicative steps that never leave the simplex (Silvey, Titterington and Torsney 1978, with the
+/// exponent 1/2 of Yu 2010).
+///
+/// Shapes: a hit is its weight and the heights of the K components there; `start` has length K.
+pub(super) fn best_parts(hits: &[(f64, Vec<f64>)], start: &[f64]) -> Vec<f64> {
+    let mut parts = start.to_vec();
+    for _ in 0..60 {
+        let mut gains = vec![0.0; parts.len()];
+        for (weight, heights) in hits {
+            let density: f64 = parts.iter().zip(heights).map(|(part, height)| part * height).sum();
+            let factor = weight / density / density;
+            gains.iter_mut().zip(heights).for_each(|(gain, height)| *gain += factor * height);
+        }
+        parts.iter_mut().zip(&gains).for_each(|(part, gain)| *part *= gain.sqrt());
+        let total: f64 = parts.iter().sum();
+        parts.iter_mut().for_each(|part| *part /= total);
+    }
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Equal weights are a plain count, with the exact interval of a Poisson mean (Garwood 1936, to three decimals as in every
+    /// table of it).
+    #[test]
+    fn a_count_has_the_interval_of_a_count() {
+        for (count, interval) in [(1.0, [0.025, 5.572]), (2.0, [0.242, 7.225]), (10.0, [4.795, 18.390])] {
+            let [low, high] = counted(count, count, 1.0);
+            assert!((low - interval[0]).abs() < 6e-4 && (high - interval[1]).abs() < 6e-4, "{low} {high}");
+        }
+    }
+
+    /// Of two components with heights (4, 0) where hits lie, all goes to the first.
+    #[test]
+    fn parts_go_where_hits_are() {
+        let parts = best_parts(&[(1.0, vec![4.0, 0.0]), (1.0, vec![4.0, 1.0])], &[0.5, 0.5]);
+        assert!(parts[0] > 0.999, "{parts:?}");
+    }
+}

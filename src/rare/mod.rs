@@ -1,0 +1,348 @@
+//! Rare events: the probability beyond each limit, by importance sampling that is placed with the surrogate.
+//!
+//! A yield of 0.999997 is out of the reach of plain sampling: a million evaluations see three rejects. The surrogate of a few
+//! hundred evaluations knows nearly where these lie. Points are drawn there, from a mixture of densities beyond the
+//! surrogate's limit, near it, and the inputs' own, and the model itself says which of them are rejects. With `h_k` the
+//! height of component k relative to the inputs' density and `a_k` its part of the n points,
+//!
+//! ```text
+//! P = E[y beyond the limit] = (1/n) sum_i w_i [y(z_i) beyond],      w_i = 1/sum_k a_k h_k(z_i)
+//! ```
+//!
+//! is unbiased whatever the surrogate is worth (the balance heuristic: Veach and Guibas 1995; Owen and Zhou 2000); a poor one
+//! makes the weights unequal and the interval wide. After every stage the parts follow the rejects that were seen. What no
+//! stage comes near, a second kind of reject far from all that the surrogate knows, only the inputs' own part can find: one
+//! point of twenty.
+
+mod estimate;
+mod mixture;
+mod model;
+mod place;
+mod search;
+mod space;
+mod target;
+
+use std::time::{Duration, Instant};
+
+use crate::assembly::{EvaluationError, Run};
+use crate::characteristic::Characteristic;
+use crate::method::{Method, MethodError, Options};
+use crate::problem::Problem;
+use crate::sampling::{Estimate, SamplingError};
+use crate::simulation::{Pace, SimulationError, Surrogates};
+use model::Model;
+use place::{Place, places};
+use search::Search;
+use space::Space;
+use target::Target;
+
+/// How rare events are sought.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RareOptions {
+    /// Points of the model beside those of the surrogate, at most.
+    pub samples: u64,
+    /// Another seed is another sample.
+    pub seed: u64,
+    /// Ends when the standard error of every probability is below this part of it.
+    pub until: Option<f64>,
+    /// How the surrogate is had; `auto` is `full` to 20 varying dimensions, `six-n` beyond.
+    pub surrogate: Options,
+}
+
+impl Default for RareOptions {
+    fn default() -> Self {
+        Self { samples: 10_000, seed: 1, until: None, surrogate: Options::default() }
+    }
+}
+
+/// What was found out about rare events.
+#[derive(Debug, Clone)]
+pub struct RareEvents {
+    /// The method of the surrogate.
+    pub method: Method,
+    /// The seed.
+    pub seed: u64,
+    /// Points that were drawn and answered.
+    pub samples: u64,
+    /// Every point sent to the model, those tried again and those of the surrogate included.
+    pub evaluations: u64,
+    /// Those of the surrogate.
+    pub surrogate_evaluations: u64,
+    /// Points whose answers were known from an earlier run.
+    pub reused: u64,
+    /// Points that lost at least one characteristic.
+    pub failed: u64,
+    /// Whether it was stopped before all points were drawn or what was wanted was reached.
+    pub stopped: bool,
+    /// Whether what was wanted was reached; None where nothing was.
+    pub reached: Option<bool>,
+    /// Time within the model.
+    pub in_model: Duration,
+    /// What is known of every characteristic, in the problem's order.
+    pub characteristics: Vec<RareCharacteristic>,
+}
+
+/// What is known of one characteristic.
+#[derive(Debug, Clone)]
+pub struct RareCharacteristic {
+    /// The characteristic, with its limits.
+    pub characteristic: Characteristic,
+    /// Points at which it has no value.
+    pub failed: u64,
+    /// Why not, of the first of them.
+    pub error: Option<EvaluationError>,
+    /// Below its lower limit; None without one.
+    pub below: Option<Beyond>,
+    /// Above its upper limit; None without one.
+    pub above: Option<Beyond>,
+}
+
+/// What is known of what lies beyond one limit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beyond {
+    /// The limit.
+    pub limit: f64,
+    /// The probability beyond it; None where no point lies there.
+    pub probability: Option<Estimate>,
+    /// 95 % interval.
+    pub interval: [f64; 2],
+    /// If no point without a value lies beyond, and if all of them do.
+    pub bounds: [f64; 2],
+    /// Points beyond.
+    pub hits: u64,
+    /// Equally weighted points that would tell as much: `(sum of weights)^2 / sum of their squares`.
+    pub effective_samples: f64,
+    /// The part of the estimate that the heaviest point has: where that is large, the surrogate has missed where rejects are.
+    pub greatest_part: Option<f64>,
+    /// Points of a plain random sample that would have the same standard error.
+    pub plain_samples: Option<f64>,
+    /// The most likely assembly at the limit, as the surrogate has it; None where it does not reach the limit, or lies beyond
+    /// it at the means already.
+    pub design_point: Option<DesignPoint>,
+}
+
+/// The most likely assembly at a limit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DesignPoint {
+    /// How far it is from the middle, in standard deviations of independent normal variables.
+    pub distance: f64,
+    /// The value of every dimension, in the problem's order.
+    pub values: Vec<f64>,
+}
+
+/// Why rare events cannot be sought.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RareError {
+    /// There is nothing to be rare.
+    #[error("no characteristic asked for has a limit: give it a lower or an upper one")]
+    NoLimits,
+    /// Too few points to say anything, or too many.
+    #[error("rare events take {least} to {most} points, not {samples}")]
+    Samples {
+        /// The number asked for.
+        samples: u64,
+        /// The fewest.
+        least: u64,
+        /// The most.
+        most: u64,
+    },
+    /// It cannot be simulated, or has no surrogate.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+impl From<SamplingError> for RareError {
+    fn from(error: SamplingError) -> Self {
+        Self::Simulation(error.into())
+    }
+}
+
+impl From<MethodError> for RareError {
+    fn from(error: MethodError) -> Self {
+        Self::Simulation(error.into())
+    }
+}
+
+/// A handful says nothing.
+const LEAST: u64 = 50;
+/// Every point is kept until the end.
+const MOST: u64 = 10_000_000;
+/// Points of a stage from which places and parts are learnt: not fewer and not more.
+const FIRST: [u64; 2] = [60, 2000];
+/// Stages of this kind.
+const LEARNING: u64 = 2;
+
+/// Estimates the probability beyond every limit.
+///
+/// Evaluations: those of the surrogate's method, and the points asked for. Accuracy: standard errors and 95 % intervals;
+/// where the surrogate is good, a probability near 3e-6 is known to 5 % by some hundred points.
+///
+/// # Errors
+/// When no characteristic has a limit, a dimension cannot be sampled, or there is no surrogate.
+///
+/// ```
+/// use sensitol::rare::{RareOptions, rare};
+/// use sensitol::{Characteristic, Closure, Dimension, Problem, SpecLimits};
+/// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::normal("b", 5.0, 0.4)?];
+/// let limits = SpecLimits::new(None, Some(5.75))?; // 4.5 sigma
+/// let gap = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?
+///     .asking([Characteristic::new("gap").with_limits(limits)])?;
+/// let found = rare(&gap, &RareOptions { samples: 400, ..RareOptions::default() })?;
+/// let [low, high] = found.characteristics[0].above.as_ref().unwrap().interval;
+/// assert!(low < 3.3977e-6 && 3.3977e-6 < high && high < 1.2 * low);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn rare(problem: &Problem, options: &RareOptions) -> Result<RareEvents, RareError> {
+    rare_within(problem, options, &Run::to_the_end(), &|_| {})
+}
+
+/// [`rare`], telling of its pace and stopping when told to.
+pub fn rare_within(
+    problem: &Problem,
+    options: &RareOptions,
+    run: &Run<'_>,
+    pace: &dyn Fn(Pace),
+) -> Result<RareEvents, RareError> {
+    if !(LEAST..=MOST).contains(&options.samples) {
+        return Err(RareError::Samples { samples: options.samples, least: LEAST, most: MOST });
+    }
+    if let Some(value) = options.until.filter(|wanted| wanted.is_nan() || *wanted <= 0.0) {
+        return Err(SimulationError::Wanted { value }.into());
+    }
+    if !problem.characteristics().iter().any(|one| one.limits().exist()) {
+        return Err(RareError::NoLimits);
+    }
+    problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
+    let begun = Instant::now();
+    let surrogates = Surrogates::of(problem, &options.surrogate, run)?;
+    let space = Space::new(problem, &surrogates.outcome)?;
+    let targets = targets(problem, &surrogates, &space);
+    let mut model = Model::new(problem, &space, run);
+    let places: Vec<Place> = targets.iter().enumerate().flat_map(|(index, target)| places(index, target)).collect();
+    let places = correct(places, &targets, (options.samples / 4) as usize, &mut model);
+    let mut search = Search::new(&targets, places);
+    let (mut done, mut reached) = (surrogates.outcome.evaluated.stopped || targets.is_empty(), None);
+    while !done {
+        let left = options.samples.saturating_sub(model.answered);
+        let stage = match options.until {
+            Some(_) => search.points.max(FIRST[0]),
+            None if search.stages < LEARNING => (options.samples / 5).clamp(FIRST[0], FIRST[1]),
+            None => left,
+        };
+        done = search.stage(stage.min(left) as usize, options.seed, &mut model);
+        let shortfall = search.shortfall();
+        reached = options.until.map(|wanted| shortfall <= wanted);
+        let more = options.until.map_or(f64::INFINITY, |wanted| (shortfall / wanted).powi(2).max(1.0));
+        let expected = (search.points as f64 * more).min((search.points + left) as f64);
+        pace(Pace { samples: search.points, expected, elapsed: begun.elapsed() });
+        done |= model.answered >= options.samples || reached == Some(true) || run.stopped();
+        if !done && search.stages <= LEARNING {
+            let left = options.samples - model.answered;
+            search.follow((left / 4) as usize, &mut model);
+        }
+    }
+    let surrogate = &surrogates.outcome.evaluated;
+    let spent = surrogate.evaluations as u64;
+    Ok(RareEvents {
+        method: surrogates.outcome.method,
+        seed: options.seed,
+        samples: search.points,
+        evaluations: model.answered.saturating_add_signed(model.extra) + spent,
+        surrogate_evaluations: spent,
+        reused: model.reused + surrogate.reused as u64,
+        failed: model.failed + surrogate.known.failed_points() as u64,
+        stopped: surrogate.stopped || reached != Some(true) && model.answered < options.samples,
+        reached,
+        in_model: model.in_model + surrogate.in_model,
+        characteristics: search.characteristics(&model),
+    })
+}
+
+/// Every limit of every characteristic that has a surrogate that varies.
+fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a Space<'a>) -> Vec<Target<'a>> {
+    let mut targets = Vec::new();
+    for (c, characteristic) in problem.characteristics().iter().enumerate() {
+        let Some(known) = surrogates.known.get(c).and_then(Option::as_ref) else { continue };
+        let limits = characteristic.limits();
+        for (sign, limit) in [(-1.0, limits.lower()), (1.0, limits.upper())] {
+            let Some(limit) = limit else { continue };
+            let (surrogate, sigma) = (&known.surrogate, known.moments.sigma);
+            targets.push(Target { space, characteristic: c, sign, limit, surrogate, sigma });
+        }
+    }
+    targets
+}
+
+/// Looks at the model itself on the way to each place, nearest first and as many as the budget allows, and moves the places
+/// to where it crosses. These points are not drawn: no estimate rests on them. Places on the way to which the model crosses
+/// nothing are left out, unless a target has no other.
+fn correct(places: Vec<Place>, targets: &[Target<'_>], budget: usize, model: &mut Model<'_>) -> Vec<Place> {
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    // The first place of every target before the second of any.
+    let rank = |p: &usize| places[..*p].iter().filter(|other| other.target == places[*p].target).count();
+    order.sort_by_key(|p| (rank(p), *p));
+    let mut asked: Vec<(usize, f64)> = Vec::new();
+    for p in order {
+        let stations = places[p].stations();
+        // As many again and a half are for the second look.
+        if asked.len() + stations.len() > budget * 2 / 3 {
+            break;
+        }
+        asked.extend(stations.into_iter().map(|t| (p, t)));
+    }
+    let mut places = places;
+    let first = look(&mut places, targets, &asked, &[], model);
+    let again = |(p, place): (usize, &Place)| if first.crosses[p] == Some(true) { place.closer() } else { Vec::new() };
+    let again: Vec<(usize, f64)> =
+        (places.iter().enumerate()).flat_map(|(p, place)| again((p, place)).into_iter().map(move |t| (p, t))).collect();
+    let found = look(&mut places, targets, &again, &first.values, model);
+    let crosses: Vec<Option<bool>> =
+        first.crosses.iter().zip(&found.crosses).map(|(first, then)| then.or(*first)).collect();
+    let known = |target: usize| {
+        places.iter().zip(&crosses).any(|(place, crosses)| place.target == target && *crosses == Some(true))
+    };
+    let known: Vec<bool> = (0..targets.len()).map(known).collect();
+    let kept =
+        |(place, crosses): (Place, Option<bool>)| (crosses != Some(false) || !known[place.target]).then_some(place);
+    places.into_iter().zip(crosses).filter_map(kept).collect()
+}
+
+/// What the model said on the way to some places.
+struct Looked {
+    /// For every place, distances and values, ascending.
+    values: Vec<Vec<(f64, f64)>>,
+    /// Whether the model crosses on the way to it; None where it was not looked at.
+    crosses: Vec<Option<bool>>,
+}
+
+/// Asks the model at these distances on the way to these places, and corrects them by that and what was known.
+fn look(
+    places: &mut [Place],
+    targets: &[Target<'_>],
+    asked: &[(usize, f64)],
+    before: &[Vec<(f64, f64)>],
+    model: &mut Model<'_>,
+) -> Looked {
+    let mut looked = Looked { values: vec![Vec::new(); places.len()], crosses: vec![None; places.len()] };
+    if asked.is_empty() {
+        return looked;
+    }
+    let column = |j: usize| asked.iter().map(|&(p, t)| t * places[p].direction[j]).collect();
+    let answers = model.ask(&(0..model.space.len()).map(column).collect());
+    for (row, &(p, t)) in asked.iter().enumerate() {
+        if let Some(value) = answers.value(row, targets[places[p].target].characteristic) {
+            looked.values[p].push((t, value));
+        }
+    }
+    for (p, (place, values)) in places.iter_mut().zip(&mut looked.values).enumerate() {
+        if values.is_empty() {
+            continue;
+        }
+        values.extend(before.get(p).into_iter().flatten());
+        values.sort_by(|a, b| a.0.total_cmp(&b.0));
+        values.dedup_by(|a, b| a.0 == b.0);
+        looked.crosses[p] = Some(place.correct(&targets[place.target], values));
+    }
+    looked
+}

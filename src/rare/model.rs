@@ -1,0 +1,102 @@
+//! The model, asked at points of normal variables, and what was spent on it.
+
+use std::time::{Duration, Instant};
+
+use super::space::{Columns, Space};
+use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
+use crate::problem::Problem;
+
+/// Points that are evaluated between two looks at the clock.
+const BATCH: usize = 1 << 14;
+
+pub(super) struct Model<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) space: &'a Space<'a>,
+    run: &'a Run<'a>,
+    /// Points that were answered.
+    pub(super) answered: u64,
+    /// Points beside these: those that were tried again, less those that were known.
+    pub(super) extra: i64,
+    pub(super) reused: u64,
+    /// Points that lost at least one characteristic.
+    pub(super) failed: u64,
+    /// For every characteristic how many points lost it, and why the first did.
+    pub(super) lost: Vec<(u64, Option<EvaluationError>)>,
+    pub(super) in_model: Duration,
+}
+
+/// What the model said.
+pub(super) struct Answers {
+    /// A column for every characteristic, NaN where there is no value.
+    columns: Vec<Vec<f64>>,
+    /// Whether a row was finished before the run was stopped.
+    answered: Vec<bool>,
+}
+
+impl Answers {
+    pub(super) fn value(&self, row: usize, characteristic: usize) -> Option<f64> {
+        Some(self.columns[characteristic][row]).filter(|value| !value.is_nan())
+    }
+
+    pub(super) fn answered(&self, row: usize) -> bool {
+        self.answered[row]
+    }
+}
+
+impl<'a> Model<'a> {
+    pub(super) fn new(problem: &'a Problem, space: &'a Space<'a>, run: &'a Run<'a>) -> Self {
+        let lost = vec![(0, None); problem.characteristics().len()];
+        let (answered, extra, reused, failed) = (0, 0, 0, 0);
+        Self { problem, space, run, answered, extra, reused, failed, lost, in_model: Duration::ZERO }
+    }
+
+    /// All dimensions at their means.
+    pub(super) fn middle(&self) -> Vec<f64> {
+        self.problem.dimensions().iter().map(|dimension| dimension.mean()).collect()
+    }
+
+    /// Evaluates these points, until the run is stopped.
+    pub(super) fn ask(&mut self, normals: &Columns) -> Answers {
+        let columns = self.space.values(normals);
+        let (middle, rows) = (self.middle(), columns.first().map_or(0, Vec::len));
+        let outputs = self.problem.outputs();
+        let mut answers = Answers { columns: vec![vec![f64::NAN; rows]; outputs.len()], answered: vec![false; rows] };
+        let mut first = 0;
+        while first < rows && !self.run.stopped() {
+            let batch = BATCH.min(rows - first);
+            let mut points = Points::repeated(&middle, batch);
+            for (d, column) in self.space.dimensions().zip(&columns) {
+                points.column_mut(d).copy_from_slice(&column[first..first + batch]);
+            }
+            let mut out = Responses::open(batch, outputs.len());
+            let begun = Instant::now();
+            self.problem.function().evaluate(&Ask::values(&points, outputs), self.run, &mut out);
+            self.in_model += begun.elapsed();
+            self.extra += out.extra();
+            self.reused += out.count_reused() as u64;
+            (0..batch).for_each(|row| self.learn(&out, row, first + row, &mut answers));
+            first += batch;
+        }
+        answers
+    }
+
+    fn learn(&mut self, out: &Responses, row: usize, to: usize, answers: &mut Answers) {
+        if (0..out.outputs()).all(|output| out.is_open(row, output)) {
+            return;
+        }
+        answers.answered[to] = true;
+        self.answered += 1;
+        let mut failed = false;
+        for (output, (lost, why)) in self.lost.iter_mut().enumerate() {
+            if let Some(value) = out.value(row, output) {
+                answers.columns[output][to] = value;
+            }
+            if let Some(error) = out.error(row, output) {
+                failed = true;
+                *lost += 1;
+                why.get_or_insert_with(|| error.clone());
+            }
+        }
+        self.failed += u64::from(failed);
+    }
+}

@@ -1,0 +1,205 @@
+//! Points drawn and weighed, stage after stage.
+
+use super::estimate::{Weighed, best_parts};
+use super::mixture::Mixture;
+use super::model::{Answers, Model};
+use super::place::{Place, dot, unit};
+use super::space::Columns;
+use super::target::Target;
+use super::{Beyond, DesignPoint, RareCharacteristic, correct};
+use crate::characteristic::Characteristic;
+use crate::sampling::Estimate;
+
+/// Rejects by which the parts of the components are chosen, at most.
+const GUIDES: usize = 2000;
+/// Fewer say nothing of where the others are.
+const FEW: usize = 8;
+/// What of the parts stays as it was at first, whatever was seen.
+const KEPT: f64 = 0.25;
+
+/// What has been drawn and answered so far.
+pub(super) struct Search<'a> {
+    targets: &'a [Target<'a>],
+    mixture: Mixture<'a>,
+    weighed: Vec<Weighed>,
+    /// For every target some rejects: their weights and normal variables.
+    guides: Vec<Vec<(f64, Vec<f64>)>>,
+    /// Points drawn and answered.
+    pub(super) points: u64,
+    pub(super) stages: u64,
+}
+
+/// Points of one stage, the components in turn, so that those of any beginning are shared out alike.
+struct Drawn {
+    /// The component of every point.
+    from: Vec<usize>,
+    normals: Columns,
+    heights: Vec<Vec<f64>>,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>) -> Self {
+        let mixture = Mixture::new(targets, places);
+        let (weighed, guides) = (vec![Weighed::default(); targets.len()], vec![Vec::new(); targets.len()]);
+        Self { targets, mixture, weighed, guides, points: 0, stages: 0 }
+    }
+
+    /// Draws and weighs so many points; whether some of them were not answered.
+    pub(super) fn stage(&mut self, points: usize, seed: u64, model: &mut Model<'_>) -> bool {
+        let drawn = self.draw(points, mixed_seed(seed, self.stages));
+        self.stages += 1;
+        let answers = model.ask(&drawn.normals);
+        self.weigh(&drawn, &answers);
+        (0..points).any(|row| !answers.answered(row))
+    }
+
+    /// Adds a place for every target whose rejects lie on average in a direction in which there is none.
+    pub(super) fn follow(&mut self, budget: usize, model: &mut Model<'_>) {
+        let mut places = self.mixture.places().to_vec();
+        let before = places.len();
+        for (index, guides) in self.guides.iter().enumerate().filter(|(_, guides)| guides.len() >= FEW) {
+            let mut middle = vec![0.0; model.space.len()];
+            for (weight, normals) in guides {
+                middle.iter_mut().zip(normals).for_each(|(sum, z)| *sum += weight * z);
+            }
+            let Some(direction) = unit(middle) else { continue };
+            let near = |place: &&Place| place.target == index && dot(&place.direction, &direction) > 0.97;
+            if !places.iter().any(|place| near(&place)) {
+                places.push(Place::uncrossed(index, direction));
+            }
+        }
+        let added = correct(places.split_off(before), self.targets, budget, model);
+        places.extend(added.into_iter().filter(|place| place.crossed));
+        if places.len() > before {
+            self.mixture = Mixture::new(self.targets, places);
+        }
+    }
+
+    /// How the next points are shared out among the components: as at first, or as the rejects so far say.
+    fn parts(&self) -> Vec<f64> {
+        let first = &self.mixture.parts;
+        let mut parts = vec![0.0; first.len()];
+        for guides in &self.guides {
+            let best = if guides.len() < FEW { first.clone() } else { best_parts(&self.heights(guides), first) };
+            parts.iter_mut().zip(best).for_each(|(part, best)| *part += best / self.guides.len() as f64);
+        }
+        parts.iter().zip(first).map(|(part, first)| (1.0 - KEPT) * part + KEPT * first).collect()
+    }
+
+    /// Weights with the heights of all components instead of the points.
+    fn heights(&self, guides: &[(f64, Vec<f64>)]) -> Vec<(f64, Vec<f64>)> {
+        let dimensions = guides.first().map_or(0, |guide| guide.1.len());
+        let columns = (0..dimensions).map(|j| guides.iter().map(|guide| guide.1[j]).collect()).collect();
+        guides.iter().map(|guide| guide.0).zip(self.mixture.heights(&columns)).collect()
+    }
+
+    fn draw(&self, points: usize, seed: u64) -> Drawn {
+        let counts = shared_out(points, &self.parts());
+        let mut order: Vec<(f64, usize)> = Vec::with_capacity(points);
+        for (component, &count) in counts.iter().enumerate() {
+            order.extend((0..count).map(|i| ((i as f64 + 0.5) / count as f64, component)));
+        }
+        let mut rows: Vec<usize> = (0..points).collect();
+        rows.sort_by(|&a, &b| order[a].0.total_cmp(&order[b].0).then(a.cmp(&b)));
+        let drawn = self.mixture.draw(&counts, seed);
+        let normals = drawn.iter().map(|column| rows.iter().map(|&row| column[row]).collect()).collect();
+        let heights = self.mixture.heights(&normals);
+        Drawn { from: rows.iter().map(|&row| order[row].1).collect(), normals, heights }
+    }
+
+    /// Weights are by the points that were answered: which these are has nothing to do with what was answered.
+    fn weigh(&mut self, drawn: &Drawn, answers: &Answers) {
+        let rows: Vec<usize> = (0..drawn.from.len()).filter(|&row| answers.answered(row)).collect();
+        let mut counts = vec![0.0; self.mixture.len()];
+        rows.iter().for_each(|&row| counts[drawn.from[row]] += 1.0);
+        let total = rows.len() as f64;
+        let weight = |&row: &usize| {
+            total / counts.iter().zip(&drawn.heights[row]).map(|(count, height)| count * height).sum::<f64>()
+        };
+        let weights: Vec<f64> = rows.iter().map(weight).collect();
+        self.points += rows.len() as u64;
+        for (target, (weighed, guides)) in self.targets.iter().zip(self.weighed.iter_mut().zip(&mut self.guides)) {
+            let beyond = |row: usize| answers.value(row, target.characteristic).map(|value| target.beyond(value));
+            let points = rows.iter().zip(&weights).map(|(&row, &weight)| (drawn.from[row], weight, beyond(row)));
+            weighed.add(self.mixture.len(), points);
+            let hits = rows.iter().zip(&weights).filter(|&(&row, _)| beyond(row) == Some(true));
+            let room = GUIDES.saturating_sub(guides.len());
+            guides.extend(
+                hits.take(room)
+                    .map(|(&row, &weight)| (weight, drawn.normals.iter().map(|column| column[row]).collect())),
+            );
+        }
+    }
+
+    /// The worst standard error, relative to its probability.
+    pub(super) fn shortfall(&self) -> f64 {
+        let relative = |weighed: &Weighed| {
+            let probability = weighed.found().and_then(|found| found.probability);
+            probability.map_or(f64::INFINITY, |Estimate { value, standard_error }| {
+                standard_error.map_or(f64::INFINITY, |error| error / value)
+            })
+        };
+        self.weighed.iter().map(relative).fold(0.0, f64::max)
+    }
+
+    /// What is known of every characteristic.
+    pub(super) fn characteristics(self, model: &Model<'_>) -> Vec<RareCharacteristic> {
+        let space = model.space;
+        let beyond = |c: usize, sign: f64| {
+            let same = |target: &Target<'_>| target.characteristic == c && target.sign * sign > 0.0;
+            let index = self.targets.iter().position(same)?;
+            let found = self.weighed[index].found()?;
+            let place = self.mixture.places().iter().find(|place| place.target == index && place.crossed);
+            let design_point = place.map(|place| {
+                let normals = place.direction.iter().map(|part| vec![part * place.distance]).collect();
+                let mut values = model.middle();
+                space.dimensions().zip(space.values(&normals)).for_each(|(d, column)| values[d] = column[0]);
+                DesignPoint { distance: place.distance, values }
+            });
+            let plain = |Estimate { value, standard_error }: Estimate| {
+                let error = standard_error.filter(|&error| error > 0.0)?;
+                Some(value * (1.0 - value) / (error * error))
+            };
+            Some(Beyond {
+                limit: self.targets[index].limit,
+                probability: found.probability,
+                interval: found.interval,
+                bounds: found.bounds,
+                hits: found.hits,
+                effective_samples: found.effective,
+                greatest_part: found.greatest_part,
+                plain_samples: found.probability.and_then(plain),
+                design_point,
+            })
+        };
+        let characteristic = |(c, characteristic): (usize, &Characteristic)| RareCharacteristic {
+            characteristic: characteristic.clone(),
+            failed: model.lost[c].0,
+            error: model.lost[c].1.clone(),
+            below: beyond(c, -1.0),
+            above: beyond(c, 1.0),
+        };
+        model.problem.characteristics().iter().enumerate().map(characteristic).collect()
+    }
+}
+
+/// Whole numbers in these parts that sum to `points`: rounded down, and the largest remainders up.
+fn shared_out(points: usize, parts: &[f64]) -> Vec<usize> {
+    let mut counts: Vec<usize> = parts.iter().map(|part| (part * points as f64) as usize).collect();
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    let rest = |k: usize| parts[k] * points as f64 - counts[k] as f64;
+    let rests: Vec<f64> = (0..parts.len()).map(rest).collect();
+    order.sort_by(|&a, &b| rests[b].total_cmp(&rests[a]).then(a.cmp(&b)));
+    let short = points.saturating_sub(counts.iter().sum());
+    order.iter().cycle().take(short).for_each(|&k| counts[k] += 1);
+    // The inputs' own density, without which some points could never be drawn.
+    if let Some(most) = (0..counts.len()).max_by_key(|&k| counts[k]).filter(|_| counts[0] == 0) {
+        (counts[0], counts[most]) = (1, counts[most] - 1);
+    }
+    counts
+}
+
+fn mixed_seed(seed: u64, stage: u64) -> u64 {
+    // Any odd constant keeps stages apart; the generator mixes what it is seeded with.
+    seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (stage + 1).wrapping_mul(0xD1B5_4A32_D192_ED03)
+}

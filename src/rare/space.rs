@@ -1,0 +1,101 @@
+//! Independent standard normal variables, and the inputs that they stand for.
+//!
+//! An input is its own quantile function of a normal variable, and correlated ones are functions of correlated normal
+//! variables (Nataf's law, [`crate::correlation`]), which a factor of their matrix makes of independent ones.
+
+use faer::Mat;
+
+use crate::correlation::Transform;
+use crate::dimension::Dimension;
+use crate::distribution::{Probability, behind_normal};
+use crate::method::Outcome;
+use crate::problem::Problem;
+use crate::sampling::SamplingError;
+
+/// Points as columns, one for every varying dimension.
+pub(super) type Columns = Vec<Vec<f64>>;
+
+/// The varying dimensions of a problem, N of them.
+pub(super) struct Space<'p> {
+    inputs: Vec<Input<'p>>,
+    /// The correlated ones, and the factor of their normal variables.
+    correlated: Option<(Vec<usize>, Mat<f64>)>,
+}
+
+struct Input<'p> {
+    dimension: usize,
+    mean: f64,
+    sigma: f64,
+    law: &'p dyn Probability,
+    transform: Transform,
+}
+
+impl<'p> Space<'p> {
+    /// Of the dimensions that vary in the surrogate.
+    pub(super) fn new(problem: &'p Problem, outcome: &Outcome) -> Result<Self, SamplingError> {
+        let input = |&d: &usize| {
+            let dimension: &Dimension = &problem.dimensions()[d];
+            let unknown = || SamplingError::MomentsOnly { dimension: dimension.name().to_owned() };
+            let distribution = dimension.distribution().ok_or_else(unknown)?;
+            Ok(Input {
+                dimension: d,
+                mean: dimension.mean(),
+                sigma: dimension.sigma(),
+                law: distribution.probability().ok_or_else(unknown)?,
+                transform: Transform::of(distribution).ok_or_else(unknown)?,
+            })
+        };
+        let inputs = outcome.plan.varying().iter().map(input).collect::<Result<_, _>>()?;
+        let correlation = outcome.plan.inputs().correlation();
+        let correlated = correlation.map(|correlation| (correlation.members().to_vec(), correlation.factor()));
+        Ok(Self { inputs, correlated })
+    }
+
+    /// How many normal variables there are.
+    pub(super) fn len(&self) -> usize {
+        self.inputs.len()
+    }
+
+    /// The dimension behind every column.
+    pub(super) fn dimensions(&self) -> impl Iterator<Item = usize> {
+        self.inputs.iter().map(|input| input.dimension)
+    }
+
+    /// The inputs in sigmas off their means, as the surrogate takes them: tabulated, to 1e-6.
+    pub(super) fn standardised(&self, normals: &Columns) -> Columns {
+        let mut columns = self.together(normals);
+        for (input, column) in self.inputs.iter().zip(&mut columns) {
+            if !input.transform.is_normal() {
+                column.iter_mut().for_each(|z| *z = input.transform.value(*z));
+            }
+        }
+        columns
+    }
+
+    /// The inputs themselves, as the model takes them: exact.
+    pub(super) fn values(&self, normals: &Columns) -> Columns {
+        let mut columns = self.together(normals);
+        for (input, column) in self.inputs.iter().zip(&mut columns) {
+            let normal = input.transform.is_normal();
+            for z in column {
+                *z = if normal { input.mean + input.sigma * *z } else { behind_normal(input.law, *z) };
+            }
+        }
+        columns
+    }
+
+    /// The normal variables, correlated as the inputs want them.
+    fn together(&self, normals: &Columns) -> Columns {
+        let mut columns = normals.clone();
+        let Some((members, factor)) = &self.correlated else { return columns };
+        for (j, &member) in members.iter().enumerate() {
+            let column = &mut columns[member];
+            column.fill(0.0);
+            for (k, &other) in members.iter().enumerate() {
+                let by = factor[(j, k)];
+                column.iter_mut().zip(&normals[other]).for_each(|(z, normal)| *z += by * normal);
+            }
+        }
+        columns
+    }
+}

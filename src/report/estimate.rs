@@ -1,0 +1,59 @@
+//! How far results may be off, as reports say it.
+
+use serde::Serialize;
+
+use crate::analysis::SampledModel;
+use crate::method::ErrorEstimate;
+
+/// Estimated errors, each in the unit of its result. What nothing is known of is null.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ErrorEstimateReport {
+    /// Of the mean.
+    pub mean: Option<f64>,
+    /// Of sigma.
+    pub sigma: Option<f64>,
+    /// Of the skewness.
+    pub skewness: Option<f64>,
+    /// Of the kurtosis.
+    pub kurtosis: Option<f64>,
+    /// Of the share within the limits.
+    #[serde(rename = "yield")]
+    pub yield_: Option<f64>,
+    /// What they rest on.
+    pub basis: String,
+}
+
+/// Points of the model that the moments rest on.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelSamplingReport {
+    /// How many.
+    pub samples: u64,
+    /// Standard error of the mean.
+    pub mean: Option<f64>,
+    /// Standard error of sigma.
+    pub sigma: Option<f64>,
+    /// Standard error of the skewness.
+    pub skewness: Option<f64>,
+    /// Standard error of the kurtosis.
+    pub kurtosis: Option<f64>,
+    /// The share of the sample within the limits.
+    #[serde(rename = "yield")]
+    pub yield_: Option<f64>,
+    /// Its 95 % interval.
+    pub yield_interval: Option<[f64; 2]>,
+}
+
+impl ErrorEstimateReport {
+    pub(super) fn of(estimate: &ErrorEstimate) -> Self {
+        let ErrorEstimate { mean, sigma, skewness, kurtosis, yield_, .. } = *estimate;
+        Self { mean, sigma, skewness, kurtosis, yield_, basis: estimate.basis() }
+    }
+}
+
+impl ModelSamplingReport {
+    pub(super) fn of(sampled: &SampledModel) -> Self {
+        let [mean, sigma, skewness, kurtosis] = sampled.standard_errors;
+        let (yield_, yield_interval) = sampled.yield_.unzip();
+        Self { samples: sampled.samples, mean, sigma, skewness, kurtosis, yield_, yield_interval }
+    }
+}

@@ -1,0 +1,32 @@
+//! The surrogate's own values, over columns of points.
+
+use super::Surrogate;
+
+impl Surrogate {
+    /// How far the surrogate lies above its centre at every point; None when a part is unknown.
+    ///
+    /// Shapes: `inputs` has a column for every part, of standardised values, all of the same length. Cost: a product for
+    /// every interaction and point. No evaluation.
+    ///
+    /// ```
+    /// use sensitol::moments::Interactions;
+    /// use sensitol::surrogate::{Surrogate, Univariate};
+    /// // 7 + 2 u0 + u1^2 + 3 u0 u1
+    /// let parts = vec![Some(Univariate::of_coefficients(&[2.0])), Some(Univariate::of_coefficients(&[0.0, 1.0]))];
+    /// let surrogate = Surrogate { centre: 7.0, parts, interactions: Interactions::of_pairs(2, [(0, 1, 3.0)]) };
+    /// assert_eq!(surrogate.rises(&[vec![1.0, -1.0], vec![2.0, 0.0]]), Some(vec![12.0, -2.0]));
+    /// ```
+    pub fn rises<C: AsRef<[f64]>>(&self, inputs: &[C]) -> Option<Vec<f64>> {
+        let rows = inputs.first().map_or(0, |column| column.as_ref().len());
+        let mut rises = vec![0.0; rows];
+        for (part, column) in self.parts.iter().zip(inputs) {
+            let part = part.as_ref()?;
+            rises.iter_mut().zip(column.as_ref()).for_each(|(rise, &u)| *rise += part.value(u));
+        }
+        for (j, k, value) in self.interactions.pairs() {
+            let both = inputs[j].as_ref().iter().zip(inputs[k].as_ref());
+            rises.iter_mut().zip(both).for_each(|(rise, (u, v))| *rise += value * u * v);
+        }
+        Some(rises)
+    }
+}

@@ -1,0 +1,246 @@
+//! Every method on the public test functions: evaluations, true error, and whether `auto` and the estimates keep their word.
+//! `docs/accuracy.md` is written from the same numbers.
+
+use std::fmt::Write as _;
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+use sensitol::plan::Stencil;
+use sensitol::{Method, Options, Study, analyze};
+
+use super::support::{data, repository};
+
+/// What is wanted of `auto`.
+const ACCURACIES: [f64; 3] = [0.05, 0.01, 0.001];
+/// References are known to that, relative to sigma, or better: their own stated errors are below 1e-7.
+const FLOOR: f64 = 1e-7;
+
+/// One function.
+struct Row {
+    name: String,
+    n: usize,
+    smooth: bool,
+    runs: Vec<Ran>,
+}
+
+/// One method on it.
+struct Ran {
+    evaluations: usize,
+    /// Relative error of sigma.
+    error: f64,
+    /// As the method estimates it.
+    estimate: Option<f64>,
+    /// Points of the model in the place of a surrogate.
+    sampled: bool,
+}
+
+impl Ran {
+    fn within(&self, wanted: f64) -> bool {
+        self.error <= wanted
+    }
+
+    fn covered(&self) -> Option<bool> {
+        Some(3.0 * self.estimate? >= self.error - FLOOR)
+    }
+}
+
+fn contenders() -> Vec<(String, Options)> {
+    let four_point = Options { stencil: Some(Stencil::FourPoint), ..Method::SixN.into() };
+    let mut contenders: Vec<(String, Options)> = vec![
+        ("`rss`".into(), Method::Rss.into()),
+        ("`second-order`".into(), Method::SecondOrder.into()),
+        ("`six-n --stencil four-point`".into(), four_point),
+        ("`six-n`".into(), Method::SixN.into()),
+        ("`full`".into(), Method::Full.into()),
+        ("`classic`".into(), Method::Classic.into()),
+    ];
+    for accuracy in ACCURACIES {
+        let options = Options { accuracy: Some(accuracy), ..Method::Auto.into() };
+        contenders.push((format!("`auto` {} %", 100.0 * accuracy), options));
+    }
+    contenders
+}
+
+/// All of them, once for all tests.
+fn rows() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(|| {
+        let references = data("accuracy.json");
+        let references: Vec<_> = references.as_object().unwrap().iter().collect();
+        let row = |(name, truth): &(&String, &serde_json::Value)| {
+            let study = Study::read(&repository(&format!("tests/data/accuracy/{name}.toml"))).unwrap();
+            let run = |(_, options): (String, Options)| {
+                let found = analyze(&study.problem, &options).unwrap();
+                let one = &found.characteristics[0];
+                let sigma = truth["sigma"].as_f64().unwrap();
+                Ran {
+                    evaluations: found.evaluations,
+                    error: (one.moments.unwrap().sigma() / sigma - 1.0).abs(),
+                    estimate: one.error_estimate.as_ref().and_then(|estimate| Some(estimate.sigma? / sigma)),
+                    sampled: one.model_sampled.is_some(),
+                }
+            };
+            Row {
+                name: (*name).clone(),
+                n: study.problem.dimensions().len(),
+                smooth: truth["smooth"].as_bool().unwrap(),
+                runs: contenders().into_iter().map(run).collect(),
+            }
+        };
+        references.par_iter().map(row).collect()
+    })
+}
+
+/// `auto` at its three accuracies.
+fn auto(row: &Row) -> &[Ran] {
+    &row.runs[row.runs.len() - ACCURACIES.len()..]
+}
+
+/// Counts those of which it holds, and all.
+fn count<T>(of: impl IntoIterator<Item = T>, holds: impl Fn(&T) -> bool) -> (usize, usize) {
+    of.into_iter().fold((0, 0), |(held, all), one| (held + usize::from(holds(&one)), all + 1))
+}
+
+fn smooth() -> impl Iterator<Item = &'static Row> {
+    rows().iter().filter(|row| row.smooth)
+}
+
+fn wanted() -> impl Iterator<Item = (f64, &'static Ran)> {
+    smooth().flat_map(|row| ACCURACIES.into_iter().zip(auto(row)))
+}
+
+fn bound(n: usize) -> usize {
+    (1.3 * (n * n + 3 * n + 1) as f64) as usize + 16
+}
+
+#[test]
+fn there_are_enough_functions() {
+    assert!(rows().len() >= 40, "{}", rows().len());
+    assert_eq!(rows().iter().map(|row| row.n).min(), Some(1));
+    assert_eq!(rows().iter().map(|row| row.n).max(), Some(200));
+}
+
+/// Of smooth functions at least 95 % are known as well as it was wanted.
+#[test]
+fn auto_keeps_what_it_promises() {
+    let (kept, all) = count(wanted(), |(wanted, ran)| ran.within(*wanted));
+    assert!(100 * kept >= 95 * all, "{kept} of {all}");
+}
+
+/// Three times the estimated error covers the true one in at least 95 % of all cases, kinks included.
+#[test]
+fn the_estimates_of_auto_can_be_believed() {
+    let (covered, all) = count(rows().iter().flat_map(auto), |ran| ran.covered() == Some(true));
+    assert!(100 * covered >= 95 * all, "{covered} of {all}");
+}
+
+/// What is smooth and followed by a surrogate costs little more than every second derivative, and 16.
+#[test]
+fn auto_does_not_waste_evaluations() {
+    for row in smooth() {
+        for ran in auto(row).iter().filter(|ran| !ran.sampled) {
+            assert!(ran.evaluations <= bound(row.n), "{}: {} of {}", row.name, ran.evaluations, bound(row.n));
+        }
+    }
+}
+
+#[test]
+fn auto_is_quick_with_what_is_linear_and_what_is_sparse() {
+    for row in rows().iter().filter(|row| row.name.starts_with("linear")) {
+        for ran in auto(row) {
+            assert!(ran.evaluations <= 2 * row.n + 1 + 24, "{}: {}", row.name, ran.evaluations);
+            assert!(ran.error < 1e-9, "{}: {}", row.name, ran.error);
+        }
+    }
+    for row in rows().iter().filter(|row| row.name.starts_with("sparse") && row.n >= 50) {
+        let full = row.n * row.n + row.n + 1;
+        for ran in auto(row) {
+            assert!(5 * ran.evaluations <= full, "{}: {} of {full}", row.name, ran.evaluations);
+        }
+    }
+}
+
+/// `docs/accuracy.md`, to the last character.
+#[test]
+fn the_document_shows_what_was_measured() {
+    let path = repository("docs/accuracy.md");
+    let text = document();
+    if std::env::var_os("SENSITOL_UPDATE_DOCS").is_some() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+        return;
+    }
+    assert_eq!(std::fs::read_to_string(path).unwrap(), text, "SENSITOL_UPDATE_DOCS=1 writes it anew");
+}
+
+fn document() -> String {
+    let references = data("accuracy.json");
+    let mut text = String::from(
+        "# What every method costs, and how far it is off\n\n\
+         Written by the tests ([tests/suite/accuracy.rs](../tests/suite/accuracy.rs)) from the studies in\n\
+         [tests/data/accuracy](../tests/data/accuracy); `SENSITOL_UPDATE_DOCS=1 cargo test --test suite accuracy` writes it anew. The\n\
+         references come from quadrature, closed forms and exact moments, by another program\n\
+         ([accuracy.py](../tests/data/generators/accuracy.py)), and are known to 1e-7 of sigma or better.\n\n",
+    );
+    summary(&mut text);
+    text += "\n## Every function\n\nEvaluations, and the relative error of sigma in brackets. A star: the surrogate was not trusted, and \
+             the model was\nsampled with it as control variate. Functions with a kink are in italics.\n\n| function | N |";
+    let contenders = contenders();
+    contenders.iter().for_each(|(name, _)| write!(text, " {name} |").unwrap());
+    text += "\n|---|--:|";
+    contenders.iter().for_each(|_| text += "--:|");
+    text.push('\n');
+    for row in rows() {
+        let name = if row.smooth { row.name.clone() } else { format!("*{}*", row.name) };
+        write!(text, "| {name} | {} |", row.n).unwrap();
+        for ran in &row.runs {
+            let star = if ran.sampled { "\\*" } else { "" };
+            write!(text, " {}{star} ({}) |", ran.evaluations, digit(ran.error)).unwrap();
+        }
+        text.push('\n');
+    }
+    text += "\n## Where the functions come from\n\n| function | source | reference |\n|---|---|---|\n";
+    for (name, truth) in references.as_object().unwrap() {
+        let word = |key: &str| truth[key].as_str().unwrap();
+        writeln!(text, "| {name} | {} | {} |", word("source"), word("reference")).unwrap();
+    }
+    text
+}
+
+fn summary(text: &mut String) {
+    let share = |(held, all): (usize, usize)| format!("{held} of {all} ({:.1} %)", 100.0 * held as f64 / all as f64);
+    let kinked = rows().len() - smooth().count();
+    writeln!(text, "{} functions, {kinked} of them with a kink, of 1 to 200 dimensions.\n", rows().len()).unwrap();
+    *text += "| what was wanted of `auto` | reached |\n|---|--:|\n";
+    for (index, accuracy) in ACCURACIES.into_iter().enumerate() {
+        let kept = count(smooth().map(|row| &auto(row)[index]), |ran| ran.within(accuracy));
+        writeln!(text, "| sigma of smooth functions to {} % | {} |", 100.0 * accuracy, share(kept)).unwrap();
+    }
+    let kinks = count(
+        rows().iter().filter(|row| !row.smooth).flat_map(|row| ACCURACIES.into_iter().zip(auto(row))),
+        |(wanted, ran)| ran.within(*wanted),
+    );
+    writeln!(text, "| the same of functions with a kink, at all three | {} |", share(kinks)).unwrap();
+    let covered = count(rows().iter().flat_map(auto), |ran| ran.covered() == Some(true));
+    writeln!(text, "| true error within three times the estimated one | {} |", share(covered)).unwrap();
+    let within = count(smooth().flat_map(|row| auto(row).iter().map(move |ran| (row.n, ran))), |(n, ran)| {
+        ran.evaluations <= bound(*n)
+    });
+    writeln!(text, "| at most 1.3 (N² + 3N + 1) + 16 evaluations, smooth functions | {} |", share(within)).unwrap();
+    let sampled = count(smooth().flat_map(auto), |ran| ran.sampled);
+    writeln!(text, "| smooth functions of which the model had to be sampled | {} |", share(sampled)).unwrap();
+    *text += "\n| method | median error, smooth | largest | within 3 estimates, where there is one | no estimate |\n|---|--:|--:|--:|--:|\n";
+    for (index, (name, _)) in contenders().iter().enumerate() {
+        let mut errors: Vec<f64> = smooth().map(|row| row.runs[index].error).collect();
+        errors.sort_by(f64::total_cmp);
+        let known: Vec<bool> = rows().iter().filter_map(|row| row.runs[index].covered()).collect();
+        let covered = if known.is_empty() { "-".to_owned() } else { share(count(&known, |covered| **covered)) };
+        let [median, largest] = [errors[errors.len() / 2], errors[errors.len() - 1]].map(digit);
+        writeln!(text, "| {name} | {median} | {largest} | {covered} | {} |", rows().len() - known.len()).unwrap();
+    }
+}
+
+/// An error to its first digit; what is below the reference's own error as that.
+fn digit(error: f64) -> String {
+    if error < FLOOR { "<1e-7".to_owned() } else { format!("{error:.0e}") }
+}

@@ -1,0 +1,268 @@
+//! `auto`: counts, budgets, determinism, warnings, and what happens at extremes.
+
+use std::sync::Arc;
+
+use sensitol::assembly::EvaluationError;
+use sensitol::distribution::Exponential;
+use sensitol::simulation::{SimulationOptions, simulate};
+use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, analyze};
+
+use super::support::{Asked, close, normals, refusing, relative, standard};
+
+fn auto(accuracy: f64) -> Options {
+    Options { accuracy: Some(accuracy), ..Method::Auto.into() }
+}
+
+fn of(dimensions: Vec<Dimension>, f: impl Fn(&[f64]) -> f64 + Send + Sync + 'static, options: &Options) -> Analysis {
+    analyze(&Problem::new(dimensions, Closure::scalar("y", f)).unwrap(), options).unwrap()
+}
+
+fn codes(analysis: &Analysis) -> Vec<&'static str> {
+    let mut codes: Vec<&'static str> = analysis.warnings.iter().map(|warning| warning.code()).collect();
+    codes.sort_unstable();
+    codes.dedup();
+    codes
+}
+
+fn sigma(analysis: &Analysis) -> f64 {
+    analysis.characteristics[0].moments.unwrap().sigma()
+}
+
+fn estimate(analysis: &Analysis) -> f64 {
+    analysis.characteristics[0].error_estimate.as_ref().unwrap().sigma.unwrap()
+}
+
+/// Every point arrives once; a linear study ends within 2N + 1 + 24, and nothing is spent on what does not vary.
+#[test]
+fn what_is_linear_is_soon_known() {
+    for n in [1, 2, 3, 7, 25] {
+        let asked = Asked::default();
+        let mut dimensions = standard(n);
+        dimensions.push(Dimension::fixed("still", 3.0).unwrap());
+        let problem = Problem::new(dimensions, asked.watching(|x| x.iter().sum())).unwrap();
+        let analysis = analyze(&problem, &auto(0.001)).unwrap();
+        assert_eq!(analysis.evaluations, asked.distinct());
+        assert_eq!(analysis.evaluations, 2 * n + 1 + 16);
+        relative(sigma(&analysis), (n as f64).sqrt(), 1e-13);
+        assert_eq!(analysis.characteristics[0].left_out_share, Some(0.0));
+        assert!(codes(&analysis).is_empty(), "{:?}", codes(&analysis));
+        assert!(estimate(&analysis) < 1e-12);
+    }
+}
+
+/// The seed is of what draws samples, and of nothing here.
+#[test]
+fn the_same_study_gives_the_same_numbers() {
+    let f = |x: &[f64]| (0.3 * x[0]).exp() * (1.0 + 0.2 * x[1]) + x[2] * x[2] * 0.1 + x[3] - x[4] * x[0] * 0.05;
+    let one = of(standard(5), f, &auto(0.001));
+    let other = of(standard(5), f, &Options { seed: Some(99), ..auto(0.001) });
+    assert_eq!(one.characteristics, other.characteristics);
+    assert_eq!(one.evaluations, other.evaluations);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let alone = pool.install(|| of(standard(5), f, &auto(0.001)));
+    assert_eq!(one.characteristics, alone.characteristics);
+}
+
+/// A budget is kept, and what it left out is said.
+#[test]
+fn a_budget_is_kept() {
+    let f = |x: &[f64]| (0..9).map(|j| x[j] + 0.3 * x[j] * x[j + 1]).sum::<f64>() + x[9];
+    let mut errors = Vec::new();
+    for budget in [21, 25, 40, 60, 90, 200] {
+        let asked = Asked::default();
+        let problem = Problem::new(standard(10), asked.watching(f)).unwrap();
+        let analysis = analyze(&problem, &Options { budget: Some(budget), ..auto(0.001) }).unwrap();
+        assert_eq!(analysis.evaluations, asked.distinct());
+        assert!(analysis.evaluations <= budget, "{} of {budget}", analysis.evaluations);
+        let exact = (10.0 + 9.0 * 0.09f64).sqrt();
+        errors.push((sigma(&analysis) / exact - 1.0).abs());
+        if budget == 60 {
+            assert!(codes(&analysis).contains(&"under-resolved"), "{:?}", codes(&analysis));
+        }
+    }
+    assert!(errors[5] < 1e-12, "{errors:?}");
+    // Without a check nothing is known of interactions: the error of the variance is what they have.
+    relative(errors[0], 1.0 - (10.0f64 / 10.81).sqrt(), 1e-6);
+    let too_few = analyze(
+        &Problem::new(standard(10), Closure::scalar("y", f)).unwrap(),
+        &Options { budget: Some(20), ..auto(0.1) },
+    );
+    assert!(too_few.unwrap_err().to_string().contains("needs 21 evaluations, more than the budget of 20"));
+}
+
+/// All characteristics share every point, and one that is linear does not mind the others.
+#[test]
+fn characteristics_share_points() {
+    let function = Closure::fallible(["line", "product"], |x: &[f64]| {
+        Ok::<[f64; 2], EvaluationError>([x[0] + 2.0 * x[1] + x[2], x[0] + x[0] * x[1] + 0.5 * x[2]])
+    });
+    let analysis = analyze(&Problem::new(standard(3), function).unwrap(), &auto(0.001)).unwrap();
+    relative(analysis.characteristics[0].moments.unwrap().sigma(), 6f64.sqrt(), 1e-12);
+    relative(analysis.characteristics[1].moments.unwrap().sigma(), (1.0 + 1.0 + 0.25f64).sqrt(), 1e-12);
+}
+
+/// Sigma where values scatter: 1e-6 to 1e-2 of sigma, by a scatter that is a function of the point.
+#[test]
+fn scatter_is_noticed_and_spoils_no_more_than_it_must() {
+    let scatter = |x: &[f64]| {
+        let mut hash = 0u64;
+        for value in x {
+            hash = (hash ^ value.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            hash ^= hash >> 29;
+        }
+        // Uniform over ±sqrt 3: sigma 1.
+        ((hash >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0) * 3f64.sqrt()
+    };
+    for noise in [1e-6, 1e-4, 1e-3, 1e-2] {
+        let f = move |x: &[f64]| x.iter().sum::<f64>() + 0.2 * x[0] * x[1] + 8f64.sqrt() * noise * scatter(x);
+        let analysis = of(standard(8), f, &auto(0.01));
+        let exact = (8.0 + 0.04 + 8.0 * noise * noise).sqrt();
+        let error = (sigma(&analysis) / exact - 1.0).abs();
+        assert!(error <= 0.01 && error <= 3.0 * estimate(&analysis) / exact, "{noise}: {error}");
+        // In between it depends on the two points that listen.
+        if !(1e-5..5e-4).contains(&noise) {
+            assert_eq!(codes(&analysis).contains(&"noise"), noise > 5e-4, "{noise}: {:?}", codes(&analysis));
+        }
+    }
+}
+
+/// Two gaps of one size: the kink is named, the model is sampled, and a long simulation agrees.
+#[test]
+fn a_kink_is_named_and_sampled() {
+    let f = |x: &[f64]| (x[0] - x[1]).min(x[2] - x[3]);
+    let problem = || Problem::new(normals(&[10.0, 9.0, 12.0, 11.0], &[0.15; 4]), Closure::scalar("gap", f)).unwrap();
+    let analysis = analyze(&problem(), &auto(0.01)).unwrap();
+    let found = codes(&analysis);
+    assert!(found.contains(&"kink") && found.contains(&"untrusted-surrogate"), "{found:?}");
+    let one = &analysis.characteristics[0];
+    let sampled = one.model_sampled.as_ref().expect("the model was sampled");
+    let reference =
+        simulate(&problem(), &SimulationOptions { samples: 400_000, ..SimulationOptions::default() }).unwrap();
+    let truth = reference.characteristics[0].sigma.unwrap();
+    let error = sampled.standard_errors[1].unwrap().hypot(truth.standard_error.unwrap());
+    // Four standard errors: one in ten thousand.
+    assert!((sigma(&analysis) - truth.value).abs() < 4.0 * error);
+}
+
+/// A kink at the mean looks like curvature, by symmetric points; a jump like a slope.
+#[test]
+fn kinks_and_jumps_are_told_from_curves() {
+    let kink = of(standard(2), |x| x[0].abs() + x[1], &auto(0.01));
+    assert!(codes(&kink).contains(&"kink"), "{:?}", codes(&kink));
+    let jump = of(standard(2), |x| x[0] + if x[0] > 0.5 { 3.0 } else { 0.0 } + x[1], &Method::SixN.into());
+    assert!(codes(&jump).contains(&"discontinuity"), "{:?}", codes(&jump));
+    let smooth = of(standard(2), |x| (0.3 * x[0]).exp() + x[1], &auto(0.001));
+    assert!(!codes(&smooth).contains(&"kink"), "{:?}", codes(&smooth));
+}
+
+/// An arc cosine and a root whose domain ends within two sigma: no panic, no silence.
+#[test]
+fn domain_edges_are_not_passed_in_silence() {
+    let edge = |x: &[f64]| x[0] + x[1] > 2.0;
+    let root = refusing(|x| (2.0 - x[0] - x[1]).max(0.0).sqrt() + x[2], edge);
+    let analysis = analyze(&Problem::new(standard(3), root).unwrap(), &auto(0.01)).unwrap();
+    let found = codes(&analysis);
+    assert!(found.contains(&"domain-edge") || found.contains(&"failed-points"), "{found:?}");
+    assert!(analysis.failed > 0);
+    // Where the edge lies beyond every axis point, only points that move several dimensions meet it.
+    let far = refusing(|x| x.iter().sum(), |x| x.iter().map(|x| x * x).sum::<f64>() > 8.0);
+    let analysis = analyze(&Problem::new(standard(6), far).unwrap(), &auto(0.01)).unwrap();
+    assert!(codes(&analysis).contains(&"domain-edge"), "{:?}", codes(&analysis));
+}
+
+/// Scales of dimensions from 1e-12 to 1e12, a nominal of 1e10 sigma, and one that dominates.
+#[test]
+fn scales_do_not_matter() {
+    let scales = [1e-12, 1e-6, 1.0, 1e6, 1e12];
+    let dimensions = normals(&scales.map(|scale| 3.0 * scale), &scales.map(|scale| 0.3 * scale));
+    let f = move |x: &[f64]| {
+        let v: Vec<f64> = x.iter().zip(scales).map(|(x, scale)| x / scale).collect();
+        v[0] * v[1] + v[2] + v[3] * v[4]
+    };
+    let analysis = of(dimensions, f, &auto(0.001));
+    let pair = 2.0 * 9.0 * 0.01 + 1e-4;
+    relative(sigma(&analysis), (2.0 * pair + 0.01f64).sqrt(), 1e-4);
+    let far = of(normals(&[1e10, 5.0], &[3.0, 3.0]), |x| (x[0] - 1e10) + x[1] * x[1], &auto(0.01));
+    // Sigma of u + (5 + v)^2 - 25: 1 + 100 + 2.
+    relative(sigma(&far), 103f64.sqrt(), 1e-6);
+    let dominated = of(standard(4), |x| 1e6 * x[0] + (x[1] * x[2]).sin() + x[3], &auto(0.01));
+    assert_eq!(dominated.evaluations, 9 + 16);
+}
+
+/// A thousand dimensions of a formula without interactions take two points each, and sixteen.
+#[test]
+fn a_thousand_dimensions() {
+    let analysis =
+        of(standard(1000), |x| x.iter().enumerate().map(|(j, x)| (1.0 + 0.001 * j as f64) * x).sum(), &auto(0.01));
+    assert_eq!(analysis.evaluations, 2001 + 16);
+    let exact: f64 = (0..1000).map(|j| (1.0 + 0.001 * f64::from(j)).powi(2)).sum();
+    relative(sigma(&analysis), exact.sqrt(), 1e-10);
+}
+
+/// What saturates is smooth, and no polynomial follows it: the model is sampled. A flat function has nothing to say.
+#[test]
+fn saturation_and_nothing_at_all() {
+    let tanh = of(standard(2), |x| (2.0 * x[0]).tanh() + (2.0 * x[1]).tanh(), &auto(0.01));
+    assert!(tanh.characteristics[0].model_sampled.is_some());
+    // Variance of tanh(2 z): by Gauss quadrature with 150 and 200 nodes, numpy.
+    relative(sigma(&tanh), (2.0 * 0.635_261_3f64).sqrt(), 0.02);
+    let flat = of(standard(3), |_| 4.0, &auto(0.01));
+    assert_eq!(sigma(&flat), 0.0);
+    assert!(codes(&flat).contains(&"no-reaction"));
+}
+
+/// Exponential inputs: nodes at the edge of the support, long tails.
+#[test]
+fn exponential_inputs_stay_within_their_support() {
+    let film = Exponential::new(0.0, 2.0).unwrap();
+    let dimensions = vec![
+        Dimension::distributed("film", 2.0, None, Arc::new(film)).unwrap(),
+        Dimension::normal("gap", 10.0, 0.9).unwrap(),
+    ];
+    let function = refusing(|x| x[1] - x[0].sqrt(), |x| x[0] < 0.0);
+    let analysis = analyze(&Problem::new(dimensions, function).unwrap(), &auto(0.01)).unwrap();
+    assert_eq!(analysis.failed, 0, "a node beyond the support");
+    // Var sqrt(x) = mean (1 - pi/4).
+    let exact = (0.09 + 2.0 * (1.0 - std::f64::consts::FRAC_PI_4)).sqrt();
+    let error = (sigma(&analysis) / exact - 1.0).abs();
+    assert!(error <= 3.0 * estimate(&analysis) / exact, "{error} and {}", estimate(&analysis) / exact);
+}
+
+/// Estimates of the other methods: what they did not see.
+#[test]
+fn other_methods_say_what_they_did_not_see() {
+    let f = |x: &[f64]| x[0] + x[1] + 0.3 * x[0] * x[1] + 0.1 * x[2] * x[2] + x[2];
+    let estimate =
+        |method: Method| of(standard(3), f, &method.into()).characteristics.remove(0).error_estimate.unwrap();
+    let second = estimate(Method::SecondOrder);
+    assert_eq!((second.sigma, second.kurtosis), (None, None), "nothing is known of interactions");
+    assert!(second.mean.is_some() && second.basis().contains("nothing is known of 3 interactions"));
+    let rss = estimate(Method::Rss);
+    // Curvature moves the mean by 0.1, and rss does not see it.
+    assert!(rss.mean.unwrap() >= 0.1 && rss.basis().contains("curvature"));
+    let full = estimate(Method::Full);
+    assert!(full.sigma.is_some() && full.basis().contains("extrapolated"), "{}", full.basis());
+    let ring = |x: &[f64]| (0..6).map(|j| x[j] + 0.2 * x[j] * x[(j + 1) % 6]).sum::<f64>();
+    let six = of(standard(6), ring, &Method::SixN.into()).characteristics.remove(0).error_estimate.unwrap();
+    assert!(six.basis().contains("9 interactions not examined"), "{}", six.basis());
+    close(six.mean.unwrap(), 0.0, 1e-12, 1.0);
+}
+
+#[test]
+fn an_accuracy_is_a_positive_number() {
+    for accuracy in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let problem = Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
+        assert!(analyze(&problem, &auto(accuracy)).unwrap_err().to_string().starts_with("the accuracy is"));
+    }
+}
+
+/// Points of one set are the same for everybody; no coordinate is out of its distribution.
+#[test]
+fn points_that_check_are_of_the_distribution() {
+    let asked = Asked::default();
+    let uniform = (0..4).map(|j| Dimension::uniform(format!("u{j}"), 0.0, 1.0).unwrap()).collect::<Vec<_>>();
+    let problem = Problem::new(uniform, asked.watching(|x| x.iter().sum())).unwrap();
+    analyze(&problem, &auto(0.01)).unwrap();
+    let points = asked.points();
+    assert!(points.iter().flatten().all(|x| x.abs() <= 1.0));
+}
