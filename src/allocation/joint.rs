@@ -1,5 +1,7 @@
 //! The share of assemblies that keep the limits of all characteristics at once.
 
+use rayon::prelude::*;
+
 use super::response::Responses;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, wilson};
@@ -18,7 +20,7 @@ pub struct JointYield {
 }
 
 const ROWS: usize = 1024;
-const PORTIONS: usize = 128;
+const PORTIONS: usize = 32;
 
 /// Of surrogates at the tolerances of the problem; None with fewer than two characteristics with limits, and where something cannot
 /// be sampled or is unknown.
@@ -34,8 +36,7 @@ pub(super) fn joint(problem: &Problem, responses: &Responses, seed: u64) -> Opti
         .map(|&c| responses.relocated(c, &ones, None).map(|(surrogate, _)| surrogate))
         .collect::<Option<_>>()?;
     let varying = responses.varying();
-    let mut within = 0usize;
-    for portion in 0..PORTIONS {
+    let within = |portion: usize| -> Option<usize> {
         let points = draws.points(Portion { replicate: 0, first: (portion * ROWS) as u64, rows: ROWS });
         let columns: Vec<Vec<f64>> = (varying.iter())
             .map(|&d| {
@@ -50,8 +51,9 @@ pub(super) fn joint(problem: &Problem, responses: &Responses, seed: u64) -> Opti
             let values = rises.iter().map(|rise| surrogates[k].centre + rise);
             keeps.iter_mut().zip(values).for_each(|(keeps, value)| *keeps &= limits.contains(value));
         }
-        within += keeps.iter().filter(|keeps| **keeps).count();
-    }
+        Some(keeps.iter().filter(|keeps| **keeps).count())
+    };
+    let within: usize = (0..PORTIONS).into_par_iter().map(within).collect::<Option<Vec<_>>>()?.iter().sum();
     let samples = ROWS * PORTIONS;
     let value = within as f64 / samples as f64;
     Some(JointYield {

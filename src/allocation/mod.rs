@@ -36,6 +36,7 @@ mod scaling;
 mod separable;
 mod solve;
 mod station;
+mod steps;
 mod task;
 
 pub use cost::{CostError, Curve, CurveKind, Offer, Priced};

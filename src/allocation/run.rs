@@ -12,6 +12,7 @@ use super::result::{Allocated, Allocation, Attainable, Bound, Moved, Proof, Stat
 use super::scaling::loosest;
 use super::solve::{Setting, Solved, tightened};
 use super::station::{Station, judged, measure, prices, required};
+use super::steps::Steps;
 use super::task::{AllocateError, AllocationOptions, AllocationTask};
 use crate::analysis::analyze_keeping;
 use crate::assembly::Run;
@@ -22,7 +23,7 @@ use crate::sampling::{Draws, Sampler};
 use crate::simulation::{SimulationError, SimulationOptions, simulate_within};
 
 /// Rounds of derivatives, at most.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 20;
 /// The factor up to which derivatives are trusted when they say that nothing is possible, and by which tolerances may move in a
 /// step after the model has failed farther out.
 const REACH: f64 = 1.5;
@@ -177,6 +178,9 @@ impl Driver<'_> {
         let mut station = first;
         let mut at = before.to_vec();
         let mut last: Option<(Solved, Vec<usize>, Proof)> = None;
+        let mut haven: Option<(Station, Vec<f64>, Option<(Solved, Vec<usize>, Proof)>)> = None;
+        let mut steps = Steps::default();
+        let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
         let (mut agreed, mut within_budget, mut at_tightest, mut reach) = (false, true, false, f64::INFINITY);
         for _ in 0..ROUNDS {
             let mut next = station.problem.clone();
@@ -206,9 +210,17 @@ impl Driver<'_> {
             let stopped = || self.run.stopped();
             let priced = within_reach(&self.task.priced, &at, reach);
             let setting = Setting { responses: &station.responses, priced: &priced, constraints, stopped: &stopped };
-            let here = last.as_ref().map(|_| setting.value(&at));
-            let (mut solved, offers, proof) = match choose(&setting, &at) {
+            // Kept, by the model and within the bounds: a place to come back to.
+            let here = kept(setting.value(&at));
+            let safe = here && within_bounds(&self.task.priced, &at);
+            let (mut solved, offers, mut proof) = match choose(&setting, &at) {
                 Choice::Found { solved, offers, proof } => (solved, offers, proof),
+                // Derivatives led astray: shorter steps from where everything was kept.
+                Choice::Infeasible(..) if haven.is_some() => {
+                    (station, at, last) = haven.take().unwrap_or((station, at, last));
+                    (reach, steps) = (shorter(reach), Steps::default());
+                    continue;
+                }
                 // Derivatives at other tolerances may be wrong there: the model is asked first.
                 Choice::Infeasible(_, tight) if !at_tightest && farthest(&at, &tight) > REACH.ln() => {
                     (at, at_tightest, last) = (tight, true, None);
@@ -233,7 +245,7 @@ impl Driver<'_> {
             };
             let change = farthest(&at, &solved.at);
             // The model has been asked at these tolerances, and would not choose others.
-            if still && here.is_some_and(kept) && change <= near.agree {
+            if still && here && last.is_some() && change <= near.agree {
                 last = last.map(|(old, offers, _)| {
                     let residual = setting.residual(&old.at, &solved.multipliers).unwrap_or(solved.residual);
                     let proof = Proof { residual: proof.residual.map(|_| residual), ..proof };
@@ -245,13 +257,20 @@ impl Driver<'_> {
             if last.is_some() && !setting.is_exact() {
                 tightened(&mut solved.at, &priced, 1.0 - near.margin);
             }
+            if let Some(part_way) = steps.shortened(&at, &solved.at).filter(|_| free) {
+                solved.at = part_way;
+                solved.cost = setting.cost(&solved.at);
+                proof.residual = setting.residual(&solved.at, &solved.multipliers);
+            }
             let from = std::mem::replace(&mut at, solved.at.clone());
             match self.station(with_tolerances(next, &self.task.priced, &at)?)? {
                 Some(there) if self.spent.stopped || there.answers(constraints) => {
-                    (station, last) = (there, Some((solved, offers, proof)));
+                    let left = (std::mem::replace(&mut station, there), from, last.take());
+                    haven = if safe { Some(left) } else { haven };
+                    last = Some((solved, offers, proof));
                 }
                 // The model fails so far out: shorter steps from where it did not.
-                Some(_) => (at, reach) = (from, if reach.is_finite() { reach.sqrt() } else { REACH }),
+                Some(_) => (at, reach) = (from, shorter(reach)),
                 None => {
                     (within_budget, last) = (false, Some((solved, offers, proof)));
                     break;
@@ -477,6 +496,16 @@ fn cost(priced: &[Priced], at: &[f64], offers: &[usize]) -> f64 {
 /// The largest change of a half band, in logarithms.
 fn farthest(from: &[f64], to: &[f64]) -> f64 {
     from.iter().zip(to).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f64::max)
+}
+
+/// A reach for shorter steps.
+fn shorter(reach: f64) -> f64 {
+    if reach.is_finite() { reach.sqrt() } else { REACH }
+}
+
+/// Whether every group may have its half band.
+fn within_bounds(priced: &[Priced], at: &[f64]) -> bool {
+    priced.iter().zip(at).all(|(group, t)| (group.tightest()..=group.loosest()).contains(t))
 }
 
 /// The groups with free tolerances no farther from these half bands than by a factor.
