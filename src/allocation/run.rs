@@ -99,6 +99,9 @@ struct Driver<'a> {
     spent: Spent,
 }
 
+/// Tolerances, the offer of every group, and what proves them.
+type Chosen = (Solved, Vec<usize>, Proof);
+
 /// How near is near enough: every round asks the model.
 #[derive(Clone, Copy)]
 struct Near {
@@ -177,8 +180,8 @@ impl Driver<'_> {
         let near = Near::of(&original);
         let mut station = first;
         let mut at = before.to_vec();
-        let mut last: Option<(Solved, Vec<usize>, Proof)> = None;
-        let mut haven: Option<(Station, Vec<f64>, Option<(Solved, Vec<usize>, Proof)>)> = None;
+        let mut last: Option<Chosen> = None;
+        let mut haven: Option<(Station, Vec<f64>, Option<Chosen>)> = None;
         let mut steps = Steps::default();
         let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
         let (mut agreed, mut within_budget, mut at_tightest, mut reach) = (false, true, false, f64::INFINITY);
@@ -289,7 +292,7 @@ impl Driver<'_> {
         allocation: &mut Allocation,
         original: &Problem,
         station: Station,
-        last: Option<(Solved, Vec<usize>, Proof)>,
+        last: Option<Chosen>,
         constraints: &[Constraint],
         ended: Ended,
     ) -> Result<(), AllocateError> {
