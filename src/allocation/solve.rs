@@ -7,6 +7,8 @@
 //! idea of convex approximations, C. Fleury, "Structural optimization: a new dual method using mixed variables", Int. J. Numerical
 //! Methods in Engineering 23 (1986).
 
+use rayon::prelude::*;
+
 use super::augmented::augmented;
 use super::closed_form::closed_form;
 use super::constraint::{Constraint, Linearised, kept};
@@ -47,8 +49,12 @@ const STEPS: usize = 60;
 const RESERVE: f64 = 1e-13;
 /// A tolerance so near its bound is at it.
 const AT_BOUND: f64 = 1e-9;
-/// It stands still.
-const STILL: f64 = 1e-11;
+/// It stands still: where slopes are formulas, and where they are differences, which know them to 1e-10.
+const STILL: [f64; 2] = [1e-11, 1e-9];
+/// A residual that is optimal all the same, once steps do not lower it any more.
+const SMALL: f64 = 1e-8;
+/// Steps in which a residual that still falls is at least halved.
+const PATIENCE: usize = 3;
 /// Two ways to the same.
 const SAME: f64 = 1e-9;
 
@@ -65,7 +71,8 @@ impl Setting<'_> {
     }
 
     pub(super) fn linearised(&self, at: &[f64]) -> Option<Vec<Linearised>> {
-        self.constraints.iter().map(|constraint| constraint.linearised(self.responses, self.priced, at)).collect()
+        let (responses, priced) = (self.responses, self.priced);
+        self.constraints.par_iter().map(|constraint| constraint.linearised(responses, priced, at)).collect()
     }
 
     /// Whether sums of powers are exactly what is required.
@@ -93,6 +100,10 @@ impl Setting<'_> {
         }
         let mut best: Option<Solved> = None;
         for start in starts {
+            // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
+            if best.as_ref().is_some_and(|best| best.converged && kept(best.value)) {
+                break;
+            }
             let found = self.usable(&start, &tight).and_then(|start| self.descend(&start));
             let better = |best: &Solved| {
                 (!kept(best.value) && found.as_ref().is_some_and(|found| found.value < best.value))
@@ -148,12 +159,16 @@ impl Setting<'_> {
         let mut multipliers: Option<Vec<f64>> = None;
         let mut best: Option<Solved> = None;
         let (mut part, mut last_step, mut converged, mut closed) = (1.0f64, f64::INFINITY, false, false);
+        let (mut least, mut in_vain) = (f64::INFINITY, 0);
         let exact = self.is_exact();
+        let still = STILL[usize::from(!exact)];
         for step in 0..STEPS {
             let Some(linearised) = self.linearised(&at) else { break };
             if let Some(multipliers) = &multipliers {
                 let now = self.judged(&at, &linearised, multipliers, closed);
-                let done = now.residual <= STILL;
+                in_vain = if now.residual < 0.5 * least { 0 } else { in_vain + 1 };
+                least = least.min(now.residual);
+                let done = now.residual <= still || now.residual <= SMALL && in_vain >= PATIENCE;
                 keep(&mut best, now);
                 if done {
                     converged = true;
@@ -188,7 +203,7 @@ impl Setting<'_> {
         }
         if let (Some(multipliers), Some(linearised)) = (&multipliers, self.linearised(&at)) {
             let now = self.judged(&at, &linearised, multipliers, closed);
-            converged |= now.residual <= 1e3 * STILL;
+            converged |= now.residual <= SMALL;
             keep(&mut best, now);
         }
         let mut best = best?;
