@@ -68,6 +68,8 @@ pub(super) struct Best {
 
 /// Constraints are kept to this part of their room.
 pub(super) const KEPT: f64 = 1e-13;
+/// A rise of the dual that may be rounding, as a part of it.
+const FLAT: f64 = 1e-12;
 const NEWTON: usize = 60;
 const SWEEPS: usize = 40;
 
@@ -137,7 +139,11 @@ impl Separable<'_> {
     }
 
     fn misses(&self, multipliers: &[f64]) -> Vec<f64> {
-        let at: Vec<f64> = self.all(multipliers).iter().map(|best| best.t).collect();
+        self.misses_at(&self.all(multipliers))
+    }
+
+    fn misses_at(&self, best: &[Best]) -> Vec<f64> {
+        let at: Vec<f64> = best.iter().map(|best| best.t).collect();
         self.rows.iter().map(|row| row.value(&at) - 1.0).collect()
     }
 
@@ -147,6 +153,8 @@ impl Separable<'_> {
         multipliers.iter().zip(misses).map(one).fold(0.0, f64::max)
     }
 
+    /// Newton steps as long as the dual rises: steps that only bring the misses down may undo what [`alone`](Self::alone) does, and
+    /// it theirs, for ever.
     fn newton(&self, multipliers: &mut Vec<f64>, misses: &mut Vec<f64>) -> bool {
         for _ in 0..NEWTON {
             let error = Self::error(multipliers, misses);
@@ -156,6 +164,7 @@ impl Separable<'_> {
             let active: Vec<usize> =
                 (0..multipliers.len()).filter(|&k| multipliers[k] > 0.0 || misses[k] > 0.0).collect();
             let best = self.all(multipliers);
+            let value = self.bound(multipliers, &best);
             let n = active.len();
             let mut matrix = Mat::<f64>::zeros(n, n);
             for (g, best) in best.iter().enumerate().filter(|(_, best)| best.curvature > 0.0) {
@@ -185,8 +194,15 @@ impl Separable<'_> {
                     .iter()
                     .zip(step.col_as_slice(0))
                     .for_each(|(&k, step)| trial[k] = (trial[k] + part * step).max(0.0));
-                let found = self.misses(&trial);
-                if Self::error(&trial, &found) < error * (1.0 - 1e-4 * part) {
+                let best = self.all(&trial);
+                let found = self.misses_at(&best);
+                let rise = self.bound(&trial, &best) - value;
+                let foretold: f64 =
+                    active.iter().map(|&k| misses[k] * (trial[k] - multipliers[k])).sum::<f64>().max(0.0);
+                // Near the top the dual is flat to its last digits, and misses tell more.
+                let flat =
+                    rise.abs() <= FLAT * value.abs() && Self::error(&trial, &found) < error * (1.0 - 1e-4 * part);
+                if flat || rise > 1e-4 * foretold {
                     (*multipliers, *misses, accepted) = (trial, found, true);
                     break;
                 }
