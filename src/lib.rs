@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+pub mod allocation;
 pub mod analysis;
 pub mod assembly;
 pub mod capability;

@@ -81,6 +81,15 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
+    analyze_keeping(problem, options, run).map(|(analysis, _)| analysis)
+}
+
+/// [`analyze_within`], with what the method found out, for who goes on from there.
+pub(crate) fn analyze_keeping(
+    problem: &Problem,
+    options: &Options,
+    run: &Run<'_>,
+) -> Result<(Analysis, Outcome), MethodError> {
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
     let found = if options.extremes { search(problem, &outcome, left, run) } else { Found::default() };
@@ -96,7 +105,7 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
     let account = account::account(problem, &outcome, &characteristics, spent);
     let seed = options.seed.unwrap_or(Options::SEED);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
-    Ok(Analysis {
+    let analysis = Analysis {
         method: outcome.method,
         varying: outcome.plan.varying().len(),
         evaluations: outcome.evaluated.evaluations + fallback.evaluations + found.spent.evaluations,
@@ -110,7 +119,8 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         account,
         basis: outcome.basis,
         warnings,
-    })
+    };
+    Ok((analysis, outcome))
 }
 
 /// Runs the method, `auto` until the errors of other results than sigma are what is wanted too.

@@ -43,6 +43,12 @@ pub(super) enum Command {
         after_help = "Example: sensitol sweep examples/connecting-rod/crank-angle.toml --over theta=-180:180:73 --svg band.svg"
     )]
     Sweep(SweepArgs),
+    /// The cheapest tolerances with which every characteristic keeps what is required
+    ///
+    /// What tolerances cost stands in [costs], what is required at each characteristic: a target_yield or a require. Method auto
+    /// stands for full, and above twenty dimensions for six-n.
+    #[command(after_help = "Example: sensitol allocate examples/shaft-and-housing/study.toml --write cheaper.toml")]
+    Allocate(AllocateArgs),
     /// What would be evaluated, how often, and why; evaluates nothing
     #[command(after_help = "Example: sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
     Plan(PlanArgs),
@@ -310,6 +316,55 @@ pub(super) struct SweepArgs {
 pub(super) struct Over {
     pub(super) name: String,
     pub(super) values: Vec<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AllocateArgs {
+    #[command(flatten)]
+    pub(super) study: StudyArgs,
+
+    /// Move the nominal values of these dimensions too, to where the fewest are rejected; alone where there are no costs
+    #[arg(long, value_name = "DIM,..", value_delimiter = ',')]
+    pub(super) recentre: Vec<String>,
+
+    /// The front of cost against yield (or Cpk), in N points
+    #[arg(long, value_name = "N")]
+    pub(super) front: Option<usize>,
+
+    /// Confirm the tolerances found by Monte Carlo: N points of the model
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
+    pub(super) confirm: Option<u64>,
+
+    /// Stop after S seconds and report what is known
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(super) time: Option<f64>,
+
+    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
+    #[arg(long, value_name = "FILE")]
+    pub(super) journal: Option<PathBuf>,
+
+    /// Seed of what is drawn [default: that of the study, or 1]
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+
+    /// Threads that evaluate formulas and built-in models [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) threads: Option<u16>,
+
+    /// Write the study with the tolerances found, otherwise as it is
+    #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
+    pub(super) write: Option<PathBuf>,
+
+    /// Write tolerances, requirements and front as CSV files into DIR, which is made where it is missing
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    pub(super) csv: Option<PathBuf>,
+
+    /// Draw the front
+    #[arg(long, value_name = "FILE.svg", help_heading = OUTPUT)]
+    pub(super) svg: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
 }
 
 #[derive(Debug, Args)]

@@ -1,5 +1,9 @@
 //! Reports: a versioned value with serde, and its text for people.
 
+mod allocation;
+mod allocation_csv;
+mod allocation_svg;
+mod allocation_text;
 mod compare;
 mod compare_csv;
 mod compare_svg;
@@ -29,6 +33,14 @@ mod sweep_text;
 mod table;
 mod text;
 
+pub use allocation::{
+    AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, BeforeAfter, ConfirmationReport,
+    ContributionReport, FrontReport, FrontRequirement, JointReport, KeptReport, PriceReport, ProofReport,
+    RecentredReport, WrittenAnew,
+};
+pub use allocation_csv::{allocation_csv, allocation_csv_names};
+pub use allocation_svg::allocation_svg;
+pub use allocation_text::allocation_text;
 pub use compare::{CompareReport, ComparedReport, ErrorReport, FiguresReport, MethodReport, NotRunReport};
 pub use compare_csv::compare_csv;
 pub use compare_svg::compare_svg;

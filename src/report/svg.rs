@@ -10,24 +10,33 @@ pub(super) const MARGIN: [f64; 4] = [80.0, 150.0, 48.0, 56.0];
 /// The colour of what is to be looked at.
 pub(super) const ACCENT: &str = "#1f6feb";
 
-/// A drawing of charts, a name above each.
-pub(super) fn charts<T>(title: &str, of: &[T], name: impl Fn(&T) -> String, draw: impl Fn(&mut String, &T)) -> String {
-    let height = HEIGHT * of.len() as f64;
-    let mut svg = format!(
+/// The beginning of a drawing on white.
+pub(super) fn opened(title: &str, height: f64) -> String {
+    format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
          font-family=\"sans-serif\" font-size=\"12\" role=\"img\">\n<title>{}</title>\n\
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
         escaped(title)
-    );
+    )
+}
+
+/// A drawing of charts, a name above each.
+pub(super) fn charts<T>(title: &str, of: &[T], name: impl Fn(&T) -> String, draw: impl Fn(&mut String, &T)) -> String {
+    let mut svg = opened(title, HEIGHT * of.len() as f64);
     for (index, one) in of.iter().enumerate() {
         let _ = writeln!(svg, "<g transform=\"translate(0 {})\">", HEIGHT * index as f64);
-        let [left, ..] = MARGIN;
-        let name = escaped(&name(one));
-        let _ = writeln!(svg, "<text x=\"{left}\" y=\"24\" font-size=\"15\" font-weight=\"bold\">{name}</text>");
+        headline(&mut svg, &name(one));
         draw(&mut svg, one);
         svg += "</g>\n";
     }
     svg + "</svg>\n"
+}
+
+/// What a chart is about, above it.
+pub(super) fn headline(svg: &mut String, text: &str) {
+    let [left, ..] = MARGIN;
+    let text = escaped(text);
+    let _ = writeln!(svg, "<text x=\"{left}\" y=\"24\" font-size=\"15\" font-weight=\"bold\">{text}</text>");
 }
 
 /// A line of the grid at a place of the horizontal axis, with what it stands for, which may be markup.

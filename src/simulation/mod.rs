@@ -17,7 +17,7 @@ use crate::method::{MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
 use control::Control;
-pub(crate) use surrogates::Surrogates;
+pub(crate) use surrogates::{Surrogates, chosen};
 use tally::{Block, Lens, Tally};
 
 /// How a problem is simulated.

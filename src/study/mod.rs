@@ -38,6 +38,7 @@
 
 mod build;
 mod correlation;
+mod costs;
 mod data;
 mod de;
 mod dimension;
@@ -47,6 +48,7 @@ mod file;
 mod implicit;
 mod model;
 mod options;
+mod rewrite;
 #[cfg(feature = "cli")]
 mod schema;
 mod source;
@@ -58,6 +60,7 @@ mod values;
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};
+pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "cli")]
 pub use schema::schema;
 pub use source::Format;
@@ -68,6 +71,8 @@ use std::sync::Arc;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
+use crate::allocation::{AllocationTask, Priced, Requirement};
+use crate::characteristic::Characteristic;
 use crate::method::Options;
 use crate::problem::Problem;
 use crate::warning::Warning;
@@ -86,14 +91,34 @@ pub struct Study {
     pub options: Options,
     /// The seed of the `[analysis]` section, for what draws random numbers.
     pub seed: Option<u64>,
+    /// What tolerances cost, by groups that share one.
+    pub costs: Vec<Priced>,
+    /// What characteristics must keep, by name.
+    pub requirements: Vec<(String, Requirement)>,
     /// What is legal but most likely not meant.
     pub warnings: Vec<Warning>,
     /// SHA-256 of the file's bytes, followed by those of every file of measured values, each once, in the order of the
     /// dimensions; in hexadecimal. As `cat gap.toml pin.csv | sha256sum` prints it.
     pub sha256: String,
+    /// What it was read from.
+    text: Arc<str>,
+    format: Format,
+    name: String,
+    folder: PathBuf,
 }
 
 impl Study {
+    /// Costs and requirements of the characteristics that its problem asks for.
+    pub fn allocation_task(&self) -> AllocationTask {
+        let of = |one: &Characteristic| {
+            self.requirements.iter().find(|(name, _)| name == one.name()).map(|(_, requirement)| *requirement)
+        };
+        AllocationTask {
+            priced: self.costs.clone(),
+            requirements: self.problem.characteristics().iter().map(of).collect(),
+        }
+    }
+
     /// Reads a `.toml` or `.json` file.
     ///
     /// # Errors
@@ -211,7 +236,13 @@ impl Study {
             problem: built.problem,
             options: built.options,
             seed: file.analysis.seed.map(spanned::Spanned::into_inner),
+            costs: built.costs,
+            requirements: built.requirements,
             warnings: built.warnings,
+            format,
+            name: source.name,
+            folder: source.folder,
+            text: source.text,
             sha256: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
         })
     }

@@ -112,7 +112,7 @@ fn extremes_are_reported() {
 
 #[test]
 fn help_is_there() {
-    for command in ["", "analyze", "plan", "check", "models", "schema", "pearson", "probe", "journal"] {
+    for command in ["", "analyze", "allocate", "plan", "check", "models", "schema", "pearson", "probe", "journal"] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
         insta::assert_snapshot!(format!("help-{}", if command.is_empty() { "all" } else { command }), run(&arguments));
     }

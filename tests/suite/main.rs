@@ -1,6 +1,8 @@
 //! Every test of the project, a module per theme; `cargo test --test suite moments::` runs one theme.
 
 mod accuracy;
+mod allocation;
+mod allocation_cli;
 mod analysis;
 mod architecture;
 mod auto;
