@@ -74,7 +74,7 @@ def the_order_does_not_matter():
         assert ("y" in first) == ("y" in second), (first, second)
         if "y" in first:
             values += 1
-            # The solver orders its unknowns by address: some units in the last place. A flip or a warm start is far more.
+            # The solver repeats itself to some units in the last place, not to the last bit. A flip or a warm start is far more.
             assert max(abs(a - b) for a, b in zip(first["y"], second["y"])) < 1e-11, (first, second)
             # The signed distance and the sketch's own reference dimension.
             for value in first["y"]:

@@ -7,10 +7,7 @@ use sensitol::plan::Stencil;
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Method, Options, Study, analyze};
 
-use super::support::{data, repository};
-
-/// Examples that need more than the repository has; `tests/adapters/run` runs their console blocks where that is installed.
-const INSTALLED: [&str; 3] = ["stacked-blocks-freecad", "stack-up-workbook", "spot-weld-opencascade"];
+use super::support::{INSTALLED, data, repository};
 
 /// Console blocks of the README and of every example, run from the repository's root; none leaves anything out.
 #[test]
