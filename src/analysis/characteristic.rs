@@ -3,7 +3,7 @@
 use super::errors::of_yield;
 use super::linear::Linear;
 use super::shares::Shares;
-use super::{SampledModel, SamplingInterval};
+use super::{SampledModel, SamplingInterval, Tails};
 use crate::capability::{Capability, Law};
 use crate::characteristic::Characteristic;
 use crate::extremes::Extremes;
@@ -25,6 +25,8 @@ pub struct CharacteristicAnalysis {
     pub sampled: Option<Sampled>,
     /// Points of the model that the moments rest on, in place of a surrogate that was not trusted.
     pub model_sampled: Option<SampledModel>,
+    /// What law and surface reject; None without limits, or where the surface is plainly normal.
+    pub tails: Option<Tails>,
     /// How far these results may be off; None without moments.
     pub error_estimate: Option<ErrorEstimate>,
     /// How far a fitted surface misses the values that it was fitted to; None where nothing was fitted.
@@ -183,6 +185,7 @@ impl CharacteristicAnalysis {
             left_out_share,
             error_estimate,
             model_sampled: None,
+            tails: None,
         }
     }
 }

@@ -9,12 +9,14 @@ mod interval;
 mod linear;
 mod shapes;
 mod shares;
+mod tails;
 mod trust;
 mod warnings;
 
 pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
 pub use fallback::SampledModel;
+pub use tails::Tails;
 pub(crate) use warnings::history;
 
 use std::time::Duration;
@@ -98,6 +100,7 @@ pub(crate) fn analyze_keeping(
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.evaluations));
     let fallback = fallback::fall_back(problem, &outcome, left, &mut characteristics, run);
+    tails::look(problem, &outcome, &mut characteristics);
     outcome.evaluated.doubts.extend(fallback.doubts);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;

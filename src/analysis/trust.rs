@@ -1,8 +1,8 @@
 //! Where a surrogate does not do what the moments take it to do.
 
-use super::CharacteristicAnalysis;
 use super::errors::beside_sigma;
 use super::shapes::{Shape, higher, shape};
+use super::{CharacteristicAnalysis, Tails};
 use crate::method::{Climbed, Outcome, Rest};
 use crate::plan::Point;
 use crate::problem::Problem;
@@ -24,6 +24,10 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &Char
         return Vec::new();
     };
     let mut warnings = axes(problem, outcome, c, sigma);
+    if let Some(Tails { law, surface, points }) = analysis.tails.filter(Tails::misses) {
+        let characteristic = problem.characteristics()[c].name().to_owned();
+        warnings.push(Warning::TailsMissed { characteristic, law, surface, points });
+    }
     if let Some(climbed) = &outcome.climbed {
         warnings.extend(climb(outcome, climbed, c, (analysis, sigma)));
     }

@@ -58,12 +58,21 @@ pub(super) enum Command {
     /// The built-in models, or one of them with its inputs and outputs
     #[command(after_help = "Example: sensitol models engine-balance")]
     Models(ModelsArgs),
+    /// Writes a commented study that runs as it is
+    #[command(after_help = "Example: sensitol init gap && sensitol analyze gap.toml")]
+    Init(InitArgs),
     /// The JSON Schema of study files
     #[command(after_help = "Example: sensitol schema -o study.schema.json")]
     Schema(SchemaArgs),
     /// The Pearson distribution of four moments: densities, probabilities, quantiles
     #[command(after_help = "Example: sensitol pearson --skewness 0.5 --kurtosis 3.4 --sf 4 --upper-quantile 1e-6,1e-9")]
     Pearson(PearsonArgs),
+    /// Completions for a shell, to be sourced by it
+    #[command(after_help = "Example: sensitol completions bash > ~/.local/share/bash-completion/completions/sensitol")]
+    Completions(CompletionsArgs),
+    /// The manual page
+    #[command(after_help = "Example: sensitol man | man -l -")]
+    Man,
     /// Checks an external model: protocol, names, repeatability, noise, speed, least step
     #[command(after_help = "Example: sensitol probe examples/external-python/study.toml")]
     Probe(ProbeArgs),
@@ -365,6 +374,26 @@ pub(super) struct AllocateArgs {
 
     #[command(flatten)]
     pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct InitArgs {
+    /// The file to write, .toml if nothing else is said [default: study.toml]; one that is there stays as it is
+    pub(super) name: Option<String>,
+
+    /// Of this built-in model (see sensitol models), instead of a formula
+    #[arg(long, value_name = "MODEL", conflicts_with = "process")]
+    pub(super) model: Option<String>,
+
+    /// Of a program, which is written too: a few lines of Python to put your CAD system into
+    #[arg(long)]
+    pub(super) process: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompletionsArgs {
+    /// The shell
+    pub(super) shell: clap_complete::Shell,
 }
 
 #[derive(Debug, Args)]

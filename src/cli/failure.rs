@@ -78,6 +78,8 @@ pub(super) enum Failure {
     UnknownModel { name: String, help: String },
     #[error("{path} cannot be written: {error}", path = path.display())]
     Unwritable { path: PathBuf, error: std::io::Error },
+    #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]
+    Exists { path: PathBuf },
     #[error("--write {path} is the study itself, which would be lost: name a new file", path = path.display())]
     OntoItself { path: PathBuf },
     #[error("{path} is a file, and --csv needs a folder", path = path.display())]

@@ -9,6 +9,7 @@ mod check;
 mod compare;
 mod csv;
 mod failure;
+mod init;
 mod interrupt;
 mod journal;
 mod models;
@@ -20,6 +21,7 @@ mod points;
 mod probe;
 mod progress;
 mod rare;
+mod reference;
 mod running;
 mod schema;
 mod simulate;
@@ -57,7 +59,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Models(asked) => models::run(asked, style),
         Command::Probe(asked) => probe::run(asked, style),
         Command::Journal(asked) => journal::run(asked, style),
+        Command::Init(asked) => init::run(asked),
         Command::Schema(asked) => schema::run(asked),
+        Command::Completions(asked) => reference::completions(asked),
+        Command::Man => reference::man(),
         Command::Pearson(asked) => pearson::run(asked, style),
     };
     let exit = result.unwrap_or_else(|failure| {

@@ -39,12 +39,17 @@ pub(super) fn run(asked: &ModelsArgs, _: Look) -> Result<Exit, Failure> {
         None if asked.output.json => json(&ALL.iter().map(|model| ModelReport::of(model)).collect::<Vec<_>>()),
         None => list(),
         Some(name) => {
-            let model = by_name(name).ok_or_else(|| unknown(name))?;
+            let model = known(name)?;
             if asked.output.json { json(&ModelReport::of(model)) } else { one(model) }
         }
     };
     Destination::open(&asked.output)?.write(&printed)?;
     Ok(Exit::Done)
+}
+
+/// The model of this name.
+pub(super) fn known(name: &str) -> Result<&'static Model, Failure> {
+    by_name(name).ok_or_else(|| unknown(name))
 }
 
 fn unknown(name: &str) -> Failure {

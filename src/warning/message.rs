@@ -279,6 +279,13 @@ impl Warning {
                     }
                 )
             }
+            Self::TailsMissed { characteristic, law, surface, points } => format!(
+                "the Pearson law with the four moments of `{characteristic}` rejects {:.0} ppm, and the surface that has these \
+                 moments {:.0} ppm at {points} points: its tails are of another kind, and the yield is off by that; use \
+                 sensitol simulate, or --rare with it",
+                1e6 * law,
+                1e6 * surface
+            ),
             Self::SeveralModes { characteristic, coefficient } => format!(
                 "skewness and kurtosis of `{characteristic}` are those of a distribution with two peaks ((skewness^2 + 1)/kurtosis = \
                  {coefficient:.2}): the Pearson law has one or a trough; look at the histogram of sensitol simulate"

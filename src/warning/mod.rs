@@ -388,6 +388,17 @@ pub enum Warning {
         /// Whether the budget was the reason.
         budget: bool,
     },
+    /// The law of four moments rejects other assemblies than the surface that has these moments.
+    TailsMissed {
+        /// The characteristic.
+        characteristic: String,
+        /// The share that the law rejects.
+        law: f64,
+        /// The share of the surface's points.
+        surface: f64,
+        /// How many these are.
+        points: usize,
+    },
     /// Four moments that a distribution with several peaks has.
     SeveralModes {
         /// The characteristic.
@@ -493,6 +504,7 @@ impl Warning {
             Self::InteractionsLeftOut { .. } => "interactions-left-out",
             Self::UntrustedSurrogate { .. } => "untrusted-surrogate",
             Self::UnderResolved { .. } => "under-resolved",
+            Self::TailsMissed { .. } => "tails-missed",
             Self::SeveralModes { .. } => "several-modes",
         }
     }
@@ -527,6 +539,7 @@ impl Warning {
             | Self::InteractionsLeftOut { characteristic, .. }
             | Self::UntrustedSurrogate { characteristic, .. }
             | Self::UnderResolved { characteristic, .. }
+            | Self::TailsMissed { characteristic, .. }
             | Self::SeveralModes { characteristic, .. }
             | Self::RssInvalid { characteristic, .. } => Some(characteristic),
             _ => None,

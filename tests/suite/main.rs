@@ -17,6 +17,7 @@ mod extremes;
 mod fits;
 mod formulas;
 mod implicit;
+mod init;
 mod intervals;
 mod journal;
 mod measured;

@@ -1,0 +1,89 @@
+//! Whether the law of four moments rejects what the surface rejects that has these moments.
+//!
+//! A Pearson law with the right moments need not have the right tails: a uniform dimension beside normal ones, say, or a sum of few.
+//! The surface costs nothing to look at, so that it is sampled wherever there are limits.
+
+use super::CharacteristicAnalysis;
+use crate::distribution::StandardMoments;
+use crate::method::{Options, Outcome};
+use crate::problem::Problem;
+use crate::sampling::{Draws, Portion, SOBOL_DIMENSIONS, Sampler};
+
+/// Points of the surface.
+const POINTS: usize = 1 << 14;
+/// Standard errors of a random sample, of which a quasi-random one has less, from which a difference is one;
+const SEEN: f64 = 4.0;
+/// and from which part of the larger of both on it is worth a warning.
+const APART: f64 = 0.2;
+/// A curvature or product below this part of the slopes is rounding.
+const STRAIGHT: f64 = 1e-12;
+
+/// What law and surface reject.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tails {
+    /// The share beyond the limits by the law of four moments.
+    pub law: f64,
+    /// Of the points of the surface.
+    pub surface: f64,
+    /// How many these are.
+    pub points: usize,
+}
+
+impl Tails {
+    /// How far the two are apart, where that is more than the sample's chance.
+    fn difference(&self) -> Option<f64> {
+        let n = self.points as f64;
+        let share = self.law.max(self.surface).max(1.0 / n);
+        let (apart, error) = ((self.law - self.surface).abs(), (share * (1.0 - share).max(0.0) / n).sqrt());
+        (apart > SEEN * error).then_some(apart)
+    }
+
+    /// Whether the law is not to be trusted with the yield.
+    pub(super) fn misses(&self) -> bool {
+        self.difference().is_some_and(|apart| apart > APART * self.law.max(self.surface))
+    }
+}
+
+/// Looks at every characteristic with limits whose surface is not plainly normal, and widens the estimated error of its yield by
+/// what the law is off. Evaluates nothing of the model.
+pub(super) fn look(problem: &Problem, outcome: &Outcome, characteristics: &mut [CharacteristicAnalysis]) {
+    let asked: Vec<usize> = (0..characteristics.len()).filter(|&c| is_asked(outcome, &characteristics[c], c)).collect();
+    if asked.is_empty() {
+        return;
+    }
+    let sampler = if outcome.plan.varying().len() <= SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
+    // The same points for everybody, whatever the seed: they decide nothing but whether to warn.
+    let Ok(draws) = Draws::new(problem.dimensions(), problem.correlation(), sampler, Options::SEED) else { return };
+    let points = draws.points(Portion { replicate: 0, first: 0, rows: POINTS });
+    let standardised = |&d: &usize| {
+        let (mean, sigma) = (problem.dimensions()[d].mean(), problem.dimensions()[d].sigma());
+        points.column(d).iter().map(|x| (x - mean) / sigma).collect::<Vec<f64>>()
+    };
+    let columns: Vec<Vec<f64>> = outcome.plan.varying().iter().map(standardised).collect();
+    for c in asked {
+        let one = &mut characteristics[c];
+        let Some(law) = one.capability.and_then(|capability| capability.rejected()) else { continue };
+        let Some(surrogate) = &outcome.fitted[c].surrogate else { continue };
+        let Some(rises) = surrogate.rises(&columns) else { continue };
+        let limits = one.characteristic.limits();
+        let beyond = rises.iter().filter(|&&rise| !limits.contains(surrogate.centre + rise)).count();
+        let tails = Tails { law, surface: beyond as f64 / POINTS as f64, points: POINTS };
+        if let Some((apart, estimate)) = tails.difference().zip(one.error_estimate.as_mut()) {
+            estimate.yield_ = estimate.yield_.map(|error| error + apart);
+        }
+        one.tails = Some(tails);
+    }
+}
+
+fn is_asked(outcome: &Outcome, one: &CharacteristicAnalysis, c: usize) -> bool {
+    let surrogate = outcome.fitted[c].surrogate.as_ref();
+    let Some(surrogate) = surrogate.filter(|_| one.characteristic.limits().exist() && one.model_sampled.is_none())
+    else {
+        return false;
+    };
+    let normal = outcome.plan.inputs().shapes().iter().all(|shape| shape.moments == StandardMoments::NORMAL);
+    let straight = surrogate.parts.iter().all(|part| part.is_some_and(|part| part.is_straight(STRAIGHT)));
+    let sigma = one.moments.map_or(0.0, |moments| moments.sigma());
+    let apart = surrogate.interactions.pairs().iter().all(|(.., product)| product.abs() <= STRAIGHT * sigma);
+    !(normal && straight && apart)
+}
