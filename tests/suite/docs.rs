@@ -1,6 +1,7 @@
 //! What the documentation shows is what the program does: every console block is run, every quoted study is a file, and
 //! the measured table is measured again. `TRYCMD=overwrite` and `SENSITOL_UPDATE_DOCS=1` write what has changed.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use sensitol::plan::Stencil;
@@ -9,7 +10,7 @@ use sensitol::{Method, Options, Study, analyze};
 
 use super::support::{INSTALLED, data, repository};
 
-/// Console blocks of the README and of every example, run from the repository's root; none leaves anything out.
+/// Console blocks of the README, the documents and every example, run from the repository's root; none leaves anything out.
 #[test]
 fn console_blocks_are_real() {
     for document in documents() {
@@ -18,6 +19,7 @@ fn console_blocks_are_real() {
     }
     let cases = trycmd::TestCases::new();
     cases.case("README.md").case("CONTRIBUTING.md").case("examples/*/README.md");
+    cases.case("docs/*.md").case("docs/how-to/*.md").case("docs/reference/*.md");
     for example in INSTALLED {
         cases.skip(format!("examples/{example}/README.md"));
     }
@@ -220,9 +222,6 @@ fn documents() -> Vec<String> {
         "CONTRIBUTING.md",
         "CHANGELOG.md",
         "benches/README.md",
-        "docs/accuracy.md",
-        "docs/how-to/plug-in-your-cad.md",
-        "docs/published-cases.md",
         "adapters/PROTOCOL.md",
         "adapters/python/README.md",
         "adapters/freecad/README.md",
@@ -230,7 +229,47 @@ fn documents() -> Vec<String> {
         "adapters/opencascade/README.md",
     ];
     let own = own.map(str::to_owned);
-    own.into_iter().chain(examples.map(of_example)).collect()
+    let pages = ["docs", "docs/how-to", "docs/reference"].into_iter().flat_map(pages);
+    own.into_iter().chain(pages).chain(examples.map(of_example)).collect()
+}
+
+/// The Markdown files of a folder.
+fn pages(folder: &str) -> Vec<String> {
+    let files = std::fs::read_dir(repository(folder)).unwrap();
+    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.ends_with(".md")).map(|name| format!("{folder}/{name}")).collect()
+}
+
+/// The index names every page.
+#[test]
+fn the_index_has_every_page() {
+    let index = read("docs/README.md");
+    for page in ["docs", "docs/how-to", "docs/reference"].into_iter().flat_map(pages) {
+        let link = page.strip_prefix("docs/").unwrap();
+        assert!(link == "README.md" || index.contains(&format!("]({link})")), "docs/README.md does not name {link}");
+    }
+}
+
+/// Every code of a warning has its entry, and every entry is of a code.
+#[test]
+fn every_warning_is_explained() {
+    let source = read("src/warning/mod.rs");
+    let body = source.split("pub fn code(").nth(1).unwrap().split("\n    }\n").next().unwrap();
+    let codes: BTreeSet<&str> = body.split("=> \"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    let page = read("docs/reference/warnings.md");
+    let explained = page.lines().filter_map(|line| line.strip_prefix("### `")?.strip_suffix('`'));
+    assert_eq!(explained.collect::<BTreeSet<_>>(), codes);
+}
+
+/// What the tutorial changes in its study is one line at a time.
+#[test]
+fn the_tutorials_studies_differ_in_one_line() {
+    let study = read("examples/first-study/study.toml");
+    for other in ["tighter.toml", "capable.toml"] {
+        let changed = read(&format!("examples/first-study/{other}"));
+        assert_eq!(study.lines().count(), changed.lines().count());
+        assert_eq!(study.lines().zip(changed.lines()).filter(|(line, other)| line != other).count(), 1, "{other}");
+    }
 }
 
 #[test]
