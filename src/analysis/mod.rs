@@ -9,12 +9,14 @@ mod interval;
 mod linear;
 mod shapes;
 mod shares;
+mod surface;
 mod trust;
 mod warnings;
 
 pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
 pub use fallback::SampledModel;
+pub use surface::{Fit, NoFit, Surface};
 
 use std::time::Duration;
 
@@ -51,6 +53,8 @@ pub struct Analysis {
     pub account: Option<String>,
     /// What the moments rest on.
     pub basis: Basis,
+    /// What the moments follow from.
+    pub surface: Surface,
     /// Where an assumption fails.
     pub warnings: Vec<Warning>,
 }
@@ -106,9 +110,10 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         stopped: outcome.evaluated.stopped || fallback.stopped || found.spent.stopped,
         in_model: outcome.evaluated.in_model + fallback.in_model + found.spent.in_model,
         seed: drawn.then_some(seed),
-        characteristics,
         account,
         basis: outcome.basis,
+        surface: Surface::of(&outcome, &characteristics),
+        characteristics,
         warnings,
     })
 }

@@ -45,6 +45,7 @@ mod error;
 mod externals;
 mod file;
 mod implicit;
+mod lines;
 mod model;
 mod options;
 #[cfg(feature = "cli")]
@@ -85,6 +86,8 @@ pub struct Study {
     pub options: Options,
     /// The seed of the `[analysis]` section, for what draws random numbers.
     pub seed: Option<u64>,
+    /// The section `[dimensions]`: for every entry its keys, with their values as TOML.
+    pub lines: Vec<(String, Vec<(String, String)>)>,
     /// What is legal but most likely not meant.
     pub warnings: Vec<Warning>,
     /// SHA-256 of the file's bytes, followed by those of every file of measured values, each once, in the order of the
@@ -193,6 +196,7 @@ impl Study {
             problem: built.problem,
             options: built.options,
             seed: file.analysis.seed.map(spanned::Spanned::into_inner),
+            lines: lines::of(&tree),
             warnings: built.warnings,
             sha256: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
         })
