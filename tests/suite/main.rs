@@ -14,6 +14,7 @@ mod docs;
 mod extremes;
 mod fits;
 mod formulas;
+mod html;
 mod implicit;
 mod intervals;
 mod journal;

@@ -15,7 +15,7 @@ use crate::method::ALL;
 const BARS: usize = 24;
 const INTERACTIONS: usize = 24;
 /// A share below this is no news.
-const NEWS: f64 = 1e-6;
+const NEWS: f64 = 5e-5;
 
 #[derive(Serialize)]
 struct Analysed<'r> {
@@ -127,13 +127,13 @@ fn facts(report: &Report) -> Vec<Fact> {
     facts.extend(report.account.as_ref().map(|account| fact("what was bought", account.clone())));
     facts.push(fact("varying dimensions", report.varying.to_string()));
     facts.push(fact("evaluations", format!("{}, {} of them failed", report.evaluations, report.failed)));
-    facts.push(fact("answers taken from an earlier run", report.reused.to_string()));
+    facts.push(fact("reused answers", report.reused.to_string()));
     let derivatives = match report.derivatives {
         Some("exact") => "exact",
         Some(_) => "differences",
         None => "none: the moments rest on values or on a fitted surface",
     };
-    facts.push(fact("derivatives behind the moments", derivatives));
+    facts.push(fact("derivatives", derivatives));
     let pairs = report.correlation.iter();
     let pairs: Vec<String> =
         pairs.map(|pair| format!("{} and {}: {}", pair.between[0], pair.between[1], plain(pair.value))).collect();

@@ -37,7 +37,7 @@ pub fn simulate_html(report: &SimulationReport) -> String {
         fact("method", format!("{}, {} points", report.method, report.sampler)),
         fact("points", report.samples.to_string()),
         fact("evaluations", format!("{}, {} of them failed", report.evaluations, report.failed)),
-        fact("answers taken from an earlier run", report.reused.to_string()),
+        fact("reused answers", report.reused.to_string()),
     ];
     facts.extend(report.surrogate_evaluations.map(|count| fact("evaluations of the surrogate", count.to_string())));
     if let Some(reached) = report.reached {
