@@ -166,6 +166,41 @@ impl Dimension {
         })
     }
 
+    /// The same dimension about another nominal value, its tolerance kept; None where its distribution does not move with the
+    /// nominal, as measured values and those with an origin do not.
+    ///
+    /// # Errors
+    /// When the nominal is no finite number, or so large that the tolerance vanishes beside it.
+    ///
+    /// ```
+    /// use sensitol::Dimension;
+    /// let b = Dimension::normal_between("b", 30.0, [-0.1, 0.3])?;
+    /// let moved = b.moved(50.0).expect("a normal dimension moves")?;
+    /// assert_eq!((moved.nominal(), moved.tolerance()), (50.0, Some([-0.1, 0.3])));
+    /// assert!((moved.mean() - 50.1).abs() < 1e-12);
+    /// # Ok::<(), sensitol::DimensionError>(())
+    /// ```
+    pub fn moved(&self, nominal: f64) -> Option<Result<Self, DimensionError>> {
+        let by = nominal - self.nominal;
+        let distribution = match self.distribution() {
+            Some(distribution) if by != 0.0 => {
+                let moved = distribution.scaled(1.0, by)?;
+                let stays = |moved: &dyn Distribution| {
+                    (moved.mean() - distribution.mean() - by).abs() > 1e-6 * distribution.sigma().max(by.abs())
+                };
+                if moved.as_ref().is_ok_and(|moved| stays(&**moved)) {
+                    return None;
+                }
+                moved.map(Some).map_err(DimensionFault::from)
+            }
+            _ => Ok(self.distribution.clone()),
+        };
+        Some(match check(nominal, self.tolerance, distribution) {
+            Ok(distribution) => Ok(Self { nominal, distribution, ..self.clone() }),
+            Err(fault) => Err(DimensionError { name: self.name.clone(), fault }),
+        })
+    }
+
     /// As one coordinate of a point that a zone of this name keeps: with all other coordinates of the zone, its deviations from
     /// the bands' middles lie within one circle, or a sphere, rather than each within its own band.
     ///

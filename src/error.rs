@@ -1,5 +1,6 @@
 //! Every error of the library in one type, for who passes them on.
 
+use crate::allocation::{AllocateError, CostError, RequirementError};
 use crate::assembly::CompositeError;
 use crate::assembly::formula::FormulaError;
 use crate::characteristic::LimitsError;
@@ -10,7 +11,7 @@ use crate::method::MethodError;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
 use crate::simulation::SimulationError;
-use crate::study::StudyError;
+use crate::study::{RewriteError, StudyError};
 
 /// Any error of the library.
 #[derive(Debug, thiserror::Error)]
@@ -46,6 +47,18 @@ pub enum Error {
     /// The problem cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A cost is impossible.
+    #[error(transparent)]
+    Cost(#[from] CostError),
+    /// A requirement is impossible.
+    #[error(transparent)]
+    Requirement(#[from] RequirementError),
+    /// Tolerances cannot be allocated.
+    #[error(transparent)]
+    Allocate(#[from] AllocateError),
+    /// A study cannot be written anew.
+    #[error(transparent)]
+    Rewrite(#[from] RewriteError),
     /// A method does not fit the problem.
     #[error(transparent)]
     Method(#[from] MethodError),

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+pub mod allocation;
 pub mod analysis;
 pub mod assembly;
 pub mod capability;
@@ -31,6 +32,7 @@ pub mod sampling;
 pub mod simulation;
 pub mod study;
 pub mod surrogate;
+pub mod sweep;
 pub mod warning;
 
 pub use analysis::{Analysis, CharacteristicAnalysis, analyze, analyze_within};

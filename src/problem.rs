@@ -148,6 +148,37 @@ impl Problem {
         self.checked()
     }
 
+    /// With another dimension of the same name and kind in one place, and another function of the same signature.
+    pub(crate) fn replacing(&self, place: usize, dimension: Dimension, function: Arc<dyn AssemblyFunction>) -> Self {
+        let mut problem = Self { function, ..self.clone() };
+        // Correlation is of standardised variables: it does not see where a dimension is.
+        problem.dimensions[place] = dimension;
+        problem
+    }
+
+    /// With other dimensions of the same names: other tolerances, other nominal values; what is correlated stays so.
+    ///
+    /// # Errors
+    /// When these dimensions cannot be correlated so.
+    ///
+    /// # Panics
+    /// When the names are others.
+    pub fn with_dimensions(mut self, dimensions: Vec<Dimension>) -> Result<Self, CorrelationError> {
+        let names = |dimensions: &[Dimension]| dimensions.iter().map(|one| one.name().to_owned()).collect::<Vec<_>>();
+        assert_eq!(names(&dimensions), names(&self.dimensions), "other dimensions");
+        let pairs: Vec<Pair> = self.correlation.as_ref().map_or(Vec::new(), |correlation| {
+            let members = correlation.members();
+            let all = members.iter().enumerate().flat_map(|(i, &a)| members[i + 1..].iter().map(move |&b| (a, b)));
+            let pair = |(a, b): (usize, usize)| Pair {
+                between: [a, b].map(|d| dimensions[d].name().to_owned()),
+                value: correlation.of(a, b),
+            };
+            all.map(pair).filter(|pair| pair.value != 0.0).collect()
+        });
+        self.dimensions = dimensions;
+        self.correlated(&pairs)
+    }
+
     fn checked(self) -> Result<Self, ProblemError> {
         if self.characteristics.is_empty() {
             return Err(ProblemError::NoCharacteristic);

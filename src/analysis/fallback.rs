@@ -3,6 +3,7 @@
 use super::CharacteristicAnalysis;
 use super::errors::{excess, of_yield};
 use crate::assembly::Run;
+use crate::assembly::process::Doubt;
 use crate::capability::{Capability, Law};
 use crate::method::{Climbed, ErrorEstimate, Options, Outcome, Source};
 use crate::moments::Moments;
@@ -48,6 +49,7 @@ pub(super) struct Spent {
     pub(super) stages: usize,
     pub(super) stopped: bool,
     pub(super) in_model: std::time::Duration,
+    pub(super) doubts: Vec<Doubt>,
 }
 
 /// Replaces moments that are not known as well as they were wanted, where that can be paid: `left` is what the budget, where
@@ -181,5 +183,6 @@ impl Spent {
         self.stages += 1;
         self.stopped |= found.stopped;
         self.in_model += found.in_model;
+        self.doubts.extend(found.doubts.iter().cloned());
     }
 }

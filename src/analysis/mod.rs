@@ -17,6 +17,7 @@ pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
 pub use fallback::SampledModel;
 pub use surface::{Fit, NoFit, Surface};
+pub(crate) use warnings::history;
 
 use std::time::Duration;
 
@@ -85,6 +86,15 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
+    analyze_keeping(problem, options, run).map(|(analysis, _)| analysis)
+}
+
+/// [`analyze_within`], with what the method found out, for who goes on from there.
+pub(crate) fn analyze_keeping(
+    problem: &Problem,
+    options: &Options,
+    run: &Run<'_>,
+) -> Result<(Analysis, Outcome), MethodError> {
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
     let found = if options.extremes { search(problem, &outcome, left, run) } else { Found::default() };
@@ -92,6 +102,7 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.evaluations));
     let fallback = fallback::fall_back(problem, &outcome, left, &mut characteristics, run);
+    outcome.evaluated.doubts.extend(fallback.doubts);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
@@ -100,7 +111,7 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
     let account = account::account(problem, &outcome, &characteristics, spent);
     let seed = options.seed.unwrap_or(Options::SEED);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
-    Ok(Analysis {
+    let analysis = Analysis {
         method: outcome.method,
         varying: outcome.plan.varying().len(),
         evaluations: outcome.evaluated.evaluations + fallback.evaluations + found.spent.evaluations,
@@ -115,7 +126,8 @@ pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Re
         surface: Surface::of(&outcome, &characteristics),
         characteristics,
         warnings,
-    })
+    };
+    Ok((analysis, outcome))
 }
 
 /// Runs the method, `auto` until the errors of other results than sigma are what is wanted too.

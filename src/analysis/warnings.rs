@@ -1,6 +1,7 @@
 //! Where the results of an analysis rest on something that does not hold.
 
 use super::{CharacteristicAnalysis, trust};
+use crate::assembly::process::Doubt;
 use crate::capability::Law;
 use crate::method::{Basis, Lacking, Order, Outcome};
 use crate::plan::Point;
@@ -46,7 +47,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
     warnings.extend(not_resampled(problem, outcome));
-    warnings.extend(history(problem, outcome));
+    warnings.extend(history(problem, &outcome.evaluated.doubts));
     warnings.extend(problem.function().warnings(problem.outputs()));
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
@@ -84,8 +85,7 @@ fn not_resampled<'a>(problem: &'a Problem, outcome: &'a Outcome) -> impl Iterato
 }
 
 /// External models that do not answer as they did: one warning for each output.
-fn history(problem: &Problem, outcome: &Outcome) -> Vec<Warning> {
-    let doubts = &outcome.evaluated.doubts;
+pub(crate) fn history(problem: &Problem, doubts: &[Doubt]) -> Vec<Warning> {
     let first = |index: &usize| !doubts[..*index].iter().any(|earlier| earlier.output == doubts[*index].output);
     let warning = |index: usize| {
         let doubt = &doubts[index];

@@ -38,6 +38,17 @@ pub(super) enum Command {
     /// The trade of speed for accuracy: every method that fits, against a reference
     #[command(after_help = "Example: sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
     Compare(CompareArgs),
+    /// Mean and quantile band of every characteristic along a parameter
+    #[command(
+        after_help = "Example: sensitol sweep examples/connecting-rod/crank-angle.toml --over theta=-180:180:73 --svg band.svg"
+    )]
+    Sweep(SweepArgs),
+    /// The cheapest tolerances with which every characteristic keeps what is required
+    ///
+    /// What tolerances cost stands in [costs], what is required at each characteristic: a target_yield or a require. Method auto
+    /// stands for full, and above twenty dimensions for six-n.
+    #[command(after_help = "Example: sensitol allocate examples/shaft-and-housing/study.toml --write cheaper.toml")]
+    Allocate(AllocateArgs),
     /// What would be evaluated, how often, and why; evaluates nothing
     #[command(after_help = "Example: sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
     Plan(PlanArgs),
@@ -276,6 +287,107 @@ pub(super) struct CompareArgs {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct SweepArgs {
+    #[command(flatten)]
+    pub(super) study: StudyArgs,
+
+    /// The parameter and its values, both ends included: a dimension, whose tolerance is kept, a constant, or an input of the built-in model
+    #[arg(long, value_name = "NAME=FROM:TO:STEPS", value_parser = over)]
+    pub(super) over: Over,
+
+    /// Stop after S seconds and report what is known
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(super) time: Option<f64>,
+
+    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
+    #[arg(long, value_name = "FILE")]
+    pub(super) journal: Option<PathBuf>,
+
+    /// Seed of random numbers, for the methods that draw some; kept in the report
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+
+    /// Threads that evaluate formulas and built-in models [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) threads: Option<u16>,
+
+    /// Write the report as one HTML page
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    pub(super) html: Option<PathBuf>,
+
+    /// Write the table as sweep.csv into DIR, which is made where it is missing
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    pub(super) csv: Option<PathBuf>,
+
+    /// Draw mean and band over the parameter
+    #[arg(long, value_name = "FILE.svg", help_heading = OUTPUT)]
+    pub(super) svg: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+/// A parameter and its values.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Over {
+    pub(super) name: String,
+    pub(super) values: Vec<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AllocateArgs {
+    #[command(flatten)]
+    pub(super) study: StudyArgs,
+
+    /// Move the nominal values of these dimensions too, to where the fewest are rejected; alone where there are no costs
+    #[arg(long, value_name = "DIM,..", value_delimiter = ',')]
+    pub(super) recentre: Vec<String>,
+
+    /// The front of cost against yield (or Cpk), in N points
+    #[arg(long, value_name = "N")]
+    pub(super) front: Option<usize>,
+
+    /// Confirm the tolerances found by Monte Carlo: N points of the model
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
+    pub(super) confirm: Option<u64>,
+
+    /// Stop after S seconds and report what is known
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(super) time: Option<f64>,
+
+    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
+    #[arg(long, value_name = "FILE")]
+    pub(super) journal: Option<PathBuf>,
+
+    /// Seed of what is drawn [default: that of the study, or 1]
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+
+    /// Threads that evaluate formulas and built-in models [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(super) threads: Option<u16>,
+
+    /// Write the study with the tolerances found, otherwise as it is
+    #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
+    pub(super) write: Option<PathBuf>,
+
+    /// Write the report as one HTML page
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    pub(super) html: Option<PathBuf>,
+
+    /// Write tolerances, requirements and front as CSV files into DIR, which is made where it is missing
+    #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
+    pub(super) csv: Option<PathBuf>,
+
+    /// Draw the front
+    #[arg(long, value_name = "FILE.svg", help_heading = OUTPUT)]
+    pub(super) svg: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct PlanArgs {
     #[command(flatten)]
     pub(super) study: StudyArgs,
@@ -430,6 +542,35 @@ fn number(text: &str, holds: fn(f64) -> bool, must: &str) -> Result<f64, String>
         Ok(_) => Err(must.to_owned()),
         Err(_) => Err("it is no number".to_owned()),
     }
+}
+
+/// Values of a sweep at most: more is a slip of the pen.
+const MOST_STEPS: usize = 10_000;
+
+fn over(text: &str) -> Result<Over, String> {
+    // A name may hold anything; numbers hold no `=`.
+    let form = || "it is NAME=FROM:TO:STEPS, such as theta=-180:180:73".to_owned();
+    let (name, range) = text.rsplit_once('=').ok_or_else(form)?;
+    let parts: Vec<&str> = range.split(':').collect();
+    let (&[from, to, steps], false) = (&parts[..], name.is_empty()) else { return Err(form()) };
+    let end = |what: &str, text: &str| finite(text).map_err(|why| format!("{what} `{text}`: {why}"));
+    let (from, to) = (end("FROM", from)?, end("TO", to)?);
+    let steps: usize =
+        steps.trim().parse().map_err(|_| format!("STEPS `{steps}`: it is the number of values, a whole number"))?;
+    if !(2..=MOST_STEPS).contains(&steps) {
+        return Err(format!("STEPS is the number of values, from 2 to {MOST_STEPS}, not {steps}"));
+    }
+    if from == to {
+        return Err("FROM and TO are the same value; `analyze` looks at one".to_owned());
+    }
+    let last = (steps - 1) as f64;
+    // Both ends to the last bit, and middles that are as round as their ends.
+    let value = |step: usize| (from * (last - step as f64) + to * step as f64) / last;
+    let values: Vec<f64> = (0..steps).map(value).collect();
+    if values.iter().any(|value| !value.is_finite()) || values.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Err("FROM and TO are too large, or too near to each other, for so many values".to_owned());
+    }
+    Ok(Over { name: name.to_owned(), values })
 }
 
 /// The registered methods as values of an option.

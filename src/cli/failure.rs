@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
+use crate::allocation::AllocateError;
 use crate::compare::CompareError;
 use crate::journal::JournalError;
 use crate::method::MethodError;
@@ -12,7 +13,8 @@ use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
 use crate::rare::RareError;
 use crate::simulation::SimulationError;
-use crate::study::StudyError;
+use crate::study::{RewriteError, StudyError};
+use crate::sweep::SweepError;
 
 /// The exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,6 +27,8 @@ pub(super) enum Exit {
     Usage = 2,
     /// The model gave some asked characteristic no result.
     NoResult = 3,
+    /// No tolerances keep what is required, or they were not found in time.
+    NotAllocated = 4,
     /// Ctrl-C.
     Interrupted = 130,
 }
@@ -51,6 +55,12 @@ pub(super) enum Failure {
     #[error(transparent)]
     Compare(#[from] CompareError),
     #[error(transparent)]
+    Sweep(#[from] SweepError),
+    #[error(transparent)]
+    Allocate(#[from] AllocateError),
+    #[error(transparent)]
+    Rewrite(#[from] RewriteError),
+    #[error(transparent)]
     Pearson(#[from] PearsonError),
     #[error(transparent)]
     Journal(#[from] JournalError),
@@ -68,6 +78,8 @@ pub(super) enum Failure {
     UnknownModel { name: String, help: String },
     #[error("{path} cannot be written: {error}", path = path.display())]
     Unwritable { path: PathBuf, error: std::io::Error },
+    #[error("--write {path} is the study itself, which would be lost: name a new file", path = path.display())]
+    OntoItself { path: PathBuf },
     #[error("{path} is a file, and --csv needs a folder", path = path.display())]
     NoFolder { path: PathBuf },
     #[error("cannot write to standard output: {0}")]

@@ -2,6 +2,7 @@
 //!
 //! Results go to stdout; progress, warnings and errors to stderr. A closed pipe is no error.
 
+mod allocate;
 mod analyze;
 mod args;
 mod check;
@@ -23,6 +24,7 @@ mod running;
 mod schema;
 mod simulate;
 mod study;
+mod sweep;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -48,6 +50,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Analyze(asked) => analyze::run(asked, style),
         Command::Simulate(asked) => simulate::run(asked, style),
         Command::Compare(asked) => compare::run(asked, style),
+        Command::Sweep(asked) => sweep::run(asked, style),
+        Command::Allocate(asked) => allocate::run(asked, style),
         Command::Plan(asked) => plan::run(asked, style),
         Command::Check(asked) => check::run(asked, style),
         Command::Models(asked) => models::run(asked, style),

@@ -57,18 +57,21 @@ fn unknown(name: &str) -> Failure {
 }
 
 fn list() -> String {
-    ALL.iter().map(|model| format!("{:<20}  {}\n", model.name, model.title)).collect()
+    let widest = ALL.iter().map(|model| model.name.len()).max().unwrap_or(0);
+    ALL.iter().map(|model| format!("{:<widest$}  {}\n", model.name, model.title)).collect()
 }
 
 fn one(model: &Model) -> String {
-    let inputs = model
-        .inputs
-        .iter()
-        .map(|input| format!("  {:<8} {:>14}  {:<6}  {}\n", input.name, plain(input.nominal), input.unit, input.about));
-    let outputs = model
-        .outputs
-        .iter()
-        .map(|output| format!("  {:<8} {:>14}  {:<6}  {}\n", output.name, "", output.unit, output.about));
+    let names = model.inputs.iter().map(|input| (input.name, input.unit));
+    let names = names.chain(model.outputs.iter().map(|output| (output.name, output.unit)));
+    // No narrower than most models want, so that two of them look alike.
+    let widest = names.fold([8, 6], |[name, unit], of| [name.max(of.0.len()), unit.max(of.1.len())]);
+    let row = |name: &str, nominal: &str, unit: &str, about: &str| {
+        let [wide, of_unit] = widest;
+        format!("  {name:<wide$} {nominal:>14}  {unit:<of_unit$}  {about}\n")
+    };
+    let inputs = model.inputs.iter().map(|input| row(input.name, &plain(input.nominal), input.unit, input.about));
+    let outputs = model.outputs.iter().map(|output| row(output.name, "", output.unit, output.about));
     format!(
         "{}: {}\n{}\n\ninputs, with the nominal value where a study gives none\n{}\noutputs\n{}",
         model.name,

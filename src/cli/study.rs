@@ -1,7 +1,5 @@
 //! A study as the command line changes it.
 
-use std::path::Path;
-
 use super::args::{DerivativesArg, SampledArgs, SensitivitiesArg, StencilArg, StudyArgs};
 use super::failure::Failure;
 use super::output::Look;
@@ -13,12 +11,12 @@ use crate::study::{Externals, Study};
 
 /// Reads the study of which points are drawn.
 pub(super) fn read_sampled(asked: &SampledArgs, look: Look) -> Result<Study, Failure> {
-    asking(&asked.study, &asked.characteristics, externals(asked.journal.as_deref(), look, None))
+    let externals = externals(asked.journal.as_deref(), look, None);
+    asking(Study::read_with(&asked.study, externals)?, &asked.characteristics)
 }
 
-/// Reads the study, asking for these characteristics only, where any is named.
-fn asking(path: &Path, characteristics: &[String], externals: Externals) -> Result<Study, Failure> {
-    let mut study = Study::read_with(path, externals)?;
+/// The study, asking for these characteristics only, where any is named.
+fn asking(mut study: Study, characteristics: &[String]) -> Result<Study, Failure> {
     if !characteristics.is_empty() {
         study.problem = study.problem.only(characteristics)?;
     }
@@ -27,7 +25,16 @@ fn asking(path: &Path, characteristics: &[String], externals: Externals) -> Resu
 
 /// Reads the study; what the command line says wins over its `[analysis]`.
 pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Failure> {
-    let mut study = asking(&asked.study, &asked.characteristics, externals)?;
+    changed(Study::read_with(&asked.study, externals)?, asked)
+}
+
+/// The same for a sweep over this parameter.
+pub(super) fn read_sweeping(asked: &StudyArgs, externals: Externals, parameter: &str) -> Result<Study, Failure> {
+    changed(Study::read_sweeping(&asked.study, externals, parameter)?, asked)
+}
+
+fn changed(study: Study, asked: &StudyArgs) -> Result<Study, Failure> {
+    let mut study = asking(study, &asked.characteristics)?;
     let options = &mut study.options;
     if let Some(method) = asked.method {
         options.method = method.0;

@@ -4,14 +4,30 @@
 //! One new file with a `pub static` [`Model`], one line in [`ALL`], a test in `tests/suite/published.rs` with reference values
 //! from an independent source, and a study in `examples/`.
 
+mod compression_clearance;
+mod connecting_rod;
+mod dual_mass_flywheel;
 mod engine_balance;
+mod gas;
+mod inline_engine;
+mod jet;
+mod quick_return;
+mod spot_weld;
 
 use std::ops::Range;
 
 use crate::assembly::{Ask, AssemblyFunction, Input, Output, Points, Responses, Run, Signature, in_blocks};
 
 /// Every built-in model, in the order in which they are listed.
-pub static ALL: &[&Model] = &[&engine_balance::ENGINE_BALANCE];
+pub static ALL: &[&Model] = &[
+    &engine_balance::ENGINE_BALANCE,
+    &inline_engine::INLINE_ENGINE,
+    &connecting_rod::CONNECTING_ROD,
+    &dual_mass_flywheel::DUAL_MASS_FLYWHEEL,
+    &compression_clearance::COMPRESSION_CLEARANCE,
+    &quick_return::QUICK_RETURN,
+    &spot_weld::SPOT_WELD,
+];
 
 /// A closed-form model: named inputs with documented nominal values, named outputs.
 #[derive(Debug)]

@@ -24,6 +24,7 @@ mod target;
 
 use std::time::{Duration, Instant};
 
+use crate::assembly::process::Doubt;
 use crate::assembly::{EvaluationError, Run};
 use crate::characteristic::Characteristic;
 use crate::method::{Method, MethodError, Options};
@@ -78,6 +79,8 @@ pub struct RareEvents {
     pub reached: Option<bool>,
     /// Time within the model.
     pub in_model: Duration,
+    /// Where the model answered the nominal point otherwise than before.
+    pub doubts: Vec<Doubt>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<RareCharacteristic>,
 }
@@ -255,6 +258,7 @@ pub fn rare_within(
         stopped: surrogate.stopped || reached != Some(true) && model.answered < options.samples,
         reached,
         in_model: model.in_model + surrogate.in_model,
+        doubts: surrogate.doubts.iter().chain(&model.doubts).cloned().collect(),
         characteristics: search.characteristics(&model),
     })
 }

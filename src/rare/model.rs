@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::space::{Columns, Space};
+use crate::assembly::process::Doubt;
 use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
 use crate::problem::Problem;
 
@@ -23,6 +24,8 @@ pub(super) struct Model<'a> {
     /// For every characteristic how many points lost it, and why the first did.
     pub(super) lost: Vec<(u64, Option<EvaluationError>)>,
     pub(super) in_model: Duration,
+    /// Where it answered the nominal point otherwise than before.
+    pub(super) doubts: Vec<Doubt>,
 }
 
 /// What the model said.
@@ -47,7 +50,18 @@ impl<'a> Model<'a> {
     pub(super) fn new(problem: &'a Problem, space: &'a Space<'a>, run: &'a Run<'a>) -> Self {
         let lost = vec![(0, None); problem.characteristics().len()];
         let (answered, extra, reused, failed) = (0, 0, 0, 0);
-        Self { problem, space, run, answered, extra, reused, failed, lost, in_model: Duration::ZERO }
+        Self {
+            problem,
+            space,
+            run,
+            answered,
+            extra,
+            reused,
+            failed,
+            lost,
+            in_model: Duration::ZERO,
+            doubts: Vec::new(),
+        }
     }
 
     /// All dimensions at their means.
@@ -73,6 +87,7 @@ impl<'a> Model<'a> {
             self.problem.function().evaluate(&Ask::values(&points, outputs), self.run, &mut out);
             self.in_model += begun.elapsed();
             self.extra += out.extra();
+            self.doubts.extend(out.doubts().iter().cloned());
             self.reused += out.count_reused() as u64;
             (0..batch).for_each(|row| self.learn(&out, row, first + row, &mut answers));
             first += batch;

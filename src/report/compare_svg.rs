@@ -3,28 +3,12 @@
 use std::fmt::Write;
 
 use super::compare::{CompareReport, ComparedReport};
-
-const WIDTH: f64 = 720.0;
-/// Height of one characteristic's chart.
-const HEIGHT: f64 = 420.0;
-/// Left, right, above, below.
-const MARGIN: [f64; 4] = [80.0, 150.0, 48.0, 56.0];
+use super::svg::{ACCENT, HEIGHT, MARGIN, WIDTH, across, axes, charts, escaped, mark, up};
 
 /// One chart below the other, one for every characteristic. Open circles are methods whose error the reference does not
 /// resolve; the dashed line is what it resolves; the line joins the methods that no other beats.
 pub fn compare_svg(report: &CompareReport) -> String {
-    let height = HEIGHT * report.characteristics.len() as f64;
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
-         font-family=\"sans-serif\" font-size=\"12\" role=\"img\">\n<title>Evaluations against error</title>\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
-    );
-    for (index, one) in report.characteristics.iter().enumerate() {
-        let _ = writeln!(svg, "<g transform=\"translate(0 {})\">", HEIGHT * index as f64);
-        chart(&mut svg, one);
-        svg += "</g>\n";
-    }
-    svg + "</svg>\n"
+    charts("Evaluations against error", &report.characteristics, |one| one.name.clone(), chart)
 }
 
 /// A logarithmic scale over whole decades.
@@ -67,56 +51,21 @@ fn chart(svg: &mut String, one: &ComparedReport) {
         .collect();
     let x = Decades::over(shown.iter().map(|point| point.1), [left, WIDTH - right]);
     let y = Decades::over(shown.iter().map(|point| point.2).chain([floor]), [HEIGHT - below, above]);
-    let name = escaped(&one.name);
-    let _ = writeln!(svg, "<text x=\"{left}\" y=\"24\" font-size=\"15\" font-weight=\"bold\">{name}</text>");
-    for decade in x.from..=x.to {
-        let at = x.at(10f64.powi(decade));
-        let _ = writeln!(svg, "<path d=\"M{at:.1} {above}V{}\" stroke=\"#ddd\"/>", HEIGHT - below);
-        let _ = writeln!(
-            svg,
-            "<text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-            HEIGHT - below + 18.0,
-            power(decade)
-        );
-    }
-    for decade in y.from..=y.to {
-        let at = y.at(10f64.powi(decade));
-        let _ = writeln!(svg, "<path d=\"M{left} {at:.1}H{}\" stroke=\"#ddd\"/>", WIDTH - right);
-        let _ = writeln!(
-            svg,
-            "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-            left - 8.0,
-            at + 4.0,
-            power(decade)
-        );
-    }
-    let middle = 0.5 * (left + WIDTH - right);
-    let _ = writeln!(svg, "<text x=\"{middle}\" y=\"{}\" text-anchor=\"middle\">evaluations</text>", HEIGHT - 12.0);
-    let centre = 0.5 * (above + HEIGHT - below);
-    let _ = writeln!(
-        svg,
-        "<text x=\"18\" y=\"{centre}\" text-anchor=\"middle\" transform=\"rotate(-90 18 {centre})\">error of mean and sigma, in sigmas</text>"
-    );
+    (x.from..=x.to).for_each(|decade| across(svg, x.at(10f64.powi(decade)), &power(decade)));
+    (y.from..=y.to).for_each(|decade| up(svg, y.at(10f64.powi(decade)), &power(decade)));
+    axes(svg, "evaluations", "error of mean and sigma, in sigmas");
     if floor > 0.0 {
-        let at = y.at(floor);
-        let _ =
-            writeln!(svg, "<path d=\"M{left} {at:.1}H{}\" stroke=\"#888\" stroke-dasharray=\"4 4\"/>", WIDTH - right);
-        let _ = writeln!(
-            svg,
-            "<text x=\"{}\" y=\"{:.1}\" fill=\"#555\">reference resolves</text>",
-            WIDTH - right + 6.0,
-            at + 4.0
-        );
+        mark(svg, y.at(floor), "reference resolves");
     }
     let front: Vec<String> = (shown.iter().filter(|point| point.4))
         .map(|point| format!("{:.1} {:.1}", x.at(point.1), y.at(point.2)))
         .collect();
     if front.len() > 1 {
-        let _ = writeln!(svg, "<path d=\"M{}\" fill=\"none\" stroke=\"#1f6feb\"/>", front.join("L"));
+        let _ = writeln!(svg, "<path d=\"M{}\" fill=\"none\" stroke=\"{ACCENT}\"/>", front.join("L"));
     }
     for (method, evaluations, error, resolved, pareto) in shown {
         let (at, height) = (x.at(evaluations), y.at(error));
-        let colour = if pareto { "#1f6feb" } else { "#666" };
+        let colour = if pareto { ACCENT } else { "#666" };
         let fill = if resolved { colour } else { "#fff" };
         let _ =
             writeln!(svg, "<circle cx=\"{at:.1}\" cy=\"{height:.1}\" r=\"4\" fill=\"{fill}\" stroke=\"{colour}\"/>");
@@ -136,9 +85,4 @@ fn power(decade: i32) -> String {
         0..=3 => 10u32.pow(decade as u32).to_string(),
         _ => format!("10<tspan baseline-shift=\"super\" font-size=\"9\">{decade}</tspan>"),
     }
-}
-
-/// Names come from studies: nothing in them is markup.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

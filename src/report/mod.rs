@@ -1,5 +1,9 @@
 //! Reports: a versioned value with serde, and its text for people.
 
+mod allocation;
+mod allocation_csv;
+mod allocation_svg;
+mod allocation_text;
 mod compare;
 mod compare_csv;
 mod compare_svg;
@@ -23,9 +27,22 @@ mod simulation_csv;
 mod simulation_text;
 mod sketch;
 mod stack;
+mod svg;
+mod sweep;
+mod sweep_csv;
+mod sweep_svg;
+mod sweep_text;
 mod table;
 mod text;
 
+pub use allocation::{
+    AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, BeforeAfter, ConfirmationReport,
+    ContributionReport, FrontReport, FrontRequirement, JointReport, KeptReport, PriceReport, ProofReport,
+    RecentredReport, WrittenAnew,
+};
+pub use allocation_csv::{allocation_csv, allocation_csv_names};
+pub use allocation_svg::allocation_svg;
+pub use allocation_text::allocation_text;
 pub use compare::{CompareReport, ComparedReport, ErrorReport, FiguresReport, MethodReport, NotRunReport};
 pub use compare_csv::compare_csv;
 pub use compare_svg::compare_svg;
@@ -44,6 +61,10 @@ pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, Simulati
 pub use simulation_csv::simulation_csv;
 pub use simulation_text::simulation_text;
 pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_markdown, stack_text};
+pub use sweep::{ParameterReport, SweepReport, SweptPointReport, SweptReport};
+pub use sweep_csv::sweep_csv;
+pub use sweep_svg::sweep_svg;
+pub use sweep_text::sweep_text;
 pub use text::text;
 
 use serde::Serialize;

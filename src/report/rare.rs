@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::{About, CorrelationReport, DimensionReport, Head, WarningReport, correlation};
+use crate::analysis::history;
 use crate::problem::Problem;
 use crate::rare::{Beyond, RareCharacteristic, RareEvents};
 use crate::warning::Warning;
@@ -113,7 +114,9 @@ pub struct DesignPointReport {
 impl RareReport {
     /// The report of rare events.
     pub fn of(problem: &Problem, found: &RareEvents, about: About) -> Self {
-        let warnings: Vec<Warning> = found.characteristics.iter().flat_map(|one| warnings(one, found)).collect();
+        let doubts = history(problem, &found.doubts);
+        let warnings: Vec<Warning> =
+            found.characteristics.iter().flat_map(|one| warnings(one, found)).chain(doubts).collect();
         Self {
             head: Head::of("simulate", &about),
             method: "importance-sampling",

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::distribution::{NAMES, OptionalQuantiles};
 use super::{About, CorrelationReport, DimensionReport, Head, WarningReport, correlation};
+use crate::analysis::history;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation};
@@ -159,7 +160,8 @@ impl SimulationReport {
     /// The report of a simulation.
     pub fn of(problem: &Problem, simulation: &Simulation, about: About) -> Self {
         let (method, sampler) = names(simulation.sampler);
-        let found: Vec<Warning> = simulation.characteristics.iter().filter_map(failed).collect();
+        let failures = simulation.characteristics.iter().filter_map(failed);
+        let found: Vec<Warning> = failures.chain(history(problem, &simulation.doubts)).collect();
         Self {
             head: Head::of("simulate", &about),
             method,

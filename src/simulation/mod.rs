@@ -12,12 +12,13 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
+use crate::assembly::process::Doubt;
 use crate::assembly::{Ask, EvaluationError, Responses, Run};
 use crate::method::{MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
 use control::Control;
-pub(crate) use surrogates::Surrogates;
+pub(crate) use surrogates::{Surrogates, chosen};
 use tally::{Block, Lens, Tally};
 
 /// How a problem is simulated.
@@ -87,6 +88,8 @@ pub struct Simulation {
     pub reached: Option<bool>,
     /// Time within the model, of all threads together.
     pub in_model: Duration,
+    /// Where the model answered the nominal point otherwise than before.
+    pub doubts: Vec<Doubt>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<SimulatedCharacteristic>,
 }

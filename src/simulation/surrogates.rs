@@ -84,7 +84,7 @@ impl Surrogates {
 }
 
 /// `auto` stands for every interaction of few dimensions, and the strongest of many.
-fn chosen(problem: &Problem, asked: &Options) -> Options {
+pub(crate) fn chosen(problem: &Problem, asked: &Options) -> Options {
     if asked.method != Method::Auto {
         return asked.clone();
     }

@@ -7,6 +7,7 @@ use super::characteristic::{Evidence, SimulatedCharacteristic};
 use super::control::{Control, Twin};
 use super::difference::Difference;
 use super::{REPLICATES, Simulation, SimulationOptions};
+use crate::assembly::process::Doubt;
 use crate::assembly::{EvaluationError, Responses};
 use crate::characteristic::SpecLimits;
 use crate::problem::Problem;
@@ -28,6 +29,7 @@ pub(super) struct Block {
     reused: u64,
     failed: u64,
     complete: bool,
+    doubts: Vec<Doubt>,
     took: Duration,
 }
 
@@ -67,6 +69,7 @@ impl Block {
             reused: out.count_reused() as u64,
             failed: lost.len() as u64,
             complete: answered == out.rows(),
+            doubts: out.doubts().to_vec(),
             took,
         }
     }
@@ -136,6 +139,7 @@ pub(super) struct Tally<'a> {
     reused: u64,
     failed: u64,
     in_model: Duration,
+    doubts: Vec<Doubt>,
     pub(super) stopped: bool,
 }
 
@@ -159,6 +163,7 @@ impl<'a> Tally<'a> {
             reused: 0,
             failed: 0,
             in_model: Duration::ZERO,
+            doubts: Vec::new(),
             stopped: false,
         }
     }
@@ -183,6 +188,7 @@ impl<'a> Tally<'a> {
             self.failed += block.failed;
             self.in_model += block.took;
             self.stopped |= !block.complete;
+            self.doubts.extend(block.doubts);
             for ((count, lens), column) in self.counts.iter_mut().zip(&self.lenses).zip(block.columns) {
                 count.failed += column.failed;
                 count.error = count.error.take().or(column.error);
@@ -263,6 +269,7 @@ impl<'a> Tally<'a> {
             stopped,
             reached,
             in_model: self.in_model + surrogate.map_or(Duration::ZERO, |evaluated| evaluated.in_model),
+            doubts: surrogate.iter().flat_map(|evaluated| &evaluated.doubts).cloned().chain(self.doubts).collect(),
             characteristics,
         }
     }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::correlation::correlated;
+use super::costs::{costs, requirement};
 use super::data::Data;
 use super::dimension;
 use super::error::{Fault, StudyFault, fault};
@@ -13,6 +14,7 @@ use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
 use super::source::Source;
 use super::spanned::Spanned;
+use crate::allocation::{Priced, Requirement};
 use crate::assembly::formula::{Formula, FormulaError, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
@@ -28,6 +30,8 @@ use crate::warning::Warning;
 pub(super) struct Built {
     pub(super) problem: Problem,
     pub(super) options: Options,
+    pub(super) costs: Vec<Priced>,
+    pub(super) requirements: Vec<(String, Requirement)>,
     pub(super) warnings: Vec<Warning>,
     /// The files that it read beside the study.
     pub(super) data: Vec<Arc<[u8]>>,
@@ -59,7 +63,20 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
     let problem = correlated(problem, &file.correlation.0)?;
     let options = super::options::options(&file.analysis, &problem)?;
-    Ok(Built { problem, options, warnings, data: data.bytes() })
+    let costs = costs(file, &problem)?;
+    let requirements = requirements(file, &problem)?;
+    Ok(Built { problem, options, costs, requirements, warnings, data: data.bytes() })
+}
+
+/// What each characteristic must keep.
+fn requirements(file: &StudyFile, problem: &Problem) -> Result<Vec<(String, Requirement)>, Fault> {
+    let mut requirements = Vec::new();
+    for (characteristic, (name, entry)) in problem.characteristics().iter().zip(&file.characteristics.0) {
+        let key = format!("characteristics.{}", name.get_ref());
+        let required = requirement(characteristic, entry.get_ref(), &key)?;
+        requirements.extend(required.map(|requirement| (name.get_ref().clone(), requirement)));
+    }
+    Ok(requirements)
 }
 
 /// Every name means one thing.

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::data::DataFault;
+use crate::allocation::{CostError, RequirementError};
 use crate::assembly::formula::FormulaFault;
 use crate::assembly::implicit::ConditionsError;
 use crate::characteristic::LimitsError;
@@ -251,6 +252,26 @@ pub enum StudyFault {
     /// A file of measured values cannot be used.
     #[error(transparent)]
     Data(#[from] DataFault),
+    /// A dimension that would share its own tolerance.
+    #[error("`{name}` is the dimension itself")]
+    SameAsItself {
+        /// The dimension.
+        name: String,
+    },
+    /// A dimension that would share the tolerance of one that shares another's.
+    #[error("`{name}` has no cost of its own: it is the same as `{end}`")]
+    SameAsChain {
+        /// The dimension named.
+        name: String,
+        /// The one that it is the same as.
+        end: String,
+    },
+    /// A cost is impossible.
+    #[error(transparent)]
+    Cost(#[from] CostError),
+    /// A requirement is impossible.
+    #[error(transparent)]
+    Requirement(#[from] RequirementError),
     /// Dimensions, model and characteristics do not fit together.
     #[error(transparent)]
     Problem(#[from] ProblemError),
@@ -290,7 +311,23 @@ impl StudyFault {
                 DistributionError::InfiniteMoment { .. } | DistributionError::Pearson(_),
             )) => Some("leave model out: the values themselves have all moments".into()),
             Self::Data(fault) => fault.problem.help(),
-            Self::Limits(LimitsError::Swapped { .. }) => Some("exchange them".into()),
+            Self::Limits(LimitsError::Swapped { .. }) | Self::Cost(CostError::Swapped { .. }) => {
+                Some("exchange them".into())
+            }
+            Self::SameAsItself { .. } => Some("name another dimension, or write a model or processes".into()),
+            Self::SameAsChain { end, .. } => {
+                Some(format!("write same_as = \"{end}\" where that has a cost, or give one of them a cost"))
+            }
+            Self::Cost(CostError::NoProcess) => {
+                Some("write some, such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }".into())
+            }
+            Self::Cost(CostError::Rising { .. }) => {
+                Some("leave out the dearer process that holds less, or correct its cost".into())
+            }
+            Self::Requirement(RequirementError::NoLimits { .. }) => Some("write lower, upper or both".into()),
+            Self::Requirement(RequirementError::ImpossibleYield { value }) if *value >= 1.0 => {
+                Some("only a worst case promises that: require = \"worst-case\"".into())
+            }
             Self::Conditions(ConditionsError::Unbalanced { .. }) => Some(
                 "as many equations as unknowns are needed; a loop counts for two, one along x and one along y".into(),
             ),

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use super::costs::{CostEntry, RequireEntry};
 #[cfg(feature = "cli")]
 use super::schema;
 use super::spanned::Spanned;
@@ -43,6 +44,9 @@ pub(super) struct StudyFile {
     /// The key characteristics: what is asked.
     #[serde(default)]
     pub(super) characteristics: Entries<CharacteristicEntry>,
+    /// What the tolerances of dimensions cost, for `sensitol allocate`; dimensions without a cost keep theirs.
+    #[serde(default)]
+    pub(super) costs: Entries<CostEntry>,
     /// Pairs of dimensions that vary together.
     #[serde(default)]
     pub(super) correlation: Correlations,
@@ -206,6 +210,8 @@ pub(super) struct CharacteristicEntry {
     pub(super) upper: Option<Spanned<f64>>,
     /// The share of assemblies that must keep the limits, between 0 and 1.
     pub(super) target_yield: Option<Spanned<f64>>,
+    /// What it must keep when tolerances are allocated; its target yield unless said otherwise.
+    pub(super) require: Option<Spanned<RequireEntry>>,
 }
 
 /// Every `[[correlation]]`, in the order of the file.

@@ -38,6 +38,7 @@
 
 mod build;
 mod correlation;
+mod costs;
 mod data;
 mod de;
 mod dimension;
@@ -48,16 +49,19 @@ mod implicit;
 mod lines;
 mod model;
 mod options;
+mod rewrite;
 #[cfg(feature = "cli")]
 mod schema;
 mod source;
 mod spanned;
+mod sweep;
 mod tree;
 mod values;
 
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};
+pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "cli")]
 pub use schema::schema;
 pub use source::Format;
@@ -68,6 +72,8 @@ use std::sync::Arc;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
+use crate::allocation::{AllocationTask, Priced, Requirement};
+use crate::characteristic::Characteristic;
 use crate::method::Options;
 use crate::problem::Problem;
 use crate::warning::Warning;
@@ -88,14 +94,34 @@ pub struct Study {
     pub seed: Option<u64>,
     /// The section `[dimensions]`: for every entry its keys, with their values as TOML.
     pub lines: Vec<(String, Vec<(String, String)>)>,
+    /// What tolerances cost, by groups that share one.
+    pub costs: Vec<Priced>,
+    /// What characteristics must keep, by name.
+    pub requirements: Vec<(String, Requirement)>,
     /// What is legal but most likely not meant.
     pub warnings: Vec<Warning>,
     /// SHA-256 of the file's bytes, followed by those of every file of measured values, each once, in the order of the
     /// dimensions; in hexadecimal. As `cat gap.toml pin.csv | sha256sum` prints it.
     pub sha256: String,
+    /// What it was read from.
+    text: Arc<str>,
+    format: Format,
+    name: String,
+    folder: PathBuf,
 }
 
 impl Study {
+    /// Costs and requirements of the characteristics that its problem asks for.
+    pub fn allocation_task(&self) -> AllocationTask {
+        let of = |one: &Characteristic| {
+            self.requirements.iter().find(|(name, _)| name == one.name()).map(|(_, requirement)| *requirement)
+        };
+        AllocationTask {
+            priced: self.costs.clone(),
+            requirements: self.problem.characteristics().iter().map(of).collect(),
+        }
+    }
+
     /// Reads a `.toml` or `.json` file.
     ///
     /// # Errors
@@ -109,6 +135,19 @@ impl Study {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn read_with(path: &Path, externals: Externals) -> Result<Self, StudyError> {
+        Self::read_as(path, externals, None)
+    }
+
+    /// [`read_with`](Self::read_with), for a [sweep](crate::sweep) over the parameter of this name: a constant, or an input of a
+    /// built-in model that the study leaves out, becomes a dimension without tolerance.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read), and when there is no such parameter.
+    pub fn read_sweeping(path: &Path, externals: Externals, parameter: &str) -> Result<Self, StudyError> {
+        Self::read_as(path, externals, Some(parameter))
+    }
+
+    fn read_as(path: &Path, externals: Externals, parameter: Option<&str>) -> Result<Self, StudyError> {
         let name = path.display().to_string();
         let failed = |text: &str, fault: StudyFault| StudyError {
             file: name.clone(),
@@ -133,7 +172,7 @@ impl Study {
         match std::str::from_utf8(&bytes) {
             Ok(text) => {
                 let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-                Self::parse(text, format, &name, folder.to_owned(), externals)
+                Self::parse(text, format, &name, folder.to_owned(), externals, parameter)
             }
             Err(error) => {
                 let offset = error.valid_up_to();
@@ -159,12 +198,12 @@ impl Study {
     /// # Ok::<(), sensitol::Error>(())
     /// ```
     pub fn from_toml(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Toml, name, PathBuf::from("."), Externals::default())
+        Self::parse(text, Format::Toml, name, PathBuf::from("."), Externals::default(), None)
     }
 
     /// From JSON text; `name` stands for the file in errors.
     pub fn from_json(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Json, name, PathBuf::from("."), Externals::default())
+        Self::parse(text, Format::Json, name, PathBuf::from("."), Externals::default(), None)
     }
 
     fn parse(
@@ -173,6 +212,7 @@ impl Study {
         name: &str,
         folder: PathBuf,
         externals: Externals,
+        parameter: Option<&str>,
     ) -> Result<Self, StudyError> {
         let source = Source { name: name.to_owned(), text: Arc::from(text), folder, externals };
         let failed = |Fault { span, key, fault }| StudyError {
@@ -187,7 +227,10 @@ impl Study {
             Format::Json => Tree::of_json(text),
         };
         let tree = tree.map_err(failed)?;
-        let file = file::StudyFile::deserialize(&tree).map_err(|error| failed(error.into_fault()))?;
+        let mut file = file::StudyFile::deserialize(&tree).map_err(|error| failed(error.into_fault()))?;
+        if let Some(parameter) = parameter {
+            sweep::as_dimension(&mut file, parameter).map_err(failed)?;
+        }
         let built = build::build(&file, &source).map_err(failed)?;
         let mut hash = Sha256::new_with_prefix(text.as_bytes());
         built.data.iter().for_each(|bytes| hash.update(bytes));
@@ -197,7 +240,13 @@ impl Study {
             options: built.options,
             seed: file.analysis.seed.map(spanned::Spanned::into_inner),
             lines: lines::of(&tree),
+            costs: built.costs,
+            requirements: built.requirements,
             warnings: built.warnings,
+            format,
+            name: source.name,
+            folder: source.folder,
+            text: source.text,
             sha256: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
         })
     }

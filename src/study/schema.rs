@@ -9,11 +9,13 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
 
+use super::costs::{RequireEntry, RequireTable, WORDS};
 use super::dimension::{self, MODELS};
 use super::file::{
     CorrelationEntry, Correlations, DistributionEntry, Entries, PairsEntry, StudyFile, TermEntry, UnknownEntry,
 };
 use super::values::{Deviation, NominalEntry, ToleranceEntry};
+use crate::allocation::CurveKind;
 use crate::method::{ALL as METHODS, DerivativeSource, Pairs};
 use crate::models;
 use crate::plan::Stencil;
@@ -99,6 +101,11 @@ pub(super) fn kinds() -> Vec<&'static str> {
 /// What can be made of measured values.
 pub(super) fn measured_models() -> Vec<&'static str> {
     MODELS.to_vec()
+}
+
+/// The names of all cost models.
+pub(super) fn cost_models() -> Vec<&'static str> {
+    CurveKind::NAMED.iter().map(|(name, _)| *name).collect()
 }
 
 /// Exactly one of these keys must be there.
@@ -251,6 +258,18 @@ impl JsonSchema for PairsEntry {
                 { "type": "string", "enum": Pairs::NAMES },
                 generator.subschema_for::<Vec<(String, String)>>(),
             ],
+        })
+    }
+}
+
+impl JsonSchema for RequireEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Require".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "anyOf": [{ "type": "string", "enum": WORDS }, generator.subschema_for::<RequireTable>()],
         })
     }
 }

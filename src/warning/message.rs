@@ -18,15 +18,13 @@ impl Warning {
                  others; the first: {error}"
             ),
             Self::HeavyPoint { characteristic, limit, part } => format!(
-                "`{characteristic}` beyond {limit}: one point bears {:.0} % of the probability, so that the surrogate \
-                 does not \
+                "`{characteristic}` beyond {limit}: one point bears {:.0} % of the probability, so that the surrogate does not \
                  know where rejects are, and there may be more than the interval says; more --samples, or a method that knows \
                  more (--method full)",
                 100.0 * part
             ),
             Self::NothingBeyond { characteristic, limit, points, most } => format!(
-                "`{characteristic}` beyond {limit}: not one of {points} points lies there, neither where the surrogate \
-                 has the \
+                "`{characteristic}` beyond {limit}: not one of {points} points lies there, neither where the surrogate has the \
                  limit nor elsewhere; all that is known without the surrogate is a probability below {most:.1e}"
             ),
             Self::PlainSampling { characteristic, limit, plain, evaluations } => format!(
@@ -38,15 +36,13 @@ impl Warning {
                  method goes around lost points, --method second-order with the fewest"
             ),
             Self::ShallowRules { characteristic, share } => format!(
-                "curvature adds {:.1} % of the variance of `{characteristic}`, and rules of three nodes do not \
-                 integrate its third \
+                "curvature adds {:.1} % of the variance of `{characteristic}`, and rules of three nodes do not integrate its third \
                  and fourth powers: do not trust skewness, kurtosis and yield; --method dimension-reduction or \
                  bivariate-dimension-reduction has five nodes",
                 100.0 * share
             ),
             Self::PoorFit { characteristic, residual } => format!(
-                "the fitted surface misses the values of `{characteristic}` by {:.1} % of sigma (residual standard \
-                 error): it is \
+                "the fitted surface misses the values of `{characteristic}` by {:.1} % of sigma (residual standard error): it is \
                  no quadratic; --method six-n follows more bends, bivariate-dimension-reduction all of two dimensions",
                 100.0 * residual
             ),
@@ -76,8 +72,7 @@ impl Warning {
                 }
             }
             Self::DomainEdge { characteristic, dimension, failed, used } => format!(
-                "`{characteristic}` has no value with `{dimension}` at {failed:+.3} sigma: {used:+.3} sigma was used, \
-                 and \
+                "`{characteristic}` has no value with `{dimension}` at {failed:+.3} sigma: {used:+.3} sigma was used, and \
                  part of the assemblies may have no value at all"
             ),
             Self::SupportEdge { dimension, from, to } => format!(
@@ -91,8 +86,7 @@ impl Warning {
                 100.0 * share
             ),
             Self::NoReaction { characteristic } => format!(
-                "`{characteristic}` is the same at every point that was evaluated: check that the model uses the \
-                 dimensions, and examine interactions \
+                "`{characteristic}` is the same at every point that was evaluated: check that the model uses the dimensions, and examine interactions \
                  (--method full)"
             ),
             Self::Atom { characteristic, points } => format!(
@@ -120,8 +114,7 @@ impl Warning {
                 };
                 let times = if *times == 1 { "once".to_owned() } else { format!("{times} times") };
                 format!(
-                    "`{output}` at the nominal dimensions was {} at first and {} later ({times}): {cause}; {points} \
-                     points were \
+                    "`{output}` at the nominal dimensions was {} at first and {} later ({times}): {cause}; {points} points were \
                      evaluated again by a fresh process{}",
                     value(expected),
                     value(found),
@@ -137,8 +130,7 @@ impl Warning {
                  not examined (try --method full), or the `moments` of a dimension are rounded"
             ),
             Self::NearInfeasibleMoments { characteristic, skewness, kurtosis } => format!(
-                "the kurtosis {kurtosis:.4} of `{characteristic}` is hardly above 1 + skewness^2 = {:.4}, the least \
-                 that there \
+                "the kurtosis {kurtosis:.4} of `{characteristic}` is hardly above 1 + skewness^2 = {:.4}, the least that there \
                  is: it has nearly two values only, and its yield hangs on every digit of that",
                 1.0 + skewness * skewness
             ),
@@ -153,29 +145,24 @@ impl Warning {
             }
             Self::Outliers { dimension, file, count, values, first } => format!(
                 "{count} of {values} values of `{dimension}` in {file} {} farther out than a normal sample of this size \
-                 reaches: {}; kept all the same, as a skewed law may have such values: take out what was measured \
-                  wrongly",
+                 reaches: {}; kept all the same, as a skewed law may have such values: take out what was measured wrongly",
                 lie(*count),
                 values_and_lines(first, *count)
             ),
             Self::SmallSample { dimension, values, enough } => format!(
-                "`{dimension}` is known by {values} values: its skewness and everything beyond are guesses below \
-                 {enough}; \
+                "`{dimension}` is known by {values} values: its skewness and everything beyond are guesses below {enough}; \
                  mind the sampling interval"
             ),
             Self::NoSamplingInterval { dimension, correlated: true } => format!(
-                "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed where \
-                 dimensions are \
+                "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed where dimensions are \
                  correlated; leave [[correlation]] out to see it"
             ),
             Self::NoSamplingInterval { dimension, correlated: false } => format!(
-                "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed by methods \
-                 without a \
+                "`{dimension}` is known by a sample, and what its size leaves uncertain is not computed by methods without a \
                  surrogate; --method six-n shows it"
             ),
             Self::CoarseResolution { dimension, resolution, sigma, distinct } => format!(
-                "the {distinct} different values of `{dimension}` lie {:.2} sigma apart or more: rounding has a part \
-                 in sigma; \
+                "the {distinct} different values of `{dimension}` lie {:.2} sigma apart or more: rounding has a part in sigma; \
                  measure with a finer resolution",
                 resolution / sigma
             ),
@@ -206,28 +193,43 @@ impl Warning {
                      {cut}{lost}"
                 )
             }
+            Self::FitReplaced { dimension } => format!(
+                "`{dimension}` was a fit of ISO 286 and is a plain tolerance now: choose the class that is nearest, and require it \
+                 as a process, if it has to be one"
+            ),
+            Self::ConfirmationMisses { characteristic, required, interval: [low, high] } => format!(
+                "`{characteristic}` keeps its limits in {:.4} .. {:.4} % of the model's own sample, and {:.4} % are required: four moments \
+                 do not say enough of its tails; require more, or a Cpk",
+                100.0 * low,
+                100.0 * high,
+                100.0 * required
+            ),
+            Self::NotConfirmed => {
+                "the tolerances rest on derivatives at others: the budget or the time did not allow to ask the model there; \
+                 allow more, or analyze the study that --write writes"
+                    .into()
+            }
             Self::Kink { characteristic, dimension, slopes: [left, right], between } => format!(
-                "`{characteristic}` bends along `{dimension}` {}, from a slope of {left:.3} to {right:.3} sigma a \
-                 sigma: no polynomial follows a kink, and moments of one are wrong; use sensitol simulate, or give \
-                 each branch a characteristic of its own",
+                "`{characteristic}` bends along `{dimension}` {}, from a slope of {left:.3} to {right:.3} sigma a sigma: no polynomial \
+                 follows a kink, and moments of one are wrong; use sensitol simulate, or give each branch a characteristic of \
+                 its own",
                 places(*between)
             ),
             Self::Discontinuity { characteristic, dimension, by, between } => format!(
-                "`{characteristic}` jumps along `{dimension}` {} by {by:.2} sigma: derivatives mean nothing there; \
-                 check whether the model changes its configuration, and use sensitol simulate",
+                "`{characteristic}` jumps along `{dimension}` {} by {by:.2} sigma: derivatives mean nothing there; check whether the \
+                 model changes its configuration, and use sensitol simulate",
                 places(*between)
             ),
             Self::HigherOrder { characteristic, dimension, coefficients: [third, fourth], held } => format!(
-                "`{characteristic}` is more than a parabola along `{dimension}`: {third:+.2e} u^3 {fourth:+.2e} u^4 \
-                 sigma; {}",
+                "`{characteristic}` is more than a parabola along `{dimension}`: {third:+.2e} u^3 {fourth:+.2e} u^4 sigma; {}",
                 match held {
                     true => "the moments have that part, and what comes beyond is in the error estimate",
                     false => "this method leaves it out: use --method six-n or auto",
                 }
             ),
             Self::Scatter { characteristic, scatter, drowned } => format!(
-                "answers of `{characteristic}` next to the means scatter by {scatter:.1e} of its sigma{}: no accuracy \
-                 beyond that can be had; solve the model more tightly",
+                "answers of `{characteristic}` next to the means scatter by {scatter:.1e} of its sigma{}: no accuracy beyond that \
+                 can be had; solve the model more tightly",
                 match drowned {
                     0 => String::new(),
                     1 => ", as much as its curvature along one dimension".to_owned(),
@@ -235,23 +237,21 @@ impl Warning {
                 }
             ),
             Self::DomainEdgeWithin { characteristic, failed, points } => format!(
-                "`{characteristic}` has no value at {failed} of {points} points of the distribution, though it has one \
-                 wherever differences were taken: that part of the assemblies is in no moment and no yield; sensitol \
-                 simulate counts them"
+                "`{characteristic}` has no value at {failed} of {points} points of the distribution, though it has one wherever \
+                 differences were taken: that part of the assemblies is in no moment and no yield; sensitol simulate counts them"
             ),
             Self::InteractionsLeftOut { characteristic, share } => format!(
-                "{:.2} % of the variance of `{characteristic}` is none of what was examined, by comparison with the \
-                 model: it is in sigma, and not in skewness and kurtosis; allow more evaluations, or use --method full",
+                "{:.2} % of the variance of `{characteristic}` is none of what was examined, by comparison with the model: it is \
+                 in sigma, and not in skewness and kurtosis; allow more evaluations, or use --method full",
                 100.0 * share
             ),
             Self::UntrustedSurrogate { characteristic, share, sampled } => format!(
-                "the surface through the evaluated points leaves {:.1} % of the variance of `{characteristic}` \
-                 unexplained; {}",
+                "the surface through the evaluated points leaves {:.1} % of the variance of `{characteristic}` unexplained; {}",
                 100.0 * share,
                 match sampled {
                     Some(points) => format!(
-                        "its moments come from {points} points of the model, with the surface as control variate, and \
-                         carry their standard errors"
+                        "its moments come from {points} points of the model, with the surface as control variate, and carry their \
+                         standard errors"
                     ),
                     None =>
                         "its moments are a guess: allow a sample with --budget, or use sensitol simulate".to_owned(),
@@ -280,9 +280,8 @@ impl Warning {
                 )
             }
             Self::SeveralModes { characteristic, coefficient } => format!(
-                "skewness and kurtosis of `{characteristic}` are those of a distribution with two peaks ((skewness^2 + \
-                 1)/kurtosis = {coefficient:.2}): the Pearson law has one or a trough; look at the histogram of \
-                 sensitol simulate"
+                "skewness and kurtosis of `{characteristic}` are those of a distribution with two peaks ((skewness^2 + 1)/kurtosis = \
+                 {coefficient:.2}): the Pearson law has one or a trough; look at the histogram of sensitol simulate"
             ),
         }
     }

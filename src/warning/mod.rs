@@ -18,6 +18,22 @@ pub enum Warning {
         /// Its name.
         name: String,
     },
+    /// A tolerance that was found is no fit of ISO 286 any more.
+    FitReplaced {
+        /// The dimension.
+        dimension: String,
+    },
+    /// The model was not asked at the tolerances that were found.
+    NotConfirmed,
+    /// Monte Carlo at the tolerances that were found says that a required yield is missed.
+    ConfirmationMisses {
+        /// The characteristic.
+        characteristic: String,
+        /// What is required.
+        required: f64,
+        /// 95 % interval of what there is.
+        interval: [f64; 2],
+    },
     /// The model failed at some points.
     FailedPoints {
         /// The characteristic that has no value there.
@@ -466,6 +482,9 @@ impl Warning {
             Self::CoarseResolution { .. } => "coarse-resolution",
             Self::OutsideBand { .. } => "outside-band",
             Self::NotProven { .. } => "not-proven",
+            Self::FitReplaced { .. } => "fit-replaced",
+            Self::NotConfirmed => "not-confirmed",
+            Self::ConfirmationMisses { .. } => "confirmation-misses",
             Self::Kink { .. } => "kink",
             Self::Discontinuity { .. } => "discontinuity",
             Self::HigherOrder { .. } => "higher-order",
@@ -499,6 +518,7 @@ impl Warning {
             | Self::InfeasibleMoments { characteristic, .. }
             | Self::NearInfeasibleMoments { characteristic, .. }
             | Self::NotProven { characteristic, .. }
+            | Self::ConfirmationMisses { characteristic, .. }
             | Self::Kink { characteristic, .. }
             | Self::Discontinuity { characteristic, .. }
             | Self::HigherOrder { characteristic, .. }
@@ -525,6 +545,7 @@ impl Warning {
             | Self::NoSamplingInterval { dimension, .. }
             | Self::CoarseResolution { dimension, .. }
             | Self::OutsideBand { dimension, .. }
+            | Self::FitReplaced { dimension }
             | Self::Kink { dimension, .. }
             | Self::Discontinuity { dimension, .. }
             | Self::HigherOrder { dimension, .. }

@@ -10,7 +10,7 @@ const LAYERS: &[&[&str]] = &[
     &["cli"],
     &["error"],
     &["study", "report"],
-    &["compare", "rare"],
+    &["compare", "rare", "sweep", "allocation"],
     &["analysis", "probe"],
     &["simulation"],
     &["extremes"],
@@ -124,6 +124,13 @@ fn nothing_prints_outside_the_command_line() {
             assert!(module == "cli" || !code.contains(print), "{file} contains {print}");
         }
     }
+}
+
+/// A solver that is exchanged is exchanged in one file.
+#[test]
+fn one_file_knows_the_minimiser() {
+    let knows = files().into_iter().filter(|(_, _, code)| code.contains("argmin::")).map(|(file, ..)| file);
+    assert_eq!(knows.collect::<Vec<_>>(), ["allocation/minimise.rs"]);
 }
 
 #[test]

@@ -39,7 +39,7 @@ fn analyze_prints_the_report() {
 }
 
 /// To twelve digits: the last ones are those of a machine's logarithm.
-fn rounded(value: &mut serde_json::Value) {
+pub fn rounded(value: &mut serde_json::Value) {
     match value {
         serde_json::Value::Number(number) if number.is_f64() => {
             *value = format!("{:.11e}", number.as_f64().unwrap()).parse::<f64>().unwrap().into();
@@ -112,7 +112,7 @@ fn extremes_are_reported() {
 
 #[test]
 fn help_is_there() {
-    for command in ["", "analyze", "plan", "check", "models", "schema", "pearson", "probe", "journal"] {
+    for command in ["", "analyze", "allocate", "plan", "check", "models", "schema", "pearson", "probe", "journal"] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
         insta::assert_snapshot!(format!("help-{}", if command.is_empty() { "all" } else { command }), run(&arguments));
     }

@@ -7,7 +7,7 @@ use sensitol::plan::Stencil;
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Method, Options, Study, analyze};
 
-use super::support::{data, repository};
+use super::support::{INSTALLED, data, repository};
 
 /// Console blocks of the README and of every example, run from the repository's root; none leaves anything out.
 #[test]
@@ -16,12 +16,12 @@ fn console_blocks_are_real() {
         let elided = read(&document).lines().any(|line| line == "..." || line.contains("[..]"));
         assert!(!elided, "{document} leaves out some output");
     }
-    trycmd::TestCases::new()
-        .case("README.md")
-        .case("CONTRIBUTING.md")
-        .case("examples/*/README.md")
-        .env("LC_ALL", "C.UTF-8")
-        .run();
+    let cases = trycmd::TestCases::new();
+    cases.case("README.md").case("CONTRIBUTING.md").case("examples/*/README.md");
+    for example in INSTALLED {
+        cases.skip(format!("examples/{example}/README.md"));
+    }
+    cases.env("LC_ALL", "C.UTF-8").run();
 }
 
 fn read(path: &str) -> String {
@@ -188,6 +188,15 @@ fn one_digit(error: f64) -> String {
     if error < 1e-8 { "<1e-8".to_owned() } else { format!("{error:.0e}") }
 }
 
+/// What the suite leaves to `tests/adapters/run` is shown there.
+#[test]
+fn examples_that_need_an_installation_are_run_elsewhere() {
+    let scripts = ["freecad", "spreadsheet", "opencascade"].map(|name| read(&format!("tests/adapters/{name}.py")));
+    for example in INSTALLED {
+        assert!(scripts.iter().any(|script| script.contains(&format!("shown(\"{example}\")"))), "{example}");
+    }
+}
+
 /// Every example has a study and a README that names it.
 #[test]
 fn every_example_is_described() {
@@ -212,8 +221,13 @@ fn documents() -> Vec<String> {
         "CHANGELOG.md",
         "benches/README.md",
         "docs/accuracy.md",
+        "docs/how-to/plug-in-your-cad.md",
+        "docs/published-cases.md",
         "adapters/PROTOCOL.md",
         "adapters/python/README.md",
+        "adapters/freecad/README.md",
+        "adapters/spreadsheet/README.md",
+        "adapters/opencascade/README.md",
     ];
     let own = own.map(str::to_owned);
     own.into_iter().chain(examples.map(of_example)).collect()

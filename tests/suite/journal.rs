@@ -34,13 +34,27 @@ impl Slow {
         Self { folder, workers, window }
     }
 
+    /// With a cost for every tolerance and something to keep.
+    fn with_costs(self) -> Self {
+        let (study, n) = (self.path("study.toml"), 4);
+        let text =
+            std::fs::read_to_string(&study).unwrap().replace("lower = 0.0", "lower = 24.5, require = { cpk = 1 }");
+        let costs: String = (0..n).map(|d| format!("x{d} = {{ model = \"reciprocal\", b = 1 }}\n")).collect();
+        std::fs::write(study, format!("{text}[costs]\n{costs}")).unwrap();
+        self
+    }
+
     fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
     fn command(&self, more: &[&str]) -> Command {
+        self.doing("analyze", more)
+    }
+
+    fn doing(&self, what: &str, more: &[&str]) -> Command {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
-        command.arg("analyze").arg(self.path("study.toml")).arg("--json").args(more);
+        command.arg(what).arg(self.path("study.toml")).arg("--json").args(more);
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         command
     }
@@ -298,6 +312,39 @@ fn ctrl_c_keeps_everything() {
     assert_eq!(field(&output, "evaluations") as usize, done + 1);
     let resumed = study.run(&[]);
     assert_eq!((field(&resumed, "reused") as usize, study.evaluations()), (done + 1, 182));
+}
+
+/// An allocation that is interrupted at any time: everything evaluated is kept, and no file is written or left behind.
+#[test]
+#[cfg(unix)]
+fn ctrl_c_ends_an_allocation() {
+    let study = Slow::new(4, 0.02, 1, 1).with_costs();
+    let written = study.path("new.toml").display().to_string();
+    let arguments = ["--write", &written];
+    // Within the first analysis, and within the one at the tolerances found.
+    for enough in [10, 30] {
+        let engine = study.doing("allocate", &arguments).spawn().unwrap();
+        while study.evaluations() < enough {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        interrupt(engine.id());
+        let output = engine.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{output:?}");
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!((&report["status"], &report["confirmed"]), (&"out-of-time".into(), &false.into()));
+        let names = std::fs::read_dir(study.folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+        let left: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
+        let strange = |name: &&String| name.starts_with("new") || name.starts_with(".sensitol");
+        assert_eq!(left.iter().find(strange), None, "{left:?}");
+    }
+    let done = study.evaluations();
+    let resumed = study.doing("allocate", &arguments).output().unwrap();
+    assert_eq!(resumed.status.code(), Some(0), "{resumed:?}");
+    let report: serde_json::Value = serde_json::from_slice(&resumed.stdout).unwrap();
+    assert_eq!((&report["status"], &report["confirmed"]), (&"optimal".into(), &true.into()));
+    // The nominal point is kept too, and not counted: once, as all rounds have it.
+    assert!(report["reused"].as_u64().unwrap() as usize > done, "{done} {}", report["reused"]);
+    assert!(Path::new(&written).exists());
 }
 
 /// The second Ctrl-C does not wait for an evaluation that takes a minute.

@@ -1,6 +1,8 @@
 //! Every test of the project, a module per theme; `cargo test --test suite moments::` runs one theme.
 
 mod accuracy;
+mod allocation;
+mod allocation_cli;
 mod analysis;
 mod architecture;
 mod auto;
@@ -20,6 +22,7 @@ mod intervals;
 mod journal;
 mod measured;
 mod methods;
+mod models;
 mod moments;
 mod pearson;
 mod plans;
@@ -36,4 +39,5 @@ mod simulation;
 mod stack;
 mod studies;
 mod support;
+mod sweep;
 mod tolerances;

@@ -8,6 +8,9 @@ use std::time::{Duration, Instant};
 
 use sensitol::assembly::process::{Exit, Greeting, Process, ProcessFault, Settings};
 use sensitol::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Responses, Run, Signature};
+use sensitol::rare::{RareOptions, rare};
+use sensitol::simulation::{SimulationOptions, simulate};
+use sensitol::{Characteristic, Dimension, Problem, SpecLimits};
 
 use super::support::repository;
 
@@ -311,6 +314,26 @@ fn children_that_flip_are_found_out() {
     let out = at(&model(guarded("good", &[])), &a);
     assert_eq!((out.doubts().len(), out.extra()), (0, 1));
     right_but(&a, &out, &[]);
+}
+
+/// A simulation tells of it too, random or rare, and an analysis of what it sampled.
+#[test]
+fn samples_of_a_model_that_flips_are_doubted() {
+    let of = |mode: &str| {
+        let dimensions = [Dimension::normal("a", 1.0, 0.3).unwrap(), Dimension::normal("b", 2.0, 0.3).unwrap()];
+        let limits = SpecLimits::new(None, Some(3.3)).unwrap();
+        let model = model(Settings { sentinels: true, ..settings(mode, &[]) });
+        let problem = Problem::new(dimensions, model).unwrap();
+        let problem = problem.asking([Characteristic::new("sum").with_limits(limits)]).unwrap();
+        let random = simulate(&problem, &SimulationOptions { samples: 200, ..SimulationOptions::default() }).unwrap();
+        let rare = rare(&problem, &RareOptions { samples: 200, ..RareOptions::default() });
+        (random.doubts, rare.map_or(Vec::new(), |rare| rare.doubts))
+    };
+    let (random, rare) = of("always-flips");
+    assert!(!random.is_empty() && random.iter().all(|doubt| doubt.output == "sum"), "{random:?}");
+    assert!(!rare.is_empty(), "{rare:?}");
+    let (random, rare) = of("good");
+    assert!(random.is_empty() && rare.is_empty(), "{random:?} {rare:?}");
 }
 
 /// Processes whose command line holds this text.

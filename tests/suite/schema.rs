@@ -4,7 +4,7 @@ use jsonschema::Validator;
 use sensitol::Study;
 use serde_json::Value;
 
-use super::support::repository;
+use super::support::example_studies;
 
 fn validator() -> Validator {
     let schema = sensitol::study::schema();
@@ -20,30 +20,21 @@ fn of_toml(text: &str) -> Value {
 #[test]
 fn every_example_is_valid() {
     let validator = validator();
-    let mut studies = 0;
-    for folder in std::fs::read_dir(repository("examples")).unwrap() {
-        for file in std::fs::read_dir(folder.unwrap().path()).unwrap() {
-            let path = file.unwrap().path();
-            if path.extension().is_none_or(|extension| extension != "toml") {
-                continue;
-            }
-            let value = of_toml(&std::fs::read_to_string(&path).unwrap());
-            let errors: Vec<String> = validator.iter_errors(&value).map(|error| error.to_string()).collect();
-            assert!(errors.is_empty(), "{}: {errors:?}", path.display());
-            Study::read(&path).unwrap();
-            // As JSON among copies of the files that it names.
-            let beside = tempfile::tempdir().unwrap();
-            for other in std::fs::read_dir(path.parent().unwrap()).unwrap() {
-                let other = other.unwrap();
-                std::fs::copy(other.path(), beside.path().join(other.file_name())).unwrap();
-            }
-            let json = beside.path().join("study.json");
-            std::fs::write(&json, value.to_string()).unwrap();
-            Study::read(&json).unwrap();
-            studies += 1;
+    for (_, path) in example_studies().iter().filter(|(_, path)| path.extension().is_some_and(|end| end == "toml")) {
+        let value = of_toml(&std::fs::read_to_string(path).unwrap());
+        let errors: Vec<String> = validator.iter_errors(&value).map(|error| error.to_string()).collect();
+        assert!(errors.is_empty(), "{}: {errors:?}", path.display());
+        Study::read(path).unwrap();
+        // As JSON among copies of the files that it names.
+        let beside = tempfile::tempdir().unwrap();
+        for other in std::fs::read_dir(path.parent().unwrap()).unwrap() {
+            let other = other.unwrap();
+            std::fs::copy(other.path(), beside.path().join(other.file_name())).unwrap();
         }
+        let json = beside.path().join("study.json");
+        std::fs::write(&json, value.to_string()).unwrap();
+        Study::read(&json).unwrap();
     }
-    assert!(studies >= 6);
 }
 
 const REST: &str = "[characteristics]\ny = { formula = \"a\" }\n";

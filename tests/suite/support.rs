@@ -11,6 +11,25 @@ pub fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
+/// Examples that need more than the repository has; `tests/adapters/run` runs their console blocks where that is installed.
+pub const INSTALLED: [&str; 3] = ["stacked-blocks-freecad", "stack-up-workbook", "spot-weld-opencascade"];
+
+/// The studies of all examples, with the folder's name; what an adapter wants to know of its document is no study.
+pub fn example_studies() -> Vec<(String, PathBuf)> {
+    let mut studies = Vec::new();
+    for folder in std::fs::read_dir(repository("examples")).unwrap() {
+        let folder = folder.unwrap();
+        for file in std::fs::read_dir(folder.path()).unwrap() {
+            let path = file.unwrap().path();
+            let study = path.extension().is_some_and(|extension| extension == "toml" || extension == "json");
+            if study && !std::fs::read_to_string(&path).unwrap().lines().any(|line| line.starts_with("document =")) {
+                studies.push((folder.file_name().to_string_lossy().into_owned(), path));
+            }
+        }
+    }
+    studies
+}
+
 /// A JSON file of `tests/data`.
 pub fn data(name: &str) -> serde_json::Value {
     let text = std::fs::read_to_string(repository("tests/data").join(name)).unwrap();

@@ -6,8 +6,11 @@ import logging
 import math
 import os
 import sys
+import time
 
 VERSION = 1
+# Answers that come within this time share a write.
+TOGETHER_S = 0.01
 log = logging.getLogger("sensitol")
 
 _POSITIONAL = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
@@ -43,10 +46,16 @@ class Adapter:
     gradients       the function returns a pair: values, and derivatives as a dict from dimension to number, or for several
                     characteristics a dict of such dicts; a dimension that is left out has derivative 0
     batch           the function takes a list for every parameter and returns a list (or a dict of lists)
-    setup           called once, before the model is ready
+    inputs          what a function with `**values` takes; without it that takes every name. The study may leave these out
+    units           a dict from dimension to unit; a study that states another one is refused
+    setup           called once, before the model is ready; with a parameter it is given the engine's first line. It may
+                    still change name, version, inputs, outputs and units: a model often knows them once it is loaded
     """
 
-    def __init__(self, function, *, name=None, version=None, outputs=None, window=64, batch=False, gradients=False, names=None, setup=None):
+    def __init__(
+        self, function, *, name=None, version=None, outputs=None, window=64, batch=False, gradients=False, names=None,
+        inputs=None, units=None, setup=None,
+    ):  # fmt: skip
         self.function = function
         self.name = name or function.__name__
         self.version = version
@@ -56,6 +65,8 @@ class Adapter:
         self.gradients = gradients
         if batch and gradients:
             raise ValueError("gradients are given point by point: not in a batch")
+        self.inputs = list(inputs) if inputs is not None else None
+        self.units = dict(units or {})
         self.setup = setup
         self._names = dict(names or {})
         parameters = inspect.signature(function).parameters.values()
@@ -78,9 +89,10 @@ class Adapter:
             if not first:
                 return
             try:
+                hello = json.loads(first)
                 if self.setup is not None:
-                    self.setup()
-                session = _Session(self, json.loads(first))
+                    self.setup(*([hello] if _takes_one(self.setup) else []))
+                session = _Session(self, hello)
             except Exception as error:
                 _write(answers, [{"error": _words(error)}])
                 return
@@ -91,9 +103,16 @@ class Adapter:
                 ready["version"] = str(self.version)
             _write(answers, [ready])
             for requests in lines.batches():
-                _write(answers, session.answer(requests))
+                for done in session.answers(requests):
+                    _write(answers, done)
         except (BrokenPipeError, KeyboardInterrupt):
             pass
+
+
+def _takes_one(function):
+    """Whether it cannot be called without an argument."""
+    parameters = inspect.signature(function).parameters.values()
+    return any(one.kind in _POSITIONAL and one.default is inspect.Parameter.empty for one in parameters)
 
 
 class _Session:
@@ -107,9 +126,15 @@ class _Session:
         optional = set(hello.get("optional", ()))
         dimensions, constants = hello["dimensions"], hello.get("constants", {})
         known = adapter._parameters
-        unknown = [name for name in [*dimensions, *constants] if name not in known and name not in optional]
-        if unknown and not adapter._any:
-            raise ValueError(f"no dimension or constant `{unknown[0]}`; there are {', '.join(known)}")
+        anything = adapter._any and adapter.inputs is None
+        taken = [*known, *(adapter.inputs or ())]
+        unknown = [name for name in [*dimensions, *constants] if name not in taken and name not in optional]
+        if unknown and not anything:
+            raise ValueError(f"no dimension or constant `{unknown[0]}`; there are {', '.join(taken)}")
+        for name, unit in zip(dimensions, hello.get("units", ())):
+            expected = adapter.units.get(name)
+            if None not in (unit, expected) and unit != expected:
+                raise ValueError(f"`{name}` is in `{unit}` in the study and in `{expected}` here; state one of them otherwise")
         self.dimensions = dimensions
         given = {*dimensions, *constants}
         missing = [
@@ -121,15 +146,22 @@ class _Session:
         for name in self.characteristics:
             if offered is not None and name not in offered:
                 raise ValueError(f"no characteristic `{name}`; there are {', '.join(offered)}")
-        taken = (lambda name: True) if adapter._any else known.__contains__
         back = {dimension: parameter for parameter, dimension in adapter._names.items()}
-        self.columns = [(back.get(name, name), index) for index, name in enumerate(dimensions) if taken(name)]
-        self.constants = {back.get(name, name): value for name, value in constants.items() if taken(name)}
+        self.columns = [(back.get(name, name), index) for index, name in enumerate(dimensions) if anything or name in taken]
+        self.constants = {back.get(name, name): value for name, value in constants.items() if anything or name in taken}
 
-    def answer(self, requests):
-        if self.adapter.batch and len(requests) > 0:
-            return self._together(requests)
-        return [self._one(request) for request in requests]
+    def answers(self, requests):
+        """Lists of answers: fast ones together, slow ones as soon as they are there, since the engine's clock runs."""
+        if self.adapter.batch:
+            yield self._together(requests)
+            return
+        done, since = [], time.monotonic()
+        for request in requests:
+            done.append(self._one(request))
+            if time.monotonic() - since > TOGETHER_S:
+                yield done
+                done, since = [], time.monotonic()
+        yield done
 
     def _one(self, request):
         x = request["x"]

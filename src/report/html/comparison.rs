@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::super::limits::share;
 use super::super::number::{UNKNOWN, significant};
 use super::super::{CompareReport, ComparedReport, MethodReport, compare_svg};
-use super::{fact, provenance, render};
+use super::{fact, inline, provenance, render};
 
 #[derive(Serialize)]
 struct Compared<'r> {
@@ -36,8 +36,8 @@ struct Row<'r> {
 /// A comparison as one page of HTML: evaluations against error, and a table for every characteristic.
 pub fn compare_html(report: &CompareReport) -> String {
     let compared = Compared {
-        // It escapes the names in it, and what it names its own format by asks for nothing.
-        chart: compare_svg(report).replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1),
+        // It escapes the names in it.
+        chart: inline(&compare_svg(report)),
         characteristics: report.characteristics.iter().map(characteristic).collect(),
         not_run: (report.not_run.iter())
             .map(|one| {

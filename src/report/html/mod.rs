@@ -4,15 +4,19 @@
 //! numbers alone, and data for the page's script stand in a block of JSON in which no `<` is left. What may run is told to the
 //! browser by a content-security policy: this script and this style, known by their hashes, and nothing else.
 
+mod allocated;
 mod analysis;
 mod chart;
 mod comparison;
 mod sampled;
+mod swept;
 mod what_if;
 
+pub use allocated::allocate_html;
 pub use analysis::analyze_html;
 pub use comparison::compare_html;
 pub use sampled::simulate_html;
+pub use swept::sweep_html;
 pub use what_if::{Line, WhatIf};
 
 use minijinja::syntax::SyntaxConfig;
@@ -31,12 +35,14 @@ const SCRIPT: &str = concat!(
     include_str!("live.js"),
     include_str!("page.js")
 );
-const TEMPLATES: [(&str, &str); 5] = [
+const TEMPLATES: [(&str, &str); 7] = [
     ("parts.html", include_str!("parts.html")),
     ("page.html", include_str!("page.html")),
     ("analysis.html", include_str!("analysis.html")),
     ("simulation.html", include_str!("simulation.html")),
     ("comparison.html", include_str!("comparison.html")),
+    ("allocation.html", include_str!("allocation.html")),
+    ("sweep.html", include_str!("sweep.html")),
 ];
 
 /// What every page begins with, and the page's own content.
@@ -115,6 +121,11 @@ fn render<T: Serialize>(
     }
     let template = environment.get_template(template).expect("the templates are part of the program");
     template.render(Value::from(Serde(&page))).expect("the templates fit what they are given")
+}
+
+/// A drawing as part of a page: what it names its own format by asks for nothing, and is left out all the same.
+fn inline(svg: &str) -> String {
+    svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1)
 }
 
 /// As a content-security policy names a script or style.

@@ -1,0 +1,76 @@
+//! The cheapest tolerances at fixed derivatives: free ones, processes, or both.
+
+use super::branch::{Chosen, branch};
+use super::constraint::{Constraint, kept};
+use super::cost::Priced;
+use super::result::{Attainable, Proof};
+use super::solve::{Setting, Solved};
+
+/// What came of one search at fixed derivatives.
+pub(super) enum Choice {
+    /// Tolerances that keep every requirement.
+    Found { solved: Solved, offers: Vec<usize>, proof: Proof },
+    /// There are none; with the half bands at which the best of it is to be had.
+    Infeasible(Attainable, Vec<f64>),
+    /// Stopped before any were found.
+    Stopped,
+}
+
+/// The cheapest tolerances at fixed derivatives.
+pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
+    let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
+    for constraint in setting.constraints {
+        // Nearly always the tightest tolerances keep what any do.
+        if kept(constraint.value(setting.responses, setting.priced, &tight)) {
+            continue;
+        }
+        let (value, at) = setting.attainable(constraint);
+        if !kept(value) {
+            return Choice::Infeasible(unattainable(setting, constraint, &at), at);
+        }
+    }
+    let free = setting.priced.iter().all(|group| group.offers.len() == 1);
+    let found = if free {
+        setting.solve(start).map(|solved| {
+            let fixed = setting.priced.iter().all(|group| group.tightest() == group.loosest());
+            let residual = if solved.converged { solved.residual } else { solved.residual.max(f64::MIN_POSITIVE) };
+            let proof =
+                Proof { residual: (!fixed).then_some(residual), closed_form: solved.closed, ..Proof::default() };
+            (solved, vec![0; setting.priced.len()], proof)
+        })
+    } else {
+        branch(*setting, start).map(|Chosen { solved, offers, bound, nodes, rigorous }| {
+            let curved =
+                setting.priced.iter().zip(&offers).any(|(group, &o)| group.offers[o].min < group.offers[o].max);
+            let residual = curved.then_some(solved.residual);
+            let proof =
+                Proof { residual, bound: bound.is_finite().then_some(bound), rigorous, nodes, closed_form: false };
+            (solved, offers, proof)
+        })
+    };
+    match found {
+        Some((solved, offers, proof)) => Choice::Found { solved, offers, proof },
+        None if (setting.stopped)() => Choice::Stopped,
+        // Each can be kept by itself: the one that is farthest off where all are tightest.
+        None => {
+            let value = |one: &&Constraint| one.value(setting.responses, setting.priced, &tight);
+            let worst = setting.constraints.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+            worst.map_or(Choice::Stopped, |worst| {
+                let attainable = Attainable { together: true, ..unattainable(setting, worst, &tight) };
+                Choice::Infeasible(attainable, tight)
+            })
+        }
+    }
+}
+
+fn unattainable(setting: &Setting<'_>, constraint: &Constraint, at: &[f64]) -> Attainable {
+    let responses = setting.responses;
+    let factors = responses.factors(setting.priced, at);
+    Attainable {
+        characteristic: constraint.characteristic,
+        requirement: constraint.requirement,
+        best: constraint.measured(responses, setting.priced, at),
+        because: constraint.without_the_priced(responses, setting.priced, &factors),
+        together: false,
+    }
+}

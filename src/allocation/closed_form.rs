@@ -1,0 +1,49 @@
+//! The optimum in closed form, where Lagrange's condition has one.
+//!
+//! Costs `a + b/T^k` with one exponent `k` for all and one constraint `constant + sum_g p_g (T_g/at_g)^q = 1` give
+//!
+//! ```text
+//! T_g = mu (parts_g b_g at_g^q / p_g)^(1/(k+q)),     mu from the constraint
+//! ```
+//!
+//! with q = 1 for a worst case and q = 2 for a root of the sum of squares. Source: K. W. Chase, A. R. Parkinson, "A survey of research
+//! in the application of tolerance analysis to the design of mechanical assemblies", Research in Engineering Design 3 (1991).
+
+use super::constraint;
+use super::separable::Separable;
+
+/// Tolerances and multipliers; None where costs differ in kind, several constraints bind, or a bound is met.
+pub(super) fn closed_form(problem: &Separable<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
+    (0..problem.rows.len()).find_map(|k| {
+        let at = bound_by(problem, k)?;
+        let kept = |(other, row): (usize, &super::separable::Row)| other == k || constraint::kept(row.value(&at));
+        let inside =
+            problem.priced.iter().zip(&at).all(|(group, t)| (group.offers[0].min..=group.offers[0].max).contains(t));
+        let mut multipliers = vec![0.0; problem.rows.len()];
+        // The same for every group: what a wider tolerance saves by what it uses.
+        let (group, term) = (&problem.priced[0], &problem.rows[k].terms[0]);
+        let saved = -group.parts * group.offers[0].curve.log_derivatives(at[0])[0];
+        multipliers[k] = saved / (term.power * term.value(at[0]));
+        (inside && problem.rows.iter().enumerate().all(kept)).then_some((at, multipliers))
+    })
+}
+
+/// As if this constraint were the only one.
+fn bound_by(problem: &Separable<'_>, k: usize) -> Option<Vec<f64>> {
+    let row = &problem.rows[k];
+    let (_, exponent) = problem.priced.first()?.offers[0].curve.power()?;
+    let power = row.terms[0].power;
+    let ratio = problem.priced.iter().zip(&row.terms).map(|(group, term)| {
+        let (b, k) = group.offers[0].curve.power()?;
+        let same = group.offers.len() == 1 && k == exponent && term.power == power && term.coefficient > 0.0;
+        // In units of the tolerance at which the term was taken.
+        same.then(|| (group.parts * b * term.at.powf(-k) / term.coefficient).powf(1.0 / (k + power)))
+    });
+    let ratio: Vec<f64> = ratio.collect::<Option<_>>()?;
+    let used: f64 = row.terms.iter().zip(&ratio).map(|(term, ratio)| term.coefficient * ratio.powf(power)).sum();
+    let free = 1.0 - row.constant;
+    (free > 0.0).then(|| {
+        let mu = (free / used).powf(1.0 / power);
+        row.terms.iter().zip(&ratio).map(|(term, ratio)| term.at * mu * ratio).collect()
+    })
+}

@@ -1,0 +1,425 @@
+//! Requirements as numbers that must not exceed 1, with their slopes.
+//!
+//! ```text
+//! worst case       (reach beyond the nominal)/(U - nominal), linear in T
+//! rss, Cpk, sigma  (R/s)^2 with R the rss or sigma and s the room that the mean leaves
+//! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield
+//! ```
+//!
+//! The squares are exact sums of squares of tolerances for a linear characteristic; for any other the slopes are those of the
+//! second-order moments at the trial tolerances.
+
+use super::cost::Priced;
+use super::requirement::Requirement;
+use super::response::Responses;
+use super::separable::{Row, Term};
+use crate::capability::{self, Capability, Law};
+use crate::characteristic::SpecLimits;
+use crate::moments::Moments;
+
+/// What sums in another order may add: limits that are met to the last digit are kept.
+pub(super) const KEPT: f64 = 1e-12;
+
+/// Whether a constraint of this value is kept.
+pub(super) fn kept(value: f64) -> bool {
+    value <= 1.0 + KEPT
+}
+
+/// One side of one requirement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Constraint {
+    /// The characteristic.
+    pub(super) characteristic: usize,
+    pub(super) requirement: Requirement,
+    limits: SpecLimits,
+    side: Side,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Below,
+    Above,
+    Both,
+}
+
+/// A requirement at some tolerances: kept where `value` is at most 1.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Linearised {
+    pub(super) value: f64,
+    /// Derivatives by `ln T` of every group.
+    pub(super) slopes: Vec<f64>,
+    /// Whether it is linear in the tolerances rather than quadratic.
+    linear: bool,
+}
+
+impl Constraint {
+    /// The sides of a requirement.
+    pub(super) fn of(characteristic: usize, requirement: Requirement, limits: SpecLimits) -> Vec<Self> {
+        let one = |side| Self { characteristic, requirement, limits, side };
+        match requirement {
+            Requirement::Yield(_) | Requirement::Sigma(_) => vec![one(Side::Both)],
+            _ => {
+                let below = limits.lower().map(|_| one(Side::Below));
+                below.into_iter().chain(limits.upper().map(|_| one(Side::Above))).collect()
+            }
+        }
+    }
+
+    /// Its value alone; infinite where it cannot be kept so, or is unknown.
+    pub(super) fn value(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> f64 {
+        let value = match self.requirement {
+            Requirement::WorstCase => self.worst_case(responses, priced, at).map(|(value, _)| value),
+            _ => self.ratio(responses, priced, at).map(|ratio| ratio * ratio),
+        };
+        value.filter(|value| !value.is_nan()).unwrap_or(f64::INFINITY)
+    }
+
+    /// Its value and slopes; None where they are unknown.
+    pub(super) fn linearised(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
+        if self.requirement == Requirement::WorstCase {
+            let (value, coefficients) = self.worst_case(responses, priced, at)?;
+            let slopes = coefficients.iter().zip(at).map(|(coefficient, t)| coefficient * t).collect();
+            return Some(Linearised { value, slopes, linear: true });
+        }
+        let k = self.characteristic;
+        let factors = responses.factors(priced, at);
+        let ratio = self.ratio(responses, priced, at).filter(|ratio| ratio.is_finite())?;
+        let value = ratio * ratio;
+        if value == 0.0 {
+            // Nothing varies here.
+            return Some(Linearised { value, slopes: vec![0.0; priced.len()], linear: false });
+        }
+        let plain = responses.is_plain(k);
+        // d ln(ratio) = d ln R - d ln s.
+        let slopes = match self.requirement {
+            Requirement::Rss => {
+                let (square, slopes) = responses.rss_squared(k, priced, &factors)?;
+                let own: Vec<f64> = slopes.iter().map(|slope| 0.5 * slope / square).collect();
+                if plain { own } else { self.with_room(responses, priced, &factors, Some(own))? }
+            }
+            _ if plain => {
+                // Sigma squared is the sum of the groups' squares.
+                let (variance, squares) = responses.plain_squares(k, priced, &factors)?;
+                squares.iter().map(|square| square / variance).collect()
+            }
+            _ => self.with_room(responses, priced, &factors, None)?,
+        };
+        let slopes = slopes.into_iter().map(|slope| 2.0 * value * slope).collect::<Vec<f64>>();
+        slopes.iter().all(|slope| slope.is_finite()).then_some(Linearised { value, slopes, linear: false })
+    }
+
+    /// Slopes of `ln(R/s)`, where `own` are those of `ln R`, or those of `ln sigma` stand for them.
+    fn with_room(
+        &self,
+        responses: &Responses,
+        priced: &[Priced],
+        factors: &[f64],
+        own: Option<Vec<f64>>,
+    ) -> Option<Vec<f64>> {
+        let moments = responses.moments(self.characteristic, factors)?;
+        let by = responses.moment_slopes(self.characteristic, priced, factors)?;
+        let partial = self.room_slopes(&moments)?;
+        let of = |(g, by): (usize, &[f64; 4])| {
+            let own = own.as_ref().map_or(by[1], |own| own[g]);
+            own - partial[0] * by[0] - partial[1] * by[2] - partial[2] * by[3]
+        };
+        Some(by.iter().enumerate().map(of).collect())
+    }
+
+    /// The reach beyond the nominal by the room that the limit leaves, and its coefficients by `T`.
+    fn worst_case(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let (constant, coefficients) = responses.worst_case(self.characteristic, priced, self.side == Side::Above)?;
+        let nominal = responses.of[self.characteristic].nominal?;
+        let room = match self.side {
+            Side::Above => self.limits.upper()? - nominal,
+            _ => nominal - self.limits.lower()?,
+        };
+        let reach = constant + coefficients.iter().zip(at).map(|(coefficient, t)| coefficient * t).sum::<f64>();
+        // A nominal value beyond the limit leaves no room to divide by.
+        let scale = if room > 0.0 { room } else { room.abs().max(reach.abs()).max(f64::MIN_POSITIVE) };
+        let value = 1.0 + (reach - room) / scale;
+        Some((value, coefficients.into_iter().map(|coefficient| coefficient / scale).collect()))
+    }
+
+    /// What varies by the room for it.
+    fn ratio(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<f64> {
+        let factors = responses.factors(priced, at);
+        self.ratio_at(responses, priced, &factors, None)
+    }
+
+    /// The same at any factors of all dimensions, with nominals moved by `shifts` sigmas.
+    pub(super) fn ratio_at(
+        &self,
+        responses: &Responses,
+        priced: &[Priced],
+        factors: &[f64],
+        shifts: Option<&[f64]>,
+    ) -> Option<f64> {
+        let moments = responses.moments_shifted(self.characteristic, factors, shifts)?;
+        let own = match self.requirement {
+            Requirement::Rss => responses.rss_squared(self.characteristic, priced, factors)?.0.sqrt(),
+            _ => moments.sigma(),
+        };
+        let room = self.room(&moments)?;
+        if own == 0.0 { Some(if room > 0.0 { 0.0 } else { f64::INFINITY }) } else { Some(own / room) }
+    }
+
+    /// Whether it is kept when all tolerances are `factor` times as wide; infinite where that is unknown.
+    pub(super) fn value_at(&self, responses: &Responses, factors: &[f64]) -> f64 {
+        let value = match self.requirement {
+            Requirement::WorstCase => self.worst_case_at(responses, factors),
+            _ => self.ratio_at(responses, &[], factors, None).map(|ratio| ratio * ratio),
+        };
+        value.filter(|value| !value.is_nan()).unwrap_or(f64::INFINITY)
+    }
+
+    fn worst_case_at(&self, responses: &Responses, factors: &[f64]) -> Option<f64> {
+        let all: Vec<Priced> = responses.every_dimension();
+        let at: Vec<f64> = (all.iter())
+            .map(|group| factors[group.members[0]] * responses.dimensions[group.members[0]].half_band())
+            .collect();
+        self.worst_case(responses, &all, &at).map(|(value, _)| value)
+    }
+
+    /// The largest rss or sigma that keeps it, with this mean and shape; None where none does.
+    pub(super) fn room(&self, moments: &Moments) -> Option<f64> {
+        let (below, above) =
+            (self.limits.lower().map(|l| moments.mean() - l), self.limits.upper().map(|u| u - moments.mean()));
+        let side = match self.side {
+            Side::Below => below,
+            Side::Above => above,
+            Side::Both => None,
+        };
+        let positive = |room: f64| (room > 0.0).then_some(room);
+        match self.requirement {
+            Requirement::Sigma(most) => Some(most),
+            Requirement::Cpk(least) => positive(side? / (3.0 * least)),
+            Requirement::Rss | Requirement::WorstCase => positive(side?),
+            Requirement::Yield(least) => room_for_yield(moments, [below, above], 1.0 - least),
+        }
+    }
+
+    /// Derivatives of `ln s` by mean, skewness and excess.
+    fn room_slopes(&self, moments: &Moments) -> Option<[f64; 3]> {
+        let room = self.room(moments)?;
+        match self.requirement {
+            Requirement::Sigma(_) => return Some([0.0; 3]),
+            Requirement::Cpk(least) => {
+                let sign = if self.side == Side::Above { -1.0 } else { 1.0 };
+                return Some([sign / (3.0 * least * room), 0.0, 0.0]);
+            }
+            Requirement::Rss | Requirement::WorstCase => {
+                let sign = if self.side == Side::Above { -1.0 } else { 1.0 };
+                return Some([sign / room, 0.0, 0.0]);
+            }
+            Requirement::Yield(_) => {}
+        }
+        let (mean, sigma) = (moments.mean(), moments.sigma());
+        let (skewness, excess) = (moments.skewness()?, moments.excess()?);
+        let difference = |at: &dyn Fn(f64) -> Moments, step: f64| {
+            let ln = |step: f64| self.room(&at(step)).map(f64::ln);
+            match (ln(step), ln(-step)) {
+                (Some(up), Some(down)) => Some((up - down) / (2.0 * step)),
+                // Beside the least kurtosis, or the limit itself, one side is all there is.
+                (Some(up), None) => Some((up - room.ln()) / step),
+                (None, Some(down)) => Some((room.ln() - down) / step),
+                _ => None,
+            }
+        };
+        Some([
+            difference(&|step| Moments::new(mean + step, sigma, skewness, excess), 1e-5 * room)?,
+            difference(&|step| Moments::new(mean, sigma, skewness + step, excess), 1e-4)?,
+            difference(&|step| Moments::new(mean, sigma, skewness, excess + step), 1e-4)?,
+        ])
+    }
+
+    /// How `ln` of the room grows with the lower limit lowered and the upper limit raised, per unit.
+    pub(super) fn room_by_limits(&self, moments: &Moments) -> Option<[f64; 2]> {
+        let room = self.room(moments)?;
+        let step = 1e-5 * room;
+        let moved = |lower: f64, upper: f64| {
+            let limits =
+                SpecLimits::new(self.limits.lower().map(|l| l - lower), self.limits.upper().map(|u| u + upper));
+            Self { limits: limits.unwrap_or(self.limits), ..*self }.room(moments)
+        };
+        let difference = |by: &dyn Fn(f64) -> Option<f64>| match (by(step), by(-step)) {
+            (Some(up), Some(down)) => (up.ln() - down.ln()) / (2.0 * step),
+            _ => 0.0,
+        };
+        Some([difference(&|step| moved(step, 0.0)), difference(&|step| moved(0.0, step))])
+    }
+
+    /// What the worst case divides by: the room that the nominal value leaves.
+    pub(super) fn nominal_room(&self, responses: &Responses) -> Option<f64> {
+        let nominal = responses.of[self.characteristic].nominal?;
+        match self.side {
+            Side::Above => Some(self.limits.upper()? - nominal),
+            Side::Below => Some(nominal - self.limits.lower()?),
+            Side::Both => None,
+        }
+    }
+}
+
+/// The sigma at which a law of this mean and shape leaves just this share beyond limits at these distances from the mean.
+fn room_for_yield(moments: &Moments, [below, above]: [Option<f64>; 2], rejected: f64) -> Option<f64> {
+    let shape = Moments::new(0.0, 1.0, moments.skewness().unwrap_or(0.0), moments.excess().unwrap_or(0.0));
+    let Law::Pearson(law) = Law::fit(&shape).ok()? else { return None };
+    let single = |distance: f64, quantile: f64| match (distance > 0.0, quantile > 0.0) {
+        (true, true) => Some(distance / quantile),
+        // Fewer must keep the limit than the half that does at any sigma.
+        (true, false) => Some(f64::INFINITY),
+        (false, _) => None,
+    };
+    let alone = [
+        below.map(|distance| single(distance, -law.quantile(rejected))),
+        above.map(|distance| single(distance, law.upper_quantile(rejected))),
+    ];
+    let (low, high) = match alone {
+        [None, None] => return None,
+        [Some(only), None] | [None, Some(only)] => return only,
+        [Some(low), Some(high)] => (low?, high?),
+    };
+    // Each limit may take all of what may be rejected, or half of it: the answer lies between.
+    let most = low.min(high);
+    let share =
+        |sigma: f64| law.cdf(-below.unwrap_or(f64::INFINITY) / sigma) + law.sf(above.unwrap_or(f64::INFINITY) / sigma);
+    let miss = |ln: f64| (share(ln.exp()) / rejected).ln();
+    if !most.is_finite() {
+        return None;
+    }
+    let half = [(below, -law.quantile(0.5 * rejected)), (above, law.upper_quantile(0.5 * rejected))];
+    let least = half.iter().filter_map(|&(distance, quantile)| single(distance?, quantile)).fold(most, f64::min);
+    Some(root(miss, least.ln(), most.ln()).exp())
+}
+
+/// Where an increasing function is 0, between a place where it is at most 0 and one where it is at least 0.
+fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let (mut at_low, mut at_high) = (f(low), f(high));
+    if at_low >= 0.0 {
+        return low;
+    }
+    if at_high <= 0.0 {
+        return high;
+    }
+    // Regula falsi with the Illinois rule, which never leaves the bracket.
+    let mut side = 0;
+    for _ in 0..100 {
+        let mut middle = if at_low.is_finite() && at_high.is_finite() {
+            (low * at_high - high * at_low) / (at_high - at_low)
+        } else {
+            0.5 * (low + high)
+        };
+        if !(middle > low && middle < high) {
+            middle = 0.5 * (low + high);
+        }
+        let value = f(middle);
+        if value.abs() < 2e-15 || (high - low).abs() <= 2e-16 * high.abs().max(1.0) {
+            return middle;
+        }
+        if value < 0.0 {
+            (low, at_low) = (middle, value);
+            if side == -1 {
+                at_high *= 0.5;
+            }
+            side = -1;
+        } else {
+            (high, at_high) = (middle, value);
+            if side == 1 {
+                at_low *= 0.5;
+            }
+            side = 1;
+        }
+    }
+    0.5 * (low + high)
+}
+
+impl Linearised {
+    /// As a sum of powers of the tolerances with the same value and slopes here: exact for worst cases and for sums of
+    /// squares. What grows as a tolerance shrinks goes with its inverse square, so that the sum is convex.
+    pub(super) fn row(&self, at: &[f64]) -> Row {
+        let mut constant = self.value;
+        let terms = self.slopes.iter().zip(at).map(|(&slope, &t)| {
+            let power = match (self.linear, slope < 0.0) {
+                (true, _) => 1.0,
+                (false, false) => 2.0,
+                (false, true) => -2.0,
+            };
+            let coefficient = slope / power;
+            constant -= coefficient;
+            Term { coefficient, power, at: t }
+        });
+        let terms = terms.collect();
+        Row { constant, terms }
+    }
+}
+
+impl Constraint {
+    /// What there is of the requirement at these tolerances, in its own measure; None where that is unknown.
+    pub(super) fn measured(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<f64> {
+        let factors = responses.factors(priced, at);
+        match self.requirement {
+            Requirement::WorstCase => self.worst_case(responses, priced, at).map(|(value, _)| value),
+            Requirement::Rss => self.ratio(responses, priced, at),
+            Requirement::Sigma(_) => Some(responses.moments(self.characteristic, &factors)?.sigma()),
+            Requirement::Cpk(_) => {
+                let moments = responses.moments(self.characteristic, &factors)?;
+                capability::cpk(moments.mean(), moments.sigma(), self.limits)
+            }
+            Requirement::Yield(_) => {
+                let moments = responses.moments(self.characteristic, &factors)?;
+                let law = Law::fit(&moments).ok()?;
+                Capability::of(&law, moments.mean(), moments.sigma(), self.limits).yield_()
+            }
+        }
+    }
+
+    /// The dimensions without a cost that break it by themselves, most harmful first; empty where it could be kept if the others had
+    /// no tolerance at all.
+    pub(super) fn without_the_priced(&self, responses: &Responses, priced: &[Priced], factors: &[f64]) -> Vec<usize> {
+        let is_priced = |d: usize| priced.iter().any(|group| group.members.contains(&d));
+        let alone = |only: Option<usize>| -> Vec<f64> {
+            (0..factors.len())
+                .map(|d| match is_priced(d) || only.is_some_and(|only| only != d) {
+                    true => 1e-9,
+                    false => 1.0,
+                })
+                .collect()
+        };
+        if kept(self.value_at(responses, &alone(None))) {
+            return Vec::new();
+        }
+        let mut harm: Vec<(f64, usize)> = (0..factors.len())
+            .filter(|&d| !is_priced(d) && responses.dimensions[d].sigma() > 0.0)
+            .map(|d| (responses.spread(self.characteristic, d), d))
+            .filter(|(harm, _)| *harm > 0.0)
+            .collect();
+        harm.sort_by(|a, b| b.0.total_cmp(&a.0));
+        harm.into_iter().map(|(_, d)| d).collect()
+    }
+
+    /// By how much the cost falls per unit by which the lower limit goes down, the upper one up, or a required sigma grows.
+    pub(super) fn prices(
+        &self,
+        responses: &Responses,
+        priced: &[Priced],
+        at: &[f64],
+        multiplier: f64,
+    ) -> Option<[Option<f64>; 3]> {
+        if self.requirement == Requirement::WorstCase {
+            // The reach stays, and the room that it is divided by grows.
+            let price = multiplier * self.value(responses, priced, at) / self.nominal_room(responses)?;
+            return Some(match self.side {
+                Side::Below => [Some(price), None, None],
+                _ => [None, Some(price), None],
+            });
+        }
+        let moments = responses.moments(self.characteristic, &responses.factors(priced, at))?;
+        let doubled = 2.0 * multiplier * self.value(responses, priced, at);
+        if let Requirement::Sigma(most) = self.requirement {
+            return Some([None, None, Some(doubled / most)]);
+        }
+        let [lower, upper] = self.room_by_limits(&moments)?;
+        let of = |exists: bool, by: f64| (exists && by != 0.0).then_some(doubled * by);
+        Some([of(self.limits.lower().is_some(), lower), of(self.limits.upper().is_some(), upper), None])
+    }
+}

@@ -1,0 +1,65 @@
+//! The share of assemblies that keep the limits of all characteristics at once.
+
+use rayon::prelude::*;
+
+use super::response::Responses;
+use crate::problem::Problem;
+use crate::sampling::{Draws, Portion, Sampler, wilson};
+
+/// A share of a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointYield {
+    /// The share of assemblies within all limits.
+    pub value: f64,
+    /// Its standard error; None where all or none are.
+    pub standard_error: Option<f64>,
+    /// 95 % interval.
+    pub interval: [f64; 2],
+    /// Points of the surrogates; none of them is evaluated by the model.
+    pub samples: usize,
+}
+
+const ROWS: usize = 1024;
+const PORTIONS: usize = 32;
+
+/// Of surrogates at the tolerances of the problem; None with fewer than two characteristics with limits, and where something cannot
+/// be sampled or is unknown.
+pub(super) fn joint(problem: &Problem, responses: &Responses, seed: u64) -> Option<JointYield> {
+    let limits: Vec<usize> =
+        (0..problem.characteristics().len()).filter(|&c| problem.characteristics()[c].limits().exist()).collect();
+    if limits.len() < 2 {
+        return None;
+    }
+    let draws = Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, seed).ok()?;
+    let ones = vec![1.0; problem.dimensions().len()];
+    let surrogates: Vec<_> = (limits.iter())
+        .map(|&c| responses.relocated(c, &ones, None).map(|(surrogate, _)| surrogate))
+        .collect::<Option<_>>()?;
+    let varying = responses.varying();
+    let within = |portion: usize| -> Option<usize> {
+        let points = draws.points(Portion { replicate: 0, first: (portion * ROWS) as u64, rows: ROWS });
+        let columns: Vec<Vec<f64>> = (varying.iter())
+            .map(|&d| {
+                let (mean, sigma) = (problem.dimensions()[d].mean(), problem.dimensions()[d].sigma());
+                points.column(d).iter().map(|x| (x - mean) / sigma).collect()
+            })
+            .collect();
+        let mut keeps = vec![true; ROWS];
+        for (k, &c) in limits.iter().enumerate() {
+            let rises = surrogates[k].rises(&columns)?;
+            let limits = problem.characteristics()[c].limits();
+            let values = rises.iter().map(|rise| surrogates[k].centre + rise);
+            keeps.iter_mut().zip(values).for_each(|(keeps, value)| *keeps &= limits.contains(value));
+        }
+        Some(keeps.iter().filter(|keeps| **keeps).count())
+    };
+    let within: usize = (0..PORTIONS).into_par_iter().map(within).collect::<Option<Vec<_>>>()?.iter().sum();
+    let samples = ROWS * PORTIONS;
+    let value = within as f64 / samples as f64;
+    Some(JointYield {
+        value,
+        standard_error: (within > 0 && within < samples).then(|| (value * (1.0 - value) / samples as f64).sqrt()),
+        interval: wilson(within as f64, samples as f64),
+        samples,
+    })
+}

@@ -1,0 +1,48 @@
+//! Tolerance allocation: the cheapest tolerances with which every characteristic keeps what is required of it.
+//!
+//! ```text
+//! min  sum_g parts_g C_g(T_g)      over half bands T_g of G groups of dimensions
+//! subject to, for every characteristic with a requirement,
+//!      yield >= Y      four moments of the second-order surface at T, and the Pearson distribution that has them
+//!      Cpk >= c        min(U - mean, mean - L) / 3 sigma
+//!      sigma <= s
+//!      mean ± rss within [L, U]
+//!      linear worst case within [L, U]
+//! and  min_g <= T_g <= max_g,  or T_g one of a list of processes
+//! ```
+//!
+//! Derivatives are taken by an ordinary analysis at the present tolerances. From there moments follow any tolerance by themselves
+//! ([`Surrogate::relocated`](crate::surrogate::Surrogate::relocated)), so that the search costs no evaluation; its answer is analysed by
+//! the model again, and where that says otherwise, tolerances are chosen anew from the derivatives there, until both agree.
+//!
+//! What is claimed is shown: the residual of the conditions of Karush, Kuhn and Tucker for free tolerances, a bound that no
+//! choice can undercut for processes, and what every limit costs.
+
+mod augmented;
+mod branch;
+mod choose;
+mod closed_form;
+mod constraint;
+mod cost;
+mod front;
+mod joint;
+mod minimise;
+mod recentre;
+mod requirement;
+mod response;
+mod result;
+mod run;
+mod scaling;
+mod separable;
+mod solve;
+mod station;
+mod steps;
+mod task;
+
+pub use cost::{CostError, Curve, CurveKind, Offer, Priced};
+pub use front::FrontPoint;
+pub use joint::JointYield;
+pub use requirement::{Requirement, RequirementError};
+pub use result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, ShadowPrice, Status};
+pub use run::{allocate, allocate_within};
+pub use task::{AllocateError, AllocationOptions, AllocationTask};

@@ -1,0 +1,91 @@
+//! What a characteristic must keep.
+
+use crate::characteristic::Characteristic;
+
+/// What a characteristic must keep when tolerances are chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Requirement {
+    /// The share within the limits, by four moments and the Pearson fit, is at least this.
+    Yield(f64),
+    /// `min(U - mean, mean - L) / 3 sigma` is at least this.
+    Cpk(f64),
+    /// Sigma is at most this.
+    Sigma(f64),
+    /// The mean plus and minus the root of the sum of squares lies within the limits.
+    Rss,
+    /// The linear worst case lies within the limits.
+    WorstCase,
+}
+
+/// Why a requirement cannot be.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RequirementError {
+    /// A yield that is no share, or one that only a worst case can promise.
+    #[error("a required yield must lie between 0 and 1, both excluded, not {value}")]
+    ImpossibleYield {
+        /// As given.
+        value: f64,
+    },
+    /// A number that must be above 0.
+    #[error("the required {what} must be above 0, but is {value}")]
+    NotPositive {
+        /// `Cpk` or `sigma`.
+        what: &'static str,
+        /// As given.
+        value: f64,
+    },
+    /// Limits are needed to say what is required.
+    #[error("to require {what} of a characteristic, it needs limits")]
+    NoLimits {
+        /// What is required.
+        what: &'static str,
+    },
+}
+
+impl Requirement {
+    /// What is required, in a word.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Yield(_) => "yield",
+            Self::Cpk(_) => "Cpk",
+            Self::Sigma(_) => "sigma",
+            Self::Rss => "rss",
+            Self::WorstCase => "worst-case",
+        }
+    }
+
+    /// How much of it; None where the limits say that.
+    pub fn value(&self) -> Option<f64> {
+        match *self {
+            Self::Yield(value) | Self::Cpk(value) | Self::Sigma(value) => Some(value),
+            Self::Rss | Self::WorstCase => None,
+        }
+    }
+
+    /// Of this characteristic.
+    ///
+    /// # Errors
+    /// When the number is impossible, or limits are missing that it speaks of.
+    pub fn checked(self, characteristic: &Characteristic) -> Result<Self, RequirementError> {
+        match self {
+            Self::Yield(value) if !(value > 0.0 && value < 1.0) => {
+                return Err(RequirementError::ImpossibleYield { value });
+            }
+            Self::Cpk(value) | Self::Sigma(value) if !(value.is_finite() && value > 0.0) => {
+                return Err(RequirementError::NotPositive { what: self.name(), value });
+            }
+            _ => {}
+        }
+        if !matches!(self, Self::Sigma(_)) && !characteristic.limits().exist() {
+            let what = match self {
+                Self::Yield(_) => "a yield",
+                Self::Cpk(_) => "a Cpk",
+                Self::Rss => "an rss",
+                _ => "a worst case",
+            };
+            return Err(RequirementError::NoLimits { what });
+        }
+        Ok(self)
+    }
+}

@@ -1,0 +1,368 @@
+//! Every characteristic as a function of the tolerances, at fixed derivatives: nothing is evaluated.
+//!
+//! With half bands `f_j` times those at which the derivatives were taken, the dimension `j` lies at
+//! `u_j = d_j(f_j) + r_j(f_j) v_j` in its old sigmas, `v_j` standardised anew: a slope grows as `f`, a curvature as `f^2`, a product
+//! as `f_j f_k`, and the middle of an asymmetric band moves the mean.
+
+use std::borrow::Cow;
+
+use super::cost::Priced;
+use crate::dimension::Dimension;
+use crate::method::Outcome;
+use crate::moments::Moments;
+use crate::problem::Problem;
+use crate::surrogate::{InputShape, Inputs, Relocation, Surrogate, shapes};
+
+/// What is known of the characteristics near some tolerances.
+pub(super) struct Responses {
+    /// The dimensions as the derivatives were taken.
+    pub(super) dimensions: Vec<Dimension>,
+    /// Indices of those that vary and matter.
+    varying: Vec<usize>,
+    inputs: Inputs,
+    scaling: Vec<Scaling>,
+    reach: Vec<Reach>,
+    correlated: Vec<(usize, usize, f64)>,
+    pub(super) of: Vec<Response>,
+}
+
+/// One characteristic.
+pub(super) struct Response {
+    surrogate: Option<Surrogate>,
+    /// Its value at the nominal dimensions.
+    pub(super) nominal: Option<f64>,
+    /// Derivatives by every dimension at the means, in their own units; None where one is lost.
+    slopes: Option<Vec<f64>>,
+    /// Whether it can depend on each dimension.
+    depends: Vec<bool>,
+}
+
+/// How a varying dimension follows its tolerance.
+#[derive(Clone, Copy)]
+enum Scaling {
+    /// The same shape, sigma in proportion, the mean moved by `alpha` sigma for every further old half band.
+    Similar { alpha: f64 },
+    /// Another shape at every tolerance.
+    Reshaped,
+    /// It does not.
+    Still,
+}
+
+/// The band about the nominal: its middle is `at_none + factor moving`, its half width `factor half`.
+#[derive(Clone, Copy)]
+struct Reach {
+    at_none: f64,
+    moving: f64,
+    half: f64,
+}
+
+/// Differences smaller than this part are rounding.
+const SAME: f64 = 1e-12;
+/// Steps in `ln T` of the central differences of moments: truncation and rounding both near 1e-10.
+const STEP: f64 = 3e-5;
+
+impl Responses {
+    /// Of what a method found out.
+    pub(super) fn of(problem: &Problem, outcome: &Outcome) -> Self {
+        let dimensions = problem.dimensions().to_vec();
+        let varying = outcome.plan.varying().to_vec();
+        let scaling = varying.iter().map(|&d| Scaling::of(&dimensions[d])).collect();
+        let reach = dimensions.iter().map(Reach::of).collect();
+        let n = dimensions.len();
+        let pairs = (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b)));
+        let correlated = problem.correlation().map_or(Vec::new(), |correlation| {
+            pairs.map(|(a, b)| (a, b, correlation.of(a, b))).filter(|&(_, _, value)| value != 0.0).collect()
+        });
+        let of = (outcome.fitted.iter().enumerate())
+            .map(|(c, fitted)| {
+                let depends: Vec<bool> = (0..n).map(|d| outcome.plan.depends(c, d)).collect();
+                let slope = |d: usize| match &fitted.exact {
+                    _ if !depends[d] || dimensions[d].sigma() == 0.0 => Some(0.0),
+                    Some(exact) if exact.first[d].is_some() => exact.first[d],
+                    _ => Some(fitted.parts[d]?.slope() / outcome.plan.axis(d).scale),
+                };
+                Response {
+                    surrogate: fitted.surrogate.clone(),
+                    nominal: fitted.nominal,
+                    slopes: (0..n).map(slope).collect(),
+                    depends,
+                }
+            })
+            .collect();
+        Self { dimensions, varying, inputs: outcome.plan.inputs().clone(), scaling, reach, correlated, of }
+    }
+
+    /// Factors of all dimensions when the groups have these half bands.
+    pub(super) fn factors(&self, priced: &[Priced], at: &[f64]) -> Vec<f64> {
+        let mut factors = vec![1.0; self.dimensions.len()];
+        for (group, &t) in priced.iter().zip(at) {
+            group.members.iter().for_each(|&d| factors[d] = t / self.dimensions[d].half_band());
+        }
+        factors
+    }
+
+    /// Whether any member of the group has a part in the characteristic.
+    pub(super) fn depends(&self, characteristic: usize, group: &Priced) -> bool {
+        group.members.iter().any(|&d| self.of[characteristic].depends[d] && self.varying.contains(&d))
+    }
+
+    /// Where the inputs are when the dimensions have `factors` times their tolerances and nominals moved by `shifts`, in sigmas.
+    fn moved(&self, factors: &[f64], shifts: Option<&[f64]>) -> Option<(Vec<Relocation>, Cow<'_, Inputs>)> {
+        let mut inputs = Cow::Borrowed(&self.inputs);
+        let mut moved = Vec::with_capacity(self.varying.len());
+        for (position, (&d, scaling)) in self.varying.iter().zip(&self.scaling).enumerate() {
+            let factor = factors[d];
+            let more = shifts.map_or(0.0, |shifts| shifts[d]);
+            let mut to = match scaling {
+                _ if factor == 1.0 => Relocation::NONE,
+                Scaling::Still => Relocation::NONE,
+                Scaling::Similar { alpha } => Relocation { shift: alpha * (factor - 1.0), stretch: factor },
+                Scaling::Reshaped => {
+                    let old = &self.dimensions[d];
+                    let new = old.scaled(factor)?.ok()?;
+                    let mut shapes: Vec<InputShape> = inputs.shapes().to_vec();
+                    shapes[position] = shapes_of(&new)?;
+                    inputs = Cow::Owned(Inputs::new(shapes, inputs.correlation().cloned()));
+                    Relocation { shift: (new.mean() - old.mean()) / old.sigma(), stretch: new.sigma() / old.sigma() }
+                }
+            };
+            to.shift += more;
+            moved.push(to);
+        }
+        Some((moved, inputs))
+    }
+
+    /// The surrogate of a characteristic and its inputs at other tolerances.
+    pub(super) fn relocated(
+        &self,
+        characteristic: usize,
+        factors: &[f64],
+        shifts: Option<&[f64]>,
+    ) -> Option<(Surrogate, Cow<'_, Inputs>)> {
+        let (moved, inputs) = self.moved(factors, shifts)?;
+        Some((self.of[characteristic].surrogate.as_ref()?.relocated(&moved), inputs))
+    }
+
+    /// Four moments of a characteristic at other tolerances; None where they are unknown.
+    pub(super) fn moments(&self, characteristic: usize, factors: &[f64]) -> Option<Moments> {
+        self.moments_shifted(characteristic, factors, None)
+    }
+
+    /// The same with nominals moved by `shifts`, in sigmas.
+    pub(super) fn moments_shifted(
+        &self,
+        characteristic: usize,
+        factors: &[f64],
+        shifts: Option<&[f64]>,
+    ) -> Option<Moments> {
+        let (surrogate, inputs) = self.relocated(characteristic, factors, shifts)?;
+        Some(surrogate.contributions(&inputs)?.moments)
+    }
+
+    /// Derivatives of mean, `ln sigma`, skewness and excess by `ln T` of every group.
+    pub(super) fn moment_slopes(
+        &self,
+        characteristic: usize,
+        priced: &[Priced],
+        factors: &[f64],
+    ) -> Option<Vec<[f64; 4]>> {
+        let mut slopes = vec![[0.0; 4]; priced.len()];
+        let mut trial = factors.to_vec();
+        for (group, slope) in priced.iter().zip(&mut slopes) {
+            if !self.depends(characteristic, group) {
+                continue;
+            }
+            let mut at = |step: f64| {
+                group.members.iter().for_each(|&d| trial[d] = factors[d] * step.exp());
+                let moments = self.moments(characteristic, &trial)?;
+                Some([moments.mean(), moments.sigma().ln(), moments.skewness()?, moments.excess()?])
+            };
+            let (up, down) = (at(STEP)?, at(-STEP)?);
+            group.members.iter().for_each(|&d| trial[d] = factors[d]);
+            for (slope, (up, down)) in slope.iter_mut().zip(up.into_iter().zip(down)) {
+                *slope = (up - down) / (2.0 * STEP);
+            }
+        }
+        Some(slopes)
+    }
+
+    /// How far the linear worst case lies beyond the nominal value, as `constant + sum_g coefficient_g T_g`: above, or below
+    /// with its sign turned.
+    pub(super) fn worst_case(&self, characteristic: usize, priced: &[Priced], above: bool) -> Option<(f64, Vec<f64>)> {
+        let slopes = self.of[characteristic].slopes.as_ref()?;
+        let sign = if above { 1.0 } else { -1.0 };
+        let mut coefficients = vec![0.0; priced.len()];
+        let mut constant = 0.0;
+        let mut zones: Vec<(&str, Option<usize>, f64)> = Vec::new();
+        for (d, &slope) in slopes.iter().enumerate() {
+            let reach = self.reach[d];
+            let group = priced.iter().position(|group| group.members.contains(&d));
+            constant += sign * slope * reach.at_none;
+            // Per half band of the derivatives; coefficients are per unit of T.
+            let mut add = |value: f64| match group {
+                Some(g) => coefficients[g] += value / self.dimensions[d].half_band(),
+                None => constant += value,
+            };
+            add(sign * slope * reach.moving);
+            let wide = (slope * reach.half).abs();
+            match self.dimensions[d].zone() {
+                None => add(wide),
+                Some(zone) => match zones.iter_mut().find(|(name, ..)| *name == zone) {
+                    Some((_, _, radius)) => *radius = radius.hypot(wide),
+                    None => zones.push((zone, group, wide)),
+                },
+            }
+        }
+        for (zone, group, radius) in zones {
+            let member = self.dimensions.iter().find(|dimension| dimension.zone() == Some(zone));
+            match group.zip(member) {
+                Some((g, member)) => coefficients[g] += radius / member.half_band(),
+                None => constant += radius,
+            }
+        }
+        Some((constant, coefficients))
+    }
+
+    /// The squared root of the sum of squares, and its derivatives by `ln T` of every group.
+    pub(super) fn rss_squared(
+        &self,
+        characteristic: usize,
+        priced: &[Priced],
+        factors: &[f64],
+    ) -> Option<(f64, Vec<f64>)> {
+        let slopes = self.of[characteristic].slopes.as_ref()?;
+        let mut member_of = vec![None; slopes.len()];
+        priced.iter().enumerate().for_each(|(g, group)| group.members.iter().for_each(|&d| member_of[d] = Some(g)));
+        let part = |d: usize| slopes[d] * self.reach[d].half * factors[d];
+        let mut slope = vec![0.0; priced.len()];
+        let mut total = 0.0;
+        let squares = (0..slopes.len()).map(|d| (d, d, 0.5));
+        for (a, b, coefficient) in squares.chain(self.correlated.iter().copied()) {
+            let value = 2.0 * coefficient * part(a) * part(b);
+            total += value;
+            for d in [a, b] {
+                if let Some(g) = member_of[d] {
+                    slope[g] += value;
+                }
+            }
+        }
+        Some((total, slope))
+    }
+
+    /// The variance of a plain characteristic, and what every group adds to it.
+    pub(super) fn plain_squares(
+        &self,
+        characteristic: usize,
+        priced: &[Priced],
+        factors: &[f64],
+    ) -> Option<(f64, Vec<f64>)> {
+        let surrogate = self.of[characteristic].surrogate.as_ref()?;
+        let square = |position: usize| {
+            let factor = factors[self.varying[position]];
+            surrogate.parts[position].map_or(0.0, |part| (part.slope() * factor).powi(2))
+        };
+        let total = (0..self.varying.len()).map(square).sum();
+        let of = |group: &Priced| {
+            let positions = group.members.iter().filter_map(|d| self.varying.iter().position(|varying| varying == d));
+            positions.map(square).sum()
+        };
+        Some((total, priced.iter().map(of).collect()))
+    }
+
+    /// How much a dimension by itself lets a characteristic vary: its part's largest coefficient, or its reach.
+    pub(super) fn spread(&self, characteristic: usize, d: usize) -> f64 {
+        let one = &self.of[characteristic];
+        let part = self
+            .varying
+            .iter()
+            .position(|&varying| varying == d)
+            .and_then(|position| one.surrogate.as_ref()?.parts[position]);
+        let reach = one.slopes.as_ref().map_or(0.0, |slopes| (slopes[d] * self.reach[d].half).abs());
+        part.map_or(reach, |part| reach.max(part.largest()))
+    }
+
+    /// Whether mean and shape of the characteristic cannot change with the tolerances, so that sigma says everything: a linear
+    /// surrogate of normal inputs whose bands do not move.
+    pub(super) fn is_plain(&self, characteristic: usize) -> bool {
+        let Some(surrogate) = &self.of[characteristic].surrogate else { return false };
+        let straight = surrogate.parts.iter().all(|part| part.is_some_and(|part| part.is_straight(SAME)));
+        let straight = straight
+            && surrogate.interactions.pairs().iter().all(|&(j, k, product)| {
+                let slope = |at: usize| surrogate.parts[at].map_or(0.0, |part| part.slope().abs());
+                product.abs() <= SAME * slope(j).max(slope(k))
+            });
+        let normal =
+            self.inputs.shapes().iter().all(|shape| shape.moments == crate::distribution::StandardMoments::NORMAL);
+        let still = self.scaling.iter().all(|scaling| {
+            matches!(scaling, Scaling::Similar { alpha } if *alpha == 0.0) || matches!(scaling, Scaling::Still)
+        });
+        straight && normal && still && self.correlated.is_empty()
+    }
+}
+
+fn shapes_of(dimension: &Dimension) -> Option<InputShape> {
+    shapes(dimension.distribution()).pop()
+}
+
+impl Scaling {
+    fn of(dimension: &Dimension) -> Self {
+        let (mean, sigma) = (dimension.mean(), dimension.sigma());
+        let Some(law) = dimension.distribution() else { return Self::Still };
+        let scaled = |factor: f64| dimension.scaled(factor).and_then(Result::ok);
+        let (Some(half), Some(double)) = (scaled(0.5), scaled(2.0)) else {
+            return if dimension.scaled(1.0).is_some() { Self::Reshaped } else { Self::Still };
+        };
+        let alpha = (double.mean() - mean) / sigma;
+        // Rounding of the mean, seen in sigmas.
+        let blur = 8.0 * f64::EPSILON * (mean.abs() + double.mean().abs()) / sigma;
+        let affine = ((half.mean() - mean) / sigma + 0.5 * alpha).abs() <= blur + SAME * alpha.abs();
+        let wide = (double.sigma() / sigma - 2.0).abs() < SAME && (half.sigma() / sigma - 0.5).abs() < SAME;
+        let shape = law.standard_moments();
+        let same = [&half, &double].iter().all(|other| {
+            other.distribution().is_some_and(|law| {
+                let other = law.standard_moments().raw();
+                other.iter().zip(shape.raw()).all(|(a, b)| (a - b).abs() <= SAME * b.abs().max(1.0))
+            })
+        });
+        match affine && wide && same {
+            true => Self::Similar { alpha: if alpha.abs() <= blur { 0.0 } else { alpha } },
+            false => Self::Reshaped,
+        }
+    }
+}
+
+impl Reach {
+    fn of(dimension: &Dimension) -> Self {
+        let [lower, upper] = dimension.reach();
+        let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
+        // A band moves with its tolerance; without one the mean stays where it is.
+        match dimension.tolerance() {
+            Some(_) => Self { at_none: 0.0, moving: middle, half },
+            None => Self { at_none: middle, moving: 0.0, half },
+        }
+    }
+}
+
+impl Responses {
+    /// Every dimension that varies, or every zone, as a group of its own: as if all tolerances were free.
+    pub(super) fn every_dimension(&self) -> Vec<Priced> {
+        let mut groups: Vec<Priced> = Vec::new();
+        for (d, dimension) in self.dimensions.iter().enumerate().filter(|(_, dimension)| dimension.sigma() > 0.0) {
+            let zone = dimension.zone();
+            let known =
+                groups.iter_mut().find(|group| zone.is_some() && self.dimensions[group.members[0]].zone() == zone);
+            match known {
+                Some(group) => group.members.push(d),
+                None => groups.push(Priced { members: vec![d], parts: 1.0, offers: Vec::new() }),
+            }
+        }
+        groups
+    }
+}
+
+impl Responses {
+    /// Indices of the dimensions that vary and matter.
+    pub(super) fn varying(&self) -> &[usize] {
+        &self.varying
+    }
+}

@@ -1,0 +1,186 @@
+//! What an allocation found out.
+
+use super::front::FrontPoint;
+use super::joint::JointYield;
+use super::requirement::Requirement;
+use crate::analysis::Analysis;
+use crate::problem::Problem;
+use crate::simulation::Simulation;
+
+/// How it ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Every requirement is kept, and nothing cheaper does: within rounding.
+    Optimal,
+    /// Every requirement is kept; how much cheaper it could be is bounded, or not known.
+    AlmostOptimal,
+    /// No tolerances within the bounds keep every requirement.
+    Infeasible,
+    /// Stopped before it was known.
+    OutOfTime,
+}
+
+impl Status {
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Optimal => "optimal",
+            Self::AlmostOptimal => "almost-optimal",
+            Self::Infeasible => "infeasible",
+            Self::OutOfTime => "out-of-time",
+        }
+    }
+}
+
+/// Which bound a tolerance has met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bound {
+    /// Its least.
+    Least,
+    /// Its greatest.
+    Greatest,
+}
+
+/// One dimension with a cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Allocated {
+    /// Index of the dimension in the problem.
+    pub dimension: usize,
+    /// Half band before.
+    pub before: f64,
+    /// Half band after.
+    pub after: f64,
+    /// What it cost; None where no process holds that tolerance.
+    pub cost_before: Option<f64>,
+    /// What it costs.
+    pub cost_after: Option<f64>,
+    /// The process, where several compete.
+    pub process: Option<String>,
+    /// The bound that it has met.
+    pub bound: Option<Bound>,
+}
+
+/// A nominal value that has moved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moved {
+    /// Index of the dimension in the problem.
+    pub dimension: usize,
+    /// The nominal value before.
+    pub before: f64,
+    /// The nominal value after.
+    pub after: f64,
+}
+
+/// What a characteristic must keep, and what it has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kept {
+    /// Index of the characteristic in the problem.
+    pub characteristic: usize,
+    /// What is required.
+    pub requirement: Requirement,
+    /// What there was, in the requirement's own measure: yield, Cpk, sigma, or the greatest part of a limit's room that rss or worst case takes.
+    pub before: Option<f64>,
+    /// What there is.
+    pub after: Option<f64>,
+    /// Whether it was kept before.
+    pub met_before: bool,
+    /// Whether it is kept.
+    pub met_after: bool,
+}
+
+/// What a requirement costs: by how much the cost falls per unit by which something gives way.
+///
+/// Where both sides of a requirement hold the cost up, widening one of them alone saves nothing, and only `both` is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShadowPrice {
+    /// Index of the characteristic in the problem.
+    pub characteristic: usize,
+    /// Per unit by which both limits go outwards, or the only one.
+    pub both: Option<f64>,
+    /// Per unit by which its lower limit goes down.
+    pub lower: Option<f64>,
+    /// Per unit by which its upper limit goes up.
+    pub upper: Option<f64>,
+    /// Per unit of a required sigma.
+    pub sigma: Option<f64>,
+}
+
+/// A requirement that cannot be kept.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attainable {
+    /// Index of the characteristic in the problem.
+    pub characteristic: usize,
+    /// What is required.
+    pub requirement: Requirement,
+    /// The best that the bounds of the tolerances allow, in the requirement's own measure.
+    pub best: Option<f64>,
+    /// The dimensions without cost that alone break the requirement, most harmful first; empty where the others are to blame too.
+    pub because: Vec<usize>,
+    /// Whether it could be kept if it were the only one.
+    pub together: bool,
+}
+
+/// What shows that nothing is cheaper.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Proof {
+    /// The largest violation of the conditions of Karush, Kuhn and Tucker; None where everything is chosen from lists.
+    pub residual: Option<f64>,
+    /// No choice of processes costs less; None without lists, or where no bound is known.
+    pub bound: Option<f64>,
+    /// Whether the bound is exact rather than resting on a sample of choices.
+    pub rigorous: bool,
+    /// Nodes of the branch and bound.
+    pub nodes: usize,
+    /// Whether Lagrange's condition had the answer in closed form.
+    pub closed_form: bool,
+}
+
+/// What an allocation found out. What is unknown is None.
+#[derive(Debug, Clone)]
+pub struct Allocation {
+    /// How it ended.
+    pub status: Status,
+    /// The problem with the tolerances and nominal values found; as it was where none were.
+    pub problem: Problem,
+    /// The analysis at the tolerances before.
+    pub before: Analysis,
+    /// The analysis by the model at the tolerances after; None where none were found.
+    pub after: Option<Analysis>,
+    /// Whether the model was evaluated at the tolerances after.
+    pub confirmed: bool,
+    /// All costs before; None where no process holds some tolerance.
+    pub cost_before: Option<f64>,
+    /// All costs after.
+    pub cost_after: Option<f64>,
+    /// Every dimension with a cost.
+    pub tolerances: Vec<Allocated>,
+    /// Nominal values that have moved.
+    pub moved: Vec<Moved>,
+    /// Every requirement.
+    pub requirements: Vec<Kept>,
+    /// What a requirement that holds the cost up costs; empty where everything is chosen from lists.
+    pub prices: Vec<ShadowPrice>,
+    /// What shows that nothing is cheaper.
+    pub proof: Proof,
+    /// The requirement that cannot be kept.
+    pub attainable: Option<Attainable>,
+    /// By which one factor all tolerances may be multiplied, before, until some requirement is just kept; None where no factor does, or
+    /// any.
+    pub loosest_before: Option<f64>,
+    /// The same after.
+    pub loosest_after: Option<f64>,
+    /// The share of assemblies that keep all limits, where there are several characteristics with limits: before and after.
+    pub joint: [Option<JointYield>; 2],
+    /// Cost against yield.
+    pub front: Vec<FrontPoint>,
+    /// The model itself at the tolerances after, where it was asked for.
+    pub confirmation: Option<Simulation>,
+    /// Points sent to the model, those of a confirmation by Monte Carlo included.
+    pub evaluations: u64,
+    /// Answers taken from an earlier run.
+    pub reused: u64,
+    /// How often derivatives were taken.
+    pub rounds: usize,
+    /// Whether it was stopped before its end.
+    pub stopped: bool,
+}

@@ -1,0 +1,53 @@
+//! One factor for all tolerances.
+
+use super::constraint::{Constraint, kept};
+use super::response::Responses;
+
+/// How near the factor is found.
+const NEAR: f64 = 1e-10;
+/// Steps of the search for the first factor at which a requirement is broken.
+const STEP: f64 = 1.02;
+/// From where to where.
+const RANGE: [f64; 2] = [1e-4, 100.0];
+
+/// The factor by which all tolerances that can be scaled may be multiplied until some requirement is just kept: the first on the way up
+/// from 1 at which one breaks, or down from 1 at which none does. None where none is kept however tight, or all however loose.
+///
+/// At fixed derivatives, so that far from 1 it is an extrapolation.
+pub(super) fn loosest(responses: &Responses, constraints: &[Constraint]) -> Option<f64> {
+    let keeps = |factor: f64| {
+        let factors: Vec<f64> = vec![factor; responses.dimensions.len()];
+        constraints.iter().all(|constraint| kept(constraint.value_at(responses, &factors)))
+    };
+    if constraints.is_empty() {
+        return None;
+    }
+    let up = keeps(1.0);
+    let (mut inside, mut outside) = (1.0, 1.0);
+    loop {
+        if up {
+            outside = inside * STEP;
+            if outside > RANGE[1] {
+                return None;
+            }
+            if !keeps(outside) {
+                break;
+            }
+            inside = outside;
+        } else {
+            inside = outside / STEP;
+            if inside < RANGE[0] {
+                return None;
+            }
+            if keeps(inside) {
+                break;
+            }
+            outside = inside;
+        }
+    }
+    while outside / inside - 1.0 > NEAR {
+        let middle = (inside * outside).sqrt();
+        if keeps(middle) { inside = middle } else { outside = middle }
+    }
+    Some(inside)
+}

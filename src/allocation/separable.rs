@@ -1,0 +1,341 @@
+//! The separable problem that every step of the allocation solves, and its dual.
+//!
+//! ```text
+//! min  sum_g parts_g C_g(T_g)     subject to   constant_k + sum_g p_kg (T_g/at_kg)^q_kg <= 1  for every k,   min_g <= T_g <= max_g
+//! D(lambda) = sum_k lambda_k (constant_k - 1) + sum_g min over offers and T of [ parts_g C_g(T) + sum_k lambda_k p_kg (T/at_kg)^q_kg ]
+//! ```
+//!
+//! with costs that are convex in `T` and `q` of 1, 2 or -2, the coefficient above 0 unless `q = 1`. For one offer a group the problem is
+//! convex: the greatest `D` over `lambda >= 0` is the least cost. For several, `D` of any `lambda` is a bound that no choice of
+//! processes can beat (weak duality), and the greatest one is the bound of the convex relaxation.
+
+use faer::Mat;
+use faer::linalg::solvers::Solve;
+
+use super::cost::{Offer, Priced};
+
+/// One constraint.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Row {
+    pub(super) constant: f64,
+    /// One for every group.
+    pub(super) terms: Vec<Term>,
+}
+
+/// `coefficient (T/at)^power`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Term {
+    pub(super) coefficient: f64,
+    pub(super) power: f64,
+    pub(super) at: f64,
+}
+
+impl Term {
+    pub(super) fn value(&self, t: f64) -> f64 {
+        let x = t / self.at;
+        self.coefficient
+            * match self.power {
+                1.0 => x,
+                2.0 => x * x,
+                _ => 1.0 / (x * x),
+            }
+    }
+}
+
+impl Row {
+    /// Its value; kept where it is at most 1.
+    pub(super) fn value(&self, at: &[f64]) -> f64 {
+        self.constant + self.terms.iter().zip(at).map(|(term, &t)| term.value(t)).sum::<f64>()
+    }
+}
+
+/// A separable problem; every group has the offers that are still allowed.
+pub(super) struct Separable<'a> {
+    pub(super) priced: &'a [Priced],
+    pub(super) rows: &'a [Row],
+}
+
+/// The best of a group for given multipliers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Best {
+    pub(super) offer: usize,
+    pub(super) t: f64,
+    /// Cost and priced use of the constraints together.
+    pub(super) value: f64,
+    /// Second derivative of that by `ln T`, 0 at a bound.
+    curvature: f64,
+}
+
+/// Constraints are kept to this part of their room.
+pub(super) const KEPT: f64 = 1e-13;
+/// A rise of the dual that may be rounding, as a part of it.
+const FLAT: f64 = 1e-12;
+const NEWTON: usize = 60;
+const SWEEPS: usize = 40;
+
+impl Separable<'_> {
+    /// The best of one group among the offers from `range`.
+    pub(super) fn best(&self, g: usize, multipliers: &[f64], range: std::ops::Range<usize>) -> Best {
+        let offers = &self.priced[g].offers[range.clone()];
+        let best =
+            offers.iter().enumerate().map(|(index, offer)| self.of_offer(g, offer, index + range.start, multipliers));
+        best.reduce(|a, b| if b.value < a.value { b } else { a }).expect("every group has an offer")
+    }
+
+    fn of_offer(&self, g: usize, offer: &Offer, index: usize, multipliers: &[f64]) -> Best {
+        let parts = self.priced[g].parts;
+        let slope = |t: f64| {
+            let [first, second] = offer.curve.log_derivatives(t);
+            let (mut first, mut second) = (parts * first, parts * second);
+            for (row, &multiplier) in self.rows.iter().zip(multipliers).filter(|(_, multiplier)| **multiplier > 0.0) {
+                let term = &row.terms[g];
+                if term.coefficient != 0.0 {
+                    let use_ = multiplier * term.power * term.value(t);
+                    first += use_;
+                    second += term.power * use_;
+                }
+            }
+            (first, second)
+        };
+        let (t, curvature) =
+            if offer.min == offer.max { (offer.min, 0.0) } else { least(&slope, offer.min, offer.max) };
+        let uses = self.rows.iter().zip(multipliers).filter(|(_, multiplier)| **multiplier > 0.0);
+        let used: f64 = uses.map(|(row, multiplier)| multiplier * row.terms[g].value(t)).sum();
+        Best { offer: index, t, value: parts * offer.curve.cost(t) + used, curvature }
+    }
+
+    fn all(&self, multipliers: &[f64]) -> Vec<Best> {
+        (0..self.priced.len()).map(|g| self.best(g, multipliers, 0..self.priced[g].offers.len())).collect()
+    }
+
+    fn bound(&self, multipliers: &[f64], best: &[Best]) -> f64 {
+        let constants = self.rows.iter().zip(multipliers).map(|(row, multiplier)| multiplier * (row.constant - 1.0));
+        constants.sum::<f64>() + best.iter().map(|best| best.value).sum::<f64>()
+    }
+
+    /// Multipliers with the greatest dual value, and the tolerances that belong to them: the optimum, where every group has one offer
+    /// and the problem can be solved at all.
+    ///
+    /// Each multiplier alone first, which brings any start near; then Newton steps on those above 0, whose Hessian is
+    /// `-sum_g j_g j_g' / curvature_g` over the groups within their bounds.
+    pub(super) fn solve(&self, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut multipliers = start.to_vec();
+        let mut misses = self.misses(&multipliers);
+        for round in 0..SWEEPS {
+            if self.newton(&mut multipliers, &mut misses) {
+                break;
+            }
+            for k in 0..multipliers.len() {
+                self.alone(k, &mut multipliers);
+            }
+            misses = self.misses(&multipliers);
+            // With one constraint, alone is all there is.
+            if multipliers.len() == 1 && round > 0 {
+                break;
+            }
+        }
+        let at = self.all(&multipliers).iter().map(|best| best.t).collect();
+        (multipliers, at)
+    }
+
+    fn misses(&self, multipliers: &[f64]) -> Vec<f64> {
+        self.misses_at(&self.all(multipliers))
+    }
+
+    fn misses_at(&self, best: &[Best]) -> Vec<f64> {
+        let at: Vec<f64> = best.iter().map(|best| best.t).collect();
+        self.rows.iter().map(|row| row.value(&at) - 1.0).collect()
+    }
+
+    /// How far from what is necessary: constraints exceeded, or kept with room and a price.
+    fn error(multipliers: &[f64], misses: &[f64]) -> f64 {
+        let one = |(&multiplier, &miss): (&f64, &f64)| if multiplier > 0.0 { miss.abs() } else { miss.max(0.0) };
+        multipliers.iter().zip(misses).map(one).fold(0.0, f64::max)
+    }
+
+    /// Newton steps as long as the dual rises: steps that only bring the misses down may undo what [`alone`](Self::alone) does, and
+    /// it theirs, for ever.
+    fn newton(&self, multipliers: &mut Vec<f64>, misses: &mut Vec<f64>) -> bool {
+        for _ in 0..NEWTON {
+            let error = Self::error(multipliers, misses);
+            if error <= KEPT {
+                return true;
+            }
+            let active: Vec<usize> =
+                (0..multipliers.len()).filter(|&k| multipliers[k] > 0.0 || misses[k] > 0.0).collect();
+            let best = self.all(multipliers);
+            let value = self.bound(multipliers, &best);
+            let n = active.len();
+            let mut matrix = Mat::<f64>::zeros(n, n);
+            for (g, best) in best.iter().enumerate().filter(|(_, best)| best.curvature > 0.0) {
+                let slopes: Vec<f64> = (active.iter())
+                    .map(|&k| self.rows[k].terms[g].power * self.rows[k].terms[g].value(best.t))
+                    .collect();
+                for (a, slope) in slopes.iter().enumerate() {
+                    slopes.iter().enumerate().for_each(|(b, other)| matrix[(a, b)] += slope * other / best.curvature);
+                }
+            }
+            let largest = (0..n).map(|a| matrix[(a, a)]).fold(0.0, f64::max);
+            if largest == 0.0 {
+                return false;
+            }
+            // Two sides of a characteristic may ask for the same: any split between them does.
+            (0..n).for_each(|a| matrix[(a, a)] += 1e-13 * largest);
+            let right = Mat::from_fn(n, 1, |a, _| misses[active[a]]);
+            let step = matrix.partial_piv_lu().solve(&right);
+            if step.col_as_slice(0).iter().any(|step| !step.is_finite()) {
+                return false;
+            }
+            let mut accepted = false;
+            for halved in 0..12 {
+                let part = 0.5f64.powi(halved);
+                let mut trial = multipliers.clone();
+                active
+                    .iter()
+                    .zip(step.col_as_slice(0))
+                    .for_each(|(&k, step)| trial[k] = (trial[k] + part * step).max(0.0));
+                let best = self.all(&trial);
+                let found = self.misses_at(&best);
+                let rise = self.bound(&trial, &best) - value;
+                let foretold: f64 =
+                    active.iter().map(|&k| misses[k] * (trial[k] - multipliers[k])).sum::<f64>().max(0.0);
+                // Near the top the dual is flat to its last digits, and misses tell more.
+                let flat =
+                    rise.abs() <= FLAT * value.abs() && Self::error(&trial, &found) < error * (1.0 - 1e-4 * part);
+                if flat || rise > 1e-4 * foretold {
+                    (*multipliers, *misses, accepted) = (trial, found, true);
+                    break;
+                }
+            }
+            if !accepted {
+                // As near as rounding allows.
+                return error <= 1e3 * KEPT;
+            }
+        }
+        false
+    }
+
+    /// The multiplier of one constraint that keeps it just so, the others given.
+    fn alone(&self, k: usize, multipliers: &mut [f64]) {
+        let mut miss = |value: f64| {
+            multipliers[k] = value;
+            let at: Vec<f64> = self.all(multipliers).iter().map(|best| best.t).collect();
+            self.rows[k].value(&at) - 1.0
+        };
+        if miss(0.0) <= 0.0 {
+            multipliers[k] = 0.0;
+            return;
+        }
+        let scale: f64 =
+            self.priced.iter().map(|group| group.parts * group.offers[0].curve.cost(group.offers[0].min)).sum();
+        let (mut low, mut high) = (0.0, scale.max(f64::MIN_POSITIVE) * 1e-6);
+        while miss(high) > 0.0 {
+            (low, high) = (high, 16.0 * high);
+            if high > 1e30 * scale.max(1.0) {
+                multipliers[k] = high;
+                return;
+            }
+        }
+        for _ in 0..80 {
+            let middle = if low == 0.0 { 1e-3 * high } else { (low * high).sqrt() };
+            if low > 0.0 && high / low - 1.0 < 1e-9 {
+                break;
+            }
+            if miss(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        multipliers[k] = high;
+    }
+
+    /// A bound on the cost of any choice from these ranges of offers, near the greatest: at most `steps` steps from
+    /// `multipliers`, which keep the best ones found. `known` is a cost that can be had.
+    pub(super) fn bounded(
+        &self,
+        ranges: &[std::ops::Range<usize>],
+        multipliers: &mut Vec<f64>,
+        known: f64,
+        steps: usize,
+    ) -> (f64, Vec<Best>) {
+        let all = |multipliers: &[f64]| -> Vec<Best> {
+            ranges.iter().enumerate().map(|(g, range)| self.best(g, multipliers, range.clone())).collect()
+        };
+        let mut at = multipliers.clone();
+        let mut best = all(&at);
+        let mut greatest = self.bound(&at, &best);
+        let mut of_greatest = best.clone();
+        let mut patience = 0;
+        let mut length = 1.0;
+        let target = if known.is_finite() { known } else { greatest.abs().max(1.0) * 1.05 };
+        for _ in 0..steps {
+            if greatest >= known {
+                break;
+            }
+            let slopes: Vec<f64> = (self.rows.iter())
+                .map(|row| {
+                    row.constant - 1.0 + row.terms.iter().zip(&best).map(|(term, best)| term.value(best.t)).sum::<f64>()
+                })
+                .collect();
+            let useful = |k: usize| at[k] > 0.0 || slopes[k] > 0.0;
+            let square: f64 = (0..at.len()).filter(|&k| useful(k)).map(|k| slopes[k] * slopes[k]).sum();
+            if square <= 1e-24 {
+                break;
+            }
+            // Polyak's step towards the cost that is known.
+            let value = self.bound(&at, &best);
+            let step = length * (target - value).max(1e-3 * target.abs()) / square;
+            at.iter_mut().zip(&slopes).for_each(|(at, slope)| *at = (*at + step * slope).max(0.0));
+            best = all(&at);
+            let value = self.bound(&at, &best);
+            if value > greatest {
+                (greatest, patience) = (value, 0);
+                multipliers.clone_from(&at);
+                of_greatest.clone_from(&best);
+            } else {
+                patience += 1;
+                if patience >= 4 {
+                    (length, patience) = (0.5 * length, 0);
+                    at.clone_from(multipliers);
+                    best.clone_from(&of_greatest);
+                }
+                if length < 1e-3 {
+                    break;
+                }
+            }
+        }
+        (greatest, of_greatest)
+    }
+}
+
+/// Where a convex function of `T` is least between two bounds, from its first and second derivative by `ln T`; with the second
+/// one there, 0 at a bound.
+fn least(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64) -> (f64, f64) {
+    if slope(min).0 >= 0.0 {
+        return (min, 0.0);
+    }
+    if slope(max).0 <= 0.0 {
+        return (max, 0.0);
+    }
+    let (mut low, mut high) = (min.ln(), max.ln());
+    let mut x = 0.5 * (low + high);
+    let mut last = f64::INFINITY;
+    for _ in 0..200 {
+        let (first, second) = slope(x.exp());
+        if first == 0.0 {
+            return (x.exp(), second.max(f64::MIN_POSITIVE));
+        }
+        if first > 0.0 {
+            high = x
+        } else {
+            low = x
+        }
+        let newton = x - first / second;
+        let inside = second > 0.0 && newton > low && newton < high && (newton - x).abs() < 0.7 * last;
+        let next = if inside { newton } else { 0.5 * (low + high) };
+        last = (next - x).abs();
+        x = next;
+        if last <= 4.0 * f64::EPSILON * x.abs().max(1.0) {
+            break;
+        }
+    }
+    let t = x.exp().clamp(min, max);
+    (t, slope(t).1.max(f64::MIN_POSITIVE))
+}

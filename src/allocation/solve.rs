@@ -1,0 +1,330 @@
+//! The cheapest tolerances when every group has one offer.
+//!
+//! Each constraint is replaced by the sum of powers that has its value and slopes at the present tolerances
+//! ([`Linearised::row`](super::constraint::Linearised::row)); the separable convex problem that results is solved exactly, and so on from its solution. Worst
+//! cases and sums of squares are such sums, so that one step does; for second-order moments the steps shrink as the curvature's
+//! part of the variance. Where it stands still the true slopes fulfil the conditions of Karush, Kuhn and Tucker. Source: the
+//! idea of convex approximations, C. Fleury, "Structural optimization: a new dual method using mixed variables", Int. J. Numerical
+//! Methods in Engineering 23 (1986).
+
+use rayon::prelude::*;
+
+use super::augmented::augmented;
+use super::closed_form::closed_form;
+use super::constraint::{Constraint, Linearised, kept};
+use super::cost::Priced;
+use super::response::Responses;
+use super::separable::{Row, Separable};
+
+/// What is required of which tolerances.
+#[derive(Clone, Copy)]
+pub(super) struct Setting<'a> {
+    pub(super) responses: &'a Responses,
+    pub(super) priced: &'a [Priced],
+    pub(super) constraints: &'a [Constraint],
+    pub(super) stopped: &'a dyn Fn() -> bool,
+}
+
+/// Tolerances with what proves them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Solved {
+    /// Half bands of the groups.
+    pub(super) at: Vec<f64>,
+    pub(super) cost: f64,
+    /// One for every constraint: what it would save to have `1 + d` in place of 1, per d.
+    pub(super) multipliers: Vec<f64>,
+    /// The largest violation of the conditions of Karush, Kuhn and Tucker; stationarity relative to the largest slope of the cost.
+    pub(super) residual: f64,
+    /// The largest value of a constraint.
+    pub(super) value: f64,
+    /// Whether Lagrange's condition had this solution in closed form.
+    pub(super) closed: bool,
+    /// Whether it ended by itself.
+    pub(super) converged: bool,
+}
+
+/// Steps at most.
+const STEPS: usize = 60;
+/// What other orders of the same sums may say differently.
+const RESERVE: f64 = 1e-13;
+/// A tolerance so near its bound is at it.
+const AT_BOUND: f64 = 1e-9;
+/// It stands still: where slopes are formulas, and where they are differences, which know them to 1e-10.
+const STILL: [f64; 2] = [1e-11, 1e-9];
+/// A residual that is optimal all the same, once steps do not lower it any more.
+const SMALL: f64 = 1e-8;
+/// Steps in which a residual that still falls is at least halved.
+const PATIENCE: usize = 3;
+/// Two ways to the same.
+const SAME: f64 = 1e-9;
+
+impl Setting<'_> {
+    /// The largest value of a constraint; kept where that is at most 1.
+    pub(super) fn value(&self, at: &[f64]) -> f64 {
+        let value = |constraint: &Constraint| constraint.value(self.responses, self.priced, at);
+        self.constraints.iter().map(value).fold(0.0, f64::max)
+    }
+
+    /// Cost of the groups at half bands that the first offer of each holds.
+    pub(super) fn cost(&self, at: &[f64]) -> f64 {
+        self.priced.iter().zip(at).map(|(group, &t)| group.parts * group.offers[0].curve.cost(t)).sum()
+    }
+
+    pub(super) fn linearised(&self, at: &[f64]) -> Option<Vec<Linearised>> {
+        let (responses, priced) = (self.responses, self.priced);
+        self.constraints.par_iter().map(|constraint| constraint.linearised(responses, priced, at)).collect()
+    }
+
+    /// Whether sums of powers are exactly what is required.
+    pub(super) fn is_exact(&self) -> bool {
+        self.constraints
+            .iter()
+            .all(|one| one.requirement == super::Requirement::WorstCase || self.responses.is_plain(one.characteristic))
+    }
+
+    /// The tightest that there is, and the loosest.
+    pub(super) fn bounds(&self) -> Vec<[f64; 2]> {
+        self.priced.iter().map(|group| [group.tightest(), group.loosest()]).collect()
+    }
+
+    /// The cheapest tolerances that keep every constraint, from `start` and, where there may be several optima, from others. None
+    /// where none was found that keeps them all.
+    pub(super) fn solve(&self, start: &[f64]) -> Option<Solved> {
+        let bounds = self.bounds();
+        let tight: Vec<f64> = bounds.iter().map(|&[low, _]| low).collect();
+        let mut starts = vec![self.within(start)];
+        if !self.is_exact() {
+            let loose: Vec<f64> = bounds.iter().map(|&[_, high]| high).collect();
+            starts.push(self.within(&start.iter().map(|t| 0.3 * t).collect::<Vec<_>>()));
+            starts.push(self.reached(&tight, &loose, 0.5));
+        }
+        let mut best: Option<Solved> = None;
+        for start in starts {
+            // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
+            if best.as_ref().is_some_and(|best| best.converged && kept(best.value)) {
+                break;
+            }
+            let found = self.usable(&start, &tight).and_then(|start| self.descend(&start));
+            let better = |best: &Solved| {
+                (!kept(best.value) && found.as_ref().is_some_and(|found| found.value < best.value))
+                    || found.as_ref().is_some_and(|found| kept(found.value) && found.cost < best.cost * (1.0 - 1e-9))
+            };
+            if best.as_ref().is_none_or(better) {
+                best = found.or(best);
+            }
+            if (self.stopped)() {
+                break;
+            }
+        }
+        best.filter(|best| kept(best.value)).or_else(|| self.kept_at_least(start, &tight))
+    }
+
+    /// Where the search found nothing that keeps all constraints and the tightest tolerances do: as far from these towards the start as they
+    /// are kept, with nothing proven.
+    fn kept_at_least(&self, start: &[f64], tight: &[f64]) -> Option<Solved> {
+        if !kept(self.value(tight)) {
+            return None;
+        }
+        let (mut inside, mut outside) = (0.0, 1.0);
+        for _ in 0..40 {
+            let middle = 0.5 * (inside + outside);
+            if kept(self.value(&self.reached(tight, start, middle))) { inside = middle } else { outside = middle }
+        }
+        let at = self.within(&self.reached(tight, start, inside));
+        let (cost, value) = (self.cost(&at), self.value(&at));
+        let multipliers = vec![0.0; self.constraints.len()];
+        let residual = f64::INFINITY;
+        let solved = Solved { at, cost, multipliers, residual, value, closed: false, converged: false };
+        kept(value).then_some(solved)
+    }
+
+    /// The half bands within their bounds.
+    fn within(&self, at: &[f64]) -> Vec<f64> {
+        at.iter().zip(self.bounds()).map(|(t, [low, high])| t.clamp(low, high)).collect()
+    }
+
+    /// Part of the way, in logarithms.
+    fn reached(&self, from: &[f64], to: &[f64], part: f64) -> Vec<f64> {
+        from.iter().zip(to).map(|(from, to)| from.powf(1.0 - part) * to.powf(part)).collect()
+    }
+
+    /// The start, or the first on the way to the tightest at which all constraints are finite.
+    fn usable(&self, start: &[f64], tight: &[f64]) -> Option<Vec<f64>> {
+        let parts = [0.0, 0.25, 0.5, 0.75, 0.9, 1.0];
+        parts.iter().map(|&part| self.reached(start, tight, part)).find(|at| self.linearised(at).is_some())
+    }
+
+    fn descend(&self, start: &[f64]) -> Option<Solved> {
+        let mut at = start.to_vec();
+        let mut multipliers: Option<Vec<f64>> = None;
+        let mut best: Option<Solved> = None;
+        let (mut part, mut last_step, mut converged, mut closed) = (1.0f64, f64::INFINITY, false, false);
+        let (mut least, mut in_vain) = (f64::INFINITY, 0);
+        let exact = self.is_exact();
+        let still = STILL[usize::from(!exact)];
+        for step in 0..STEPS {
+            let Some(linearised) = self.linearised(&at) else { break };
+            if let Some(multipliers) = &multipliers {
+                let now = self.judged(&at, &linearised, multipliers, closed);
+                in_vain = if now.residual < 0.5 * least { 0 } else { in_vain + 1 };
+                least = least.min(now.residual);
+                let done = now.residual <= still || now.residual <= SMALL && in_vain >= PATIENCE;
+                keep(&mut best, now);
+                if done {
+                    converged = true;
+                    break;
+                }
+            }
+            if (self.stopped)() {
+                break;
+            }
+            let rows: Vec<Row> = linearised.iter().map(|one| one.row(&at)).collect();
+            let problem = Separable { priced: self.priced, rows: &rows };
+            if step == 0 {
+                let direct = closed_form(&problem);
+                closed = direct.is_some() && exact;
+                multipliers = Some(match direct {
+                    Some((_, multipliers)) => multipliers,
+                    None => augmented(&problem, &at).1,
+                });
+            }
+            let (found, next) = problem.solve(&multipliers.take().unwrap_or_default());
+            let length = at.iter().zip(&next).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f64::max);
+            // A surrogate that is not a sum of squares may need shorter steps.
+            if !exact && step > 3 && length > 0.7 * last_step {
+                part = (0.5 * part).max(0.1);
+            }
+            last_step = length;
+            at = if part == 1.0 { next } else { self.reached(&at, &next, part) };
+            multipliers = Some(found);
+            if exact && step > 0 && length <= 1e-14 {
+                converged = true;
+            }
+        }
+        if let (Some(multipliers), Some(linearised)) = (&multipliers, self.linearised(&at)) {
+            let now = self.judged(&at, &linearised, multipliers, closed);
+            converged |= now.residual <= SMALL;
+            keep(&mut best, now);
+        }
+        let mut best = best?;
+        best.converged = converged;
+        self.tighten(&mut best);
+        if closed {
+            let rows: Vec<Row> = self.linearised(&best.at)?.iter().map(|one| one.row(&best.at)).collect();
+            let direct = closed_form(&Separable { priced: self.priced, rows: &rows });
+            let same = |direct: &Vec<f64>| direct.iter().zip(&best.at).all(|(a, b)| (a / b - 1.0).abs() <= SAME);
+            best.closed = direct.is_some_and(|(direct, _)| same(&direct));
+        }
+        Some(best)
+    }
+
+    /// Rounding may leave a constraint exceeded by a last digit: what is promised is kept, however it is summed.
+    fn tighten(&self, solved: &mut Solved) {
+        if solved.value > 1.0 + 1e-6 {
+            return;
+        }
+        // Logarithms of bounds are not quite the bounds.
+        for (t, group) in solved.at.iter_mut().zip(self.priced) {
+            let near =
+                [group.tightest(), group.loosest()].into_iter().find(|bound| (*t / bound - 1.0).abs() < AT_BOUND);
+            *t = near.unwrap_or(*t);
+        }
+        for attempt in 0..20 {
+            let excess = self.value(&solved.at) - (1.0 - RESERVE);
+            if excess <= 0.0 {
+                break;
+            }
+            tightened(&mut solved.at, self.priced, 1.0 - excess * f64::from(1 << attempt.min(8)) - 1e-15);
+        }
+        solved.value = self.value(&solved.at);
+        solved.cost = self.cost(&solved.at);
+    }
+
+    /// How far these tolerances are from an optimum, with these multipliers.
+    fn judged(&self, at: &[f64], linearised: &[Linearised], multipliers: &[f64], closed: bool) -> Solved {
+        let slopes: Vec<f64> = (self.priced.iter().zip(at))
+            .map(|(group, &t)| group.parts * group.offers[0].curve.log_derivatives(t)[0])
+            .collect();
+        let scale = slopes.iter().fold(f64::MIN_POSITIVE, |scale, slope| scale.max(slope.abs()));
+        let mut residual: f64 = 0.0;
+        for (g, (group, &t)) in self.priced.iter().zip(at).enumerate() {
+            let uses = linearised.iter().zip(multipliers).map(|(one, multiplier)| multiplier * one.slopes[g]);
+            let slope = slopes[g] + uses.sum::<f64>();
+            let offer = &group.offers[0];
+            let violation = match (t <= offer.min * (1.0 + AT_BOUND), t >= offer.max * (1.0 - AT_BOUND)) {
+                (true, true) => 0.0,
+                (true, false) => (-slope).max(0.0),
+                (false, true) => slope.max(0.0),
+                (false, false) => slope.abs(),
+            };
+            residual = residual.max(violation / scale);
+        }
+        let mut value: f64 = 0.0;
+        for (one, &multiplier) in linearised.iter().zip(multipliers) {
+            value = value.max(one.value);
+            residual = residual
+                .max(one.value - 1.0)
+                .max((multiplier / scale * (one.value - 1.0)).abs().min((one.value - 1.0).abs()));
+        }
+        Solved {
+            at: at.to_vec(),
+            cost: self.cost(at),
+            multipliers: multipliers.to_vec(),
+            residual,
+            value,
+            closed,
+            converged: false,
+        }
+    }
+
+    /// How far these tolerances are from the conditions of an optimum with these multipliers; None where processes compete, or the
+    /// constraints are unknown there.
+    pub(super) fn residual(&self, at: &[f64], multipliers: &[f64]) -> Option<f64> {
+        let free = self.priced.iter().all(|group| group.offers.len() == 1);
+        let linearised = self.linearised(at).filter(|_| free)?;
+        Some(self.judged(at, &linearised, multipliers, false).residual)
+    }
+
+    /// The least value that a constraint can have by itself within the bounds, and where.
+    pub(super) fn attainable(&self, constraint: &Constraint) -> (f64, Vec<f64>) {
+        let bounds = self.bounds();
+        let mut at: Vec<f64> = bounds.iter().map(|&[low, _]| low).collect();
+        let mut least = constraint.value(self.responses, self.priced, &at);
+        // Tighter is better, but where a wide tolerance moves the mean the right way.
+        for _ in 0..3 {
+            let before = least;
+            for g in 0..at.len() {
+                let [low, high] = bounds[g];
+                for part in 1..=16 {
+                    let kept = at[g];
+                    at[g] = low.powf(1.0 - f64::from(part) / 16.0) * high.powf(f64::from(part) / 16.0);
+                    let value = constraint.value(self.responses, self.priced, &at);
+                    if value < least * (1.0 - 1e-9) { least = value } else { at[g] = kept }
+                }
+            }
+            if least >= before {
+                break;
+            }
+        }
+        (least, at)
+    }
+}
+
+/// The best: kept constraints first, then the smallest residual.
+fn keep(best: &mut Option<Solved>, found: Solved) {
+    let better = |old: &Solved| found.residual < old.residual;
+    if best.as_ref().is_none_or(better) {
+        *best = Some(found);
+    }
+}
+
+/// All tolerances that are free a little tighter: what lies at its bound stays there, unless everything does.
+pub(super) fn tightened(at: &mut [f64], priced: &[Priced], factor: f64) {
+    let free = |group: &Priced, t: f64| group.offers.len() == 1 && t < group.loosest() * (1.0 - AT_BOUND);
+    let any = priced.iter().zip(at.iter()).any(|(group, &t)| free(group, t));
+    for (t, group) in at.iter_mut().zip(priced) {
+        if !any && group.offers.len() == 1 || free(group, *t) {
+            *t = (*t * factor).max(group.tightest());
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! `sensitol sweep`.
+
+use super::args::SweepArgs;
+use super::csv::CsvFolder;
+use super::failure::{Exit, Failure};
+use super::output::{Destination, Look, json};
+use super::progress::Bar;
+use super::running::{Clock, externals, on_threads};
+use super::{interrupt, study};
+use crate::assembly::{Progress, Run};
+use crate::report::html::sweep_html;
+use crate::report::{SweepReport, sweep_csv, sweep_svg, sweep_text};
+use crate::study::Study;
+use crate::sweep::{Sweep, sweep_within};
+
+pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
+    let externals = externals(asked.journal.as_deref(), look, None);
+    let mut study = study::read_sweeping(&asked.study, externals, &asked.over.name)?;
+    study.options.seed = asked.seed.or(study.options.seed);
+    let destination = Destination::open(&asked.output)?;
+    let names = ["sweep.csv".to_owned()];
+    let table = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
+    let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
+    let page = asked.html.as_deref().map(Destination::file).transpose()?;
+    let clock = Clock::start(asked.time);
+    let sweep = swept(&study, asked, &clock, look)?;
+    let report = SweepReport::of(&study.problem, &sweep, clock.about(&study, study.options.seed));
+    let written = destination.write(&if asked.output.json { json(&report) } else { sweep_text(&report, look.style()) });
+    let written = written.and(table.map_or(Ok(()), |table| table.write(&[sweep_csv(&report)])));
+    let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&sweep_svg(&report))));
+    let written = written.and(page.map_or(Ok(()), |page| page.write(&sweep_html(&report))));
+    for warning in &report.warnings {
+        look.warn(warning.code, &warning.message);
+    }
+    if sweep.stopped {
+        let by = if interrupt::stopped() { "interrupted" } else { "stopped by --time" };
+        let done = sweep.analyses.iter().flatten().count();
+        look.warn("stopped", &format!("{by} with {done} of {} values done", sweep.values.len()));
+    }
+    written?;
+    if interrupt::stopped() {
+        return Ok(Exit::Interrupted);
+    }
+    let nothing = |one: &crate::report::SweptReport| one.points.iter().all(|point| point.mean.is_none());
+    Ok(if report.characteristics.iter().any(nothing) { Exit::NoResult } else { Exit::Done })
+}
+
+fn swept(study: &Study, asked: &SweepArgs, clock: &Clock, look: Look) -> Result<Sweep, Failure> {
+    let stop = || clock.stop();
+    let costly = study.problem.function().signature().costly;
+    let plan = costly.then(|| study.options.method.procedure().plan(&study.problem, &study.options)).transpose()?;
+    let bar = plan.map(|plan| Bar::new(plan.cost().0.saturating_mul(asked.over.values.len()), look.quiet));
+    let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
+    let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
+    let sweep = || sweep_within(&study.problem, &asked.over.name, &asked.over.values, &study.options, &run);
+    let result = on_threads(asked.threads, sweep);
+    if let Some(bar) = bar {
+        bar.clear();
+    }
+    Ok(result??)
+}

@@ -1,0 +1,195 @@
+//! How the rod moves, and the forces that this takes.
+
+use std::f64::consts::PI;
+
+use super::super::gas;
+use super::super::jet::{Jet, Real};
+use super::{DEGREE, Rows, input};
+use crate::elementary::{Cos, Elementary, Exp, Sin};
+
+/// The rod by the crank of the gas trace, which tolerances do not change.
+pub(super) const ROD_BY_CRANK: f64 = 133.6 / 41.0;
+/// The mass centre, and the distance of the eyes, that the optima are told from: m.
+pub(super) const REFERENCE: [f64; 2] = [0.105, 0.1336];
+
+/// The pressure at any angle, Pa.
+pub(super) fn pressure(degrees: f64, p3: f64, start: f64) -> f64 {
+    if degrees < -180.0 {
+        return gas::SUCTION;
+    }
+    if degrees > 180.0 {
+        let [own, by_p3] = gas::exhaust(degrees);
+        return own + by_p3 * p3;
+    }
+    let theta = degrees * DEGREE;
+    let strokes = gas::strokes(Sin::of(theta), Cos::of(theta), ROD_BY_CRANK);
+    gas::working(strokes, Exp::of(gas::unburnt_log(degrees, start)), p3)
+}
+
+/// A crank angle with the gas pressure there.
+pub(super) struct Angle<T> {
+    pub(super) sin: T,
+    pub(super) cos: T,
+    pub(super) pressure: T,
+}
+
+impl Angle<f64> {
+    pub(super) fn of(theta: f64, pressure: f64) -> Self {
+        Self { sin: Sin::of(theta), cos: Cos::of(theta), pressure }
+    }
+}
+
+impl Angle<Jet> {
+    /// With derivatives by the angle; of the pressure too where gas matters.
+    pub(super) fn around(theta: f64, gas: Option<(f64, f64)>) -> Self {
+        let (s, c) = (Sin::of(theta), Cos::of(theta));
+        let (sin, cos) = (Jet([s, c, -s]), Jet([c, -s, -c]));
+        let pressure = gas.map_or(Jet([0.0; 3]), |(p3, start)| {
+            let unburnt = gas::unburnt_log(Jet([theta / DEGREE, 1.0 / DEGREE, 0.0]), start).exp();
+            gas::working(gas::strokes(sin, cos, ROD_BY_CRANK), unburnt, p3)
+        });
+        Self { sin, cos, pressure }
+    }
+}
+
+/// How the rod moves.
+pub(super) struct Motion<T> {
+    pub(super) sin_a: T,
+    pub(super) cos_a: T,
+    /// Square of the rate of the rod's angle, and its acceleration.
+    pub(super) rate: T,
+    pub(super) turn: T,
+    /// Acceleration of the piston.
+    pub(super) piston: T,
+}
+
+impl<T: Real> Motion<T> {
+    #[inline(always)]
+    pub(super) fn of(angle: &Angle<T>, r: f64, l: f64, w: f64) -> Self {
+        let sin_a = angle.sin * (r / l);
+        let cos_a = -(-(sin_a * sin_a) + 1.0).sqrt();
+        let below = cos_a * l;
+        let rate = angle.cos * (r * w) / below;
+        let rate = rate * rate;
+        let turn = (rate * sin_a * l + angle.sin * (-r * w * w)) / below;
+        let piston = angle.cos * (-r * w * w) + (turn * sin_a + rate * cos_a) * l;
+        Self { sin_a, cos_a, rate, turn, piston }
+    }
+
+    /// Acceleration at a distance from the small end, along the cylinder and across it.
+    #[inline(always)]
+    pub(super) fn acceleration(&self, at: f64) -> [T; 2] {
+        let along = self.piston + (self.rate * self.cos_a + self.turn * self.sin_a) * -at;
+        [along, (self.turn * self.cos_a + -(self.rate * self.sin_a)) * at]
+    }
+
+    /// The force across the cylinder at the small end, of a body of this mass, centre and inertia, and a force along it.
+    #[inline(always)]
+    pub(super) fn side_force(&self, [mass, centre, inertia]: [f64; 3], [ax, ay]: [T; 2], along: T, l: f64) -> T {
+        let rest = (ay * self.cos_a - ax * self.sin_a) * (mass * (l - centre));
+        (self.turn * -inertia + rest + along * self.sin_a * l) / (self.cos_a * l)
+    }
+}
+
+/// What is made as large as it gets.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Effect {
+    Compression,
+    Normal,
+    AgainstNormal,
+    /// That the rod exerts on the crank.
+    Torque,
+    Braking,
+}
+
+/// One effect on a rod with mass, centre of mass and inertia, with a force along the cylinder at its small end.
+#[inline(always)]
+pub(super) fn effect<T: Real>(
+    effect: Effect,
+    angle: &Angle<T>,
+    motion: &Motion<T>,
+    body: [f64; 3],
+    along: T,
+    [r, l]: [f64; 2],
+) -> T {
+    let [mass, centre, inertia] = body;
+    let [ax, ay] = motion.acceleration(centre);
+    let side = motion.side_force(body, [ax, ay], along, l);
+    let (sin_a, cos_a) = (motion.sin_a, motion.cos_a);
+    match effect {
+        Effect::Compression => side * sin_a + along * cos_a,
+        Effect::Normal => side * cos_a - along * sin_a,
+        Effect::AgainstNormal => along * sin_a - side * cos_a,
+        Effect::Torque | Effect::Braking => {
+            let pin = angle.cos * r;
+            let external = -(side * (pin - cos_a * l)) + ay * (pin - cos_a * (l - centre)) * mass
+                - ax * sin_a * (mass * centre)
+                + motion.turn * inertia;
+            if effect == Effect::Torque { -external } else { external }
+        }
+    }
+}
+
+/// Something that has a value at every crank angle in every row.
+pub(super) trait Curve {
+    fn at<T: Real>(&self, row: usize, angle: &Angle<T>) -> T;
+}
+
+/// Gas, piston and rod.
+pub(super) struct Loaded<'r> {
+    pub(super) rows: &'r Rows,
+    pub(super) w: f64,
+    pub(super) effect: Effect,
+}
+
+impl Curve for Loaded<'_> {
+    #[inline(always)]
+    fn at<T: Real>(&self, row: usize, angle: &Angle<T>) -> T {
+        let x = |at: usize| self.rows.x[at][row];
+        let motion = Motion::of(angle, x(input::R), x(input::L), self.w);
+        let along = gas_force(angle, x(input::D)) + motion.piston * -x(input::M_P);
+        let body = [x(input::M_ROD), x(input::MC), x(input::I_G)];
+        effect(self.effect, angle, &motion, body, along, [x(input::R), x(input::L)])
+    }
+}
+
+#[inline(always)]
+pub(super) fn gas_force<T: Real>(angle: &Angle<T>, bore: f64) -> T {
+    (angle.pressure + -gas::ATMOSPHERE) * (-0.25 * PI * bore * bore)
+}
+
+/// Where the mass centre of the rod is.
+#[derive(Clone, Copy)]
+pub(super) enum Centre {
+    Given,
+    /// At mc_F, the inertia as for the nominal distance of the eyes.
+    Optimum,
+    /// At mc_T, the inertia as for the mass centre and the distance of the eyes that there are.
+    Tied,
+}
+
+/// The rod without piston and gas.
+pub(super) struct Alone<'r> {
+    pub(super) rows: &'r Rows,
+    pub(super) w: f64,
+    pub(super) centre: Centre,
+    pub(super) effect: Effect,
+}
+
+impl Curve for Alone<'_> {
+    #[inline(always)]
+    fn at<T: Real>(&self, row: usize, angle: &Angle<T>) -> T {
+        let x = |at: usize| self.rows.x[at][row];
+        let (l, [reference, eyes]) = (x(input::L), REFERENCE);
+        let moved = |to: usize| x(to) + (x(input::MC) - reference);
+        let cubes = |centre: f64, l: f64| centre * centre * centre + (l - centre) * (l - centre) * (l - centre);
+        let (centre, factor) = match self.centre {
+            Centre::Given => (x(input::MC), 1.0),
+            Centre::Optimum => (moved(input::MC_F), cubes(x(input::MC_F), eyes) / cubes(reference, eyes)),
+            Centre::Tied => (moved(input::MC_T), cubes(moved(input::MC_T), l) / cubes(reference, l)),
+        };
+        let motion = Motion::of(angle, x(input::R), l, self.w);
+        let body = [x(input::M_ROD), centre, factor * x(input::I_G)];
+        effect(self.effect, angle, &motion, body, angle.sin * 0.0, [x(input::R), l])
+    }
+}

@@ -1,0 +1,394 @@
+//! `connecting-rod`: forces, crank torque, section, buckling and mass of a connecting rod.
+
+mod mechanics;
+mod search;
+mod section;
+
+use std::f64::consts::PI;
+
+use super::gas;
+use super::jet::Peak;
+use super::{Block, Model, ModelInput, ModelOutput};
+use crate::assembly::{EvaluationError, Responses};
+use mechanics::{Alone, Angle, Centre, Curve, Effect, Loaded, pressure};
+use search::{GAS_ANGLES, ROD_ANGLES, heights, maxima};
+use section::{Section, shank};
+
+/// The inputs' places, in the order of `CONNECTING_ROD.inputs`.
+mod input {
+    pub const R: usize = 0;
+    pub const L: usize = 1;
+    pub const MC: usize = 2;
+    pub const M_ROD: usize = 3;
+    pub const M_P: usize = 4;
+    pub const I_G: usize = 5;
+    pub const D: usize = 6;
+    pub const P3: usize = 7;
+    pub const THS: usize = 8;
+    pub const T: usize = 9;
+    pub const K1: usize = 10;
+    pub const K2: usize = 11;
+    pub const H: usize = 12;
+    pub const RHO: usize = 13;
+    pub const E: usize = 14;
+    pub const S_Y: usize = 15;
+    pub const M_S: usize = 16;
+    pub const I_S: usize = 17;
+    pub const I_B: usize = 18;
+    pub const R_IS: usize = 19;
+    pub const T_S: usize = 20;
+    pub const R_IB: usize = 21;
+    pub const T_B: usize = 22;
+    pub const MC_F: usize = 23;
+    pub const MC_T: usize = 24;
+    pub const THETA: usize = 25;
+    pub const SPEED: usize = 26;
+}
+const INPUTS: usize = 27;
+
+/// A connecting rod as three lumped masses: forces at its ends over the crank angle, their largest values, the height of the
+/// section that carries them, buckling, and the mass of the shank.
+///
+/// With th from the firing top dead centre, s = r sin th/L, sin a = s, cos a = -sqrt(1 - s^2) and w the speed:
+///
+/// ```text
+/// a'  = r w cos th/(L cos a),  a'' = (L a'^2 sin a - r w^2 sin th)/(L cos a)
+/// x'' = -r w^2 cos th + L a'' sin a + L a'^2 cos a
+/// Agx = -MC (a'^2 cos a + a'' sin a) + x'',  Agy = -MC a'^2 sin a + MC a'' cos a
+/// Fx  = -(p - patm) pi D^2/4 - Mp x''
+/// Fe  = [ -Ig a'' - m Agx (L - MC) sin a + m Agy (L - MC) cos a + Fx L sin a ]/(L cos a)
+/// Faxial = -Fe sin a - Fx cos a (tension +),  Fnormal = Fe cos a - Fx sin a
+/// T_Crank = -Fe (r cos th - L cos a) + m Agy (r cos th - (L - MC) cos a) - m Agx MC sin a + Ig a''
+/// Ig' = Ig (MC'^3 + (L - MC')^3)/(MC^3 + (L - MC)^3)                                    where the mass centre moves
+/// A = (2 k1 + k2 k3) t^2,  Izz = t^4 [k1/6 + k2 k3^3/12 + k1 (k3 + 1)^2/2],  Iyy = t^4 [2 k1^3 + k3 k2^3]/12,  H = (k3 + 2) t
+/// ```
+///
+/// `H_req_3000` is the least height whose stress at the root of the shank is S_y/5 at every angle:
+/// |Fa|/A + |M| (k3 + 2) t/(2 Izz), with the shank cut off the eyes. Euler's safety is pi^2 E Izz/(L^2 F_comp) in the plane of
+/// motion and 4 pi^2 E Iyy/(L^2 F_comp) across it. [`gas`] has the pressure.
+///
+/// Maxima are over -60 to 180 degrees with gas, over 0 to 180 of the rod alone, found to rounding: smooth in the inputs as long as
+/// one lobe is the largest. `Fn_opt` is the larger of two lobes that are nearly alike, and has a kink where they are.
+pub static CONNECTING_ROD: Model = Model {
+    name: "connecting-rod",
+    title: "forces, crank torque, section height, buckling and mass of a connecting rod",
+    source: "Shojaefard, Saeidi Googarchin and Hossein Oghli, lumped-mass method, eqs 1-34; gas trace ours, tolerances assumed",
+    inputs: &[
+        ModelInput { name: "r", unit: "mm", nominal: 41.0, about: "crank radius" },
+        ModelInput { name: "L", unit: "mm", nominal: 133.6, about: "distance of the eyes" },
+        ModelInput { name: "MC", unit: "mm", nominal: 105.0, about: "centre of mass from the small end" },
+        ModelInput { name: "M_rod", unit: "g", nominal: 529.0, about: "mass of the rod" },
+        ModelInput { name: "M_p", unit: "g", nominal: 410.0, about: "mass of the piston group" },
+        ModelInput {
+            name: "I_g",
+            unit: "kg.mm^2",
+            nominal: 1340.0,
+            about: "inertia of the rod about its centre of mass",
+        },
+        ModelInput { name: "D", unit: "mm", nominal: 78.5, about: "bore" },
+        ModelInput { name: "p3", unit: "bar", nominal: 95.5, about: "pressure after combustion at the least volume" },
+        ModelInput { name: "ths", unit: "deg", nominal: -15.0, about: "crank angle of ignition" },
+        ModelInput { name: "t", unit: "mm", nominal: 3.0, about: "thickness of the flanges" },
+        ModelInput { name: "k1", unit: "-", nominal: 4.0, about: "width of the flanges by t" },
+        ModelInput { name: "k2", unit: "-", nominal: 1.1, about: "thickness of the web by t" },
+        ModelInput { name: "H", unit: "mm", nominal: 32.0, about: "height of the section" },
+        ModelInput { name: "rho", unit: "kg/m^3", nominal: 7800.0, about: "density" },
+        ModelInput { name: "E", unit: "GPa", nominal: 207.0, about: "modulus of elasticity" },
+        ModelInput { name: "S_y", unit: "MPa", nominal: 700.0, about: "yield strength" },
+        ModelInput { name: "M_s", unit: "g", nominal: 45.0, about: "mass of the small end" },
+        ModelInput { name: "I_s", unit: "kg.mm^2", nominal: 15.022, about: "inertia of the small end" },
+        ModelInput { name: "I_b", unit: "kg.mm^2", nominal: 376.55, about: "inertia of the big end" },
+        ModelInput { name: "r_is", unit: "mm", nominal: 9.73, about: "inner radius of the small end" },
+        ModelInput { name: "t_s", unit: "mm", nominal: 5.56, about: "wall of the small end" },
+        ModelInput { name: "r_ib", unit: "mm", nominal: 22.83, about: "inner radius of the big end" },
+        ModelInput { name: "t_b", unit: "mm", nominal: 7.6, about: "wall of the big end" },
+        ModelInput {
+            name: "mc_F",
+            unit: "mm",
+            nominal: 108.0,
+            about: "centre of mass of Fn_opt; MC - 105 mm is added",
+        },
+        ModelInput {
+            name: "mc_T",
+            unit: "mm",
+            nominal: 119.7,
+            about: "centre of mass of T_opt_tied; MC - 105 mm is added",
+        },
+        ModelInput {
+            name: "theta",
+            unit: "deg",
+            nominal: 20.0,
+            about: "crank angle, -360 to 360, for F_axial, F_normal, T_crank",
+        },
+        ModelInput { name: "speed", unit: "rpm", nominal: 3000.0, about: "speed for F_axial, F_normal, T_crank" },
+    ],
+    outputs: &[
+        ModelOutput {
+            name: "F_tens_6000",
+            unit: "N",
+            about: "pull of the piston at the gas exchange dead centre, 6000 rpm",
+            depends_on: &[0, 1, 4, 6],
+        },
+        ModelOutput {
+            name: "F_comp_3000",
+            unit: "N",
+            about: "largest compression, 3000 rpm",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8],
+        },
+        ModelOutput {
+            name: "T_peak_3000",
+            unit: "N.m",
+            about: "largest crank torque, 3000 rpm",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8],
+        },
+        ModelOutput {
+            name: "Fn_rod_3000",
+            unit: "N",
+            about: "largest normal force of the rod alone, 3000 rpm",
+            depends_on: &[0, 1, 2, 3, 5],
+        },
+        ModelOutput {
+            name: "T_rod_3000",
+            unit: "N.m",
+            about: "largest crank torque of the rod alone, 3000 rpm",
+            depends_on: &[0, 1, 2, 3, 5],
+        },
+        ModelOutput {
+            name: "H_req_3000",
+            unit: "mm",
+            about: "least height of the section, 3000 rpm",
+            depends_on: &[0, 1, 4, 6, 7, 8, 9, 10, 11, 13, 15, 16, 17, 18, 19, 20, 21, 22],
+        },
+        ModelOutput {
+            name: "H_margin",
+            unit: "mm",
+            about: "height above that",
+            depends_on: &[0, 1, 4, 6, 7, 8, 9, 10, 11, 12, 13, 15, 16, 17, 18, 19, 20, 21, 22],
+        },
+        ModelOutput {
+            name: "n_zz",
+            unit: "-",
+            about: "safety against buckling in the plane of motion",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14],
+        },
+        ModelOutput {
+            name: "n_yy",
+            unit: "-",
+            about: "safety against buckling across it",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14],
+        },
+        ModelOutput {
+            name: "m_shank",
+            unit: "g",
+            about: "mass of the shank",
+            depends_on: &[1, 9, 10, 11, 12, 13, 19, 20, 21, 22],
+        },
+        ModelOutput {
+            name: "T_opt_tied",
+            unit: "N.m",
+            about: "largest braking torque of the rod alone, mass centre at mc_T",
+            depends_on: &[0, 1, 2, 3, 5, 24],
+        },
+        ModelOutput {
+            name: "Fn_opt",
+            unit: "N",
+            about: "largest normal force of the rod alone in either direction, mass centre at mc_F: a kink",
+            depends_on: &[0, 1, 2, 3, 5, 23],
+        },
+        ModelOutput {
+            name: "Fn_opt_lobeA",
+            unit: "N",
+            about: "the one of its lobes near 37 degrees",
+            depends_on: &[0, 1, 2, 3, 5, 23],
+        },
+        ModelOutput {
+            name: "Fn_opt_lobeB",
+            unit: "N",
+            about: "the one near 118 degrees",
+            depends_on: &[0, 1, 2, 3, 5, 23],
+        },
+        ModelOutput {
+            name: "theta_F_comp",
+            unit: "deg",
+            about: "crank angle of the largest compression",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8],
+        },
+        ModelOutput {
+            name: "theta_H_req",
+            unit: "deg",
+            about: "crank angle at which H_req_3000 is required",
+            depends_on: &[0, 1, 4, 6, 7, 8, 9, 10, 11, 13, 15, 16, 17, 18, 19, 20, 21, 22],
+        },
+        ModelOutput {
+            name: "F_axial",
+            unit: "N",
+            about: "axial force at theta, tension positive",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 25, 26],
+        },
+        ModelOutput {
+            name: "F_normal",
+            unit: "N",
+            about: "normal force at theta, to which piston and gas add nothing",
+            depends_on: &[0, 1, 2, 3, 5, 25, 26],
+        },
+        ModelOutput {
+            name: "T_crank",
+            unit: "N.m",
+            about: "torque that the rod exerts on the crank at theta",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 25, 26],
+        },
+    ],
+    evaluate,
+};
+
+/// The outputs' places.
+mod output {
+    pub const F_TENS: usize = 0;
+    pub const F_COMP: usize = 1;
+    pub const T_PEAK: usize = 2;
+    pub const FN_ROD: usize = 3;
+    pub const T_ROD: usize = 4;
+    pub const H_REQ: usize = 5;
+    pub const H_MARGIN: usize = 6;
+    pub const N_ZZ: usize = 7;
+    pub const N_YY: usize = 8;
+    pub const M_SHANK: usize = 9;
+    pub const T_OPT: usize = 10;
+    pub const FN_OPT: usize = 11;
+    pub const FN_OPT_A: usize = 12;
+    pub const FN_OPT_B: usize = 13;
+    pub const THETA_F: usize = 14;
+    pub const THETA_H: usize = 15;
+    pub const AT_THETA: [usize; 3] = [16, 17, 18];
+}
+
+const DEGREE: f64 = PI / 180.0;
+/// Rows whose inputs and maxima stay in the nearest cache.
+const LANES: usize = 128;
+
+fn circular(rpm: f64) -> f64 {
+    rpm * PI / 30.0
+}
+
+/// The inputs of some rows in SI units, a column each.
+struct Rows {
+    x: [[f64; LANES]; INPUTS],
+    count: usize,
+}
+
+/// What the inputs' units are in SI; degrees and rpm stay.
+const SI: [f64; INPUTS] = {
+    let mut si = [1e-3; INPUTS];
+    si[input::I_G] = 1e-6;
+    si[input::I_S] = 1e-6;
+    si[input::I_B] = 1e-6;
+    si[input::P3] = 1e5;
+    si[input::THS] = 1.0;
+    si[input::K1] = 1.0;
+    si[input::K2] = 1.0;
+    si[input::RHO] = 1.0;
+    si[input::E] = 1e9;
+    si[input::S_Y] = 1e6;
+    si[input::THETA] = 1.0;
+    si[input::SPEED] = 1.0;
+    si
+};
+
+fn evaluate(block: &Block<'_>, out: &mut Responses) {
+    let asked: Vec<(usize, usize)> =
+        (0..CONNECTING_ROD.outputs.len()).filter_map(|output| Some((output, block.column(output)?))).collect();
+    let mut needed: Vec<usize> =
+        asked.iter().flat_map(|&(output, _)| CONNECTING_ROD.outputs[output].depends_on).copied().collect();
+    needed.sort_unstable();
+    needed.dedup();
+    let mut rows = Rows { x: [[0.0; LANES]; INPUTS], count: 0 };
+    for first in (0..block.rows()).step_by(LANES) {
+        rows.count = LANES.min(block.rows() - first);
+        for &at in &needed {
+            let given = &block.input(at)[first..first + rows.count];
+            rows.x[at].iter_mut().zip(given).for_each(|(x, given)| *x = given * SI[at]);
+        }
+        answer(&rows, first, &asked, out);
+    }
+}
+
+fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Responses) {
+    let is_asked = |any: &[usize]| asked.iter().any(|(output, _)| any.contains(output));
+    let count = rows.count;
+    let none = || [Peak { at: f64::NAN, value: f64::NAN }; LANES];
+    let found = |wanted: bool, search: &dyn Fn() -> [Peak; LANES]| if wanted { search() } else { none() };
+    let fired = circular(3000.0);
+    let with_gas = |effect| move || maxima(&Loaded { rows, w: fired, effect }, rows, &GAS_ANGLES, true);
+    let compression =
+        found(is_asked(&[output::F_COMP, output::THETA_F, output::N_ZZ, output::N_YY]), &with_gas(Effect::Compression));
+    let torque = found(is_asked(&[output::T_PEAK]), &with_gas(Effect::Torque));
+    let alone = |centre, effect| move || maxima(&Alone { rows, w: fired, centre, effect }, rows, &ROD_ANGLES, false);
+    let normal = found(is_asked(&[output::FN_ROD]), &alone(Centre::Given, Effect::Normal));
+    let braking = found(is_asked(&[output::T_ROD]), &alone(Centre::Given, Effect::Braking));
+    let tied = found(is_asked(&[output::T_OPT]), &alone(Centre::Tied, Effect::Torque));
+    let lobe_a = found(is_asked(&[output::FN_OPT, output::FN_OPT_A]), &alone(Centre::Optimum, Effect::Normal));
+    let lobe_b = found(is_asked(&[output::FN_OPT, output::FN_OPT_B]), &alone(Centre::Optimum, Effect::AgainstNormal));
+    let height = found(is_asked(&[output::H_REQ, output::H_MARGIN, output::THETA_H]), &|| heights(rows, fired));
+
+    for &(output, column) in asked {
+        let mut values = [f64::NAN; LANES];
+        for (row, value) in values[..count].iter_mut().enumerate() {
+            let x = |at: usize| rows.x[at][row];
+            *value = match output {
+                output::F_TENS => {
+                    let (w, area) = (circular(6000.0), 0.25 * PI * x(input::D) * x(input::D));
+                    x(input::M_P) * w * w * x(input::R) * (1.0 + x(input::R) / x(input::L))
+                        + (gas::ATMOSPHERE - gas::SUCTION) * area
+                }
+                output::F_COMP => compression[row].value,
+                output::T_PEAK => torque[row].value,
+                output::FN_ROD => normal[row].value,
+                output::T_ROD => braking[row].value,
+                output::H_REQ => 1e3 * height[row].value,
+                output::H_MARGIN => 1e3 * (x(input::H) - height[row].value),
+                output::N_ZZ | output::N_YY => {
+                    let (section, l) = (Section::of(rows, row), x(input::L));
+                    let web = section.web(x(input::H));
+                    let inertia = if output == output::N_ZZ { section.across(web) } else { 4.0 * section.along(web) };
+                    PI * PI * x(input::E) * inertia / (l * l * compression[row].value)
+                }
+                output::M_SHANK => {
+                    let section = Section::of(rows, row);
+                    1e3 * x(input::RHO) * section.area(section.web(x(input::H))) * shank(rows, row)
+                }
+                output::T_OPT => tied[row].value,
+                output::FN_OPT => lobe_a[row].value.max(lobe_b[row].value),
+                output::FN_OPT_A => lobe_a[row].value,
+                output::FN_OPT_B => lobe_b[row].value,
+                output::THETA_F => compression[row].at / DEGREE,
+                output::THETA_H => height[row].at / DEGREE,
+                _ => {
+                    let (degrees, w) = (x(input::THETA), circular(x(input::SPEED)));
+                    if (-360.0..=360.0).contains(&degrees) {
+                        let pressure = pressure(degrees, x(input::P3), x(input::THS));
+                        let angle = Angle::of(degrees * DEGREE, pressure);
+                        match output - output::AT_THETA[0] {
+                            0 => -Loaded { rows, w, effect: Effect::Compression }.at(row, &angle),
+                            1 => Alone { rows, w, centre: Centre::Given, effect: Effect::Normal }.at(row, &angle),
+                            _ => Loaded { rows, w, effect: Effect::Torque }.at(row, &angle),
+                        }
+                    } else {
+                        out.fail(first + row, column, EvaluationError::Refused { message: BEYOND.into() });
+                        continue;
+                    }
+                }
+            };
+        }
+        for (row, &value) in values[..count].iter().enumerate() {
+            let refused = matches!(output, output::H_REQ | output::H_MARGIN | output::THETA_H) && value.is_nan();
+            if refused {
+                out.fail(first + row, column, EvaluationError::Refused { message: NO_HEIGHT.into() });
+            } else if out.error(first + row, column).is_none() {
+                out.set(first + row, column, value);
+            }
+        }
+    }
+}
+
+const BEYOND: &str = "the crank angle theta lies beyond -360 .. 360 degrees";
+const NO_HEIGHT: &str = "no height of the section brings the stress to a fifth of the yield strength";

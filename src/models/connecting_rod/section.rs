@@ -1,0 +1,91 @@
+//! The section of the shank, and the stress at its root.
+
+use super::super::jet::Real;
+use super::mechanics::{Angle, Curve, Motion, gas_force};
+use super::{LANES, Rows, input};
+
+/// The stress at the root of the shank, for a web of this height.
+pub(super) struct Root<'r> {
+    pub(super) rows: &'r Rows,
+    pub(super) w: f64,
+    pub(super) webs: [f64; LANES],
+}
+
+impl Root<'_> {
+    /// Axial force and bending moment there.
+    #[inline(always)]
+    pub(super) fn load<T: Real>(&self, row: usize, angle: &Angle<T>) -> [T; 2] {
+        let x = |at: usize| self.rows.x[at][row];
+        let (l, root, length) = (x(input::L), x(input::R_IS) + x(input::T_S), shank(self.rows, row));
+        let section = Section::of(self.rows, row);
+        let mass = x(input::RHO) * section.area(self.webs[row]) * length;
+        let centre = root + 0.5 * length;
+        let inertia = mass * length * length / 12.0 + x(input::I_S) + x(input::I_B);
+        let motion = Motion::of(angle, x(input::R), l, self.w);
+        let along = gas_force(angle, x(input::D)) + motion.piston * -(x(input::M_P) + x(input::M_S));
+        let side = motion.side_force([mass, centre, inertia], motion.acceleration(centre), along, l);
+        let axial = -(along * motion.cos_a) - side * motion.sin_a;
+        let normal = along * motion.sin_a - side * motion.cos_a;
+        [axial, normal * -root + motion.turn * x(input::I_S)]
+    }
+}
+
+impl Curve for Root<'_> {
+    #[inline(always)]
+    fn at<T: Real>(&self, row: usize, angle: &Angle<T>) -> T {
+        let (section, web) = (Section::of(self.rows, row), self.webs[row]);
+        let [axial, moment] = self.load(row, angle);
+        axial.abs() * (1.0 / section.area(web)) + moment.abs() * section.bending(web)
+    }
+}
+
+/// An I section: thickness and proportions; `k3`, the height of the web by the thickness, is asked for.
+pub(super) struct Section {
+    pub(super) t: f64,
+    pub(super) k1: f64,
+    pub(super) k2: f64,
+}
+
+impl Section {
+    #[inline(always)]
+    pub(super) fn of(rows: &Rows, row: usize) -> Self {
+        Self { t: rows.x[input::T][row], k1: rows.x[input::K1][row], k2: rows.x[input::K2][row] }
+    }
+
+    #[inline(always)]
+    pub(super) fn web(&self, height: f64) -> f64 {
+        height / self.t - 2.0
+    }
+
+    #[inline(always)]
+    pub(super) fn area(&self, k3: f64) -> f64 {
+        (2.0 * self.k1 + self.k2 * k3) * self.t * self.t
+    }
+
+    /// Izz.
+    #[inline(always)]
+    pub(super) fn across(&self, k3: f64) -> f64 {
+        let (square, k1) = (self.t * self.t, self.k1);
+        square * square * (k1 / 6.0 + self.k2 * k3 * k3 * k3 / 12.0 + 0.5 * k1 * (k3 + 1.0) * (k3 + 1.0))
+    }
+
+    /// Iyy.
+    #[inline(always)]
+    pub(super) fn along(&self, k3: f64) -> f64 {
+        let (square, k1, k2) = (self.t * self.t, self.k1, self.k2);
+        square * square * (2.0 * k1 * k1 * k1 + k3 * k2 * k2 * k2) / 12.0
+    }
+
+    /// Stress of a bending moment of 1.
+    #[inline(always)]
+    pub(super) fn bending(&self, k3: f64) -> f64 {
+        0.5 * (k3 + 2.0) * self.t / self.across(k3)
+    }
+}
+
+/// Length of the shank.
+#[inline(always)]
+pub(super) fn shank(rows: &Rows, row: usize) -> f64 {
+    let x = |at: usize| rows.x[at][row];
+    x(input::L) - x(input::R_IS) - x(input::T_S) - x(input::T_B) - x(input::R_IB)
+}

@@ -1,0 +1,189 @@
+//! The report of a sweep: as data.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::distribution::NAMES;
+use super::{About, Head, OptionalQuantiles, Quantiles, WarningReport};
+use crate::analysis::CharacteristicAnalysis;
+use crate::capability::Law;
+use crate::problem::Problem;
+use crate::sweep::Sweep;
+
+/// The report of a sweep, as `--json` prints it. What is unknown is null, never 0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepReport {
+    /// What every report begins with.
+    #[serde(flatten)]
+    pub head: Head,
+    /// What is swept.
+    pub parameter: ParameterReport,
+    /// The method that was run; null where nothing was done.
+    pub method: Option<&'static str>,
+    /// Every point sent to the model.
+    pub evaluations: usize,
+    /// Answers taken from an earlier run.
+    pub reused: usize,
+    /// Points that lost at least one asked characteristic.
+    pub failed: usize,
+    /// Batches in which they were sent.
+    pub batches: usize,
+    /// Seconds in all.
+    pub wall_s: f64,
+    /// The seed.
+    pub seed: Option<u64>,
+    /// Whether it ended before all was done.
+    pub stopped: bool,
+    /// What was asked.
+    pub characteristics: Vec<SweptReport>,
+    /// Where an assumption fails, each once, with the values at which it does.
+    pub warnings: Vec<WarningReport>,
+}
+
+/// The parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParameterReport {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// Its standard deviation at every value.
+    pub sigma: f64,
+    /// Its nominal values.
+    pub values: Vec<f64>,
+}
+
+/// One characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweptReport {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// Lower limit.
+    pub lower: Option<f64>,
+    /// Upper limit.
+    pub upper: Option<f64>,
+    /// In the order of the parameter's values.
+    pub points: Vec<SweptPointReport>,
+}
+
+/// One characteristic at one value of the parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweptPointReport {
+    /// The parameter.
+    pub at: f64,
+    /// With every dimension at its nominal value.
+    pub nominal: Option<f64>,
+    /// First moment.
+    pub mean: Option<f64>,
+    /// Standard deviation.
+    pub sigma: Option<f64>,
+    /// Third standardised moment.
+    pub skewness: Option<f64>,
+    /// Fourth standardised moment.
+    pub kurtosis: Option<f64>,
+    /// Root of the sum of squares.
+    pub rss: Option<f64>,
+    /// Of the distribution with these moments.
+    pub quantiles: OptionalQuantiles,
+    /// Share of assemblies within the limits.
+    #[serde(rename = "yield")]
+    pub yield_: Option<f64>,
+}
+
+impl SweepReport {
+    /// The report of a sweep of this problem.
+    pub fn of(problem: &Problem, sweep: &Sweep, about: About) -> Self {
+        let dimension = &problem.dimensions()[sweep.dimension];
+        let characteristics = problem.characteristics().iter().enumerate().map(|(c, one)| SweptReport {
+            name: one.name().to_owned(),
+            unit: one.unit().map(str::to_owned),
+            lower: one.limits().lower(),
+            upper: one.limits().upper(),
+            points: (sweep.values.iter().zip(&sweep.analyses))
+                .map(|(&at, analysis)| SweptPointReport::of(at, analysis.as_ref().map(|all| &all.characteristics[c])))
+                .collect(),
+        });
+        Self {
+            head: Head::of("sweep", &about),
+            parameter: ParameterReport {
+                name: dimension.name().to_owned(),
+                unit: dimension.unit().map(str::to_owned),
+                sigma: dimension.sigma(),
+                values: sweep.values.clone(),
+            },
+            method: sweep.analyses.iter().flatten().next().map(|analysis| analysis.method.name()),
+            evaluations: sweep.evaluations,
+            reused: sweep.reused,
+            failed: sweep.failed,
+            batches: sweep.batches,
+            wall_s: about.wall_s,
+            seed: sweep.analyses.iter().flatten().find_map(|analysis| analysis.seed),
+            stopped: sweep.stopped,
+            characteristics: characteristics.collect(),
+            warnings: warnings(sweep, dimension.name(), &about),
+        }
+    }
+}
+
+/// Those of the study, then those of the analyses: of one kind about one thing, the first with the number of values.
+fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport> {
+    let mut kinds: BTreeMap<(usize, &str), (WarningReport, Vec<f64>)> = BTreeMap::new();
+    let mut order: Vec<(&'static str, Option<String>, Option<String>)> = Vec::new();
+    for (&at, analysis) in sweep.values.iter().zip(&sweep.analyses) {
+        for warning in analysis.iter().flat_map(|analysis| &analysis.warnings).map(WarningReport::of) {
+            let kind = (warning.code, warning.characteristic.clone(), warning.dimension.clone());
+            let place = order.iter().position(|known| *known == kind).unwrap_or_else(|| {
+                order.push(kind);
+                order.len() - 1
+            });
+            kinds.entry((place, warning.code)).or_insert_with(|| (warning, Vec::new())).1.push(at);
+        }
+    }
+    let all = sweep.analyses.iter().flatten().count();
+    let of_values = kinds.into_values().map(|(warning, at)| {
+        let share = if at.len() == all { "every value".to_owned() } else { format!("{} of {all} values", at.len()) };
+        let message =
+            format!("at {share}, first at {parameter} = {}: {}", super::number::plain(at[0]), warning.message);
+        WarningReport { message, ..warning }
+    });
+    about.warnings.iter().map(WarningReport::of).chain(of_values).collect()
+}
+
+impl SweptPointReport {
+    fn of(at: f64, analysis: Option<&CharacteristicAnalysis>) -> Self {
+        let moments = analysis.and_then(|analysis| analysis.moments);
+        let law = analysis.and_then(|analysis| analysis.law.as_ref()).and_then(|law| law.as_ref().ok());
+        let quantiles = match law {
+            Some(Law::Point { at }) => NAMES.iter().map(|&name| (name, Some(*at))).collect(),
+            Some(Law::Pearson(pearson)) => {
+                Quantiles::of(pearson).0.into_iter().map(|(name, value)| (name, Some(value))).collect()
+            }
+            None => NAMES.iter().map(|&name| (name, None)).collect(),
+        };
+        Self {
+            at,
+            nominal: analysis.and_then(|analysis| analysis.nominal),
+            mean: moments.map(|moments| moments.mean()),
+            sigma: moments.map(|moments| moments.sigma()),
+            skewness: moments.and_then(|moments| moments.skewness()),
+            kurtosis: moments.and_then(|moments| moments.kurtosis()),
+            rss: analysis.and_then(|analysis| analysis.rss),
+            quantiles: OptionalQuantiles(quantiles),
+            yield_: analysis.and_then(|analysis| analysis.capability).and_then(|capability| capability.yield_()),
+        }
+    }
+
+    /// The ends of the band in which all but 0.27 % lie; None where they are unknown.
+    pub fn band(&self) -> Option<[f64; 2]> {
+        let of = |index: usize| self.quantiles.0.get(index).and_then(|(_, value)| *value);
+        Some([of(0)?, of(NAMES.len() - 1)?])
+    }
+
+    /// The median.
+    pub fn median(&self) -> Option<f64> {
+        self.quantiles.0.get(NAMES.len() / 2).and_then(|(_, value)| *value)
+    }
+}

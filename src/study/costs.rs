@@ -1,0 +1,418 @@
+//! `[costs]` and `require`: what tolerances cost, and what characteristics must keep.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::de::{Visitor, value};
+use serde::{Deserialize, Deserializer};
+
+use super::dimension;
+use super::error::{Fault, StudyFault, fault};
+use super::file::{CharacteristicEntry, StudyFile};
+#[cfg(feature = "cli")]
+use super::schema;
+use super::spanned::Spanned;
+use crate::allocation::{CostError, Curve, CurveKind, Offer, Priced, Requirement};
+use crate::characteristic::Characteristic;
+use crate::names::nearest;
+use crate::problem::Problem;
+
+/// One line of `[costs]`.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", schemars(extend("oneOf" = schema::one_of(["model", "same_as", "processes"]))))]
+#[serde(deny_unknown_fields, expecting = "a table such as { model = \"reciprocal\", a = 1.0, b = 0.1 }")]
+pub(super) struct CostEntry {
+    /// The cost over the half band T: reciprocal a + b/T, reciprocal-power a + b/T^k, exponential a + b exp(-T/c).
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::cost_models())))]
+    model: Option<Spanned<String>>,
+    /// The cost that no tolerance saves; 0 unless given.
+    a: Option<Spanned<f64>>,
+    /// The factor of what falls as the tolerance opens.
+    b: Option<Spanned<f64>>,
+    /// Of a reciprocal power its exponent.
+    k: Option<Spanned<f64>>,
+    /// Of an exponential cost the half band over which it falls to 1/e.
+    c: Option<Spanned<f64>>,
+    /// Least half band; a tenth of the present one unless given.
+    min: Option<Spanned<f64>>,
+    /// Greatest half band; ten times the present one unless given.
+    max: Option<Spanned<f64>>,
+    /// The dimension with which this one shares tolerance and process; each part costs.
+    same_as: Option<Spanned<String>>,
+    /// The processes that compete for it.
+    processes: Option<Spanned<Vec<Spanned<ProcessEntry>>>>,
+}
+
+/// A process: one half band at one cost, or a range of them with a cost that follows.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a process such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }")]
+struct ProcessEntry {
+    /// Its name.
+    name: Spanned<String>,
+    /// The half band that it holds.
+    tolerance: Option<Spanned<f64>>,
+    /// What a part costs.
+    cost: Option<Spanned<f64>>,
+    /// The cost over a range of half bands, as of a dimension.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::cost_models())))]
+    model: Option<Spanned<String>>,
+    /// The cost that no tolerance saves; 0 unless given.
+    a: Option<Spanned<f64>>,
+    /// The factor of what falls as the tolerance opens.
+    b: Option<Spanned<f64>>,
+    /// Of a reciprocal power its exponent.
+    k: Option<Spanned<f64>>,
+    /// Of an exponential cost the half band over which it falls to 1/e.
+    c: Option<Spanned<f64>>,
+    /// Least half band that it holds.
+    min: Option<Spanned<f64>>,
+    /// Greatest half band that it holds.
+    max: Option<Spanned<f64>>,
+}
+
+/// `"worst-case"`, `"rss"`, or `{ yield = 0.9973 }`, `{ cpk = 1.33 }`, `{ sigma = 0.05 }`.
+#[derive(Debug)]
+pub(super) enum RequireEntry {
+    Word(String),
+    Table(RequireTable),
+}
+
+/// A number that is required.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", schemars(extend("oneOf" = schema::one_of(["yield", "cpk", "sigma"]))))]
+#[serde(deny_unknown_fields)]
+pub(super) struct RequireTable {
+    /// The least share of assemblies within the limits.
+    #[serde(rename = "yield")]
+    yield_: Option<Spanned<f64>>,
+    /// The least Cpk.
+    cpk: Option<Spanned<f64>>,
+    /// The greatest sigma.
+    sigma: Option<Spanned<f64>>,
+}
+
+/// The requirements that have a name.
+pub(super) const WORDS: [&str; 2] = ["worst-case", "rss"];
+/// The present half band by this, and times this, where no bound is given.
+const RANGE: f64 = 10.0;
+
+impl<'de> Deserialize<'de> for RequireEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Require;
+        impl<'de> Visitor<'de> for Require {
+            type Value = RequireEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a requirement such as \"worst-case\", \"rss\" or { cpk = 1.33 },")
+            }
+
+            fn visit_str<E>(self, word: &str) -> Result<Self::Value, E> {
+                Ok(RequireEntry::Word(word.to_owned()))
+            }
+
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+                RequireTable::deserialize(value::MapAccessDeserializer::new(map)).map(RequireEntry::Table)
+            }
+        }
+        deserializer.deserialize_any(Require)
+    }
+}
+
+/// What each characteristic must keep: what it says itself, or its target yield.
+pub(super) fn requirement(
+    characteristic: &Characteristic,
+    entry: &CharacteristicEntry,
+    key: &str,
+) -> Result<Option<Requirement>, Fault> {
+    let Some(require) = &entry.require else { return Ok(characteristic.target_yield().map(Requirement::Yield)) };
+    let at = |span: Range<usize>, found: StudyFault| fault(span, format!("{key}.require"), found);
+    let (span, requirement) = match require.get_ref() {
+        RequireEntry::Word(word) => (
+            require.span(),
+            match word.as_str() {
+                "worst-case" => Requirement::WorstCase,
+                "rss" => Requirement::Rss,
+                found => {
+                    let nearest = nearest(found, WORDS).map(str::to_owned);
+                    let known = WORDS.iter().map(|&word| word.to_owned()).collect();
+                    let unknown =
+                        StudyFault::UnknownWord { what: "requirement", found: found.to_owned(), nearest, known };
+                    return Err(at(require.span(), unknown));
+                }
+            },
+        ),
+        RequireEntry::Table(table) => {
+            type Make = fn(f64) -> Requirement;
+            let forms: [(&'static str, &Option<Spanned<f64>>, Make); 3] = [
+                ("yield", &table.yield_, Requirement::Yield),
+                ("cpk", &table.cpk, Requirement::Cpk),
+                ("sigma", &table.sigma, Requirement::Sigma),
+            ];
+            let mut given = forms.iter().filter_map(|(name, value, make)| Some((*name, value.as_ref()?, make)));
+            let Some((first, value, make)) = given.next() else {
+                let instead = "write one of { yield = 0.9973 }, { cpk = 1.33 } and { sigma = 0.05 }".to_owned();
+                return Err(at(require.span(), StudyFault::MissingKey { key: "yield".into(), instead }));
+            };
+            if let Some((second, value, _)) = given.next() {
+                let why = "cannot both be required of one characteristic: leave one out".to_owned();
+                return Err(at(value.span(), StudyFault::Conflict { a: first, b: second, why }));
+            }
+            (value.span(), make(*value.get_ref()))
+        }
+    };
+    requirement.checked(characteristic).map(Some).map_err(|error| at(span, error.into()))
+}
+
+/// A cost and the dimensions that share it.
+struct Group<'f> {
+    name: &'f Spanned<String>,
+    members: Vec<usize>,
+    parts: f64,
+    offers: Vec<Offer>,
+}
+
+/// The groups of dimensions that share a tolerance, each with its cost, in the order of the file.
+pub(super) fn costs(file: &StudyFile, problem: &Problem) -> Result<Vec<Priced>, Fault> {
+    let names: Vec<&str> = file.costs.0.iter().map(|(name, _)| name.get_ref().as_str()).collect();
+    let mut groups: Vec<Group<'_>> = Vec::new();
+    for (name, entry) in &file.costs.0 {
+        let entry = entry.get_ref();
+        let key = format!("costs.{}", name.get_ref());
+        one_form(entry, name, &key)?;
+        if entry.same_as.is_some() {
+            continue;
+        }
+        let (members, parts) = members(file, problem, name, &key)?;
+        let present = problem.dimensions()[members[0]].half_band();
+        let offers = offers(entry, name, &key, present)?;
+        groups.push(Group { name, members, parts, offers });
+    }
+    for (name, entry) in &file.costs.0 {
+        let Some(other) = &entry.get_ref().same_as else { continue };
+        let key = format!("costs.{}", name.get_ref());
+        let at = |found: StudyFault| fault(other.span(), format!("{key}.same_as"), found);
+        let (mut members, parts) = members(file, problem, name, &key)?;
+        let target = other.get_ref();
+        if target == name.get_ref() {
+            return Err(at(StudyFault::SameAsItself { name: target.clone() }));
+        }
+        let Some(group) = groups.iter_mut().find(|group| group.name.get_ref() == target) else {
+            let chained = file.costs.0.iter().find(|(other, _)| other.get_ref() == target);
+            return Err(at(match chained.and_then(|(_, entry)| entry.get_ref().same_as.as_ref()) {
+                Some(end) => StudyFault::SameAsChain { name: target.clone(), end: end.get_ref().clone() },
+                None => {
+                    let nearest = nearest(target, names.iter().copied()).map(str::to_owned);
+                    let known = names.iter().map(|&name| name.to_owned()).collect();
+                    StudyFault::UnknownWord { what: "dimension with a cost", found: target.clone(), nearest, known }
+                }
+            }));
+        };
+        group.members.append(&mut members);
+        group.parts += parts;
+    }
+    let priced = |Group { name, members, parts, offers }: Group<'_>| {
+        let at = |error| fault(name.span(), format!("costs.{}", name.get_ref()), StudyFault::Cost(error));
+        Priced::new(members, offers).map(|priced| Priced { parts, ..priced }).map_err(at)
+    };
+    groups.into_iter().map(priced).collect()
+}
+
+/// Model, `same_as` and processes exclude each other.
+fn one_form(entry: &CostEntry, name: &Spanned<String>, key: &str) -> Result<(), Fault> {
+    let forms: [(&'static str, Option<Range<usize>>); 3] = [
+        ("model", entry.model.as_ref().map(Spanned::span)),
+        ("same_as", entry.same_as.as_ref().map(Spanned::span)),
+        ("processes", entry.processes.as_ref().map(Spanned::span)),
+    ];
+    let mut given = forms.into_iter().filter_map(|(form, span)| Some((form, span?)));
+    let Some((first, _)) = given.next() else {
+        let instead = "write model = \"reciprocal\" with a and b, same_as = another dimension, or processes".to_owned();
+        return Err(fault(name.span(), key, StudyFault::MissingKey { key: "model".into(), instead }));
+    };
+    if let Some((second, span)) = given.next() {
+        let why = "say two things: leave one out".to_owned();
+        return Err(fault(span, format!("{key}.{second}"), StudyFault::Conflict { a: first, b: second, why }));
+    }
+    let numbers: [(&'static str, &Option<Spanned<f64>>); 6] =
+        [("a", &entry.a), ("b", &entry.b), ("k", &entry.k), ("c", &entry.c), ("min", &entry.min), ("max", &entry.max)];
+    let number = numbers.iter().find_map(|(number, value)| Some((*number, value.as_ref()?)));
+    if let Some((number, value)) = number.filter(|_| first != "model") {
+        let (to, instead) = match first {
+            "same_as" => ("a cost that is another's", "write it at the dimension that has the cost"),
+            _ => ("a list of processes", "write it within a process"),
+        };
+        let apart = StudyFault::DoesNotApply { key: number, to: to.to_owned(), instead };
+        return Err(fault(value.span(), format!("{key}.{number}"), apart));
+    }
+    Ok(())
+}
+
+/// The dimension of this name, or both coordinates of the position, which are one part.
+fn members(file: &StudyFile, problem: &Problem, name: &Spanned<String>, key: &str) -> Result<(Vec<usize>, f64), Fault> {
+    let text = name.get_ref();
+    let dimensions = problem.dimensions();
+    let of_zone: Vec<usize> = (0..dimensions.len()).filter(|&d| dimensions[d].zone() == Some(text.as_str())).collect();
+    if !of_zone.is_empty() {
+        return Ok((of_zone, 1.0));
+    }
+    let Some(d) = dimensions.iter().position(|dimension| dimension.name() == text) else {
+        let lines = file.dimensions.names();
+        let known: Vec<String> = lines.iter().map(|name| name.get_ref().clone()).collect();
+        let nearest = nearest(text, known.iter().map(String::as_str)).map(str::to_owned);
+        let unknown = StudyFault::UnknownWord { what: "dimension", found: text.clone(), nearest, known };
+        return Err(fault(name.span(), key, unknown));
+    };
+    if let Some(zone) = dimensions[d].zone() {
+        let unknown = StudyFault::UnknownWord {
+            what: "cost of a single coordinate",
+            found: text.clone(),
+            nearest: Some(zone.to_owned()),
+            known: dimension::names(&file.dimensions).into_iter().map(Spanned::into_inner).collect(),
+        };
+        return Err(fault(name.span(), key, unknown));
+    }
+    Ok((vec![d], 1.0))
+}
+
+/// Where the numbers of a cost stand.
+struct Numbers<'e> {
+    model: &'e Option<Spanned<String>>,
+    a: &'e Option<Spanned<f64>>,
+    b: &'e Option<Spanned<f64>>,
+    k: &'e Option<Spanned<f64>>,
+    c: &'e Option<Spanned<f64>>,
+    min: &'e Option<Spanned<f64>>,
+    max: &'e Option<Spanned<f64>>,
+}
+
+fn offers(entry: &CostEntry, name: &Spanned<String>, key: &str, present: f64) -> Result<Vec<Offer>, Fault> {
+    let CostEntry { model, a, b, k, c, min, max, processes, .. } = entry;
+    let Some(processes) = processes else {
+        let numbers = Numbers { model, a, b, k, c, min, max };
+        return numbers.offer(key, &name.span(), Some(present)).map(|offer| vec![offer]);
+    };
+    if processes.get_ref().is_empty() {
+        return Err(fault(processes.span(), format!("{key}.processes"), CostError::NoProcess));
+    }
+    let mut offers: Vec<Offer> = Vec::new();
+    for (index, process) in processes.get_ref().iter().enumerate() {
+        let (span, process) = (process.span(), process.get_ref());
+        let key = format!("{key}.processes[{}]", index + 1);
+        let named = process.name.get_ref();
+        if offers.iter().any(|offer| offer.process.as_ref() == Some(named)) {
+            let taken = StudyFault::NameTaken { name: named.clone(), by: "another process" };
+            return Err(fault(process.name.span(), format!("{key}.name"), taken));
+        }
+        let ProcessEntry { model, a, b, k, c, min, max, .. } = process;
+        let offer = match (&process.model, &process.tolerance, &process.cost) {
+            (Some(_), None, None) => {
+                let numbers = Numbers { model, a, b, k, c, min, max };
+                for (bound, given) in [("min", min), ("max", max)] {
+                    if given.is_none() {
+                        let instead = "a process with a model needs min and max, between which it is used".to_owned();
+                        return Err(fault(span, key, StudyFault::MissingKey { key: bound.into(), instead }));
+                    }
+                }
+                numbers.offer(&key, &span, None)?.named(named)
+            }
+            (Some(_), Some(value), _) | (Some(_), _, Some(value)) => {
+                let which = if process.tolerance.is_some() { "tolerance" } else { "cost" };
+                let why = "say two things: leave one out".to_owned();
+                return Err(fault(
+                    value.span(),
+                    format!("{key}.{which}"),
+                    StudyFault::Conflict { a: "model", b: which, why },
+                ));
+            }
+            (None, Some(tolerance), Some(cost)) => Offer::process(named, *tolerance.get_ref(), *cost.get_ref())
+                .map_err(|error| match error {
+                    CostError::Tolerance { .. } => fault(tolerance.span(), format!("{key}.tolerance"), error),
+                    _ => fault(cost.span(), format!("{key}.cost"), error),
+                })?,
+            (None, tolerance, _) => {
+                let missing = if tolerance.is_none() { "tolerance" } else { "cost" };
+                let instead = "a process is such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }".to_owned();
+                return Err(fault(span, key, StudyFault::MissingKey { key: missing.into(), instead }));
+            }
+        };
+        offers.push(offer);
+    }
+    // The loosest first, so that neighbours in the list are neighbours in cost.
+    offers.sort_by(|x, y| (y.max, y.min).partial_cmp(&(x.max, x.min)).unwrap_or(std::cmp::Ordering::Equal));
+    Ok(offers)
+}
+
+impl Numbers<'_> {
+    /// A curve over a range of half bands; `present` is the half band that bounds default to, where they may.
+    fn offer(&self, key: &str, line: &Range<usize>, present: Option<f64>) -> Result<Offer, Fault> {
+        let model = self.model.as_ref().expect("a cost with a model");
+        let Some(kind) = CurveKind::NAMED.iter().find(|(name, _)| name == model.get_ref()).map(|(_, kind)| *kind)
+        else {
+            let known: Vec<String> = CurveKind::NAMED.iter().map(|(name, _)| (*name).to_owned()).collect();
+            let found = model.get_ref().clone();
+            let nearest = nearest(&found, known.iter().map(String::as_str)).map(str::to_owned);
+            let unknown = StudyFault::UnknownWord { what: "cost model", found, nearest, known };
+            return Err(fault(model.span(), format!("{key}.model"), unknown));
+        };
+        let spare: &[(&'static str, &Option<Spanned<f64>>)] = match kind {
+            CurveKind::ReciprocalPower => &[("c", self.c)],
+            CurveKind::Exponential => &[("k", self.k)],
+            _ => &[("k", self.k), ("c", self.c)],
+        };
+        if let Some((name, value)) = spare.iter().find_map(|(name, value)| Some((*name, value.as_ref()?))) {
+            let (to, instead) = (
+                format!("a cost of the model {}", model.get_ref()),
+                "k is the exponent of reciprocal-power, c the half band of exponential",
+            );
+            return Err(fault(
+                value.span(),
+                format!("{key}.{name}"),
+                StudyFault::DoesNotApply { key: name, to, instead },
+            ));
+        }
+        let needed = |name: &'static str, value: &Option<Spanned<f64>>| match value {
+            Some(value) => Ok(*value.get_ref()),
+            None => {
+                let instead = format!("a cost of the model {} needs {name}", model.get_ref());
+                Err(fault(line.clone(), key, StudyFault::MissingKey { key: name.into(), instead }))
+            }
+        };
+        let (a, b) = (self.a.as_ref().map_or(0.0, |a| *a.get_ref()), needed("b", self.b)?);
+        let curve = match kind {
+            CurveKind::ReciprocalPower => Curve::reciprocal_power(a, b, needed("k", self.k)?),
+            CurveKind::Exponential => Curve::exponential(a, b, needed("c", self.c)?),
+            _ => Curve::reciprocal(a, b),
+        };
+        let bound = |given: &Option<Spanned<f64>>, factor: f64| {
+            given.as_ref().map_or(present.unwrap_or(f64::NAN) * factor, |given| *given.get_ref())
+        };
+        // A dimension without tolerance is refused by whoever allocates; its line is no fault of the bounds.
+        let (mut min, mut max) = (bound(self.min, 1.0 / RANGE), bound(self.max, RANGE));
+        if present == Some(0.0) {
+            (min, max) = (1.0, 1.0);
+        } else if self.min.is_none() {
+            min = min.min(max);
+        } else if self.max.is_none() {
+            max = max.max(min);
+        }
+        curve.and_then(|curve| Offer::between(curve, min, max)).map_err(|error| {
+            let (name, value) = match error {
+                CostError::Negative { name, .. } | CostError::NotPositive { name, .. } => (
+                    name,
+                    match name {
+                        "a" => self.a,
+                        "b" => self.b,
+                        "k" => self.k,
+                        _ => self.c,
+                    },
+                ),
+                CostError::Tolerance { name: "min", .. } => ("min", self.min),
+                _ => ("max", self.max),
+            };
+            fault(value.as_ref().map_or(line.clone(), Spanned::span), format!("{key}.{name}"), error)
+        })
+    }
+}

@@ -1,0 +1,324 @@
+//! Along a parameter: a characteristic's moments and quantiles at many values of one dimension.
+//!
+//! Every value is an analysis of its own. What they ask of the model is gathered: all of them are run until they lack points,
+//! the points that any of them lacks are evaluated as one batch, and those that are not done are run again with the answers,
+//! which costs no evaluation. A method of one stage takes one batch, however many values there are.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::analysis::{Analysis, analyze_within};
+use crate::assembly::process::Adapter;
+use crate::assembly::{
+    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Points, Responses, Run, Signature,
+};
+use crate::dimension::DimensionError;
+use crate::evaluation::BATCH;
+use crate::method::{MethodError, Options};
+use crate::names::nearest;
+use crate::problem::Problem;
+use crate::warning::Warning;
+
+/// A problem along one of its dimensions.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// The place of the dimension among the problem's.
+    pub dimension: usize,
+    /// Its nominal values, in the order given.
+    pub values: Vec<f64>,
+    /// The analysis at every value; None where the sweep was stopped before it was done.
+    pub analyses: Vec<Option<Analysis>>,
+    /// Points sent to the model, each once for all values.
+    pub evaluations: usize,
+    /// Points whose answers were known from an earlier run.
+    pub reused: usize,
+    /// Points that lost at least one characteristic.
+    pub failed: usize,
+    /// Batches in which they were sent.
+    pub batches: usize,
+    /// Whether it was stopped before all was done.
+    pub stopped: bool,
+}
+
+/// Why a problem cannot be swept so.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// There is no such dimension.
+    #[error("there is no dimension `{name}` to sweep; known: {}{}", known.join(", "), nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
+    UnknownDimension {
+        /// The name asked for.
+        name: String,
+        /// The most similar one.
+        nearest: Option<String>,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// No value.
+    #[error("a sweep needs at least one value")]
+    NoValue,
+    /// A value that is no number.
+    #[error("a sweep goes over finite numbers, not {value}")]
+    NotFinite {
+        /// The value given.
+        value: f64,
+    },
+    /// A distribution that stays where it is.
+    #[error(
+        "`{name}` cannot be swept: its distribution ({distribution}) does not move with its nominal value; give it a tolerance instead"
+    )]
+    Unmoved {
+        /// The dimension.
+        name: String,
+        /// Its distribution.
+        distribution: &'static str,
+    },
+    /// The dimension cannot be at a value.
+    #[error(transparent)]
+    Dimension(#[from] DimensionError),
+    /// The method does not fit the problem.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+}
+
+/// Analyses a problem with one dimension's nominal at each of `values`, its tolerance kept.
+///
+/// Evaluations: those of the method at every value, each point once, in as many batches as the method has stages. A method that
+/// goes on and on, or asks for thousands of points at once, is given its answers as it asks from then on. A budget is that of
+/// all values together, an equal part for each.
+///
+/// # Errors
+/// When the dimension or the values cannot be, or the options do not fit the problem; nothing is evaluated then. A model that
+/// fails at some value is no error: what is unknown there is None.
+///
+/// ```
+/// use sensitol::sweep::sweep;
+/// use sensitol::{Closure, Dimension, Method, Problem};
+/// let dimensions = [Dimension::normal("width", 20.0, 0.3)?, Dimension::fixed("height", 10.0)?];
+/// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
+/// let swept = sweep(&area, "height", &[5.0, 10.0], &Method::SecondOrder.into())?;
+/// let sigma = |at: usize| swept.analyses[at].as_ref().unwrap().characteristics[0].moments.unwrap().sigma();
+/// assert!((sigma(0) - 0.5).abs() < 1e-12 && (sigma(1) - 1.0).abs() < 1e-12);
+/// assert_eq!((swept.evaluations, swept.batches), (6, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn sweep(problem: &Problem, dimension: &str, values: &[f64], options: &Options) -> Result<Sweep, SweepError> {
+    sweep_within(problem, dimension, values, options, &Run::to_the_end())
+}
+
+/// [`sweep`], stopping when told to; what is not done then is None.
+pub fn sweep_within(
+    problem: &Problem,
+    dimension: &str,
+    values: &[f64],
+    options: &Options,
+    run: &Run<'_>,
+) -> Result<Sweep, SweepError> {
+    let place = place(problem, dimension)?;
+    if values.is_empty() {
+        return Err(SweepError::NoValue);
+    }
+    let gatherer = Arc::new(Gatherer::over(problem));
+    let problems: Vec<Problem> = values
+        .iter()
+        .map(|&value| {
+            if !value.is_finite() {
+                return Err(SweepError::NotFinite { value });
+            }
+            let swept = &problem.dimensions()[place];
+            let distribution = swept.distribution().map_or("", |distribution| distribution.name());
+            let unmoved = || SweepError::Unmoved { name: swept.name().to_owned(), distribution };
+            let moved = swept.moved(value).ok_or_else(unmoved)??;
+            Ok(problem.replacing(place, moved, Arc::clone(&gatherer) as _))
+        })
+        .collect::<Result<_, _>>()?;
+    // What may be spent is shared alike.
+    let options = &Options { budget: options.budget.map(|budget| budget / values.len()), ..options.clone() };
+    for problem in &problems {
+        options.method.procedure().fits(problem, options)?;
+    }
+    let mut analyses: Vec<Option<Analysis>> = vec![None; values.len()];
+    let mut stopped = false;
+    for round in 1.. {
+        for (problem, analysis) in problems.iter().zip(&mut analyses).filter(|(_, analysis)| analysis.is_none()) {
+            if run.stopped() {
+                stopped = true;
+                break;
+            }
+            gatherer.memory().lacks = false;
+            let found = analyze_within(problem, options, run)?;
+            let complete = !gatherer.memory().lacks;
+            stopped |= complete && found.stopped;
+            *analysis = (complete && !found.stopped).then_some(found);
+        }
+        stopped |= run.stopped();
+        if stopped || !gatherer.evaluate_lacking(run) {
+            break;
+        }
+        gatherer.memory().at_once = round >= ROUNDS;
+    }
+    let memory = gatherer.memory();
+    stopped |= memory.stopped;
+    Ok(Sweep {
+        dimension: place,
+        values: values.to_vec(),
+        analyses,
+        evaluations: memory.evaluations,
+        reused: memory.reused,
+        failed: memory.failed,
+        batches: memory.batches,
+        stopped,
+    })
+}
+
+fn place(problem: &Problem, name: &str) -> Result<usize, SweepError> {
+    let names = || problem.dimensions().iter().map(|dimension| dimension.name());
+    names().position(|known| known == name).ok_or_else(|| SweepError::UnknownDimension {
+        name: name.to_owned(),
+        nearest: nearest(name, names()).map(str::to_owned),
+        known: names().map(str::to_owned).collect(),
+    })
+}
+
+/// Batches that are gathered; an analysis that is not done then goes on by itself, for it is run anew in every round.
+const ROUNDS: usize = 24;
+/// As many points in one request keep every worker busy without others', and are no method's stage.
+const MANY: usize = 4096;
+
+/// Every answer that one point got, in the order of the problem's outputs.
+type Answers = Vec<Result<f64, EvaluationError>>;
+
+/// A function that answers from what it knows, and keeps in mind what it was asked and did not know.
+struct Gatherer {
+    problem: Problem,
+    memory: Mutex<Memory>,
+}
+
+#[derive(Default)]
+struct Memory {
+    known: HashMap<Vec<u64>, Answers>,
+    wanted: Vec<Vec<f64>>,
+    /// Whether the last analysis was not told all that it asked.
+    lacks: bool,
+    /// Whether everything is evaluated when it is asked.
+    at_once: bool,
+    evaluations: usize,
+    reused: usize,
+    failed: usize,
+    batches: usize,
+    stopped: bool,
+}
+
+impl Memory {
+    fn count(&mut self, out: &Responses) {
+        let answered = |row: usize| (0..out.outputs()).any(|output| !out.is_open(row, output));
+        let failed = |row: usize| (0..out.outputs()).any(|output| out.error(row, output).is_some());
+        let rows = (0..out.rows()).filter(|&row| answered(row)).count();
+        self.evaluations = (self.evaluations + rows).saturating_add_signed(out.extra() as isize);
+        self.reused += out.count_reused();
+        self.failed += (0..out.rows()).filter(|&row| failed(row)).count();
+        self.batches += 1;
+    }
+}
+
+fn bits(point: &[f64]) -> Vec<u64> {
+    point.iter().map(|x| x.to_bits()).collect()
+}
+
+impl Gatherer {
+    fn over(problem: &Problem) -> Self {
+        Self { problem: problem.clone(), memory: Mutex::default() }
+    }
+
+    fn memory(&self) -> MutexGuard<'_, Memory> {
+        self.memory.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn function(&self) -> &dyn AssemblyFunction {
+        self.problem.function()
+    }
+
+    /// Evaluates what is lacking; false when nothing is, or the run was stopped.
+    fn evaluate_lacking(&self, run: &Run<'_>) -> bool {
+        let mut wanted = std::mem::take(&mut self.memory().wanted);
+        let mut seen = std::collections::HashSet::new();
+        wanted.retain(|point| seen.insert(bits(point)));
+        if wanted.is_empty() {
+            return false;
+        }
+        let outputs = self.problem.outputs();
+        for batch in wanted.chunks((BATCH / self.problem.dimensions().len()).max(1)) {
+            let mut out = Responses::open(batch.len(), outputs.len());
+            self.function().evaluate(&Ask::values(&Points::from_rows(batch), outputs), run, &mut out);
+            let mut memory = self.memory();
+            memory.count(&out);
+            for (row, point) in batch.iter().enumerate() {
+                let answer = |output: usize| {
+                    let error = || out.error(row, output).cloned().map(Err);
+                    out.value(row, output).map(Ok).or_else(error)
+                };
+                match (0..outputs.len()).map(answer).collect::<Option<Answers>>() {
+                    Some(answers) => drop(memory.known.insert(bits(point), answers)),
+                    None => memory.stopped = true,
+                }
+            }
+            if memory.stopped {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+impl AssemblyFunction for Gatherer {
+    fn signature(&self) -> &Signature {
+        self.function().signature()
+    }
+
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+        self.function().prepare(outputs)
+    }
+
+    fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
+        self.function().bounds(output, region)
+    }
+
+    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
+        let rows = ask.points.rows();
+        // Others than all outputs are not what is kept in mind.
+        let foreign = ask.outputs != self.problem.outputs();
+        let at_once = {
+            let memory = self.memory();
+            let known = |row: usize| memory.known.contains_key(&bits(&ask.points.row(row)));
+            foreign || ((memory.at_once || rows >= MANY) && !(0..rows).all(known))
+        };
+        if at_once {
+            self.function().evaluate(ask, run, out);
+            self.memory().count(out);
+            return;
+        }
+        let mut memory = self.memory();
+        for row in 0..rows {
+            let point = ask.points.row(row);
+            let Some(answers) = memory.known.get(&bits(&point)) else {
+                memory.wanted.push(point);
+                memory.lacks = true;
+                continue;
+            };
+            for (output, answer) in answers.iter().enumerate() {
+                match answer {
+                    Ok(value) => out.set(row, output, *value),
+                    Err(error) => out.fail(row, output, error.clone()),
+                }
+            }
+        }
+    }
+
+    fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
+        self.function().derivatives(outputs, directions)
+    }
+
+    fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
+        self.function().warnings(outputs)
+    }
+}

@@ -1,0 +1,67 @@
+"""What the SDK does for adapters of documents; the suite's process tests have the rest of it."""
+
+import json
+import pathlib
+import tempfile
+
+from harness import ROOT, client, refused, run
+
+MODEL = f"""
+import os, sys, time
+sys.path.insert(0, {str(ROOT / "adapters/python")!r})
+from sensitol_adapter import Adapter
+
+def setup(hello):
+    served.outputs = ["sum"]
+    served.inputs = ["a@b", "c"]
+    served.units = {{"a@b": "mm"}}
+    served.version = len(hello["dimensions"])
+
+def total(**values):
+    print("noise")
+    time.sleep(0.05)
+    for _ in range(400 if values["a@b"] == 2 else 0):
+        if os.path.exists("go"):
+            break
+        time.sleep(0.05)
+    else:
+        if values["a@b"] == 2:
+            raise RuntimeError("the first answer was held back")
+    return {{"sum": sum(values.values())}}
+
+served = Adapter(total, setup=setup)
+served.serve()
+"""
+
+
+def asked(folder, units, nominal, names=("sum",)):
+    path = pathlib.Path(folder) / "model.py"
+    path.write_text(MODEL)
+    return client(["python3", path], folder, units, nominal, list(names))
+
+
+def setup_may_say_what_there_is():
+    with tempfile.TemporaryDirectory() as folder:
+        with asked(folder, ["mm", None], {"a@b": 1.0, "c": 2.0}) as model:
+            assert model.ready["version"] == "2", model.ready
+            assert model.point(**{"a@b": 1.5, "c": 2.0})["y"] == [3.5]
+        with asked(folder, ["in"], {"a@b": 1.0}) as model:
+            refused(model, "`a@b` is in `in` in the study and in `mm` here")
+        with asked(folder, [None], {"d": 1.0}) as model:
+            refused(model, "`d`", "a@b, c")
+        with asked(folder, ["mm"], {"a@b": 1.0}, ["product"]) as model:
+            refused(model, "`product`", "sum")
+
+
+def a_slow_answer_does_not_wait_for_the_next():
+    with tempfile.TemporaryDirectory() as folder, asked(folder, ["mm"], {"a@b": 1.0}) as model:
+        model.process.stdin.write('{"id":1,"x":[1.0]}\n{"id":2,"x":[2.0]}\n')
+        model.process.stdin.flush()
+        assert json.loads(model.process.stdout.readline()) == {"id": 1, "y": [1.0]}
+        # The second point waits for this file, and gives up after a while.
+        pathlib.Path(folder, "go").touch()
+        assert json.loads(model.process.stdout.readline()) == {"id": 2, "y": [2.0]}
+
+
+if __name__ == "__main__":
+    run([setup_may_say_what_there_is, a_slow_answer_does_not_wait_for_the_next])
