@@ -37,6 +37,8 @@ test("every page of every example opens without a complaint or a request", async
     const pages = [report("analyze", study, name, ["--journal", "none"])];
     pages.push(report("simulate", study, name, ["--samples", "500", "--journal", "none"]));
     if (!study.includes("external")) pages.push(report("compare", study, name, ["--samples", "2048"]));
+    if (study.includes("stacked-blocks/")) pages.push(report("sweep", study, name, ["--over", "th=15:19:5"]));
+    if (readFileSync(join(root, study), "utf8").includes("[costs")) pages.push(report("allocate", study, name, ["--front", "4"]));
     for (const file of pages) {
       for (const options of [{}, { dark: true }, { width: 360, height: 740 }]) {
         const page = await browser.open(file, options);
@@ -143,14 +145,17 @@ test("hostile names are shown as text", async () => {
   writeFileSync(study, JSON.stringify({
     title,
     dimensions: { [name]: { nominal: 1, tolerance: 0.1, unit: "</style><b>mm" }, b: { nominal: 2, tolerance: 0.1 } },
-    characteristics: { [characteristic]: { formula: `\`${name}\`*b`, lower: 1.8, upper: 2.2 } },
+    characteristics: { [characteristic]: { formula: `\`${name}\`*b`, lower: 1.8, upper: 2.2, target_yield: 0.9 } },
+    costs: { [name]: { model: "reciprocal", a: 1, b: 0.1, min: 0.01, max: 0.2 } },
   }));
-  for (const command of ["analyze", "simulate", "compare"]) {
-    const page = await browser.open(report(command, study, "hostile"));
+  const more = { sweep: ["--over", "b=1.9:2.1:3"] };
+  for (const command of ["analyze", "simulate", "compare", "sweep", "allocate"]) {
+    const page = await browser.open(report(command, study, "hostile", more[command]));
     quiet(page);
     assert.equal(await page.evaluate("document.querySelectorAll('img, b, iframe, svg[onload]').length"), 0);
     assert.equal(await page.evaluate("document.querySelector('h1').textContent"), title);
-    assert.equal(await page.evaluate("document.querySelector('.kc h2').textContent"), characteristic);
+    const heading = command === "allocate" ? ".wide tbody th" : ".kc h2";
+    assert.equal(await page.evaluate(`document.querySelector("${heading}").textContent`), characteristic);
     await page.close();
   }
 });

@@ -76,7 +76,9 @@ fn is_closed(page: &str) {
     assert_eq!(page.matches("<style").count(), 1);
     let scripts = page.matches("<script").count();
     assert!(scripts == 0 || scripts == 2, "{scripts} scripts");
-    for address in ["http:", "https:", "src=\"", "url(", "@import", "<link", "<iframe", "<object", "style=\"", " onclick"] {
+    for address in
+        ["http:", "https:", "src=\"", "url(", "@import", "<link", "<iframe", "<object", "style=\"", " onclick"]
+    {
         assert!(!page.contains(address), "the page holds {address}");
     }
 }
@@ -105,7 +107,8 @@ fn hostile_names_are_text() {
     let about = About { title: study.title.clone(), ..About::default() };
     let simulated = simulate_html(&SimulationReport::of(&study.problem, &simulation, about.clone()));
     let options = sensitol::compare::CompareOptions { reference: Some(4096), budget: None, seed: 1 };
-    let comparison = sensitol::compare::compare_within(&study.problem, &options, &sensitol::assembly::Run::to_the_end());
+    let comparison =
+        sensitol::compare::compare_within(&study.problem, &options, &sensitol::assembly::Run::to_the_end());
     let compared = compare_html(&CompareReport::of(&comparison.unwrap(), about));
     for page in [simulated, compared] {
         is_closed(&page);
@@ -152,8 +155,14 @@ fn the_command_line_writes_pages() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let blocks = "examples/stacked-blocks/study.toml";
-    let calls: [&[&str]; 3] =
-        [&["analyze", blocks], &["simulate", blocks, "--samples", "2000"], &["compare", blocks, "--samples", "4096"]];
+    let housing = "examples/shaft-and-housing/study.toml";
+    let calls: [&[&str]; 5] = [
+        &["analyze", blocks],
+        &["simulate", blocks, "--samples", "2000"],
+        &["compare", blocks, "--samples", "4096"],
+        &["sweep", blocks, "--over", "th=15:19:5"],
+        &["allocate", housing],
+    ];
     for call in calls {
         let file = path(&format!("{}.html", call[0]));
         let plain = sensitol(&[call, &["--html", &file, "-q"]].concat()).output().unwrap();
@@ -161,7 +170,8 @@ fn the_command_line_writes_pages() {
         assert!(!plain.stdout.is_empty(), "the report is printed too");
         let page = std::fs::read_to_string(&file).unwrap();
         is_closed(&page);
-        assert!(page.contains("Stacked blocks: gap between cylinder and frame"));
+        let title = study_title(call[1]);
+        assert!(page.contains(&format!("<h1>{title}</h1>")), "{title}");
         let missing = run(&[call, &["--html", &path("no/such/page.html")]].concat());
         assert!(missing.starts_with("exit 2") && missing.contains("there is no folder"), "{missing}");
         let of_folder = run(&[call, &["--html", folder.path().to_str().unwrap()]].concat());
@@ -169,6 +179,11 @@ fn the_command_line_writes_pages() {
     }
     let rare = run(&["simulate", blocks, "--rare", "--html", &path("rare.html")]);
     assert!(rare.starts_with("exit 2") && rare.contains("--html"), "{rare}");
+}
+
+fn study_title(path: &str) -> String {
+    let title = Study::read(&repository(path)).unwrap().title.unwrap();
+    title.replace('&', "&amp;")
 }
 
 /// Where the pages and settings stand that `tests/browser` tries again.
@@ -262,7 +277,9 @@ fn the_page_computes_what_the_engine_computes() {
         std::fs::write(cases().join(format!("{name}.expected.json")), json!(expected).to_string()).unwrap();
         let answer = by_node(&page, &Value::Array(given), name);
         for (i, (found, expected)) in answer["found"].as_array().unwrap().iter().zip(&expected).enumerate() {
-            for (found, expected) in found["characteristics"].as_array().unwrap().iter().zip(expected.as_array().unwrap()) {
+            for (found, expected) in
+                found["characteristics"].as_array().unwrap().iter().zip(expected.as_array().unwrap())
+            {
                 assert!(!expected.is_null(), "{name} has a surrogate");
                 worst = worst.max(compared(found, expected, &format!("{name}, setting {i}")));
             }
@@ -332,5 +349,6 @@ fn what_is_copied_analyses_to_the_same() {
 }
 
 fn skipped(what: &str) {
-    let _ = writeln!(std::io::stderr(), "skipped: {what}; install Node 18 or newer (nodejs.org, or apt install nodejs)");
+    let _ =
+        writeln!(std::io::stderr(), "skipped: {what}; install Node 18 or newer (nodejs.org, or apt install nodejs)");
 }

@@ -76,7 +76,8 @@ pub fn allocate_html(report: &AllocationReport) -> String {
             [text(before.yield_), after]
         }),
     };
-    let confirmed = if report.confirmed { "the model was evaluated at the tolerances found" } else { "not by the model" };
+    let confirmed =
+        if report.confirmed { "the model was evaluated at the tolerances found" } else { "not by the model" };
     let mut facts = vec![
         fact("derivatives by", report.method),
         fact("confirmed", confirmed),

@@ -53,6 +53,7 @@ struct One<'r> {
     sensitivities: Vec<[String; 10]>,
     interactions: Vec<[String; 4]>,
     more_interactions: Option<String>,
+    notes: Vec<String>,
     stack: Option<Stacked>,
     error: Vec<[String; 2]>,
     basis: Option<&'r str>,
@@ -224,9 +225,10 @@ fn characteristic<'r>(report: &'r Report, one: &'r CharacteristicReport, stack: 
         sensitivities: sensitivities(report, one),
         interactions: interactions.iter().take(INTERACTIONS).map(|pair| interaction(pair)).collect(),
         more_interactions: (more > 0).then(|| {
-            let of = one.possible_interactions;
-            format!("{more} more were examined, of {of} that are possible; all of them stand in the JSON report")
+            let (examined, possible) = (one.interactions.len(), one.possible_interactions);
+            format!("interactions examined: {examined} of {possible}; those that are not shown are weaker, and in the JSON report")
         }),
+        notes: notes(one),
         stack: stacked(stack),
         error: errors(one),
         basis: one.error_estimate.as_ref().map(|estimate| estimate.basis.as_str()),
@@ -272,6 +274,51 @@ fn kept(one: &CharacteristicReport) -> Vec<[String; 2]> {
         ("yield if it were normal", one.normal_fit.as_ref().and_then(|normal| normal.yield_).map(|y| share(1.0 - y))),
     ];
     rows.into_iter().filter_map(|(name, text)| Some(row(name, text?))).collect()
+}
+
+/// What else is known of how far the results may be off, where they come from samples or a fit.
+fn notes(one: &CharacteristicReport) -> Vec<String> {
+    let error = |error: Option<f64>| error.map_or(UNKNOWN.to_owned(), |error| significant(error, 2));
+    let scale = one.sigma.unwrap_or(0.0);
+    let mut notes = Vec::new();
+    if let Some(of) = &one.surrogate_sampling {
+        let [sigma, skewness, kurtosis] = [of.sigma, of.skewness, of.kurtosis].map(|of| error(Some(of)));
+        notes.push(format!(
+            "sampled from the surrogate at {} points; standard errors: sigma {sigma}, skewness {skewness}, kurtosis {kurtosis}",
+            of.samples
+        ));
+    }
+    if let Some(of) = &one.model_sampling {
+        let [mean, sigma, skewness, kurtosis] = [of.mean, of.sigma, of.skewness, of.kurtosis].map(error);
+        notes.push(format!(
+            "from {} points of the model, as the surrogate was not trusted; standard errors: mean {mean}, sigma {sigma}, \
+             skewness {skewness}, kurtosis {kurtosis}",
+            of.samples
+        ));
+        if let Some([low, high]) = of.yield_interval {
+            notes.push(format!("95 % interval of the sample's yield: {} to {}", share(1.0 - low), share(1.0 - high)));
+        }
+    }
+    if let Some(of) = &one.least_squares {
+        notes.push(format!(
+            "a surface of {} coefficients fitted to {} points; residual standard error {}",
+            of.coefficients,
+            of.points,
+            error(of.residual_standard_error)
+        ));
+    }
+    if let Some(of) = &one.sampling_interval {
+        let between = |name: &str, interval: Option<[f64; 2]>| {
+            interval.map(|[low, high]| format!("{name} {} to {}", beside(low, scale), beside(high, scale)))
+        };
+        let yields = of.rejected.map(|[low, high]| format!("yield {} to {}", share(high), share(low)));
+        let cpk = of.cpk.map(|[low, high]| format!("Cpk {low:.3} to {high:.3}"));
+        let all: Vec<String> =
+            [between("mean", of.mean), between("sigma", of.sigma), yields, cpk].into_iter().flatten().collect();
+        let level = percent(of.level);
+        notes.push(format!("{level} % intervals by the size of measured samples: {}; {}", all.join(", "), of.basis));
+    }
+    notes
 }
 
 /// How far the results may be off.

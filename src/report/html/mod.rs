@@ -29,12 +29,8 @@ use super::{Head, WarningReport};
 
 const STYLE: &str = include_str!("page.css");
 /// The mathematics of the what-if, and then what shows it.
-const SCRIPT: &str = concat!(
-    include_str!("what_if.js"),
-    include_str!("pearson.js"),
-    include_str!("live.js"),
-    include_str!("page.js")
-);
+const SCRIPT: &str =
+    concat!(include_str!("what_if.js"), include_str!("pearson.js"), include_str!("live.js"), include_str!("page.js"));
 const TEMPLATES: [(&str, &str); 7] = [
     ("parts.html", include_str!("parts.html")),
     ("page.html", include_str!("page.html")),
@@ -159,7 +155,8 @@ mod tests {
     /// RFC 4648, section 10.
     #[test]
     fn base64_is_that_of_the_standard() {
-        let pairs = [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("foobar", "Zm9vYmFy")];
+        let pairs =
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("foobar", "Zm9vYmFy")];
         for (bytes, text) in pairs {
             assert_eq!(base64(bytes.as_bytes()), text);
         }

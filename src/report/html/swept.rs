@@ -36,7 +36,10 @@ pub fn sweep_html(report: &SweepReport) -> String {
     let mut facts = vec![
         fact("method", report.method.unwrap_or("none was run")),
         fact("swept", format!("{}, {} values", report.parameter.name, report.parameter.values.len())),
-        fact("evaluations", format!("{} in {} batches, {} of them failed", report.evaluations, report.batches, report.failed)),
+        fact(
+            "evaluations",
+            format!("{} in {} batches, {} of them failed", report.evaluations, report.batches, report.failed),
+        ),
         fact("reused answers", report.reused.to_string()),
     ];
     if report.stopped {

@@ -119,7 +119,8 @@ impl WhatIf {
 
     /// Whether there is something to change, and something that follows it.
     pub(super) fn possible(&self) -> bool {
-        self.dimensions.iter().any(|one| one.fixed.is_none()) && self.characteristics.iter().any(|one| one.why.is_none())
+        self.dimensions.iter().any(|one| one.fixed.is_none())
+            && self.characteristics.iter().any(|one| one.why.is_none())
     }
 
     pub(super) fn dimensions(&self) -> &[Tried] {
@@ -194,7 +195,8 @@ fn fixed(dimension: &Dimension, kind: &str) -> Option<&'static str> {
     }
     let same = |factor: f64| {
         let scaled = dimension.scaled(factor)?.ok()?;
-        let [before, after] = [dimension, &scaled].map(|one| one.distribution().map(|law| law.standard_moments().raw()));
+        let [before, after] =
+            [dimension, &scaled].map(|one| one.distribution().map(|law| law.standard_moments().raw()));
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs().max(1.0);
         Some(before?.iter().zip(&after?).all(near))
     };
