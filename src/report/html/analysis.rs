@@ -315,7 +315,7 @@ fn notes(one: &CharacteristicReport) -> Vec<String> {
         let cpk = of.cpk.map(|[low, high]| format!("Cpk {low:.3} to {high:.3}"));
         let all: Vec<String> =
             [between("mean", of.mean), between("sigma", of.sigma), yields, cpk].into_iter().flatten().collect();
-        let level = percent(of.level);
+        let level = plain(100.0 * of.level);
         notes.push(format!("{level} % intervals by the size of measured samples: {}; {}", all.join(", "), of.basis));
     }
     notes
