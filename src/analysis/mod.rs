@@ -9,6 +9,7 @@ mod interval;
 mod linear;
 mod shapes;
 mod shares;
+mod surface;
 mod tails;
 mod trust;
 mod warnings;
@@ -16,6 +17,7 @@ mod warnings;
 pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
 pub use fallback::SampledModel;
+pub use surface::{Fit, NoFit, Surface};
 pub use tails::Tails;
 pub(crate) use warnings::history;
 
@@ -54,6 +56,8 @@ pub struct Analysis {
     pub account: Option<String>,
     /// What the moments rest on.
     pub basis: Basis,
+    /// What the moments follow from.
+    pub surface: Surface,
     /// Where an assumption fails.
     pub warnings: Vec<Warning>,
 }
@@ -120,9 +124,10 @@ pub(crate) fn analyze_keeping(
         stopped: outcome.evaluated.stopped || fallback.stopped || found.spent.stopped,
         in_model: outcome.evaluated.in_model + fallback.in_model + found.spent.in_model,
         seed: drawn.then_some(seed),
-        characteristics,
         account,
         basis: outcome.basis,
+        surface: Surface::of(&outcome, &characteristics),
+        characteristics,
         warnings,
     };
     Ok((analysis, outcome))

@@ -12,6 +12,7 @@ use super::{interrupt, study};
 use crate::allocation::{Allocation, AllocationOptions, Status, allocate_within};
 use crate::assembly::{Progress, Run};
 use crate::method::Options;
+use crate::report::html::allocate_html;
 use crate::report::{
     AllocationReport, WrittenAnew, allocation_csv, allocation_csv_names, allocation_svg, allocation_text,
 };
@@ -22,6 +23,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let destination = Destination::open(&asked.output)?;
     let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &allocation_csv_names())).transpose()?;
     let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
+    let page = asked.html.as_deref().map(Destination::file).transpose()?;
     let written = asked.write.as_deref().map(|path| beside(&asked.study.study, path)).transpose()?;
     let clock = Clock::start(asked.time);
     let options = AllocationOptions {
@@ -47,6 +49,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let mut result = destination.write(&printed);
     result = result.and(folder.map_or(Ok(()), |folder| folder.write(&allocation_csv(&report))));
     result = result.and(chart.map_or(Ok(()), |chart| chart.write(&allocation_svg(&report))));
+    result = result.and(page.map_or(Ok(()), |page| page.write(&allocate_html(&report))));
     match (written, anew) {
         (Some(file), Some(Ok(anew))) => result = result.and(file.write(&anew.text)),
         (Some(_), Some(Err(error))) => result = result.and(Err(Failure::Rewrite(error))),

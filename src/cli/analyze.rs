@@ -14,6 +14,7 @@ use super::study;
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::{Progress, Run, Table};
 use crate::characteristic::Characteristic;
+use crate::report::html::{WhatIf, analyze_html};
 use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_markdown, stack_text, text};
 use crate::study::Study;
 
@@ -28,6 +29,7 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let destination = Destination::open(&asked.output)?;
     let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
     let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
+    let page = asked.html.as_deref().map(Destination::file).transpose()?;
     let clock = Clock::start(asked.time);
     let analysis = analyze(&study, asked.threads, &clock, look)?;
     let about = clock.about(&study, study.options.seed);
@@ -41,6 +43,10 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     };
     let written = destination.write(&printed);
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));
+    let written = written.and(page.map_or(Ok(()), |page| {
+        let what_if = WhatIf::of(&study.problem, &analysis, &study.lines);
+        page.write(&analyze_html(&report, Some(&what_if)))
+    }));
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }

@@ -164,6 +164,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FORMAT", conflicts_with = "json", help_heading = OUTPUT)]
     pub(super) stack: Option<StackArg>,
 
+    /// Write the report as one HTML page, in which other tolerances can be tried
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    pub(super) html: Option<PathBuf>,
+
     /// Write the tables of the report as CSV files into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
@@ -250,6 +254,10 @@ pub(super) struct SimulateArgs {
     #[arg(long)]
     pub(super) check: bool,
 
+    /// Write the report as one HTML page
+    #[arg(long, value_name = "FILE.html", conflicts_with = "rare", help_heading = OUTPUT)]
+    pub(super) html: Option<PathBuf>,
+
     /// Write estimates and histogram as CSV files into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
@@ -270,6 +278,10 @@ pub(super) struct CompareArgs {
     /// Points of the reference [default: 1048576, or 2000 of an external model]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
     pub(super) samples: Option<u64>,
+
+    /// Write the report as one HTML page
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    pub(super) html: Option<PathBuf>,
 
     /// Write the table as comparison.csv into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
@@ -307,6 +319,10 @@ pub(super) struct SweepArgs {
     /// Threads that evaluate formulas and built-in models [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) threads: Option<u16>,
+
+    /// Write the report as one HTML page
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    pub(super) html: Option<PathBuf>,
 
     /// Write the table as sweep.csv into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
@@ -363,6 +379,10 @@ pub(super) struct AllocateArgs {
     /// Write the study with the tolerances found, otherwise as it is
     #[arg(long, value_name = "FILE", help_heading = OUTPUT)]
     pub(super) write: Option<PathBuf>,
+
+    /// Write the report as one HTML page
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
+    pub(super) html: Option<PathBuf>,
 
     /// Write tolerances, requirements and front as CSV files into DIR, which is made where it is missing
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]

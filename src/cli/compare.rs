@@ -9,6 +9,7 @@ use super::{interrupt, study};
 use crate::assembly::Run;
 use crate::compare::{CompareOptions, compare_within};
 use crate::method::Options;
+use crate::report::html::compare_html;
 use crate::report::{CompareReport, compare_csv, compare_svg, compare_text};
 
 pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
@@ -17,6 +18,7 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let names = ["comparison.csv".to_owned()];
     let table = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
     let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
+    let page = asked.html.as_deref().map(Destination::file).transpose()?;
     let options = CompareOptions {
         budget: asked.budget.or(study.options.budget),
         reference: asked.samples,
@@ -32,6 +34,7 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
         destination.write(&if asked.output.json { json(&report) } else { compare_text(&report, look.style()) });
     let written = written.and(table.map_or(Ok(()), |table| table.write(&[compare_csv(&report)])));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&compare_svg(&report))));
+    let written = written.and(page.map_or(Ok(()), |page| page.write(&compare_html(&report))));
     for warning in &study.warnings {
         look.warn(warning.code(), &warning.message());
     }

@@ -12,6 +12,7 @@ use super::running::{Clock, on_threads};
 use super::{interrupt, rare, study};
 use crate::assembly::Run;
 use crate::method::{Method, Options};
+use crate::report::html::simulate_html;
 use crate::report::{SimulationReport, simulation_csv, simulation_text};
 use crate::sampling::Sampler;
 use crate::simulation::{Pace, Simulation, SimulationOptions, simulate_within};
@@ -34,6 +35,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let destination = Destination::open(&asked.output)?;
     let names = ["estimates.csv", "histogram.csv"].map(str::to_owned);
     let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
+    let page = asked.html.as_deref().map(Destination::file).transpose()?;
     let wanted = asked.until.is_some() || asked.until_yield.is_some();
     let options = SimulationOptions {
         samples: asked.samples.unwrap_or(if wanted { 1 << 52 } else { SAMPLES }),
@@ -53,6 +55,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let written =
         destination.write(&if asked.output.json { json(&report) } else { simulation_text(&report, look.style()) });
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&simulation_csv(&report))));
+    let written = written.and(page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }

@@ -8,6 +8,7 @@ use super::progress::Bar;
 use super::running::{Clock, externals, on_threads};
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
+use crate::report::html::sweep_html;
 use crate::report::{SweepReport, sweep_csv, sweep_svg, sweep_text};
 use crate::study::Study;
 use crate::sweep::{Sweep, sweep_within};
@@ -20,12 +21,14 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let names = ["sweep.csv".to_owned()];
     let table = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
     let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
+    let page = asked.html.as_deref().map(Destination::file).transpose()?;
     let clock = Clock::start(asked.time);
     let sweep = swept(&study, asked, &clock, look)?;
     let report = SweepReport::of(&study.problem, &sweep, clock.about(&study, study.options.seed));
     let written = destination.write(&if asked.output.json { json(&report) } else { sweep_text(&report, look.style()) });
     let written = written.and(table.map_or(Ok(()), |table| table.write(&[sweep_csv(&report)])));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&sweep_svg(&report))));
+    let written = written.and(page.map_or(Ok(()), |page| page.write(&sweep_html(&report))));
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }

@@ -13,6 +13,8 @@ mod distribution;
 mod estimate;
 mod extremes;
 mod head;
+#[cfg(feature = "html")]
+pub mod html;
 mod limits;
 pub(crate) mod number;
 mod page;

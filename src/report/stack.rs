@@ -55,7 +55,7 @@ pub struct StackRow {
     pub contribution: Option<f64>,
     /// Its part of the sum of squares.
     pub share: Option<f64>,
-    direction: String,
+    pub(super) direction: String,
 }
 
 /// One way of adding a stack up.

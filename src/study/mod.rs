@@ -46,6 +46,7 @@ mod error;
 mod externals;
 mod file;
 mod implicit;
+mod lines;
 mod model;
 mod options;
 mod rewrite;
@@ -91,6 +92,8 @@ pub struct Study {
     pub options: Options,
     /// The seed of the `[analysis]` section, for what draws random numbers.
     pub seed: Option<u64>,
+    /// The section `[dimensions]`: for every entry its keys, with their values as TOML.
+    pub lines: Vec<(String, Vec<(String, String)>)>,
     /// What tolerances cost, by groups that share one.
     pub costs: Vec<Priced>,
     /// What characteristics must keep, by name.
@@ -236,6 +239,7 @@ impl Study {
             problem: built.problem,
             options: built.options,
             seed: file.analysis.seed.map(spanned::Spanned::into_inner),
+            lines: lines::of(&tree),
             costs: built.costs,
             requirements: built.requirements,
             warnings: built.warnings,

@@ -16,6 +16,7 @@ mod docs;
 mod extremes;
 mod fits;
 mod formulas;
+mod html;
 mod implicit;
 mod init;
 mod intervals;

@@ -1,0 +1,99 @@
+//! What the moments follow from, kept so that other tolerances and means can be tried without a further evaluation.
+
+use super::CharacteristicAnalysis;
+use crate::method::Outcome;
+use crate::moments::Contributions;
+use crate::surrogate::{InputShape, Inputs, Relocation, Surrogate};
+
+/// The surrogates of all characteristics over the dimensions that vary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Where the varying dimensions stand among the problem's.
+    pub varying: Vec<usize>,
+    /// Their shapes, in that order.
+    pub shapes: Vec<InputShape>,
+    /// For every characteristic what its moments follow from, or why they follow from no surrogate.
+    pub characteristics: Vec<Result<Fit, NoFit>>,
+}
+
+/// What the moments of one characteristic follow from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// The surrogate.
+    pub surrogate: Surrogate,
+    /// A variance beside it, of what checks found that it leaves out.
+    pub unexplained: Option<f64>,
+}
+
+/// Why the moments of a characteristic cannot be had at other tolerances.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum NoFit {
+    /// Dimensions vary together.
+    #[error("dimensions are correlated")]
+    Correlated,
+    /// The method integrates values at fixed points.
+    #[error("its method integrates the values themselves and has no surrogate")]
+    Integrated,
+    /// The moments come from points of the model.
+    #[error("its moments come from points of the model, as its surrogate was not trusted")]
+    Sampled,
+    /// There are no moments.
+    #[error("its moments are unknown")]
+    Unknown,
+}
+
+impl Surface {
+    pub(super) fn of(outcome: &Outcome, characteristics: &[CharacteristicAnalysis]) -> Self {
+        let inputs = outcome.plan.inputs();
+        let of = |(c, one): (usize, &CharacteristicAnalysis)| {
+            let fitted = &outcome.fitted[c];
+            if inputs.correlation().is_some() {
+                return Err(NoFit::Correlated);
+            }
+            if fitted.integrated.is_some() {
+                return Err(NoFit::Integrated);
+            }
+            if one.model_sampled.is_some() {
+                return Err(NoFit::Sampled);
+            }
+            let known = |surrogate: &&Surrogate| surrogate.parts.iter().all(Option::is_some) && one.moments.is_some();
+            let surrogate = fitted.surrogate.as_ref().filter(known).ok_or(NoFit::Unknown)?.clone();
+            let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+            Ok(Fit { surrogate, unexplained })
+        };
+        Self {
+            varying: outcome.plan.varying().to_vec(),
+            shapes: inputs.shapes().to_vec(),
+            characteristics: characteristics.iter().enumerate().map(of).collect(),
+        }
+    }
+
+    /// Moments and contributions of one characteristic where inputs have moved and keep their shapes; None where they follow
+    /// from no surrogate.
+    ///
+    /// What the surrogate leaves out keeps its variance.
+    ///
+    /// Shapes: `moved` has an element for every varying dimension. No evaluation; the error is that of the surrogate so far
+    /// from where it was made.
+    ///
+    /// ```
+    /// use sensitol::{Closure, Dimension, Method, Problem, analyze, surrogate::Relocation};
+    /// let dimensions = [Dimension::normal("width", 20.0, 0.3)?, Dimension::normal("height", 10.0, 0.3)?];
+    /// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
+    /// let analysis = analyze(&area, &Method::Full.into())?;
+    /// // Half the tolerance of the width.
+    /// let moved = [Relocation { shift: 0.0, stretch: 0.5 }, Relocation::NONE];
+    /// let moments = analysis.surface.at(0, &moved).unwrap().moments;
+    /// let exact = (2.0f64.powi(2) + 0.5f64.powi(2) + 0.005f64.powi(2)).sqrt();
+    /// assert!((moments.sigma() - exact).abs() < 1e-12);
+    /// # Ok::<(), sensitol::Error>(())
+    /// ```
+    pub fn at(&self, characteristic: usize, moved: &[Relocation]) -> Option<Contributions> {
+        let fit = self.characteristics[characteristic].as_ref().ok()?;
+        let found = fit.surrogate.relocated(moved).contributions(&Inputs::independent(self.shapes.clone()))?;
+        Some(match fit.unexplained {
+            Some(variance) => found.beside(variance),
+            None => found,
+        })
+    }
+}

@@ -1,0 +1,91 @@
+// What changed tolerances and means come to, from the surrogate in the page.
+const live = (() => {
+  "use strict";
+
+  /// Shifts and stretches of all dimensions for these settings: the factor of the tolerance, and how far the mean moves.
+  const moved = (data, settings) => {
+    const shifts = new Float64Array(data.dimensions.length), stretches = new Float64Array(data.dimensions.length).fill(1);
+    data.dimensions.forEach((of, i) => {
+      const { factor, shift } = settings[i];
+      // The middle of an asymmetric band moves as the band scales.
+      shifts[i] = ((factor - 1) * of.middle + shift) / of.sigma;
+      stretches[i] = factor;
+    });
+    return { shifts, stretches };
+  };
+
+  const limited = (one, mean, sigma, tails) => {
+    const { lower, upper, target } = one, known = (x) => x !== null;
+    if (!known(lower) && !known(upper)) return { below: null, above: null, rejected: null, yield: null, cp: null, cpk: null, met: null };
+    const below = known(lower) ? tails(lower)[0] : null, above = known(upper) ? tails(upper)[1] : null;
+    const rejected = Math.min(1, (below ?? 0) + (above ?? 0));
+    const sides = [known(lower) ? mean - lower : Infinity, known(upper) ? upper - mean : Infinity];
+    return {
+      below, above, rejected,
+      yield: 1 - rejected,
+      cp: known(lower) && known(upper) && sigma > 0 ? (upper - lower) / (6 * sigma) : null,
+      cpk: sigma > 0 ? Math.min(...sides) / (3 * sigma) : null,
+      met: target === null ? null : rejected <= 1 - target,
+    };
+  };
+
+  /// One characteristic at these settings.
+  const evaluate = (data, one, settings) => {
+    const { shifts, stretches } = moved(data, settings);
+    const shapes = data.dimensions.map((of) => data.shapes[of.shape]);
+    const surrogate = mathematics.relocated(one, shifts, stretches);
+    let found = mathematics.moments(surrogate, shapes);
+    if (one.unexplained !== null) found = mathematics.beside(found, one.unexplained);
+    const { mean, sigma, skewness, excess } = found;
+    const shares = Float64Array.from(surrogate.pairs.a, (a) => (a * found.perSigma) ** 2);
+    const law = skewness === null ? null : pearson.law(mean, sigma, skewness, excess);
+    let kept = { below: null, above: null, rejected: null, yield: null, cp: null, cpk: null, met: null };
+    if (law !== null) kept = limited(one, mean, sigma, law.tails);
+    if (sigma === 0) kept = limited(one, mean, sigma, (x) => [mean < x ? 1 : 0, mean > x ? 1 : 0]);
+    return { ...found, kurtosis: excess === null ? null : 3 + excess, shares, law, ...kept };
+  };
+
+  const KEY = /^[A-Za-z0-9_-]+$/;
+  const quoted = (text) => JSON.stringify(text).replace(/\u007f/g, "\\u007f");
+  const key = (name) => KEY.test(name) ? name : quoted(name);
+  const number = (x) => Number.isInteger(x) && Math.abs(x) < 1e15 ? x.toFixed(1) : String(x);
+
+  /// The keys of a dimension whose tolerance or mean has changed.
+  const changed = (of, keys, { factor, shift }) => {
+    const dropped = new Set(["tolerance", "limits", "fit", "sigma", "sigmas", "cp", "shift"]);
+    const band = of.normal || of.band === null ? 0 : shift;
+    const kept = keys.filter(([name]) => !dropped.has(name)), given = new Map(keys);
+    const lines = kept.map(([name, text]) => {
+      // A mode is a value of the dimension, and moves with the band.
+      const mode = name === "distribution" && /\bmode = ([^,} ]+)/.exec(text);
+      if (!mode) return [name, text];
+      return [name, text.replace(/\bmode = [^,} ]+/, `mode = ${number(of.nominal + factor * (Number(mode[1]) - of.nominal) + shift)}`)];
+    });
+    if (of.band !== null) {
+      const [lower, upper] = of.band.map((end) => factor * end + band);
+      lines.push(["tolerance", lower === -upper ? number(upper) : `[${number(lower)}, ${number(upper)}]`]);
+    }
+    if (of.normal) {
+      lines.push(["sigma", number(factor * of.sigma)]);
+      const off = of.offset + shift;
+      if (off !== 0) lines.push(["shift", number(off)]);
+    } else {
+      for (const name of ["sigmas", "cp"]) if (given.has(name)) lines.push([name, given.get(name)]);
+    }
+    return lines;
+  };
+
+  /// The section `[dimensions]` with what these settings change.
+  const toml = (data, settings) => {
+    const at = new Map(data.dimensions.map((of, i) => [of.name, i]));
+    const lines = data.lines.map(([name, keys]) => {
+      const i = at.get(name), set = i === undefined ? null : settings[i];
+      const same = set === null || (set.factor === 1 && set.shift === 0);
+      const written = same ? keys : changed(data.dimensions[i], keys, set);
+      return `${key(name)} = { ${written.map(([k, text]) => `${key(k)} = ${text}`).join(", ")} }`;
+    });
+    return `[dimensions]\n${lines.join("\n")}\n`;
+  };
+
+  return { evaluate, toml };
+})();

@@ -1,0 +1,164 @@
+//! Reports as pages: one file each that opens from disk and asks nothing of any network.
+//!
+//! Everything that comes from a study or an adapter goes through the templates, which escape it; drawings are made of
+//! numbers alone, and data for the page's script stand in a block of JSON in which no `<` is left. What may run is told to the
+//! browser by a content-security policy: this script and this style, known by their hashes, and nothing else.
+
+mod allocated;
+mod analysis;
+mod chart;
+mod comparison;
+mod sampled;
+mod swept;
+mod what_if;
+
+pub use allocated::allocate_html;
+pub use analysis::analyze_html;
+pub use comparison::compare_html;
+pub use sampled::simulate_html;
+pub use swept::sweep_html;
+pub use what_if::{Line, WhatIf};
+
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::Serde;
+use minijinja::{Environment, UndefinedBehavior, Value};
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+use super::{Head, WarningReport};
+
+const STYLE: &str = include_str!("page.css");
+/// The mathematics of the what-if, and then what shows it.
+const SCRIPT: &str =
+    concat!(include_str!("what_if.js"), include_str!("pearson.js"), include_str!("live.js"), include_str!("page.js"));
+const TEMPLATES: [(&str, &str); 7] = [
+    ("parts.html", include_str!("parts.html")),
+    ("page.html", include_str!("page.html")),
+    ("analysis.html", include_str!("analysis.html")),
+    ("simulation.html", include_str!("simulation.html")),
+    ("comparison.html", include_str!("comparison.html")),
+    ("allocation.html", include_str!("allocation.html")),
+    ("sweep.html", include_str!("sweep.html")),
+];
+
+/// What every page begins with, and the page's own content.
+#[derive(Serialize)]
+struct Page<'p, T: Serialize> {
+    title: &'p str,
+    command: &'static str,
+    policy: String,
+    style: &'static str,
+    /// Empty where the page has nothing to run.
+    script: &'static str,
+    /// JSON for the script, without any `<`.
+    data: String,
+    facts: Vec<Fact>,
+    /// Warnings of no characteristic in particular.
+    warnings: Vec<&'p WarningReport>,
+    of: T,
+}
+
+/// One thing worth knowing of a report.
+#[derive(Serialize)]
+struct Fact {
+    name: &'static str,
+    text: String,
+}
+
+fn fact(name: &'static str, text: impl Into<String>) -> Fact {
+    Fact { name, text: text.into() }
+}
+
+/// The facts that every report ends with.
+fn provenance(head: &Head, seed: Option<u64>, wall_s: f64) -> Vec<Fact> {
+    let mut facts = vec![fact("time", format!("{} s", super::number::significant(wall_s, 3)))];
+    facts.extend(seed.map(|seed| fact("seed", seed.to_string())));
+    facts.push(fact("sensitol", format!("{}, report schema {}", head.sensitol, head.schema)));
+    if !head.study_sha256.is_empty() {
+        facts.push(fact("SHA-256 of the study", head.study_sha256.clone()));
+    }
+    facts
+}
+
+/// A page from its template.
+fn render<T: Serialize>(
+    template: &str,
+    head: &Head,
+    facts: Vec<Fact>,
+    warnings: Vec<&WarningReport>,
+    data: Option<String>,
+    of: T,
+) -> String {
+    let script = if data.is_some() { SCRIPT } else { "" };
+    let allowed = match data {
+        Some(_) => format!(" script-src '{}';", hash(SCRIPT)),
+        None => String::new(),
+    };
+    let page = Page {
+        title: head.title.as_deref().unwrap_or("Tolerance report"),
+        command: head.command,
+        policy: format!(
+            "default-src 'none'; style-src '{}';{allowed} base-uri 'none'; form-action 'none'",
+            hash(STYLE)
+        ),
+        style: STYLE,
+        script,
+        data: data.unwrap_or_default(),
+        facts,
+        warnings,
+        of,
+    };
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
+    environment.set_syntax(syntax.expect("the usual delimiters"));
+    for (name, source) in TEMPLATES {
+        environment.add_template(name, source).expect("the templates are part of the program");
+    }
+    let template = environment.get_template(template).expect("the templates are part of the program");
+    template.render(Value::from(Serde(&page))).expect("the templates fit what they are given")
+}
+
+/// A drawing as part of a page: what it names its own format by asks for nothing, and is left out all the same.
+fn inline(svg: &str) -> String {
+    svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1)
+}
+
+/// As a content-security policy names a script or style.
+fn hash(text: &str) -> String {
+    format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for group in bytes.chunks(3) {
+        let bits = group.iter().enumerate().fold(0u32, |bits, (i, &byte)| bits | u32::from(byte) << (16 - 8 * i));
+        for i in 0..4 {
+            let digit = char::from(DIGITS[(bits >> (18 - 6 * i)) as usize & 63]);
+            text.push(if i <= group.len() { digit } else { '=' });
+        }
+    }
+    text
+}
+
+/// JSON that may stand in a page: nothing in it ends a script or begins a comment.
+fn json(value: &impl Serialize) -> String {
+    let text = serde_json::to_string(value).expect("reports are plain data");
+    text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// RFC 4648, section 10.
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        let pairs =
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("foobar", "Zm9vYmFy")];
+        for (bytes, text) in pairs {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+}

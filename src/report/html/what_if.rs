@@ -1,0 +1,207 @@
+//! What the page needs to compute the results of other tolerances by itself.
+
+use serde::Serialize;
+
+use crate::analysis::{Analysis, Fit};
+use crate::dimension::Dimension;
+use crate::distribution::StandardMoments;
+use crate::problem::Problem;
+use crate::surrogate::InputShape;
+
+/// An entry of the study's `[dimensions]`: its name, and its keys with their values as TOML.
+pub type Line = (String, Vec<(String, String)>);
+
+/// Distributions whose tolerance the page can change: their shape does not follow it, and a study writes it in one key.
+const KINDS: [&str; 6] = ["normal", "truncated-normal", "uniform", "triangular", "trapezoidal", "beta"];
+/// A standardised moment that differs by less is the same.
+const SAME: f64 = 1e-9;
+
+/// Dimensions, surrogates and limits.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WhatIf {
+    shapes: Vec<Shape>,
+    dimensions: Vec<Tried>,
+    characteristics: Vec<Wanted>,
+    lines: Vec<Line>,
+}
+
+/// Moments of a standardised input, and the rule for parts that are no parabolas.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Shape {
+    s: f64,
+    k: f64,
+    m5: f64,
+    m6: f64,
+    h6: f64,
+    h7: f64,
+    h8: f64,
+    nodes: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+/// A dimension that varies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Tried {
+    pub(super) name: String,
+    pub(super) unit: Option<String>,
+    shape: usize,
+    pub(super) nominal: f64,
+    /// Of the mean from nominal and the band's middle.
+    offset: f64,
+    pub(super) sigma: f64,
+    pub(super) band: Option<[f64; 2]>,
+    middle: f64,
+    /// Half the band, or three sigma where there is none.
+    pub(super) half: f64,
+    normal: bool,
+    /// Why it stays as it is; null where it can be changed.
+    pub(super) fixed: Option<&'static str>,
+}
+
+/// A characteristic.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Wanted {
+    pub(super) name: String,
+    pub(super) unit: Option<String>,
+    lower: Option<f64>,
+    upper: Option<f64>,
+    target: Option<f64>,
+    /// Why nothing can be tried; null where it can.
+    pub(super) why: Option<String>,
+    centre: f64,
+    parts: Vec<[f64; 4]>,
+    pairs: Pairs,
+    unexplained: Option<f64>,
+}
+
+/// Products, column by column.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+struct Pairs {
+    j: Vec<usize>,
+    k: Vec<usize>,
+    a: Vec<f64>,
+}
+
+impl WhatIf {
+    /// Of an analysis; `lines` are those of the study, none where the problem was built without one.
+    pub fn of(problem: &Problem, analysis: &Analysis, lines: &[Line]) -> Self {
+        let surface = &analysis.surface;
+        let mut shapes: Vec<Shape> = Vec::new();
+        let mut index = |shape: &InputShape| {
+            let shape = Shape::of(shape);
+            shapes.iter().position(|known| *known == shape).unwrap_or_else(|| {
+                shapes.push(shape);
+                shapes.len() - 1
+            })
+        };
+        let dimension = |(&d, shape): (&usize, &InputShape)| Tried::of(&problem.dimensions()[d], index(shape));
+        let dimensions = surface.varying.iter().zip(&surface.shapes).map(dimension).collect();
+        let characteristics = problem.characteristics().iter().zip(&surface.characteristics).map(|(one, fit)| {
+            let limits = one.limits();
+            let empty = || (0.0, Vec::new(), Pairs::default(), None);
+            let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), contents);
+            Wanted {
+                name: one.name().to_owned(),
+                unit: one.unit().map(str::to_owned),
+                lower: limits.lower(),
+                upper: limits.upper(),
+                target: one.target_yield(),
+                why: fit.as_ref().err().map(ToString::to_string),
+                centre,
+                parts,
+                pairs,
+                unexplained,
+            }
+        });
+        let characteristics = characteristics.collect();
+        Self { dimensions, characteristics, lines: lines.to_vec(), shapes }
+    }
+
+    /// Whether there is something to change, and something that follows it.
+    pub(super) fn possible(&self) -> bool {
+        self.dimensions.iter().any(|one| one.fixed.is_none())
+            && self.characteristics.iter().any(|one| one.why.is_none())
+    }
+
+    pub(super) fn dimensions(&self) -> &[Tried] {
+        &self.dimensions
+    }
+
+    pub(super) fn characteristics(&self) -> &[Wanted] {
+        &self.characteristics
+    }
+
+    /// Whether the study's own lines are known, so that changed ones can be written.
+    pub(super) fn written(&self) -> bool {
+        !self.lines.is_empty()
+    }
+}
+
+fn contents(fit: &Fit) -> (f64, Vec<[f64; 4]>, Pairs, Option<f64>) {
+    let Fit { surrogate, unexplained } = fit;
+    let parts = surrogate.parts.iter().flatten().map(|part| part.coefficients()).collect();
+    let mut pairs = Pairs::default();
+    for (j, k, a) in surrogate.interactions.pairs() {
+        pairs.j.push(j);
+        pairs.k.push(k);
+        pairs.a.push(a);
+    }
+    (surrogate.centre, parts, pairs, *unexplained)
+}
+
+impl Shape {
+    fn of(shape: &InputShape) -> Self {
+        let StandardMoments { skewness, excess, m5, m6, h6, h7, h8, .. } = shape.moments;
+        let (nodes, weights) = (shape.rule.nodes.clone(), shape.rule.weights.clone());
+        Self { s: skewness, k: excess, m5, m6, h6, h7, h8, nodes, weights }
+    }
+}
+
+impl Tried {
+    fn of(dimension: &Dimension, shape: usize) -> Self {
+        let band = dimension.tolerance();
+        let middle = band.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
+        let kind = dimension.distribution().map_or("", |law| law.name());
+        let half = match band {
+            Some([lower, upper]) => 0.5 * (upper - lower),
+            None => 3.0 * dimension.sigma(),
+        };
+        Self {
+            name: dimension.name().to_owned(),
+            unit: dimension.unit().map(str::to_owned),
+            shape,
+            nominal: dimension.nominal(),
+            offset: dimension.mean() - dimension.nominal() - middle,
+            sigma: dimension.sigma(),
+            band,
+            middle,
+            half,
+            normal: kind == "normal",
+            fixed: fixed(dimension, kind),
+        }
+    }
+}
+
+/// Why a dimension stays as it is.
+fn fixed(dimension: &Dimension, kind: &str) -> Option<&'static str> {
+    if dimension.zone().is_some() {
+        return Some("a coordinate of a circular zone");
+    }
+    match kind {
+        "mixture" => return Some("a mixture is changed in the study, part by part"),
+        _ if dimension.distribution().is_some_and(|law| law.measured().is_some()) => return Some("measured"),
+        kind if !KINDS.contains(&kind) => return Some("its shape or its tolerance does not follow a factor"),
+        _ => {}
+    }
+    let same = |factor: f64| {
+        let scaled = dimension.scaled(factor)?.ok()?;
+        let [before, after] =
+            [dimension, &scaled].map(|one| one.distribution().map(|law| law.standard_moments().raw()));
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs().max(1.0);
+        Some(before?.iter().zip(&after?).all(near))
+    };
+    match same(0.5).zip(same(2.0)) {
+        Some((true, true)) => None,
+        _ => Some("its shape changes with its tolerance"),
+    }
+}

@@ -1,0 +1,181 @@
+// Pages in a real browser: nothing complains, nothing is requested, sliders move numbers, and the numbers are the engine's.
+// `node test.mjs SENSITOL CASES`, where CASES is what the suite left of pages, settings and the engine's answers.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { Browser } from "./chromium.mjs";
+
+const sensitol = process.env.SENSITOL, cases = process.env.SENSITOL_CASES;
+const root = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
+const folder = mkdtempSync(join(tmpdir(), "sensitol-pages-"));
+let browser;
+
+before(async () => { browser = await Browser.start(); });
+after(async () => {
+  await browser.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+const report = (command, study, name, more = []) => {
+  const page = join(folder, `${name}-${command}.html`);
+  // A missed target is no failure of the page.
+  execFileSync(sensitol, [command, study, "--html", page, "-q", ...more], { cwd: root, stdio: ["ignore", "ignore", "inherit"] });
+  return page;
+};
+const examples = () => readdirSync(join(root, "examples"), { recursive: true })
+  .map(String).filter((path) => path.endsWith(".toml")).map((path) => join("examples", path)).sort();
+const quiet = (page) => assert.deepEqual(page.complaints, []);
+
+test("every page of every example opens without a complaint or a request", async () => {
+  for (const study of examples()) {
+    const name = study.replaceAll(/[/.]/g, "-");
+    if (readFileSync(join(root, study), "utf8").includes("command = ") && !study.includes("external-python")) continue;
+    const pages = [report("analyze", study, name, ["--journal", "none"])];
+    pages.push(report("simulate", study, name, ["--samples", "500", "--journal", "none"]));
+    if (!study.includes("external")) pages.push(report("compare", study, name, ["--samples", "2048"]));
+    if (study.includes("stacked-blocks/")) pages.push(report("sweep", study, name, ["--over", "th=15:19:5"]));
+    if (readFileSync(join(root, study), "utf8").includes("[costs")) pages.push(report("allocate", study, name, ["--front", "4"]));
+    for (const file of pages) {
+      for (const options of [{}, { dark: true }, { width: 360, height: 740 }]) {
+        const page = await browser.open(file, options);
+        quiet(page);
+        assert.ok(await page.evaluate("document.querySelectorAll('section h2').length") > 1, file);
+        const wider = await page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth");
+        assert.ok(wider <= 0, `${file} is ${wider} pixels wider than a window of ${options.width ?? 1280}`);
+        await page.close();
+      }
+    }
+  }
+});
+
+const TEXTS = "JSON.stringify([...document.querySelectorAll('[data-kc] [data-figure]')].map((cell) => cell.textContent))";
+const SET = `(i, what, value, kind = "number") => {
+  const input = document.querySelector(\`[data-dimension="\${i}"] [data-\${kind}="\${what}"]\`);
+  input.value = value;
+  input.dispatchEvent(new Event("input", { bubbles: true }));
+}`;
+const FRAME = "new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)))";
+
+test("sliders and boxes change the numbers, and the study comes back", async () => {
+  const page = await browser.open(report("analyze", "examples/stacked-blocks/study.toml", "sliders"));
+  const texts = async () => JSON.parse(await page.evaluate(TEXTS));
+  const analysed = await texts();
+  assert.ok(analysed.length >= 8);
+  const shown = [analysed];
+  for (const [what, value, kind] of [["factor", 50, "set"], ["shift", 40, "set"], ["factor", 0.2, "number"], ["shift", -0.1, "number"]]) {
+    await page.evaluate(`(${SET})(4, "${what}", ${value}, "${kind}")`);
+    await page.evaluate(FRAME);
+    const now = await texts();
+    assert.ok(!shown.some((before) => JSON.stringify(before) === JSON.stringify(now)), `${what} ${value} changes something`);
+    shown.push(now);
+  }
+  assert.match(await page.evaluate("document.getElementById('toml').value"), /^f = \{.*shift = -0\.1 \}$/m);
+  await page.evaluate("document.getElementById('reset').click()");
+  await page.evaluate(FRAME);
+  assert.deepEqual(await texts(), analysed);
+  await page.evaluate(`(${SET})(0, "factor", -1)`);
+  assert.equal(await page.evaluate("document.querySelector('[data-dimension=\"0\"] [data-number=\"factor\"]').validity.valid"), false);
+  quiet(page);
+  await page.close();
+});
+
+test("the browser computes what the engine computes", async () => {
+  const files = readdirSync(cases).filter((file) => file.endsWith(".expected.json"));
+  assert.ok(files.length >= 5, "the suite left its cases");
+  for (const file of files) {
+    const name = file.replace(".expected.json", "");
+    const expected = JSON.parse(readFileSync(join(cases, file), "utf8"));
+    const settings = readFileSync(join(cases, `${name}.settings.json`), "utf8");
+    const page = await browser.open(join(cases, `${name}.html`));
+    const found = JSON.parse(await page.evaluate(`JSON.stringify((() => {
+      const data = JSON.parse(document.getElementById("data").textContent);
+      return ${settings}.map((setting) => data.characteristics.map((one) => {
+        const { mean, sigma, skewness, excess, below, above, cpk } = live.evaluate(data, one, setting);
+        return { mean, sigma, skewness, excess, below, above, cpk };
+      }));
+    })())`));
+    assert.equal(found.length, 200);
+    found.forEach((of, i) => of.forEach((one, c) => {
+      const wanted = expected[i][c], scales = { mean: wanted.sigma, sigma: 0, skewness: 1, excess: 1, below: 1e-6, above: 1e-6, cpk: 1 };
+      for (const [key, scale] of Object.entries(scales)) {
+        if (wanted[key] === null) assert.equal(one[key], null);
+        else assert.ok(Math.abs(one[key] - wanted[key]) <= 1e-9 * Math.max(Math.abs(wanted[key]), scale), `${name} ${i}: ${key} ${one[key]} ${wanted[key]}`);
+      }
+    }));
+    quiet(page);
+    await page.close();
+  }
+});
+
+test("what is copied analyses to what the page shows", async () => {
+  // Of second degree, so that the surrogate is the function itself.
+  const rest = `[characteristics]
+y = { formula = "a*b + c*c - a*c", lower = 30, upper = 42 }
+[analysis]
+method = "full"
+`;
+  const study = join(folder, "copied.toml");
+  writeFileSync(study, `[dimensions]
+a = { nominal = 10, tolerance = [-0.1, 0.3], unit = "mm" }
+b = { nominal = 4, limits = [3.8, 4.2], distribution = "uniform" }
+c = { nominal = 1, sigma = 0.05 }
+${rest}`);
+  const page = await browser.open(report("analyze", study, "copied"));
+  for (const [i, what, value] of [[0, "factor", 0.11], [0, "shift", 0.07], [1, "factor", 0.3], [1, "shift", -0.05], [2, "factor", 0.4], [2, "shift", 0.01]]) {
+    await page.evaluate(`(${SET})(${i}, "${what}", ${value})`);
+  }
+  await page.evaluate(FRAME);
+  const shown = JSON.parse(await page.evaluate(TEXTS));
+  const pasted = join(folder, "pasted.toml");
+  writeFileSync(pasted, await page.evaluate("document.getElementById('toml').value") + rest);
+  const again = await browser.open(report("analyze", pasted, "pasted"));
+  assert.deepEqual(JSON.parse(await again.evaluate(TEXTS)), shown);
+  quiet(page);
+  await page.close();
+  await again.close();
+});
+
+test("hostile names are shown as text", async () => {
+  const name = "<img src=x onerror=alert(1)>", characteristic = "</script><script>alert(2)</script>", title = "<svg onload=alert(3)>";
+  const study = join(folder, "hostile.json");
+  writeFileSync(study, JSON.stringify({
+    title,
+    dimensions: { [name]: { nominal: 1, tolerance: 0.1, unit: "</style><b>mm" }, b: { nominal: 2, tolerance: 0.1 } },
+    characteristics: { [characteristic]: { formula: `\`${name}\`*b`, lower: 1.8, upper: 2.2, target_yield: 0.9 } },
+    costs: { [name]: { model: "reciprocal", a: 1, b: 0.1, min: 0.01, max: 0.2 } },
+  }));
+  const more = { sweep: ["--over", "b=1.9:2.1:3"] };
+  for (const command of ["analyze", "simulate", "compare", "sweep", "allocate"]) {
+    const page = await browser.open(report(command, study, "hostile", more[command]));
+    quiet(page);
+    assert.equal(await page.evaluate("document.querySelectorAll('img, b, iframe, svg[onload]').length"), 0);
+    assert.equal(await page.evaluate("document.querySelector('h1').textContent"), title);
+    const heading = command === "allocate" ? ".wide tbody th" : ".kc h2";
+    assert.equal(await page.evaluate(`document.querySelector("${heading}").textContent`), characteristic);
+    await page.close();
+  }
+});
+
+test("a page of 200 dimensions follows a slider", async () => {
+  const file = join(cases, "two-hundred.html");
+  assert.ok(existsSync(file));
+  const page = await browser.open(file);
+  const took = await page.evaluate(`(async () => {
+    const set = ${SET}, times = [];
+    for (let i = 0; i < 12; i++) {
+      const begun = performance.now();
+      set(i, "factor", 60 + i, "set");
+      await ${FRAME};
+      times.push(performance.now() - begun);
+    }
+    return times.sort((a, b) => a - b)[6];
+  })()`);
+  // Said, not asserted: a busy machine is no fault of the page.
+  console.log(`200 dimensions, 19900 products: a slider is followed within ${took.toFixed(0)} ms`);
+  quiet(page);
+  await page.close();
+});

@@ -1,0 +1,17 @@
+// What the script of a page makes of settings, without a browser: `node what_if.mjs PAGE.html SETTINGS.json` prints JSON.
+import { readFileSync } from "node:fs";
+import { runInNewContext } from "node:vm";
+
+const [page, file] = process.argv.slice(2);
+const scripts = [...readFileSync(page, "utf8").matchAll(/<script(?: [^>]*)?>([^]*?)<\/script>/g)].map((match) => match[1]);
+const data = JSON.parse(scripts[0]);
+// All but what needs a document.
+const mathematics = scripts[1].slice(0, scripts[1].indexOf("// The what-if of the page"));
+const live = runInNewContext(`${mathematics}; live`);
+const figures = ({ mean, sigma, skewness, excess, below, above, cpk, linear, curvature, shares }) =>
+  ({ mean, sigma, skewness, excess, below, above, cpk, linear: [...linear], curvature: [...curvature], shares: [...shares] });
+const found = JSON.parse(readFileSync(file, "utf8")).map((settings) => ({
+  toml: live.toml(data, settings),
+  characteristics: data.characteristics.map((one) => one.why === null ? figures(live.evaluate(data, one, settings)) : null),
+}));
+console.log(JSON.stringify({ names: data.dimensions.map((one) => one.name), fixed: data.dimensions.map((one) => one.fixed), found }));

@@ -1,0 +1,354 @@
+//! Pages of HTML: nothing in them that was not meant, nothing that asks for a network, and a what-if that computes what the
+//! engine computes. What needs a browser is in `tests/browser`.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::Command;
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use sensitol::capability::{Capability, Law};
+use sensitol::report::html::{WhatIf, analyze_html, compare_html, simulate_html};
+use sensitol::report::{About, CompareReport, Report, SimulationReport};
+use sensitol::surrogate::Relocation;
+use sensitol::{Analysis, Method, Options, Study, analyze};
+use serde_json::{Value, json};
+
+use super::cli::{run, sensitol};
+use super::support::repository;
+
+/// Every name and text that a study can have, as an attacker would write it.
+const HOSTILE: &str = r##"
+title = "<svg onload=alert(1)> & \"quotes\""
+[dimensions]
+"<img src=x onerror=alert(2)>" = { nominal = 10, tolerance = 0.3, unit = "\"><b>mm" }
+"</script><script>alert(3)</script>" = { nominal = 5, tolerance = 0.1 }
+[characteristics]
+"<!--<script>" = { formula = "`<img src=x onerror=alert(2)>`*`</script><script>alert(3)</script>`", unit = "</style>", lower = 48, upper = 52, target_yield = 0.9 }
+"##;
+
+/// Distributions of every kind that follows its tolerance, bands that are not symmetric, and a function of second degree.
+const MIXED: &str = r##"
+[dimensions]
+a = { nominal = 10, tolerance = [-0.1, 0.3] }
+b = { nominal = 4, tolerance = 0.2, distribution = "uniform" }
+c = { nominal = 3, limits = [2.9, 3.2], distribution = { kind = "triangular", mode = 3.1 } }
+d = { nominal = 2, tolerance = [0.0, 0.2], distribution = { kind = "beta", alpha = 2.0, beta = 5.0 } }
+e = { nominal = 1, tolerance = 0.1, distribution = { kind = "trapezoidal", top = 0.4 } }
+f = { nominal = 6, sigma = 0.05, shift = 0.02 }
+"g h" = { nominal = 7, tolerance = 0.15, distribution = "truncated-normal", sigmas = 2.5 }
+w = { nominal = 5, sigma = 0.1, distribution = { kind = "weibull", origin = 4.0 } }
+fixed = { nominal = 1.5 }
+[characteristics]
+y = { formula = "a*b + c*c - d*e + 2*f*`g h` + 0.3*a*a - w*fixed + b*d", lower = 160, upper = 165, target_yield = 0.99 }
+z = { formula = "a - b + c - w" , upper = 4.5 }
+[analysis]
+method = "full"
+"##;
+
+fn study(text: &str) -> Study {
+    Study::from_toml(text, "study.toml").unwrap()
+}
+
+fn example(name: &str) -> Study {
+    Study::read(&repository(&format!("examples/{name}/study.toml"))).unwrap()
+}
+
+fn analysed(study: &Study, options: &Options) -> (Analysis, String) {
+    let analysis = analyze(&study.problem, options).unwrap();
+    let about = About { title: study.title.clone(), sha256: study.sha256.clone(), ..About::default() };
+    let what_if = WhatIf::of(&study.problem, &analysis, &study.lines);
+    let page = analyze_html(&Report::of(&study.problem, &analysis, about), Some(&what_if));
+    (analysis, page)
+}
+
+fn page(study: &Study) -> String {
+    analysed(study, &study.options).1
+}
+
+/// What a page may hold: one style and at most one script and its data, all known to the policy, and no address.
+fn is_closed(page: &str) {
+    assert!(page.starts_with("<!DOCTYPE html>"));
+    let policy = page.split("Content-Security-Policy\" content=\"").nth(1).unwrap().split('"').next().unwrap();
+    assert!(policy.starts_with("default-src &#x27;none&#x27;") || policy.starts_with("default-src 'none'"), "{policy}");
+    assert!(!policy.contains("unsafe"), "{policy}");
+    assert_eq!(page.matches("<style").count(), 1);
+    let scripts = page.matches("<script").count();
+    assert!(scripts == 0 || scripts == 2, "{scripts} scripts");
+    for address in
+        ["http:", "https:", "src=\"", "url(", "@import", "<link", "<iframe", "<object", "style=\"", " onclick"]
+    {
+        assert!(!page.contains(address), "the page holds {address}");
+    }
+}
+
+#[test]
+fn pages_ask_for_nothing() {
+    for name in ["stacked-blocks", "engine-balance", "matched-pair", "fit-and-stack", "measured-pin", "two-suppliers"] {
+        is_closed(&page(&example(name)));
+    }
+}
+
+#[test]
+fn hostile_names_are_text() {
+    let study = study(HOSTILE);
+    let page = page(&study);
+    is_closed(&page);
+    for markup in ["<img", "<svg onload", "<b>", "alert(3)</script>", "<!--", "</style><", "\"><b"] {
+        assert!(!page.contains(markup), "{markup} is in the page as markup");
+    }
+    assert_eq!(page.matches("</script>").count(), 2);
+    assert_eq!(page.matches("</style>").count(), 1);
+    // They are still there to be read.
+    assert!(page.contains("&lt;img src=x onerror=alert(2)&gt;"), "the name is shown");
+
+    let simulation = sensitol::simulation::simulate(&study.problem, &Default::default()).unwrap();
+    let about = About { title: study.title.clone(), ..About::default() };
+    let simulated = simulate_html(&SimulationReport::of(&study.problem, &simulation, about.clone()));
+    let options = sensitol::compare::CompareOptions { reference: Some(4096), budget: None, seed: 1 };
+    let comparison =
+        sensitol::compare::compare_within(&study.problem, &options, &sensitol::assembly::Run::to_the_end());
+    let compared = compare_html(&CompareReport::of(&comparison.unwrap(), about));
+    for page in [simulated, compared] {
+        is_closed(&page);
+        for markup in ["<img", "<svg onload", "<b>", "<script", "<!--"] {
+            assert!(!page.contains(markup), "{markup} is in the page as markup");
+        }
+    }
+}
+
+/// The largest page: every pair of 200 dimensions, each product another number.
+#[test]
+fn two_hundred_dimensions_stay_below_two_megabytes() {
+    let mut text = "[dimensions]\n".to_owned();
+    let mut sum = String::new();
+    for i in 0..200 {
+        let _ = writeln!(text, "x{i} = {{ nominal = {}, tolerance = 0.1 }}", 1.0 + 0.01 * f64::from(i));
+        let _ = write!(sum, "{}{}*x{i}", if i == 0 { "" } else { " + " }, 1.0 + 0.1 * f64::from(i % 7));
+    }
+    let _ = write!(text, "[characteristics]\ny = {{ formula = \"sqrt({sum})\", lower = 23 }}\n");
+    let study = study(&text);
+    let (analysis, page) = analysed(&study, &Method::Full.into());
+    assert!(analysis.characteristics[0].moments.is_some());
+    assert!(page.contains("\"j\":[0,0,0"), "the products are in the page");
+    assert!(page.len() < 2_000_000, "{} bytes", page.len());
+    std::fs::write(cases().join("two-hundred.html"), page).unwrap();
+}
+
+/// What cannot be tried is named, with its reason.
+#[test]
+fn what_cannot_be_tried_is_said() {
+    let mixed = page(&study(MIXED));
+    assert!(mixed.contains("stays as it is: its shape"), "the Weibull law changes with its tolerance");
+    let correlated = page(&example("matched-pair"));
+    assert!(!correlated.contains("id=\"what-if\""), "correlated dimensions have no what-if");
+    let measured = page(&example("measured-pin"));
+    assert!(measured.contains("stays as it is: measured"), "measured values stay");
+    let zone = page(&example("fit-and-stack"));
+    assert!(zone.contains("stays as it is: a coordinate of a circular zone"), "a position stays");
+}
+
+/// `--html` writes a page beside what is printed, and nothing where it cannot.
+#[test]
+fn the_command_line_writes_pages() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let blocks = "examples/stacked-blocks/study.toml";
+    let housing = "examples/shaft-and-housing/study.toml";
+    let calls: [&[&str]; 5] = [
+        &["analyze", blocks],
+        &["simulate", blocks, "--samples", "2000"],
+        &["compare", blocks, "--samples", "4096"],
+        &["sweep", blocks, "--over", "th=15:19:5"],
+        &["allocate", housing],
+    ];
+    for call in calls {
+        let file = path(&format!("{}.html", call[0]));
+        let plain = sensitol(&[call, &["--html", &file, "-q"]].concat()).output().unwrap();
+        assert!(plain.status.success(), "{plain:?}");
+        assert!(!plain.stdout.is_empty(), "the report is printed too");
+        let page = std::fs::read_to_string(&file).unwrap();
+        is_closed(&page);
+        let title = study_title(call[1]);
+        assert!(page.contains(&format!("<h1>{title}</h1>")), "{title}");
+        let missing = run(&[call, &["--html", &path("no/such/page.html")]].concat());
+        assert!(missing.starts_with("exit 2") && missing.contains("there is no folder"), "{missing}");
+        let of_folder = run(&[call, &["--html", folder.path().to_str().unwrap()]].concat());
+        assert!(of_folder.starts_with("exit 2") && of_folder.contains("cannot be written"), "{of_folder}");
+    }
+    let rare = run(&["simulate", blocks, "--rare", "--html", &path("rare.html")]);
+    assert!(rare.starts_with("exit 2") && rare.contains("--html"), "{rare}");
+}
+
+fn study_title(path: &str) -> String {
+    let title = Study::read(&repository(path)).unwrap().title.unwrap();
+    title.replace('&', "&amp;")
+}
+
+/// Where the pages and settings stand that `tests/browser` tries again.
+fn cases() -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("html");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Factors of the tolerance and shifts of the mean, as many as the page has dimensions; those that stay are left alone.
+fn settings(study: &Study, analysis: &Analysis, rng: &mut Xoshiro256PlusPlus) -> (Value, Vec<Relocation>) {
+    let dimensions = analysis.surface.varying.iter().map(|&d| &study.problem.dimensions()[d]);
+    let (given, moved) = dimensions
+        .map(|dimension| {
+            let kind = dimension.distribution().unwrap().name();
+            let stays = matches!(kind, "weibull" | "mixture" | "measured") || dimension.zone().is_some();
+            let (factor, shift) = match stays {
+                true => (1.0, 0.0),
+                false => (10f64.powf(rng.random_range(-1.0..0.5)), dimension.half_band() * rng.random_range(-1.0..1.0)),
+            };
+            // By the dimension's own idea of another tolerance.
+            let scaled = if stays { dimension.clone() } else { dimension.scaled(factor).unwrap().unwrap() };
+            let (mean, sigma) = (dimension.mean(), dimension.sigma());
+            let to = Relocation { shift: (scaled.mean() + shift - mean) / sigma, stretch: scaled.sigma() / sigma };
+            (json!({ "factor": factor, "shift": shift }), to)
+        })
+        .unzip::<_, _, Vec<_>, Vec<_>>();
+    (Value::Array(given), moved)
+}
+
+/// What the engine says of every characteristic.
+fn engine(study: &Study, analysis: &Analysis, moved: &[Relocation]) -> Value {
+    let one = |c: usize| {
+        let found = analysis.surface.at(c, moved)?;
+        let (moments, limits) = (found.moments, study.problem.characteristics()[c].limits());
+        let law = Law::fit(&moments).ok();
+        let capability = law.map(|law| Capability::of(&law, moments.mean(), moments.sigma(), limits));
+        Some(json!({
+            "mean": moments.mean(), "sigma": moments.sigma(), "skewness": moments.skewness(), "excess": moments.excess(),
+            "below": capability.and_then(|one| one.below), "above": capability.and_then(|one| one.above),
+            "cpk": capability.and_then(|one| one.cpk),
+            "linear": found.linear, "curvature": found.curvature,
+        }))
+    };
+    Value::Array((0..study.problem.characteristics().len()).map(|c| json!(one(c))).collect())
+}
+
+/// The studies whose what-if is tried: interactions, curvature, quartics through a rule, all kinds of distribution.
+fn tried() -> Vec<(&'static str, Study, Options)> {
+    let with = |name: &'static str, study: Study, method: Option<Method>| {
+        let options = method.map_or_else(|| study.options.clone(), Options::from);
+        (name, study, options)
+    };
+    vec![
+        with("stacked-blocks", example("stacked-blocks"), None),
+        with("stacked-blocks-auto", example("stacked-blocks"), Some(Method::Auto)),
+        with("four-bar", example("four-bar"), Some(Method::Auto)),
+        with("engine-balance", example("engine-balance"), None),
+        with("measured-pin", example("measured-pin"), None),
+        with("mixed", study(MIXED), None),
+    ]
+}
+
+fn node() -> bool {
+    Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success())
+}
+
+fn by_node(page: &str, settings: &Value, name: &str) -> Value {
+    let (html, file) = (cases().join(format!("{name}.html")), cases().join(format!("{name}.settings.json")));
+    std::fs::write(&html, page).unwrap();
+    std::fs::write(&file, settings.to_string()).unwrap();
+    let output =
+        Command::new("node").arg(repository("tests/browser/what_if.mjs")).args([&html, &file]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The script and the engine at 200 random settings of every study. Both round each step once, in other orders: skewness and
+/// kurtosis are sums of terms that cancel, and probabilities far out multiply the errors of sigma by the squared distance.
+#[test]
+fn the_page_computes_what_the_engine_computes() {
+    if !node() {
+        return skipped("the what-if beside the engine");
+    }
+    let mut worst = 0.0f64;
+    for (name, study, options) in tried() {
+        let (analysis, page) = analysed(&study, &options);
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(20_261_121);
+        let (given, moved): (Vec<Value>, Vec<_>) = (0..200).map(|_| settings(&study, &analysis, &mut rng)).unzip();
+        let expected: Vec<Value> = moved.iter().map(|moved| engine(&study, &analysis, moved)).collect();
+        std::fs::write(cases().join(format!("{name}.expected.json")), json!(expected).to_string()).unwrap();
+        let answer = by_node(&page, &Value::Array(given), name);
+        for (i, (found, expected)) in answer["found"].as_array().unwrap().iter().zip(&expected).enumerate() {
+            for (found, expected) in
+                found["characteristics"].as_array().unwrap().iter().zip(expected.as_array().unwrap())
+            {
+                assert!(!expected.is_null(), "{name} has a surrogate");
+                worst = worst.max(compared(found, expected, &format!("{name}, setting {i}")));
+            }
+        }
+    }
+    assert!(worst > 0.0, "something was compared");
+    assert!(worst < 1e-9, "{worst:e}");
+}
+
+/// The largest difference, each by what it is a part of.
+fn compared(found: &Value, expected: &Value, what: &str) -> f64 {
+    let sigma = expected["sigma"].as_f64().unwrap();
+    let off = |key: &str, found: &Value, expected: &Value, scale: f64| match (found.as_f64(), expected.as_f64()) {
+        (None, None) => 0.0,
+        (Some(a), Some(b)) => {
+            let off = (a - b).abs() / b.abs().max(scale);
+            assert!(off < 1e-9, "{what}: {key} is {a}, and the engine says {b}");
+            off
+        }
+        _ => panic!("{what}: {key} is {found}, and the engine says {expected}"),
+    };
+    let mut worst = 0.0f64;
+    for (key, scale) in [
+        ("mean", sigma),
+        ("sigma", 0.0),
+        ("skewness", 1.0),
+        ("excess", 1.0),
+        ("below", 1e-6),
+        ("above", 1e-6),
+        ("cpk", 1.0),
+    ] {
+        worst = worst.max(off(key, &found[key], &expected[key], scale));
+    }
+    for key in ["linear", "curvature"] {
+        let lists = found[key].as_array().unwrap().iter().zip(expected[key].as_array().unwrap());
+        worst = lists.fold(worst, |worst, (a, b)| worst.max(off(key, a, b, 1.0)));
+    }
+    worst
+}
+
+/// What is copied is a study's section: pasted, it analyses to what the page showed. Exactly so where the surrogate is the
+/// function, which it is of second degree; the bound is what differences of values near 160 leave of a kurtosis.
+#[test]
+fn what_is_copied_analyses_to_the_same() {
+    if !node() {
+        return skipped("copied TOML");
+    }
+    let original = study(MIXED);
+    let (analysis, page) = analysed(&original, &original.options);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
+    let given: Vec<Value> = (0..12).map(|_| settings(&original, &analysis, &mut rng).0).collect();
+    let answer = by_node(&page, &Value::Array(given), "copied");
+    let rest = &MIXED[MIXED.find("[characteristics]").unwrap()..];
+    for found in answer["found"].as_array().unwrap() {
+        let text = format!("{}{rest}", found["toml"].as_str().unwrap());
+        let pasted = study(&text);
+        let analysis = analyze(&pasted.problem, &pasted.options).unwrap();
+        for (one, found) in analysis.characteristics.iter().zip(found["characteristics"].as_array().unwrap()) {
+            let moments = one.moments.unwrap();
+            let number = |key: &str| found[key].as_f64().unwrap();
+            assert!((moments.mean() - number("mean")).abs() < 1e-9 * moments.sigma(), "{text}");
+            assert!((moments.sigma() / number("sigma") - 1.0).abs() < 1e-9, "{text}");
+            assert!((moments.skewness().unwrap() - number("skewness")).abs() < 1e-8, "{text}");
+            assert!((moments.excess().unwrap() - number("excess")).abs() < 1e-8, "{text}");
+        }
+    }
+}
+
+fn skipped(what: &str) {
+    let _ =
+        writeln!(std::io::stderr(), "skipped: {what}; install Node 18 or newer (nodejs.org, or apt install nodejs)");
+}
