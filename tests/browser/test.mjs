@@ -36,7 +36,7 @@ test("every page of every example opens without a complaint or a request", async
     if (readFileSync(join(root, study), "utf8").includes("command = ") && !study.includes("external-python")) continue;
     const pages = [report("analyze", study, name, ["--journal", "none"])];
     pages.push(report("simulate", study, name, ["--samples", "500", "--journal", "none"]));
-    if (!study.includes("external")) pages.push(report("compare", study, name, ["--samples", "2048"]));
+    if (!study.includes("external")) pages.push(report("compare", study, name, ["--samples", "2048", "--budget", "300"]));
     if (study.includes("stacked-blocks/")) pages.push(report("sweep", study, name, ["--over", "th=15:19:5"]));
     if (readFileSync(join(root, study), "utf8").includes("[costs")) pages.push(report("allocate", study, name, ["--front", "4"]));
     for (const file of pages) {

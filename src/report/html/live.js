@@ -7,8 +7,10 @@ const live = (() => {
     const shifts = new Float64Array(data.dimensions.length), stretches = new Float64Array(data.dimensions.length).fill(1);
     data.dimensions.forEach((of, i) => {
       const { factor, shift } = settings[i];
-      // The middle of an asymmetric band moves as the band scales.
-      shifts[i] = ((factor - 1) * of.middle + shift) / of.sigma;
+      // The middle of an asymmetric band moves as the band scales, and with it the mean of a skewed law over the band; what a
+      // normal law is off the middle stays.
+      const scaling = of.normal ? of.middle : of.middle + of.offset;
+      shifts[i] = ((factor - 1) * scaling + shift) / of.sigma;
       stretches[i] = factor;
     });
     return { shifts, stretches };
