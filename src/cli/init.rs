@@ -131,8 +131,8 @@ fn of_model(model: &Model) -> String {
     let widest = model.inputs.iter().map(|input| input.name.len()).max().unwrap_or(0);
     for &ModelInput { name, unit, nominal, about } in model.inputs {
         let nominal_text = plain(nominal);
-        let unit_text = if unit.is_empty() { String::new() } else { format!(", unit = \"{unit}\"") };
-        let line = match nominal != 0.0 && !unit.is_empty() {
+        let unit_text = if matches!(unit, "" | "-") { String::new() } else { format!(", unit = \"{unit}\"") };
+        let line = match nominal != 0.0 && !matches!(unit, "" | "-") {
             true => {
                 format!("{name:<widest$} = {{ nominal = {nominal_text}, tolerance = \"{TOLERANCE}\"{unit_text} }}")
             }

@@ -27,6 +27,7 @@ mod schema;
 mod simulate;
 mod study;
 mod sweep;
+mod values;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
