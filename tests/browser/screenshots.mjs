@@ -1,9 +1,10 @@
 // How pages look: light, dark, on a phone of 360 pixels, and printed. `node screenshots.mjs FOLDER PAGE.html..`
-import { writeFileSync } from "node:fs";
+import { mkdirSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { Browser } from "./chromium.mjs";
 
 const [folder, ...pages] = process.argv.slice(2);
+mkdirSync(folder, { recursive: true });
 const browser = await Browser.start();
 for (const file of pages) {
   const name = join(folder, basename(file, ".html"));
