@@ -122,6 +122,32 @@ fn a_yield_is_known_as_well_as_wanted() {
     assert_eq!(without.evaluations, of(standard(4), f, &auto(0.05)).evaluations);
 }
 
+/// A uniform dimension beside a normal one: four moments are right, and the Pearson law's tail is not. The share is the mean of
+/// normal ones over the uniform dimension, by midpoints.
+#[test]
+fn tails_that_the_law_misses_are_told_of() {
+    let dimensions = || vec![Dimension::normal("a", 0.0, 0.1).unwrap(), Dimension::uniform("b", 0.0, 0.06).unwrap()];
+    let of = |lower: f64| {
+        let limited = Characteristic::new("y").with_limits(SpecLimits::new(Some(lower), None).unwrap());
+        let y = Closure::scalar("y", |x| x[0] - 2.0 * x[1]);
+        let problem = Problem::new(dimensions(), y).unwrap().asking([limited]).unwrap();
+        analyze(&problem, &auto(0.01)).unwrap()
+    };
+    let normal = |z: f64| 0.5 * libm::erfc(-z / 2f64.sqrt());
+    let below = |lower: f64| {
+        let at = |i: u32| -0.06 + 0.12 * (f64::from(i) + 0.5) / 2000.0;
+        (0..2000).map(|i| normal((lower + 2.0 * at(i)) / (0.1 / 3.0))).sum::<f64>() / 2000.0
+    };
+    let found = of(-0.175);
+    let one = &found.characteristics[0];
+    let (law, exact) = (one.capability.unwrap().rejected().unwrap(), below(-0.175));
+    assert!(law < 0.7 * exact, "{law} {exact}");
+    assert_eq!(codes(&found), ["tails-missed"]);
+    assert!(one.error_estimate.as_ref().unwrap().yield_.unwrap() > 0.7 * (exact - law));
+    // In the middle of the distribution the two agree.
+    assert!(codes(&of(-0.05)).is_empty(), "{:?}", codes(&of(-0.05)));
+}
+
 #[test]
 fn accuracies_are_positive() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
