@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::assembly::AssemblyFunction;
+use crate::assembly::{AssemblyFunction, Points};
 use crate::characteristic::Characteristic;
 use crate::correlation::{Correlation, CorrelationError, Pair};
 use crate::dimension::Dimension;
@@ -186,6 +186,15 @@ impl Problem {
         let names: Vec<String> = self.characteristics.iter().map(|asked| asked.name().to_owned()).collect();
         distinct(&names)?;
         Ok(self)
+    }
+
+    /// Columns of points in sigmas off the means, of the dimensions at these places: what a surrogate is asked at.
+    pub(crate) fn standardised(&self, points: &Points, places: &[usize]) -> Vec<Vec<f64>> {
+        let column = |&d: &usize| {
+            let (mean, sigma) = (self.dimensions[d].mean(), self.dimensions[d].sigma());
+            points.column(d).iter().map(|x| (x - mean) / sigma).collect()
+        };
+        places.iter().map(column).collect()
     }
 
     /// The dimensions, in order.

@@ -38,12 +38,7 @@ pub(super) fn joint(problem: &Problem, responses: &Responses, seed: u64) -> Opti
     let varying = responses.varying();
     let within = |portion: usize| -> Option<usize> {
         let points = draws.points(Portion { replicate: 0, first: (portion * ROWS) as u64, rows: ROWS });
-        let columns: Vec<Vec<f64>> = (varying.iter())
-            .map(|&d| {
-                let (mean, sigma) = (problem.dimensions()[d].mean(), problem.dimensions()[d].sigma());
-                points.column(d).iter().map(|x| (x - mean) / sigma).collect()
-            })
-            .collect();
+        let columns = problem.standardised(&points, varying);
         let mut keeps = vec![true; ROWS];
         for (k, &c) in limits.iter().enumerate() {
             let rises = surrogates[k].rises(&columns)?;

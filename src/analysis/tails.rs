@@ -3,6 +3,8 @@
 //! A Pearson law with the right moments need not have the right tails: a uniform dimension beside normal ones, say, or a sum of few.
 //! The surface costs nothing to look at, so that it is sampled wherever there are limits.
 
+use rayon::prelude::*;
+
 use super::CharacteristicAnalysis;
 use crate::distribution::StandardMoments;
 use crate::method::{Options, Outcome};
@@ -11,6 +13,7 @@ use crate::sampling::{Draws, Portion, SOBOL_DIMENSIONS, Sampler};
 
 /// Points of the surface.
 const POINTS: usize = 1 << 14;
+const ROWS: usize = 1024;
 /// Standard errors of a random sample, of which a quasi-random one has less, from which a difference is one;
 const SEEN: f64 = 4.0;
 /// and from which part of the larger of both on it is worth a warning.
@@ -54,19 +57,26 @@ pub(super) fn look(problem: &Problem, outcome: &Outcome, characteristics: &mut [
     let sampler = if outcome.plan.varying().len() <= SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
     // The same points for everybody, whatever the seed: they decide nothing but whether to warn.
     let Ok(draws) = Draws::new(problem.dimensions(), problem.correlation(), sampler, Options::SEED) else { return };
-    let points = draws.points(Portion { replicate: 0, first: 0, rows: POINTS });
-    let standardised = |&d: &usize| {
-        let (mean, sigma) = (problem.dimensions()[d].mean(), problem.dimensions()[d].sigma());
-        points.column(d).iter().map(|x| (x - mean) / sigma).collect::<Vec<f64>>()
+    // Block by block, so that a thousand dimensions take no more memory than ten.
+    let beyond = |block: usize| -> Vec<usize> {
+        let points = draws.points(Portion { replicate: 0, first: (block * ROWS) as u64, rows: ROWS });
+        let columns = problem.standardised(&points, outcome.plan.varying());
+        let of = |&c: &usize| {
+            let surrogate = outcome.fitted[c].surrogate.as_ref();
+            let Some((surrogate, rises)) = surrogate.and_then(|one| Some((one, one.rises(&columns)?))) else {
+                return 0;
+            };
+            let limits = problem.characteristics()[c].limits();
+            rises.iter().filter(|&&rise| !limits.contains(surrogate.centre + rise)).count()
+        };
+        asked.iter().map(of).collect()
     };
-    let columns: Vec<Vec<f64>> = outcome.plan.varying().iter().map(standardised).collect();
-    for c in asked {
+    let add = |a: Vec<usize>, b: Vec<usize>| a.iter().zip(&b).map(|(a, b)| a + b).collect();
+    let nothing = || vec![0; asked.len()];
+    let beyond: Vec<usize> = (0..POINTS / ROWS).into_par_iter().map(beyond).reduce(nothing, add);
+    for (&c, beyond) in asked.iter().zip(beyond) {
         let one = &mut characteristics[c];
         let Some(law) = one.capability.and_then(|capability| capability.rejected()) else { continue };
-        let Some(surrogate) = &outcome.fitted[c].surrogate else { continue };
-        let Some(rises) = surrogate.rises(&columns) else { continue };
-        let limits = one.characteristic.limits();
-        let beyond = rises.iter().filter(|&&rise| !limits.contains(surrogate.centre + rise)).count();
         let tails = Tails { law, surface: beyond as f64 / POINTS as f64, points: POINTS };
         if let Some((apart, estimate)) = tails.difference().zip(one.error_estimate.as_mut()) {
             estimate.yield_ = estimate.yield_.map(|error| error + apart);

@@ -19,13 +19,13 @@ use crate::report::{
 use crate::study::{Rewritten, Study};
 
 pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
-    let study = study::read(&asked.study, externals(asked.journal.as_deref(), look, None))?;
+    let study = study::read(&asked.study, externals(asked.work.journal.as_deref(), look, None))?;
     let destination = Destination::open(&asked.output)?;
     let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &allocation_csv_names())).transpose()?;
     let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
     let page = asked.html.as_deref().map(Destination::file).transpose()?;
     let written = asked.write.as_deref().map(|path| beside(&asked.study.study, path)).transpose()?;
-    let clock = Clock::start(asked.time);
+    let clock = Clock::start(asked.work.time);
     let options = AllocationOptions {
         analysis: study.options.clone(),
         recentre: asked.recentre.clone(),
@@ -68,7 +68,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         result?;
         return Ok(Exit::Interrupted);
     }
-    if let (true, Some(limit)) = (allocation.stopped, asked.time) {
+    if let (true, Some(limit)) = (allocation.stopped, asked.work.time) {
         look.warn("stopped", &format!("stopped after {limit} s, {after}"));
     }
     result?;

@@ -20,7 +20,7 @@ use crate::study::Study;
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
-    let mut study = study::read(&asked.study, externals(asked.journal.as_deref(), look, given.clone()))?;
+    let mut study = study::read(&asked.study, externals(asked.work.journal.as_deref(), look, given.clone()))?;
     study.options.seed = asked.seed.or(study.options.seed);
     study.options.extremes |= asked.extremes;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
@@ -30,7 +30,7 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
     let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
     let page = asked.html.as_deref().map(Destination::file).transpose()?;
-    let clock = Clock::start(asked.time);
+    let clock = Clock::start(asked.work.time);
     let analysis = analyze(&study, asked.threads, &clock, look)?;
     let about = clock.about(&study, study.options.seed);
     let report = Report::of(&study.problem, &analysis, about);
@@ -58,7 +58,7 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
         written?;
         return Ok(Exit::Interrupted);
     }
-    if let (true, Some(limit)) = (analysis.stopped, asked.time) {
+    if let (true, Some(limit)) = (analysis.stopped, asked.work.time) {
         look.warn("stopped", &format!("stopped after {limit} s with {} evaluations", analysis.evaluations));
     }
     written?;

@@ -143,11 +143,9 @@ pub(super) struct StudyArgs {
     pub(super) derivatives: Option<DerivativesArg>,
 }
 
+/// How long to work, and where what it costs is kept.
 #[derive(Debug, Args)]
-pub(super) struct AnalyzeArgs {
-    #[command(flatten)]
-    pub(super) study: StudyArgs,
-
+pub(super) struct WorkArgs {
     /// Stop after S seconds and report what is known
     #[arg(long, value_name = "S", value_parser = positive)]
     pub(super) time: Option<f64>,
@@ -155,6 +153,15 @@ pub(super) struct AnalyzeArgs {
     /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
     #[arg(long, value_name = "FILE")]
     pub(super) journal: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AnalyzeArgs {
+    #[command(flatten)]
+    pub(super) study: StudyArgs,
+
+    #[command(flatten)]
+    pub(super) work: WorkArgs,
 
     /// Take the answers of an external model from a CSV file with a column for every dimension and output
     #[arg(long, value_name = "FILE.csv", conflicts_with = "journal")]
@@ -163,6 +170,7 @@ pub(super) struct AnalyzeArgs {
     /// Search the true extremes in the box of the tolerance bands too, at some 2N evaluations or more for either side
     #[arg(long, conflicts_with = "points")]
     pub(super) extremes: bool,
+
     /// Print the stack-up table of every characteristic instead of the report: text, csv or markdown
     #[arg(long, value_name = "FORMAT", conflicts_with = "json", help_heading = OUTPUT)]
     pub(super) stack: Option<StackArg>,
@@ -205,13 +213,8 @@ pub(super) struct SampledArgs {
     #[arg(long, value_name = "N")]
     pub(super) seed: Option<u64>,
 
-    /// Stop after S seconds and report what is known
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub(super) time: Option<f64>,
-
-    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
-    #[arg(long, value_name = "FILE")]
-    pub(super) journal: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) work: WorkArgs,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -307,13 +310,8 @@ pub(super) struct SweepArgs {
     #[arg(long, value_name = "NAME=FROM:TO:STEPS", value_parser = over)]
     pub(super) over: Over,
 
-    /// Stop after S seconds and report what is known
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub(super) time: Option<f64>,
-
-    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
-    #[arg(long, value_name = "FILE")]
-    pub(super) journal: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) work: WorkArgs,
 
     /// Seed of random numbers, for the methods that draw some; kept in the report
     #[arg(long, value_name = "N")]
@@ -356,13 +354,8 @@ pub(super) struct AllocateArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
     pub(super) confirm: Option<u64>,
 
-    /// Stop after S seconds and report what is known
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub(super) time: Option<f64>,
-
-    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
-    #[arg(long, value_name = "FILE")]
-    pub(super) journal: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) work: WorkArgs,
 
     /// Seed of what is drawn [default: that of the study, or 1]
     #[arg(long, value_name = "N")]

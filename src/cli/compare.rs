@@ -24,7 +24,7 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
         reference: asked.samples,
         seed: asked.of.seed.or(study.seed).unwrap_or(Options::SEED),
     };
-    let clock = Clock::start(asked.of.time);
+    let clock = Clock::start(asked.of.work.time);
     let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
     let comparison = on_threads(asked.of.threads, || compare_within(&study.problem, &options, &run))??;

@@ -26,7 +26,7 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
         until: asked.until,
         surrogate: surrogate(study, asked),
     };
-    let clock = Clock::start(asked.of.time);
+    let clock = Clock::start(asked.of.work.time);
     let threads = asked.of.threads;
     let found = sampling(threads, &clock, look, |run, pace| rare_within(&study.problem, &options, run, pace))??;
     let about = clock.about(study, Some(options.seed));

@@ -48,7 +48,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         until_yield: asked.until_yield,
         control: asked.surrogate_control.then(|| surrogate(&study, asked)),
     };
-    let clock = Clock::start(asked.of.time);
+    let clock = Clock::start(asked.of.work.time);
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look)?;
     let about = clock.about(&study, Some(options.seed));
     let report = SimulationReport::of(&study.problem, &simulation, about);

@@ -11,7 +11,7 @@ use crate::study::{Externals, Study};
 
 /// Reads the study of which points are drawn.
 pub(super) fn read_sampled(asked: &SampledArgs, look: Look) -> Result<Study, Failure> {
-    let externals = externals(asked.journal.as_deref(), look, None);
+    let externals = externals(asked.work.journal.as_deref(), look, None);
     asking(Study::read_with(&asked.study, externals)?, &asked.characteristics)
 }
 

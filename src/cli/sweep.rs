@@ -14,7 +14,7 @@ use crate::study::Study;
 use crate::sweep::{Sweep, sweep_within};
 
 pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
-    let externals = externals(asked.journal.as_deref(), look, None);
+    let externals = externals(asked.work.journal.as_deref(), look, None);
     let mut study = study::read_sweeping(&asked.study, externals, &asked.over.name)?;
     study.options.seed = asked.seed.or(study.options.seed);
     let destination = Destination::open(&asked.output)?;
@@ -22,7 +22,7 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let table = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
     let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
     let page = asked.html.as_deref().map(Destination::file).transpose()?;
-    let clock = Clock::start(asked.time);
+    let clock = Clock::start(asked.work.time);
     let sweep = swept(&study, asked, &clock, look)?;
     let report = SweepReport::of(&study.problem, &sweep, clock.about(&study, study.options.seed));
     let written = destination.write(&if asked.output.json { json(&report) } else { sweep_text(&report, look.style()) });

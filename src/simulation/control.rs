@@ -102,12 +102,7 @@ impl<'p> Control<'p> {
 
     /// For every characteristic how far its surrogate lies above its centre at these points; empty where it has none.
     fn rises(&self, points: &Points) -> Vec<Vec<f64>> {
-        let dimensions = self.problem.dimensions();
-        let standardised = |&d: &usize| -> Vec<f64> {
-            let (mean, sigma) = (dimensions[d].mean(), dimensions[d].sigma());
-            points.column(d).iter().map(|x| (x - mean) / sigma).collect()
-        };
-        let inputs: Vec<Vec<f64>> = self.outcome.plan.varying().iter().map(standardised).collect();
+        let inputs = self.problem.standardised(points, self.outcome.plan.varying());
         let rises = |twin: &Option<Twin>| twin.as_ref().and_then(|twin| twin.surrogate.rises(&inputs));
         self.twins.iter().map(|twin| rises(twin).unwrap_or_default()).collect()
     }

@@ -48,8 +48,8 @@ if mode == "refuses":
 if mode == "other-version":
     say({"sensitol": 2, "ready": True})
 if mode == "grandchild":
-    subprocess.Popen(["sleep", "300.125"])
-    subprocess.Popen(["sh", "-c", "sleep 300.25 & wait"])
+    subprocess.Popen(["sleep", extra[0]])
+    subprocess.Popen(["sh", "-c", f"sleep {extra[0]} & wait"])
 
 window = int(extra[-1]) if mode in ("out-of-order", "crash-in-window", "hang-in-window", "echo") else 1
 say({"ready": True, "name": "test child", "version": 3, "window": window, "unknown key": None})

@@ -14,6 +14,9 @@ use sensitol::{Characteristic, Dimension, Problem, SpecLimits};
 
 use super::support::repository;
 
+/// How long a test waits for what is sure to come, on however busy a machine.
+const PATIENCE: Duration = Duration::from_secs(60);
+
 /// A child in a mode, with short deadlines that none but the slow ones reach.
 fn settings(mode: &str, more: &[&str]) -> Settings {
     let script = repository("tests/children/child.py").display().to_string();
@@ -336,44 +339,71 @@ fn samples_of_a_model_that_flips_are_doubted() {
     assert!(random.is_empty() && rare.is_empty(), "{random:?} {rare:?}");
 }
 
-/// Processes whose command line holds this text.
-fn alive(text: &str) -> Vec<String> {
-    let own = std::process::id().to_string();
+/// A process: its parent, and the instant of its start, so that a number given out again is not taken for it.
+#[cfg(target_os = "linux")]
+#[derive(Debug, Clone, PartialEq)]
+struct Seen {
+    pid: String,
+    state: String,
+    parent: String,
+    begun: String,
+}
+
+#[cfg(target_os = "linux")]
+impl Seen {
+    /// The process of this number, running or waiting to be reaped.
+    fn of(pid: &str) -> Option<Self> {
+        let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+        let fields: Vec<&str> = stat.rsplit(')').next()?.split_whitespace().collect();
+        let field = |i: usize| fields.get(i).map(|field| (*field).to_owned());
+        Some(Self { pid: pid.into(), state: field(0)?, parent: field(1)?, begun: field(19)? })
+    }
+
+    /// Gone, and reaped where that is for this process to do.
+    fn gone(&self) -> bool {
+        let dead = |now: &Self| now.state == "Z" && now.parent != std::process::id().to_string();
+        Self::of(&self.pid).is_none_or(|now| now.begun != self.begun || dead(&now))
+    }
+}
+
+/// Living processes with this text in their command line.
+#[cfg(target_os = "linux")]
+fn living(text: &str) -> Vec<Seen> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir("/proc").into_iter().flatten().flatten() {
         let command = std::fs::read(entry.path().join("cmdline")).unwrap_or_default();
-        let command = String::from_utf8_lossy(&command).replace('\0', " ");
-        let stat = std::fs::read_to_string(entry.path().join("stat")).unwrap_or_default();
-        let parent =
-            stat.rsplit(')').next().and_then(|rest| rest.split_whitespace().nth(1)).unwrap_or_default().to_owned();
-        // A zombie has no command line: it is ours when we are its parent.
-        let zombie = stat.rsplit(')').next().is_some_and(|rest| rest.trim_start().starts_with('Z')) && parent == own;
-        if command.contains(text) || (zombie && stat.contains("(python3)")) {
-            found.push(format!("{} {command}", entry.file_name().display()));
+        if String::from_utf8_lossy(&command).replace('\0', " ").contains(text) {
+            found.extend(Seen::of(&entry.file_name().to_string_lossy()));
         }
     }
     found
 }
 
-/// The process whose command line has this text; no zombie of another test.
-#[cfg(target_os = "linux")]
-fn living(text: &str) -> Option<String> {
-    let entry = alive(text).into_iter().find(|entry| entry.contains(text))?;
-    entry.split(' ').next().map(str::to_owned)
-}
-
-/// Whatever a child started ends with the model.
+/// Whatever a child started ends with the model, and nothing of it waits to be reaped.
 #[test]
 #[cfg(target_os = "linux")]
 fn no_orphan_is_left() {
-    {
-        let model = model(settings("grandchild", &[]));
+    let family = {
+        // The same test may run elsewhere on this machine.
+        let forever = format!("300.{}", std::process::id());
+        let model = model(settings("grandchild", &[&forever]));
         right_but(&POINTS, &at(&model, &POINTS), &[]);
-        assert_eq!(alive("sleep 300.125").len(), 1, "the child has a child");
-    }
+        // What it started may still be on its way from `fork` to `exec`.
+        let begun = Instant::now();
+        let mut family = Vec::new();
+        while family.len() < 3 {
+            assert!(begun.elapsed() < PATIENCE, "the child has children: {family:?}");
+            std::thread::sleep(Duration::from_millis(10));
+            family = living(&format!("sleep {forever}"));
+        }
+        let parents: Vec<Seen> = family.iter().filter_map(|seen| Seen::of(&seen.parent)).collect();
+        assert!(parents.iter().any(|seen| seen.parent == std::process::id().to_string()), "{parents:?}");
+        family.extend(parents);
+        family
+    };
     let begun = Instant::now();
-    while !(alive("sleep 300.125").is_empty() && alive("sleep 300.25").is_empty()) {
-        assert!(begun.elapsed() < Duration::from_secs(5), "{:?} {:?}", alive("sleep 300.125"), alive("sleep 300.25"));
+    while let Some(left) = family.iter().find(|seen| !seen.gone()) {
+        assert!(begun.elapsed() < PATIENCE, "{left:?} of {family:?}");
         std::thread::sleep(Duration::from_millis(10));
     }
 }
@@ -393,7 +423,7 @@ fn many_points_through_one_child() {
     let model = model(settings("echo", &["one-child-for-many-points", "64"]));
     let a: Vec<f64> = (100..10_100).map(f64::from).collect();
     right_but(&a, &at(&model, &a), &[]);
-    let pid = &living("one-child-for-many-points").unwrap();
+    let pid = &living("one-child-for-many-points").pop().unwrap().pid;
     let before = [resident("self"), resident(pid)];
     for _ in 0..9 {
         right_but(&a, &at(&model, &a), &[]);
@@ -445,7 +475,7 @@ fn killed_children_lose_nothing() {
                 if ended() {
                     break;
                 }
-                if let Some(pid) = living("killed-children") {
+                if let Some(Seen { pid, .. }) = living("killed-children").pop() {
                     let _ = Command::new("kill").args(["-9", &pid]).status();
                 }
             }
