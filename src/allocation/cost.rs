@@ -1,5 +1,7 @@
 //! What a tolerance costs to hold.
 
+use crate::problem::Problem;
+
 /// Cost of one part over its half band `T`, falling as the tolerance opens.
 ///
 /// ```text
@@ -143,6 +145,11 @@ impl Curve {
         self.kind
     }
 
+    /// `a`, `b`, and the third of its kind: `k` of a power, 1 of a reciprocal, `c` of an exponential. `b` is 0 where the cost is fixed.
+    pub fn constants(&self) -> [f64; 3] {
+        [self.a, self.b, self.shape]
+    }
+
     /// `b` and, of a power, `k`: None where the cost is no reciprocal power.
     pub(super) fn power(&self) -> Option<(f64, f64)> {
         matches!(self.kind, CurveKind::Reciprocal | CurveKind::ReciprocalPower).then_some((self.b, self.shape))
@@ -262,6 +269,11 @@ impl Priced {
         let holds = |offer: &&Offer| self.offers.len() == 1 && offer.min < offer.max || offer.min <= t * (1.0 + 1e-12);
         let at = |offer: &Offer| offer.curve.cost(if self.offers.len() == 1 { t } else { t.min(offer.max) });
         self.offers.iter().filter(holds).map(|offer| self.parts * at(offer)).reduce(f64::min)
+    }
+
+    /// The tightest half band among its members as they stand in a problem, which the process that they share has to hold.
+    pub fn tightest_member(&self, problem: &Problem) -> f64 {
+        self.members.iter().map(|&d| problem.dimensions()[d].half_band()).fold(f64::INFINITY, f64::min)
     }
 
     /// The least half band that any offer holds.

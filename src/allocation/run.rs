@@ -428,7 +428,7 @@ impl Driver<'_> {
     }
 
     fn cost_to_hold(&self, problem: &Problem) -> Option<f64> {
-        let of = |group: &Priced| group.cost_to_hold(tightest_member(problem, group));
+        let of = |group: &Priced| group.cost_to_hold(group.tightest_member(problem));
         self.task.priced.iter().map(of).sum()
     }
 
@@ -484,11 +484,6 @@ impl Driver<'_> {
 struct Ended {
     agreed: bool,
     within_budget: bool,
-}
-
-/// The tightest half band among the members, which the shared process has to hold.
-fn tightest_member(problem: &Problem, group: &Priced) -> f64 {
-    group.members.iter().map(|&d| problem.dimensions()[d].half_band()).fold(f64::INFINITY, f64::min)
 }
 
 fn cost(priced: &[Priced], at: &[f64], offers: &[usize]) -> f64 {

@@ -9,7 +9,7 @@ use crate::method::{Climbed, ErrorEstimate, Options, Outcome, Source};
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler};
-use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
+use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
 use crate::warning::Figure;
 
 /// Points of a cheap model, at most;
@@ -38,6 +38,8 @@ pub struct SampledModel {
     pub standard_errors: [Option<f64>; 4],
     /// The share of the sample within the limits with its 95 % interval.
     pub yield_: Option<(f64, [f64; 2])>,
+    /// The sample, counted in some tens of intervals.
+    pub histogram: Option<Histogram>,
 }
 
 /// What the fallback cost.
@@ -172,6 +174,7 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
         left: left.min(1.0),
         standard_errors,
         yield_,
+        histogram: found.histogram.clone(),
     });
 }
 

@@ -44,7 +44,7 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let written = destination.write(&printed);
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));
     let written = written.and(page.map_or(Ok(()), |page| {
-        let what_if = WhatIf::of(&study.problem, &analysis, &study.lines);
+        let what_if = WhatIf::of(&study.problem, &analysis, &study.lines, &study.costs);
         page.write(&analyze_html(&report, Some(&what_if)))
     }));
     for warning in &report.warnings {

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::compare::{CompareReport, ComparedReport};
+use super::labels::{Label, placed};
 use super::svg::{ACCENT, HEIGHT, MARGIN, WIDTH, across, axes, charts, escaped, mark, up};
 
 /// One chart below the other, one for every characteristic. Open circles are methods whose error the reference does not
@@ -63,19 +64,25 @@ fn chart(svg: &mut String, one: &ComparedReport) {
     if front.len() > 1 {
         let _ = writeln!(svg, "<path d=\"M{}\" fill=\"none\" stroke=\"{ACCENT}\"/>", front.join("L"));
     }
-    for (method, evaluations, error, resolved, pareto) in shown {
-        let (at, height) = (x.at(evaluations), y.at(error));
-        let colour = if pareto { ACCENT } else { "#666" };
-        let fill = if resolved { colour } else { "#fff" };
+    let points: Vec<([f64; 2], &str)> = shown.iter().map(|point| ([x.at(point.1), y.at(point.2)], point.0)).collect();
+    let colour = |point: usize| if shown[point].4 { ACCENT } else { "#666" };
+    let labels = placed(&points, [left, WIDTH - 5.0, above - 12.0, HEIGHT - below]);
+    for Label { x, y, of, point, .. } in labels.iter().filter(|label| label.far) {
+        // To the middle of the line, where the text begins or ends.
+        let ([from, top], to) = (of, y - 4.0);
+        let colour = colour(*point);
+        let _ =
+            writeln!(svg, "<path d=\"M{from:.1} {top:.1}L{x:.1} {to:.1}\" stroke=\"{colour}\" stroke-width=\"0.5\"/>");
+    }
+    for (i, ([at, height], _)) in points.iter().enumerate() {
+        let (colour, fill) = (colour(i), if shown[i].3 { colour(i) } else { "#fff" });
         let _ =
             writeln!(svg, "<circle cx=\"{at:.1}\" cy=\"{height:.1}\" r=\"4\" fill=\"{fill}\" stroke=\"{colour}\"/>");
-        let _ = writeln!(
-            svg,
-            "<text x=\"{:.1}\" y=\"{:.1}\" fill=\"{colour}\">{}</text>",
-            at + 7.0,
-            height - 5.0,
-            escaped(method)
-        );
+    }
+    for label in labels {
+        let (colour, anchor) = (colour(label.point), if label.ends { " text-anchor=\"end\"" } else { "" });
+        let (x, y, text) = (label.x, label.y, escaped(&label.text));
+        let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" fill=\"{colour}\"{anchor}>{text}</text>");
     }
 }
 

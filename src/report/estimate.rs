@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::simulation::HistogramReport;
 use crate::analysis::SampledModel;
 use crate::method::ErrorEstimate;
 
@@ -41,6 +42,8 @@ pub struct ModelSamplingReport {
     pub yield_: Option<f64>,
     /// Its 95 % interval.
     pub yield_interval: Option<[f64; 2]>,
+    /// The sample in intervals.
+    pub histogram: Option<HistogramReport>,
 }
 
 impl ErrorEstimateReport {
@@ -54,6 +57,7 @@ impl ModelSamplingReport {
     pub(super) fn of(sampled: &SampledModel) -> Self {
         let [mean, sigma, skewness, kurtosis] = sampled.standard_errors;
         let (yield_, yield_interval) = sampled.yield_.unzip();
-        Self { samples: sampled.samples, mean, sigma, skewness, kurtosis, yield_, yield_interval }
+        let histogram = sampled.histogram.as_ref().map(HistogramReport::of);
+        Self { samples: sampled.samples, mean, sigma, skewness, kurtosis, yield_, yield_interval, histogram }
     }
 }

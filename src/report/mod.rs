@@ -15,6 +15,7 @@ mod extremes;
 mod head;
 #[cfg(feature = "html")]
 pub mod html;
+mod labels;
 mod limits;
 pub(crate) mod number;
 mod page;

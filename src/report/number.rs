@@ -3,6 +3,11 @@
 /// In place of what is unknown.
 pub(crate) const UNKNOWN: &str = "-";
 
+/// A count with what is counted.
+pub(super) fn plural(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
 /// As many decimals as show `digits` significant digits of `scale`; None where that takes an exponent.
 pub(crate) fn decimals(scale: f64, digits: i32) -> Option<usize> {
     if scale == 0.0 || !scale.is_finite() {

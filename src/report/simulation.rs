@@ -156,6 +156,12 @@ pub struct HistogramReport {
     pub counts: Vec<u64>,
 }
 
+impl HistogramReport {
+    pub(super) fn of(Histogram { edges, counts }: &Histogram) -> Self {
+        Self { edges: edges.clone(), counts: counts.clone() }
+    }
+}
+
 impl SimulationReport {
     /// The report of a simulation.
     pub fn of(problem: &Problem, simulation: &Simulation, about: About) -> Self {
@@ -248,7 +254,7 @@ impl SimulatedReport {
             ppm_above: one.above.map(|share| 1e6 * share),
             cp: index(lower.zip(upper).map(|(lower, upper)| 0.5 * (upper - lower))),
             cpk: index(sides.into_iter().flatten().reduce(f64::min)),
-            histogram: one.histogram.clone().map(|Histogram { edges, counts }| HistogramReport { edges, counts }),
+            histogram: one.histogram.as_ref().map(HistogramReport::of),
             control: one.control.map(|control| ControlReport {
                 method: control.method.name(),
                 evaluations: control.evaluations,

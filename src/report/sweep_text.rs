@@ -1,6 +1,6 @@
 //! The report of a sweep for people.
 
-use super::number::{UNKNOWN, beside, plain, significant};
+use super::number::{UNKNOWN, beside, plain, plural, significant};
 use super::page::{Grid, Page, Style, clean, short};
 use super::sweep::{SweepReport, SweptReport};
 
@@ -10,7 +10,6 @@ pub fn sweep_text(report: &SweepReport, style: Style) -> String {
     if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
-    let plural = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
     page.line(&format!(
         "{}: {} in {} for {} of {}{}",
         report.method.unwrap_or("nothing was done"),

@@ -2,7 +2,7 @@
 
 use super::extremes::extremes;
 use super::limits::{distribution, verdict};
-use super::number::{UNKNOWN, beside, percent, plain, significant, unsigned_zero};
+use super::number::{UNKNOWN, beside, percent, plain, plural, significant, unsigned_zero};
 use super::page::{Detail, Grid, Page, Style, clean, short};
 use super::sampling::sampling;
 use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
@@ -35,13 +35,12 @@ pub fn text(report: &Report, style: Style) -> String {
 
 /// What was done for it, in one line.
 fn summary(report: &Report) -> String {
-    let plural = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let failed = match report.failed {
         0 => String::new(),
-        failed => format!(", {} failed", plural(failed, "point")),
+        failed => format!(", {} failed", plural(failed, "point", "points")),
     };
-    let (evaluations, varying) =
-        (plural(report.evaluations, "evaluation"), plural(report.varying, "varying dimension"));
+    let evaluations = plural(report.evaluations, "evaluation", "evaluations");
+    let varying = plural(report.varying, "varying dimension", "varying dimensions");
     let reused = match report.reused {
         0 => String::new(),
         reused => format!(", {reused} known already"),

@@ -12,6 +12,7 @@ const figures = ({ mean, sigma, skewness, excess, below, above, cpk, linear, cur
   ({ mean, sigma, skewness, excess, below, above, cpk, linear: [...linear], curvature: [...curvature], shares: [...shares] });
 const found = JSON.parse(readFileSync(file, "utf8")).map((settings) => ({
   toml: live.toml(data, settings),
+  cost: live.cost(data, settings),
   characteristics: data.characteristics.map((one) => one.why === null ? figures(live.evaluate(data, one, settings)) : null),
 }));
 console.log(JSON.stringify({ names: data.dimensions.map((one) => one.name), fixed: data.dimensions.map((one) => one.fixed), found }));

@@ -58,7 +58,7 @@ fn example(name: &str) -> Study {
 fn analysed(study: &Study, options: &Options) -> (Analysis, String) {
     let analysis = analyze(&study.problem, options).unwrap();
     let about = About { title: study.title.clone(), sha256: study.sha256.clone(), ..About::default() };
-    let what_if = WhatIf::of(&study.problem, &analysis, &study.lines);
+    let what_if = WhatIf::of(&study.problem, &analysis, &study.lines, &study.costs);
     let page = analyze_html(&Report::of(&study.problem, &analysis, about), Some(&what_if));
     (analysis, page)
 }
@@ -143,6 +143,7 @@ fn what_cannot_be_tried_is_said() {
     assert!(mixed.contains("stays as it is: its shape"), "the Weibull law changes with its tolerance");
     let correlated = page(&example("matched-pair"));
     assert!(!correlated.contains("id=\"what-if\""), "correlated dimensions have no what-if");
+    assert!(correlated.contains("Nothing can be changed in this page: dimensions are correlated"), "said why");
     let measured = page(&example("measured-pin"));
     assert!(measured.contains("stays as it is: measured"), "measured values stay");
     let zone = page(&example("fit-and-stack"));
@@ -259,6 +260,83 @@ fn by_node(page: &str, settings: &Value, name: &str) -> Value {
         Command::new("node").arg(repository("tests/browser/what_if.mjs")).args([&html, &file]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Costs of every model, a list of processes, dimensions that share one, and one without a cost.
+const PRICED: &str = r##"
+[dimensions]
+a = { nominal = 10, tolerance = 0.1 }
+b = { nominal = 4, tolerance = 0.2 }
+c = { nominal = 3, tolerance = [-0.1, 0.3] }
+d = { nominal = 2, tolerance = 0.1, distribution = "uniform" }
+e = { nominal = 1, sigma = 0.02 }
+f = { nominal = 6, tolerance = 0.05 }
+free = { nominal = 1, tolerance = 0.05 }
+[costs]
+a = { model = "reciprocal", a = 1.5, b = 0.2, min = 0.01, max = 0.4 }
+b = { model = "exponential", a = 0.5, b = 9.0, c = 0.15, min = 0.02, max = 0.6 }
+c = { model = "reciprocal-power", b = 0.3, k = 0.6, min = 0.02, max = 0.6 }
+d = { same_as = "a" }
+e = { model = "reciprocal", b = 0.1, min = 0.001, max = 1.0 }
+f = { processes = [{ name = "mill", tolerance = 0.06, cost = 1.0 }, { name = "grind", tolerance = 0.02, cost = 4.5 }, { name = "lap", model = "reciprocal", a = 1.0, b = 0.06, min = 0.008, max = 0.015 }] }
+[characteristics]
+y = { formula = "a + b - c + d - e - f - free", lower = 7, upper = 11, target_yield = 0.9 }
+"##;
+
+/// The cost of the copied study by the engine, which reads tolerances and costs anew: two ways to the same sums, equal to rounding.
+#[test]
+fn costs_follow_the_tolerances() {
+    if !node() {
+        return skipped("costs");
+    }
+    let original = study(PRICED);
+    let (analysis, page) = analysed(&original, &original.options);
+    assert!(page.contains("Cost of the tolerances: analysed"), "the cost is shown");
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(11);
+    let given: Vec<Value> = (0..60).map(|_| settings(&original, &analysis, &mut rng).0).collect();
+    let answer = by_node(&page, &Value::Array(given), "priced");
+    let rest = &PRICED[PRICED.find("[costs]").unwrap()..];
+    let mut unheld = 0;
+    for found in answer["found"].as_array().unwrap() {
+        let text = format!("{}{rest}", found["toml"].as_str().unwrap());
+        let pasted = study(&text);
+        let groups = pasted.costs.iter();
+        let expected: Option<f64> =
+            groups.map(|group| group.cost_to_hold(group.tightest_member(&pasted.problem))).sum();
+        // What no process holds is infinite to the script, and null in JSON.
+        match (found["cost"].as_f64(), expected) {
+            (Some(found), Some(expected)) => {
+                assert!((found / expected - 1.0).abs() < 1e-11, "{found}, not {expected}: {text}")
+            }
+            (None, None) => unheld += 1,
+            other => panic!("{other:?}: {text}"),
+        }
+    }
+    assert!((1..59).contains(&unheld), "{unheld} of 60 cannot be held");
+    assert!(!self::page(&study(MIXED)).contains("Cost of the tolerances"), "no cost where there is none");
+}
+
+/// Where a surrogate is not trusted and the model is sampled, the density lies over the sample.
+#[test]
+fn a_sample_of_the_model_is_drawn() {
+    let text = r##"
+[dimensions]
+a = { nominal = 0, tolerance = 3 }
+b = { nominal = 0, tolerance = 3 }
+[characteristics]
+y = { formula = "max(a, b)", lower = -2, upper = 3 }
+"##;
+    let study = study(text);
+    let (analysis, page) = analysed(&study, &study.options);
+    let sampled = analysis.characteristics[0].model_sampled.as_ref().expect("a kink is sampled");
+    let histogram = sampled.histogram.as_ref().unwrap();
+    assert_eq!(histogram.counts.iter().sum::<u64>(), sampled.samples);
+    assert_eq!(page.matches("<rect class=\"bin").count(), histogram.counts.len());
+    assert!(page.contains("<rect class=\"bin out\""), "what lies outside the limits is told apart");
+    assert!(
+        page.contains("Nothing can be changed in this page: its moments come from points of the model"),
+        "said why"
+    );
 }
 
 /// The script and the engine at 200 random settings of every study. Both round each step once, in other orders: skewness and

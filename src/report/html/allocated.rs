@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::super::limits::share;
-use super::super::number::{UNKNOWN, plain, significant};
+use super::super::number::{UNKNOWN, plain, plural, significant};
 use super::super::{AllocatedReport, AllocationReport, KeptReport, allocation_svg};
 use super::{fact, inline, provenance, render};
 
@@ -81,7 +81,7 @@ pub fn allocate_html(report: &AllocationReport) -> String {
     let mut facts = vec![
         fact("derivatives by", report.method),
         fact("confirmed", confirmed),
-        fact("evaluations", format!("{} in {} rounds", report.evaluations, report.rounds)),
+        fact("evaluations", format!("{} in {}", report.evaluations, plural(report.rounds, "round", "rounds"))),
         fact("reused answers", report.reused.to_string()),
     ];
     if let Some(residual) = report.proof.kkt_residual {

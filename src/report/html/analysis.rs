@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::super::limits::share;
 use super::super::number::{UNKNOWN, beside, percent, plain, significant, unsigned_zero};
 use super::super::{CharacteristicReport, Report, Stack, StackNote, WarningReport};
-use super::chart::{Density, Scale, Span};
+use super::chart::{Bins, Scale, Span, Spread, quantiles};
 use super::what_if::WhatIf;
 use super::{Fact, fact, json, provenance, render};
 use crate::capability::Law;
@@ -22,6 +22,8 @@ struct Analysed<'r> {
     verdicts: Vec<Verdict<'r>>,
     characteristics: Vec<One<'r>>,
     what_if: Option<Tries<'r>>,
+    /// Why there is nothing to try.
+    no_what_if: Option<String>,
 }
 
 /// A characteristic in one line.
@@ -43,7 +45,7 @@ struct One<'r> {
     verdict: Verdict<'r>,
     figures: Vec<[String; 2]>,
     limits: Vec<[String; 2]>,
-    density: Option<Density>,
+    spread: Option<Spread>,
     quantiles: Vec<[String; 2]>,
     family: String,
     spans: Vec<Span>,
@@ -84,6 +86,7 @@ struct Tries<'r> {
     dimensions: Vec<Try<'r>>,
     characteristics: Vec<(&'r str, &'r str, Option<&'r str>)>,
     written: bool,
+    cost: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -109,6 +112,7 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
         verdicts: report.characteristics.iter().map(verdict).collect(),
         characteristics,
         what_if: possible.map(tries),
+        no_what_if: what_if.and_then(WhatIf::impossible),
     };
     let named = |warning: &&WarningReport| match &warning.characteristic {
         Some(name) => !report.characteristics.iter().any(|one| one.name == *name),
@@ -189,9 +193,13 @@ fn verdict(one: &CharacteristicReport) -> Verdict<'_> {
 
 fn characteristic<'r>(report: &'r Report, one: &'r CharacteristicReport, stack: &Stack) -> One<'r> {
     let law = match &one.law {
-        Some(Law::Pearson(law)) => Some(law),
+        Some(Law::Pearson(law)) => Some(&**law),
         _ => None,
     };
+    let mut places = law.map_or(Vec::new(), quantiles);
+    places.extend(one.mean.map(|mean| (mean, "mean", "mean")));
+    let histogram = one.model_sampling.as_ref().and_then(|sampling| sampling.histogram.as_ref());
+    let bins = histogram.map(|of| Bins { edges: &of.edges, counts: &of.counts });
     let (pareto, rest) = pareto(one);
     let seen = |one: &&super::super::InteractionReport| one.share.is_none_or(|share| share > NEWS);
     let interactions: Vec<_> = one.interactions.iter().filter(seen).collect();
@@ -201,7 +209,7 @@ fn characteristic<'r>(report: &'r Report, one: &'r CharacteristicReport, stack: 
         verdict: verdict(one),
         figures: figures(one),
         limits: kept(one),
-        density: law.and_then(|law| Density::of(law, [one.lower, one.upper])),
+        spread: Spread::of(law, bins, [one.lower, one.upper], &places),
         quantiles: match &one.distribution {
             Some(super::super::DistributionReport::Pearson { quantiles, .. }) => {
                 let sigma = one.sigma.unwrap_or(0.0);
@@ -211,7 +219,10 @@ fn characteristic<'r>(report: &'r Report, one: &'r CharacteristicReport, stack: 
         },
         family: match (&one.distribution, one.sigma) {
             (Some(super::super::DistributionReport::Pearson { kind: "normal", .. }), _) => "normal".to_owned(),
-            (Some(super::super::DistributionReport::Pearson { kind, .. }), _) => format!("Pearson type {kind}"),
+            (Some(super::super::DistributionReport::Pearson { kind, .. }), _) => {
+                let bars = if bins.is_some() { " over the sample of the model; each bar with one standard error" } else { "" };
+                format!("Pearson type {kind}{bars}")
+            }
             (Some(super::super::DistributionReport::Point { at }), _) => {
                 format!("every assembly has the same value: {}", plain(*at))
             }
@@ -510,5 +521,8 @@ fn tries(what_if: &WhatIf) -> Tries<'_> {
             .map(|one| (one.name.as_str(), one.unit.as_deref().unwrap_or_default(), one.why.as_deref()))
             .collect(),
         written: what_if.written(),
+        cost: what_if
+            .paid()
+            .map(|paid| paid.map_or("no process holds these tolerances".to_owned(), |paid| significant(paid, 6))),
     }
 }

@@ -82,40 +82,100 @@ pub(super) struct Mark {
     pub(super) label: String,
 }
 
-/// A density with what lies beyond its limits.
+/// A bar of a histogram with the standard error of its height.
 #[derive(Debug, Serialize)]
-pub(super) struct Density {
-    from: f64,
-    to: f64,
-    line: String,
+struct Bar {
+    x: f64,
+    width: f64,
+    y: f64,
+    height: f64,
+    middle: f64,
+    error: [f64; 2],
+    /// Outside the limits.
+    beyond: bool,
+}
+
+/// A sample in intervals: their edges, ascending, and the counts between them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bins<'b> {
+    pub(super) edges: &'b [f64],
+    pub(super) counts: &'b [u64],
+}
+
+/// How values are distributed: a density, a histogram, or one over the other.
+#[derive(Debug, Serialize)]
+pub(super) struct Spread {
+    line: Option<String>,
     /// Areas beyond the limits.
     beyond: Vec<String>,
+    bars: Vec<Bar>,
     marks: Vec<Mark>,
     ticks: Vec<Tick>,
 }
 
-impl Density {
-    pub(super) fn of(law: &Pearson, limits: [Option<f64>; 2]) -> Option<Self> {
-        let (mean, sigma) = (law.mean(), law.sigma());
-        let [low, high] = [law.quantile(1e-4), law.upper_quantile(1e-4)];
-        let shown = limits.into_iter().flatten().filter(|limit| (limit - mean).abs() < 12.0 * sigma);
-        let scale = Scale::over([low, high].into_iter().chain(shown), 0.04, WIDTH)?;
+impl Bins<'_> {
+    fn total(&self) -> f64 {
+        self.counts.iter().sum::<u64>() as f64
+    }
+
+    /// Bins may differ in width: heights are densities.
+    fn density(&self, i: usize, count: f64) -> f64 {
+        count / self.total() / (self.edges[i + 1] - self.edges[i])
+    }
+
+    /// Of a count, as that of a binomial share.
+    fn error(&self, count: u64) -> f64 {
+        (count as f64 * (1.0 - count as f64 / self.total())).sqrt()
+    }
+
+    fn densest(&self) -> f64 {
+        let tops = self.counts.iter().enumerate().map(|(i, &count)| self.density(i, count as f64 + self.error(count)));
+        tops.filter(|density| density.is_finite()).fold(0.0, f64::max)
+    }
+}
+
+/// Places that the law itself names.
+pub(super) fn quantiles(law: &Pearson) -> Vec<(f64, &'static str, &'static str)> {
+    vec![
+        (law.quantile(0.00135), "quantile", "0.135 % quantile"),
+        (law.quantile(0.5), "quantile", "median"),
+        (law.upper_quantile(0.00135), "quantile", "99.865 % quantile"),
+    ]
+}
+
+impl Spread {
+    /// None where there is neither law nor sample, or no extent. `places` are marked where they lie within what is drawn.
+    pub(super) fn of(
+        law: Option<&Pearson>,
+        bins: Option<Bins<'_>>,
+        limits: [Option<f64>; 2],
+        places: &[(f64, &'static str, &str)],
+    ) -> Option<Self> {
+        let bins = bins.filter(|bins| bins.counts.len() > 1 && bins.total() > 0.0);
+        let of_law = law.map(|law| [law.quantile(1e-4), law.upper_quantile(1e-4)]);
+        let of_bins = bins.map(|bins| [bins.edges[0], bins.edges[bins.counts.len()]]);
+        let extents = || of_law.into_iter().chain(of_bins);
+        let [low, high] = extents().reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
+        let near = limits.into_iter().flatten().filter(|x| x - high < high - low && low - x < high - low);
+        let scale = Scale::over([low, high].into_iter().chain(near), 0.04, WIDTH)?;
         let place = |i: usize| scale.from + (scale.to - scale.from) * i as f64 / POINTS as f64;
-        let points: Vec<(f64, f64)> = (0..=POINTS).map(|i| (place(i), law.pdf(place(i)))).collect();
+        let points: Vec<(f64, f64)> =
+            law.map_or(Vec::new(), |law| (0..=POINTS).map(|i| (place(i), law.pdf(place(i)))).collect());
         // A density that is infinite at its end is cut.
-        let finite = || points.iter().map(|&(_, density)| density).filter(|density| density.is_finite());
-        let usual = 3.0 / (high - low);
-        let most = finite().fold(0.0, f64::max).min(8.0 * usual);
-        let height = |density: f64| BASE - (BASE - 12.0) * (density / most).min(1.0);
+        let finite = points.iter().map(|&(_, density)| density).filter(|density| density.is_finite());
+        let usual = of_law.map_or(f64::INFINITY, |[low, high]| 24.0 / (high - low));
+        let most = finite.fold(0.0, f64::max).min(usual).max(bins.map_or(0.0, |bins| bins.densest()));
+        let height = |density: f64| (1e3 * (BASE - 12.0) * (density / most).min(1.0)).round() / 1e3;
         let path = |points: &[(f64, f64)]| {
             let mut path = String::new();
             for (i, &(x, density)) in points.iter().enumerate() {
-                let _ = write!(path, "{}{:.2} {:.2}", if i == 0 { "M" } else { "L" }, scale.at(x), height(density));
+                let y = BASE - height(density);
+                let _ = write!(path, "{}{:.2} {y:.2}", if i == 0 { "M" } else { "L" }, scale.at(x));
             }
             path
         };
         let area = |from: f64, to: f64| {
-            let (from, to) = (from.max(scale.from), to.min(scale.to));
+            let (law, from, to) = (law.filter(|_| bins.is_none())?, from.max(scale.from), to.min(scale.to));
             (from < to).then(|| {
                 let mut inside = vec![(from, law.pdf(from))];
                 inside.extend(points.iter().filter(|(x, _)| *x > from && *x < to));
@@ -128,70 +188,12 @@ impl Density {
             lower.and_then(|lower| area(f64::NEG_INFINITY, lower)),
             upper.and_then(|upper| area(upper, f64::INFINITY)),
         ];
-        let inside = |x: f64| x >= scale.from && x <= scale.to;
-        let mark = |x: f64, kind: &'static str, name: &str| {
-            inside(x).then(|| Mark { x: scale.at(x), kind, label: format!("{name} {}", beside(x, sigma)) })
-        };
-        let marks = [
-            mark(law.quantile(0.00135), "quantile", "0.135 % quantile"),
-            mark(law.quantile(0.5), "quantile", "median"),
-            mark(law.upper_quantile(0.00135), "quantile", "99.865 % quantile"),
-            mark(mean, "mean", "mean"),
-            lower.and_then(|lower| mark(lower, "limit", "lower limit")),
-            upper.and_then(|upper| mark(upper, "limit", "upper limit")),
-        ];
-        Some(Self {
-            from: scale.from,
-            to: scale.to,
-            line: path(&points),
-            beyond: beyond.into_iter().flatten().collect(),
-            marks: marks.into_iter().flatten().collect(),
-            ticks: scale.ticks(),
-        })
-    }
-}
-
-/// A bar of a histogram with the standard error of its height.
-#[derive(Debug, Serialize)]
-pub(super) struct Bar {
-    x: f64,
-    width: f64,
-    y: f64,
-    height: f64,
-    middle: f64,
-    error: [f64; 2],
-}
-
-/// A histogram with what marks its limits.
-#[derive(Debug, Serialize)]
-pub(super) struct Bars {
-    bars: Vec<Bar>,
-    marks: Vec<Mark>,
-    ticks: Vec<Tick>,
-}
-
-impl Bars {
-    /// Bins of one width; the error of a count is that of a binomial share.
-    pub(super) fn of(edges: &[f64], counts: &[u64], marks: &[(f64, &'static str, &str)]) -> Option<Self> {
-        let total = counts.iter().sum::<u64>() as f64;
-        let ends = [*edges.first()?, *edges.last()?];
-        let extent = ends[1] - ends[0];
-        let near = marks.iter().map(|mark| mark.0).filter(|x| (x - ends[0]).abs().min((x - ends[1]).abs()) < extent);
-        let scale = Scale::over(ends.into_iter().chain(near), 0.03, WIDTH)?;
-        // Bins may differ in width: heights are densities.
-        let density = |i: usize, count: f64| count / (edges[i + 1] - edges[i]);
-        let error = |count: u64| (count as f64 * (1.0 - count as f64 / total)).sqrt();
-        let most = counts
-            .iter()
-            .enumerate()
-            .map(|(i, &count)| density(i, count as f64 + error(count)))
-            .filter(|density| density.is_finite())
-            .fold(0.0, f64::max);
-        let height = |density: f64| ((1e3 * (BASE - 12.0) * (density / most).min(1.0)).round()) / 1e3;
-        let bars = counts.iter().enumerate().map(|(i, &count)| {
-            let (x, to) = (scale.at(edges[i]), scale.at(edges[i + 1]));
-            let tall = height(density(i, count as f64));
-            let ends = [-1.0, 1.0].map(|side| density(i, (count as f64 + side * error(count)).max(0.0)));
+        let bar = |bins: Bins<'_>, i: usize| {
+            let (x, to) = (scale.at(bins.edges[i]), scale.at(bins.edges[i + 1]));
+            let (count, error) = (bins.counts[i] as f64, bins.error(bins.counts[i]));
+            let tall = height(bins.density(i, count));
+            let ends = [-1.0, 1.0].map(|side| bins.density(i, (count + side * error).max(0.0)));
+            let middle = 0.5 * (bins.edges[i] + bins.edges[i + 1]);
             Bar {
                 x,
                 width: (to - x).max(0.1),
@@ -199,16 +201,20 @@ impl Bars {
                 height: tall,
                 middle: 0.5 * (x + to),
                 error: ends.map(|end| BASE - height(end)),
+                beyond: lower.is_some_and(|lower| middle < lower) || upper.is_some_and(|upper| middle > upper),
             }
-        });
-        let inside = |x: f64| x >= scale.from && x <= scale.to;
+        };
+        let of_limits = [(lower, "lower limit"), (upper, "upper limit")];
+        let of_limits = of_limits.into_iter().filter_map(|(limit, name)| Some((limit?, "limit", name)));
+        let marks = places.iter().copied().chain(of_limits).filter(|mark| mark.0 >= scale.from && mark.0 <= scale.to);
         Some(Self {
-            bars: bars.collect(),
-            marks: (marks.iter().filter(|mark| inside(mark.0)))
-                .map(|&(x, kind, name)| Mark {
-                    x: scale.at(x),
-                    kind,
-                    label: format!("{name} {}", beside(x, 0.1 * extent)),
+            line: law.map(|_| path(&points)),
+            beyond: beyond.into_iter().flatten().collect(),
+            bars: bins.map_or(Vec::new(), |bins| (0..bins.counts.len()).map(|i| bar(bins, i)).collect()),
+            marks: marks
+                .map(|(x, kind, name)| {
+                    let label = format!("{name} {}", beside(x, 0.1 * (high - low)));
+                    Mark { x: scale.at(x), kind, label }
                 })
                 .collect(),
             ticks: scale.ticks(),

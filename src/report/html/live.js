@@ -47,6 +47,20 @@ const live = (() => {
     return { ...found, kurtosis: excess === null ? null : 3 + excess, shares, law, ...kept };
   };
 
+  /// What these settings cost, by the cheapest process that holds the tightest member of each group, as the engine counts it
+  /// (Priced::cost_to_hold); null where no process does.
+  const cost = (data, settings) => mathematics.exact(data.costs.map(({ members, others, parts, offers }) => {
+    const t = Math.min(others ?? Infinity, ...members.map((i) => settings[i].factor * data.dimensions[i].half));
+    const alone = offers.length === 1;
+    const at = ({ exponential, a, b, shape, max }) => {
+      const held = alone ? t : Math.min(t, max);
+      return parts * (b === 0 ? a : a + b * (exponential ? Math.exp(-held / shape) : held ** -shape));
+    };
+    const holds = ({ min, max }) => alone && min < max || min <= t * (1 + 1e-12);
+    // What nothing holds makes the sum no number.
+    return Math.min(...offers.filter(holds).map(at), Infinity);
+  }));
+
   const KEY = /^[A-Za-z0-9_-]+$/;
   const quoted = (text) => JSON.stringify(text).replace(/\u007f/g, "\\u007f");
   const key = (name) => KEY.test(name) ? name : quoted(name);
@@ -89,5 +103,5 @@ const live = (() => {
     return `[dimensions]\n${lines.join("\n")}\n`;
   };
 
-  return { evaluate, toml };
+  return { cost, evaluate, toml };
 })();

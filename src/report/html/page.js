@@ -8,6 +8,7 @@
   const rows = data.dimensions.map((_, i) => panel.querySelector(`[data-dimension="${i}"]`));
   const before = tried.map(({ one }) => live.evaluate(data, one, settings));
   let results = before;
+  const paid = live.cost(data, settings);
 
   const significant = (x, digits) => {
     const text = Number(x.toPrecision(digits));
@@ -107,6 +108,14 @@
       draw(cards[i], of, before[i], results[i]);
     });
     shares();
+    const total = document.getElementById("cost");
+    if (total !== null) {
+      const now = live.cost(data, settings), change = 100 * (now / paid - 1);
+      total.textContent = !Number.isFinite(now) ? "no process holds these tolerances"
+        : !Number.isFinite(paid) || Math.abs(change) < 0.005 ? significant(now, 6)
+        : `${significant(now, 6)} (${Math.abs(change).toFixed(2)} % ${change < 0 ? "less" : "more"})`;
+      total.classList.toggle("changed", now !== paid);
+    }
     panel.classList.toggle("touched", settings.some(({ factor, shift }) => factor !== 1 || shift !== 0));
     const text = document.getElementById("toml");
     if (text !== null) text.value = live.toml(data, settings);

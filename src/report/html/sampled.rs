@@ -6,8 +6,11 @@ use super::super::limits::share;
 use super::super::number::{UNKNOWN, plain, significant};
 use super::super::{SimulatedReport, SimulationReport, WarningReport};
 use super::analysis::{Verdict, limits};
-use super::chart::Bars;
+use super::chart::{Bins, Spread};
 use super::{fact, provenance, render};
+use crate::capability::Law;
+use crate::moments::Moments;
+use crate::pearson::Pearson;
 
 #[derive(Serialize)]
 struct Simulated<'r> {
@@ -22,7 +25,8 @@ struct One<'r> {
     failed: Option<String>,
     estimates: Vec<[String; 3]>,
     limits: Vec<[String; 2]>,
-    histogram: Option<Bars>,
+    spread: Option<Spread>,
+    words: String,
     control: Option<String>,
     warnings: Vec<&'r WarningReport>,
 }
@@ -87,6 +91,15 @@ fn verdict(one: &SimulatedReport) -> Verdict<'_> {
     }
 }
 
+/// The law of the sample's own moments.
+fn fitted(one: &SimulatedReport) -> Option<Pearson> {
+    let moments = Moments::new(one.mean?, one.sigma?, one.skewness?, one.kurtosis? - 3.0);
+    match Law::fit(&moments).ok()? {
+        Law::Pearson(law) => Some(*law),
+        Law::Point { .. } => None,
+    }
+}
+
 fn characteristic<'r>(report: &'r SimulationReport, one: &'r SimulatedReport) -> One<'r> {
     let errors = &one.standard_error;
     let row = |name: &str, value, error| [name.to_owned(), digits(value, error), uncertain(error)];
@@ -108,10 +121,10 @@ fn characteristic<'r>(report: &'r SimulationReport, one: &'r SimulatedReport) ->
         ("least value seen", one.range.map(|[least, _]| plain(least))),
         ("greatest value seen", one.range.map(|[_, greatest]| plain(greatest))),
     ];
-    let mut marks: Vec<(f64, &'static str, &str)> = Vec::new();
-    marks.extend(one.mean.map(|mean| (mean, "mean", "mean")));
-    marks.extend(one.lower.map(|lower| (lower, "limit", "lower limit")));
-    marks.extend(one.upper.map(|upper| (upper, "limit", "upper limit")));
+    let places: Vec<_> = one.mean.map(|mean| (mean, "mean", "mean")).into_iter().collect();
+    let bins = one.histogram.as_ref().map(|of| Bins { edges: &of.edges, counts: &of.counts });
+    // Four moments of a few points are no law.
+    let law = bins.filter(|bins| bins.counts.len() > 1).and_then(|_| fitted(one));
     One {
         verdict: verdict(one),
         interval: errors.yield_.map(|[low, high]| format!("{} to {}", share(1.0 - low), share(1.0 - high))),
@@ -126,11 +139,12 @@ fn characteristic<'r>(report: &'r SimulationReport, one: &'r SimulatedReport) ->
         }),
         estimates,
         limits: rows.into_iter().filter_map(|(name, text)| Some([name.to_owned(), text?])).collect(),
-        histogram: one
-            .histogram
-            .as_ref()
-            .filter(|histogram| histogram.counts.len() > 1)
-            .and_then(|histogram| Bars::of(&histogram.edges, &histogram.counts, &marks)),
+        spread: Spread::of(law.as_ref(), bins, [one.lower, one.upper], &places),
+        words: match &law {
+            Some(law) => format!(
+                "The sample; each bar with one standard error. The line: the Pearson law of its four moments ({}).", law.kind().name()),
+            None => "The sample; each bar with one standard error.".to_owned(),
+        },
         control: one.control.as_ref().map(|control| {
             let times = |value: Option<f64>| value.map_or("an unknown factor".to_owned(), |value| significant(value, 3));
             format!(

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::super::limits::share;
-use super::super::number::{UNKNOWN, beside, plain, unsigned_zero};
+use super::super::number::{UNKNOWN, beside, plain, plural, unsigned_zero};
 use super::super::{SweepReport, SweptPointReport, SweptReport, WarningReport, sweep_svg};
 use super::analysis::limits;
 use super::{fact, inline, provenance, render};
@@ -38,7 +38,12 @@ pub fn sweep_html(report: &SweepReport) -> String {
         fact("swept", format!("{}, {} values", report.parameter.name, report.parameter.values.len())),
         fact(
             "evaluations",
-            format!("{} in {} batches, {} of them failed", report.evaluations, report.batches, report.failed),
+            format!(
+                "{} in {}, {} of them failed",
+                report.evaluations,
+                plural(report.batches, "batch", "batches"),
+                report.failed
+            ),
         ),
         fact("reused answers", report.reused.to_string()),
     ];

@@ -132,37 +132,47 @@ const mathematics = (() => {
     };
   };
 
-  /// For every row of `A` the sums that the cumulants need; `W = A A` row by row.
+  /// For every row of `A` the sums that the cumulants need. `W = A A` is as symmetric as `A`: each entry is made once, in a row
+  /// of which only what lies right of the diagonal is held.
   const rows = (parts, pairs, factor) => {
-    const n = parts.length, neighbours = parts.map(() => []);
+    const n = parts.length, all = new Float64Array(n * n), w = new Float64Array(n), where = new Int32Array(n + 3);
     for (let i = 0; i < pairs.a.length; i++) {
-      if (pairs.a[i] === 0) continue;
-      neighbours[pairs.j[i]].push([pairs.k[i], factor * pairs.a[i]]);
-      neighbours[pairs.k[i]].push([pairs.j[i], factor * pairs.a[i]]);
+      all[pairs.j[i] * n + pairs.k[i]] = all[pairs.k[i] * n + pairs.j[i]] = factor * pairs.a[i];
     }
-    const to = neighbours.map((row) => Int32Array.from(row, (pair) => pair[0]));
-    const by = neighbours.map((row) => Float64Array.from(row, (pair) => pair[1]));
-    const w = new Float64Array(n);
-    return parts.map((_, j) => {
-      w.fill(0);
-      for (let i = 0; i < to[j].length; i++) {
-        const inner = to[to[j][i]], values = by[to[j][i]], a = by[j][i];
-        for (let l = 0; l < inner.length; l++) w[inner[l]] += a * values[l];
+    const sums = parts.map(() => ({ rho: 0, ap: 0, aw: 0, ww: 0, cs: 0, bq: 0, bws: 0, bbk: 0 }));
+    const meets = (row, a, wk, other) => {
+      const b = a * a;
+      row.rho += b;
+      row.ap += a * other.p;
+      row.aw += a * wk;
+      row.cs += b * a * other.s;
+      row.bq += b * other.q;
+      row.bws += b * wk * other.s;
+      row.bbk += b * b * other.k;
+    };
+    for (let j = 0; j < n; j++) {
+      let count = 0;
+      for (let i = 0; i < n; i++) if (all[j * n + i] !== 0) where[count++] = i;
+      // Four rows at a time: every sum is taken up and laid down a fourth as often. The places after the last are of no
+      // weight.
+      where.fill(j, count, count + 3);
+      w.fill(0, j);
+      for (let i = 0; i < count; i += 4) {
+        const [e, f, g, h] = [where[i], where[i + 1], where[i + 2], where[i + 3]];
+        const ae = all[j * n + e], af = all[j * n + f], ag = all[j * n + g], ah = all[j * n + h];
+        for (let l = j; l < n; l++) w[l] += ae * all[e * n + l] + af * all[f * n + l] + ag * all[g * n + l] + ah * all[h * n + l];
       }
-      const row = { rho: 0, ap: 0, aw: 0, ww: 0, cs: 0, bq: 0, bws: 0, bbk: 0 };
-      for (let l = 0; l < n; l++) row.ww += w[l] * w[l];
-      for (let i = 0; i < to[j].length; i++) {
-        const a = by[j][i], b = a * a, other = parts[to[j][i]], wk = w[to[j][i]];
-        row.rho += b;
-        row.ap += a * other.p;
-        row.aw += a * wk;
-        row.cs += b * a * other.s;
-        row.bq += b * other.q;
-        row.bws += b * wk * other.s;
-        row.bbk += b * b * other.k;
+      sums[j].ww += w[j] * w[j];
+      for (let k = j + 1; k < n; k++) {
+        const a = all[j * n + k], squared = w[k] * w[k];
+        sums[j].ww += squared;
+        sums[k].ww += squared;
+        if (a === 0) continue;
+        meets(sums[j], a, w[k], parts[k]);
+        meets(sums[k], a, w[k], parts[j]);
       }
-      return row;
-    });
+    }
+    return sums;
   };
 
   /// Mean, sigma, skewness, excess kurtosis and shares of the variance.

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::allocation::{Curve, CurveKind, Priced};
 use crate::analysis::{Analysis, Fit};
 use crate::dimension::Dimension;
 use crate::distribution::StandardMoments;
@@ -16,13 +17,38 @@ const KINDS: [&str; 6] = ["normal", "truncated-normal", "uniform", "triangular",
 /// A standardised moment that differs by less is the same.
 const SAME: f64 = 1e-9;
 
-/// Dimensions, surrogates and limits.
+/// Dimensions, surrogates, limits and costs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WhatIf {
     shapes: Vec<Shape>,
     dimensions: Vec<Tried>,
     characteristics: Vec<Wanted>,
     lines: Vec<Line>,
+    costs: Vec<Cost>,
+    #[serde(skip)]
+    paid: Option<f64>,
+}
+
+/// Dimensions that share a process, and what it costs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Cost {
+    /// Those that the page knows.
+    members: Vec<usize>,
+    /// The tightest half band of the others; null where there is none.
+    others: Option<f64>,
+    parts: f64,
+    offers: Vec<Offered>,
+}
+
+/// `a + b T^-shape`, or `a + b exp(-T/shape)`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Offered {
+    exponential: bool,
+    a: f64,
+    b: f64,
+    shape: f64,
+    min: f64,
+    max: f64,
 }
 
 /// Moments of a standardised input, and the rule for parts that are no parabolas.
@@ -83,8 +109,8 @@ struct Pairs {
 }
 
 impl WhatIf {
-    /// Of an analysis; `lines` are those of the study, none where the problem was built without one.
-    pub fn of(problem: &Problem, analysis: &Analysis, lines: &[Line]) -> Self {
+    /// Of an analysis; `lines` and `costs` are those of the study, none where the problem was built without one.
+    pub fn of(problem: &Problem, analysis: &Analysis, lines: &[Line], costs: &[Priced]) -> Self {
         let surface = &analysis.surface;
         let mut shapes: Vec<Shape> = Vec::new();
         let mut index = |shape: &InputShape| {
@@ -114,7 +140,9 @@ impl WhatIf {
             }
         });
         let characteristics = characteristics.collect();
-        Self { dimensions, characteristics, lines: lines.to_vec(), shapes }
+        let paid = costs.iter().map(|group| group.cost_to_hold(group.tightest_member(problem))).sum();
+        let costs = costs.iter().map(|group| Cost::of(problem, &surface.varying, group)).collect();
+        Self { dimensions, characteristics, lines: lines.to_vec(), costs, paid, shapes }
     }
 
     /// Whether there is something to change, and something that follows it.
@@ -123,12 +151,31 @@ impl WhatIf {
             && self.characteristics.iter().any(|one| one.why.is_none())
     }
 
+    /// Why there is nothing to try; None where there is, and where nothing varies at all.
+    pub(super) fn impossible(&self) -> Option<String> {
+        if self.possible() || self.dimensions.is_empty() {
+            return None;
+        }
+        let mut whys: Vec<&str> = self.characteristics.iter().filter_map(|one| one.why.as_deref()).collect();
+        if whys.len() < self.characteristics.len() {
+            whys = self.dimensions.iter().filter_map(|one| one.fixed).collect();
+        }
+        whys.sort_unstable();
+        whys.dedup();
+        Some(whys.join("; "))
+    }
+
     pub(super) fn dimensions(&self) -> &[Tried] {
         &self.dimensions
     }
 
     pub(super) fn characteristics(&self) -> &[Wanted] {
         &self.characteristics
+    }
+
+    /// What the tolerances cost as analysed; None where nothing has a cost, and none inside where no process holds them.
+    pub(super) fn paid(&self) -> Option<Option<f64>> {
+        (!self.costs.is_empty()).then_some(self.paid)
     }
 
     /// Whether the study's own lines are known, so that changed ones can be written.
@@ -147,6 +194,23 @@ fn contents(fit: &Fit) -> (f64, Vec<[f64; 4]>, Pairs, Option<f64>) {
         pairs.a.push(a);
     }
     (surrogate.centre, parts, pairs, *unexplained)
+}
+
+impl Cost {
+    fn of(problem: &Problem, varying: &[usize], group: &Priced) -> Self {
+        let place = |d: &usize| varying.iter().position(|known| known == d);
+        let others = group.members.iter().filter(|d| place(d).is_none());
+        let offer = |curve: &Curve, min: f64, max: f64| {
+            let [a, b, shape] = curve.constants();
+            Offered { exponential: curve.kind() == CurveKind::Exponential, a, b, shape, min, max }
+        };
+        Self {
+            members: group.members.iter().filter_map(place).collect(),
+            others: others.map(|&d| problem.dimensions()[d].half_band()).reduce(f64::min),
+            parts: group.parts,
+            offers: group.offers.iter().map(|one| offer(&one.curve, one.min, one.max)).collect(),
+        }
+    }
 }
 
 impl Shape {
