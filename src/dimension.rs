@@ -140,7 +140,8 @@ impl Dimension {
     /// The same dimension with `factor` times the tolerance; None where it does not vary, or its distribution does not
     /// scale with the tolerance ([`Distribution::scaled`] says which do and how).
     ///
-    /// The band's deviations from the nominal scale, and with them the middle of an asymmetric band.
+    /// The band opens and closes about its middle, which stays where it is: a one-sided 0 to 0.2 halved is 0.05 to 0.15, and no
+    /// mean moves because a tolerance does.
     ///
     /// # Errors
     /// When the factor is not a number above 0, or the distribution cannot have such a sigma.
@@ -149,17 +150,16 @@ impl Dimension {
     /// use sensitol::Dimension;
     /// let b = Dimension::normal_between("b", 30.0, [-0.1, 0.3])?;
     /// let half = b.scaled(0.5).expect("a normal dimension scales")?;
-    /// assert_eq!(half.tolerance(), Some([-0.05, 0.15]));
-    /// assert!((half.mean() - 30.05).abs() < 1e-14 && (half.sigma() - 0.1 / 3.0).abs() < 1e-15);
+    /// assert_eq!(half.tolerance(), Some([0.0, 0.2]));
+    /// assert!((half.mean() - 30.1).abs() < 1e-14 && (half.sigma() - 0.1 / 3.0).abs() < 1e-15);
     /// # Ok::<(), sensitol::DimensionError>(())
     /// ```
     pub fn scaled(&self, factor: f64) -> Option<Result<Self, DimensionError>> {
         let distribution = self.distribution()?;
-        let middle = self.tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
         // One that does not scale does not at any factor.
-        let scaled = distribution.scaled(factor, (factor - 1.0) * middle)?;
+        let scaled = distribution.scaled(factor, 0.0)?;
         let scaled = positive("factor", factor).and(scaled).map_err(DimensionFault::from);
-        let tolerance = self.tolerance.map(|band| band.map(|deviation| factor * deviation));
+        let tolerance = self.tolerance.map(|band| about_middle(band, factor));
         Some(match scaled.and_then(|scaled| check(self.nominal, tolerance, Ok(Some(scaled)))) {
             Ok(distribution) => Ok(Self { tolerance, distribution, ..self.clone() }),
             Err(fault) => Err(DimensionError { name: self.name.clone(), fault }),
@@ -308,4 +308,13 @@ fn check(
         }
     }
     Ok(distribution)
+}
+
+/// A band `factor` times as wide about the same middle.
+pub(crate) fn about_middle([lower, upper]: [f64; 2], factor: f64) -> [f64; 2] {
+    if factor == 1.0 {
+        return [lower, upper];
+    }
+    let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
+    [middle - factor * half, middle + factor * half]
 }

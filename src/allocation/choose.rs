@@ -19,7 +19,11 @@ pub(super) enum Choice {
 /// The cheapest tolerances at fixed derivatives.
 pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
     let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
-    for constraint in setting.constraints {
+    let free = setting.priced.iter().all(|group| group.offers.len() == 1);
+    let inside = |(group, t): (&Priced, &f64)| (group.tightest()..=group.loosest()).contains(t);
+    // What the start keeps can be kept: means that move with tolerances may make the tightest ones the worst.
+    let here = free && setting.priced.iter().zip(start).all(inside) && kept(setting.value(start));
+    for constraint in setting.constraints.iter().filter(|_| !here) {
         // Nearly always the tightest tolerances keep what any do.
         if kept(constraint.value(setting.responses, setting.priced, &tight)) {
             continue;
@@ -29,7 +33,6 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
             return Choice::Infeasible(unattainable(setting, constraint, &at), at);
         }
     }
-    let free = setting.priced.iter().all(|group| group.offers.len() == 1);
     let found = if free {
         setting.solve(start).map(|solved| {
             let fixed = setting.priced.iter().all(|group| group.tightest() == group.loosest());
@@ -51,6 +54,20 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
     match found {
         Some((solved, offers, proof)) => Choice::Found { solved, offers, proof },
         None if (setting.stopped)() => Choice::Stopped,
+        // Nothing cheaper is found: the start itself, of which nothing is proven.
+        None if here => Choice::Found {
+            solved: Solved {
+                at: start.to_vec(),
+                cost: setting.cost(start),
+                multipliers: vec![0.0; setting.constraints.len()],
+                residual: f64::INFINITY,
+                value: setting.value(start),
+                closed: false,
+                converged: false,
+            },
+            offers: vec![0; setting.priced.len()],
+            proof: Proof { residual: Some(f64::INFINITY), ..Proof::default() },
+        },
         // Each can be kept by itself: the one that is farthest off where all are tightest.
         None => {
             let value = |one: &&Constraint| one.value(setting.responses, setting.priced, &tight);

@@ -2,7 +2,7 @@
 //!
 //! With half bands `f_j` times those at which the derivatives were taken, the dimension `j` lies at
 //! `u_j = d_j(f_j) + r_j(f_j) v_j` in its old sigmas, `v_j` standardised anew: a slope grows as `f`, a curvature as `f^2`, a product
-//! as `f_j f_k`, and the middle of an asymmetric band moves the mean.
+//! as `f_j f_k`. The middle of a band stays where it is; only the mean of a skewed law over it moves.
 
 use std::borrow::Cow;
 
@@ -48,11 +48,10 @@ enum Scaling {
     Still,
 }
 
-/// The band about the nominal: its middle is `at_none + factor moving`, its half width `factor half`.
+/// The band about the nominal: its middle, and its half width at a factor of 1.
 #[derive(Clone, Copy)]
 struct Reach {
-    at_none: f64,
-    moving: f64,
+    middle: f64,
     half: f64,
 }
 
@@ -197,13 +196,12 @@ impl Responses {
         for (d, &slope) in slopes.iter().enumerate() {
             let reach = self.reach[d];
             let group = priced.iter().position(|group| group.members.contains(&d));
-            constant += sign * slope * reach.at_none;
+            constant += sign * slope * reach.middle;
             // Per half band of the derivatives; coefficients are per unit of T.
             let mut add = |value: f64| match group {
                 Some(g) => coefficients[g] += value / self.dimensions[d].half_band(),
                 None => constant += value,
             };
-            add(sign * slope * reach.moving);
             let wide = (slope * reach.half).abs();
             match self.dimensions[d].zone() {
                 None => add(wide),
@@ -334,12 +332,7 @@ impl Scaling {
 impl Reach {
     fn of(dimension: &Dimension) -> Self {
         let [lower, upper] = dimension.reach();
-        let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
-        // A band moves with its tolerance; without one the mean stays where it is.
-        match dimension.tolerance() {
-            Some(_) => Self { at_none: 0.0, moving: middle, half },
-            None => Self { at_none: middle, moving: 0.0, half },
-        }
+        Self { middle: 0.5 * (lower + upper), half: 0.5 * (upper - lower) }
     }
 }
 

@@ -27,6 +27,8 @@ pub struct CharacteristicAnalysis {
     pub model_sampled: Option<SampledModel>,
     /// What law and surface reject; None without limits, or where the surface is plainly normal.
     pub tails: Option<Tails>,
+    /// Evaluated points at which it has no value.
+    pub without_value: usize,
     /// How far these results may be off; None without moments.
     pub error_estimate: Option<ErrorEstimate>,
     /// How far a fitted surface misses the values that it was fitted to; None where nothing was fitted.
@@ -114,9 +116,25 @@ impl CharacteristicAnalysis {
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
     }
 
-    /// Whether its target yield is met; None where it has none, or its yield is unknown.
+    /// Whether its target yield is met; None where it has none, where its yield is unknown, and where what else is known speaks
+    /// against the law of four moments: the tails of the surface, or points at which there is no value at all.
     pub fn met(&self) -> Option<bool> {
-        self.capability?.meets(self.characteristic.target_yield())
+        let target = self.characteristic.target_yield()?;
+        let capability = self.capability?;
+        let met = capability.meets(Some(target))?;
+        if self.tails.and_then(|tails| tails.verdict(target)).is_some_and(|other| other != met) {
+            return None;
+        }
+        // Assemblies without a value may all be rejected ones; how many there are, only samples tell.
+        let assembled = match &self.model_sampled {
+            _ if self.without_value == 0 => true,
+            Some(sampled) => {
+                let failed = sampled.failed as f64 / (sampled.failed + sampled.samples) as f64;
+                capability.yield_().is_some_and(|yield_| yield_ * (1.0 - failed) >= target)
+            }
+            None => false,
+        };
+        (!met || assembled).then_some(met)
     }
 
     pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> Self {
@@ -186,6 +204,7 @@ impl CharacteristicAnalysis {
             error_estimate,
             model_sampled: None,
             tails: None,
+            without_value: outcome.evaluated.known.errors().filter(|&(_, of, _)| of == c).count(),
         }
     }
 }

@@ -167,6 +167,7 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
     one.sampled = None;
     let left =
         climbed.checked[c].as_ref().map_or(0.0, |check| if before > 0.0 { check.variance / before } else { 1.0 });
+    one.without_value += found.failed as usize;
     one.model_sampled = Some(SampledModel {
         samples: found.samples,
         failed: found.failed,

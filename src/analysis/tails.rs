@@ -11,11 +11,17 @@ use crate::method::{Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, SOBOL_DIMENSIONS, Sampler};
 
-/// Points of the surface.
+/// Points of the surface, in blocks of so many,
 const POINTS: usize = 1 << 14;
 const ROWS: usize = 1024;
-/// Standard errors of a random sample, of which a quasi-random one has less, from which a difference is one;
+/// and how many times as many where fewer than so many lie beyond and the dimensions are no more than this.
+const MORE: usize = 4;
+const FEW: f64 = 64.0;
+const QUICK: usize = 64;
+/// Standard errors, as if the law were right, of a random sample, of which a quasi-random one has less, from which a difference is one,
 const SEEN: f64 = 4.0;
+/// and points beyond those, as few are not spread as a normal law.
+const SURE: f64 = 8.0;
 /// and from which part of the larger of both on it is worth a warning.
 const APART: f64 = 0.2;
 /// A curvature or product below this part of the slopes is rounding.
@@ -33,12 +39,22 @@ pub struct Tails {
 }
 
 impl Tails {
-    /// How far the two are apart, where that is more than the sample's chance.
+    /// How far the two are apart, where that is more than the sample's chance were the law right.
     fn difference(&self) -> Option<f64> {
         let n = self.points as f64;
-        let share = self.law.max(self.surface).max(1.0 / n);
-        let (apart, error) = ((self.law - self.surface).abs(), (share * (1.0 - share).max(0.0) / n).sqrt());
-        (apart > SEEN * error).then_some(apart)
+        let chance = SEEN * (self.law * (1.0 - self.law).max(0.0) * n).sqrt();
+        let apart = (self.surface - self.law) * n;
+        (apart > chance + SURE || -apart > chance).then_some(apart.abs() / n)
+    }
+
+    /// What the law is off by the points, chance included; less than one of them is not seen.
+    fn off(&self) -> f64 {
+        (self.surface - self.law).abs().max(1.0 / self.points as f64)
+    }
+
+    /// What the sample says of a target, where it speaks against the law.
+    pub(super) fn verdict(&self, target: f64) -> Option<bool> {
+        self.misses().then_some(self.surface <= 1.0 - target)
     }
 
     /// Whether the law is not to be trusted with the yield.
@@ -48,7 +64,7 @@ impl Tails {
 }
 
 /// Looks at every characteristic with limits whose surface is not plainly normal, and widens the estimated error of its yield by
-/// what the law is off. Evaluates nothing of the model.
+/// what the law is off, or may be off unseen. Evaluates nothing of the model.
 pub(super) fn look(problem: &Problem, outcome: &Outcome, characteristics: &mut [CharacteristicAnalysis]) {
     let asked: Vec<usize> = (0..characteristics.len()).filter(|&c| is_asked(outcome, &characteristics[c], c)).collect();
     if asked.is_empty() {
@@ -73,13 +89,22 @@ pub(super) fn look(problem: &Problem, outcome: &Outcome, characteristics: &mut [
     };
     let add = |a: Vec<usize>, b: Vec<usize>| a.iter().zip(&b).map(|(a, b)| a + b).collect();
     let nothing = || vec![0; asked.len()];
-    let beyond: Vec<usize> = (0..POINTS / ROWS).into_par_iter().map(beyond).reduce(nothing, add);
-    for (&c, beyond) in asked.iter().zip(beyond) {
+    let count = |blocks: std::ops::Range<usize>| blocks.into_par_iter().map(beyond).reduce(nothing, add);
+    let rejected = |c: &usize| characteristics[*c].capability.and_then(|capability| capability.rejected());
+    let laws: Vec<Option<f64>> = asked.iter().map(rejected).collect();
+    let (mut points, mut found) = (POINTS, count(0..POINTS / ROWS));
+    let few =
+        |(law, &beyond): (&Option<f64>, &usize)| law.is_some_and(|law| (law * POINTS as f64).max(beyond as f64) < FEW);
+    if outcome.plan.varying().len() <= QUICK && laws.iter().zip(&found).any(few) {
+        points = MORE * POINTS;
+        found = add(found, count(POINTS / ROWS..points / ROWS));
+    }
+    for ((&c, law), beyond) in asked.iter().zip(laws).zip(found) {
+        let Some(law) = law else { continue };
         let one = &mut characteristics[c];
-        let Some(law) = one.capability.and_then(|capability| capability.rejected()) else { continue };
-        let tails = Tails { law, surface: beyond as f64 / POINTS as f64, points: POINTS };
-        if let Some((apart, estimate)) = tails.difference().zip(one.error_estimate.as_mut()) {
-            estimate.yield_ = estimate.yield_.map(|error| error + apart);
+        let tails = Tails { law, surface: beyond as f64 / points as f64, points };
+        if let Some(estimate) = one.error_estimate.as_mut() {
+            estimate.yield_ = estimate.yield_.map(|error| error + tails.off());
         }
         one.tails = Some(tails);
     }

@@ -45,7 +45,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         });
     let about = clock.about(&study, Some(options.seed));
     let report = AllocationReport::of(&study.problem, &allocation, table.as_ref(), about);
-    let printed = if asked.output.json { json(&report) } else { allocation_text(&report, look.style()) };
+    let printed = if asked.output.json { json(&report) } else { allocation_text(&report, look.style(&asked.output)) };
     let mut result = destination.write(&printed);
     result = result.and(folder.map_or(Ok(()), |folder| folder.write(&allocation_csv(&report))));
     result = result.and(chart.map_or(Ok(()), |chart| chart.write(&allocation_svg(&report))));
@@ -73,8 +73,11 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     }
     result?;
     let incomplete = allocation.before.characteristics.iter().any(|one| one.moments.is_none());
+    // Who asks for a confirmation wants to know that there is none.
+    let refuted = report.warnings.iter().any(|warning| warning.code == "confirmation-misses");
     Ok(match allocation.status {
         _ if incomplete && !allocation.stopped => Exit::NoResult,
+        Status::Optimal | Status::AlmostOptimal if refuted => Exit::Missed,
         Status::Optimal | Status::AlmostOptimal => Exit::Done,
         Status::Infeasible | Status::OutOfTime => Exit::NotAllocated,
     })

@@ -19,9 +19,10 @@ pub(super) struct Look {
 }
 
 impl Look {
-    pub(super) fn style(self) -> Style {
+    pub(super) fn style(self, output: &OutputArgs) -> Style {
         let detail = if self.verbose { Detail::Full } else { Detail::Short };
-        Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale() }
+        let width = if output.output.is_none() { terminal_width() } else { Style::WIDTH };
+        Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale(), width }
     }
 
     /// Tells of something that is no error.
@@ -44,6 +45,12 @@ pub(super) fn set_color(choice: ColorChoice) {
         ColorChoice::Never => anstream::ColorChoice::Never,
     }
     .write_global();
+}
+
+/// That of the terminal where stdout is one, but no line is longer than people like to read, and none shorter than a number.
+fn terminal_width() -> usize {
+    let size = terminal_size::terminal_size_of(std::io::stdout());
+    size.map_or(Style::WIDTH, |(width, _)| usize::from(width.0).clamp(40, 120))
 }
 
 /// Whether the terminal expects UTF-8, as POSIX tells it; elsewhere it does.

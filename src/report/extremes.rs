@@ -2,7 +2,7 @@
 
 use super::CharacteristicReport;
 use super::number::beside;
-use super::page::{Detail, Page, WIDTH, clean, short};
+use super::page::{Detail, Page, clean, short};
 use crate::extremes::{Extreme, Place};
 
 /// Lines that say where an extreme is, unless everything is shown.
@@ -51,7 +51,8 @@ fn wrapped(page: &mut Page, title: &str, words: &[String]) {
     for (index, word) in words.iter().enumerate() {
         let comma = if index + 1 == words.len() || word.ends_with(';') { "" } else { "," };
         let word = format!(" {}{comma}", if index + 1 == words.len() { word.trim_end_matches(';') } else { word });
-        let full = line.chars().count() + word.chars().count() > WIDTH - if lines + 1 == most { 20 } else { 0 };
+        let full =
+            line.chars().count() + word.chars().count() > page.style().width - if lines + 1 == most { 20 } else { 0 };
         if full && lines + 1 == most {
             line += &format!(" and {} more", words.len() - shown);
             break;

@@ -73,10 +73,15 @@ fn significant_percent(p: &str) -> String {
 
 fn limits(page: &mut Page, one: &CharacteristicReport) {
     let target = match (one.target_yield, one.met) {
-        (Some(target), Some(met)) => {
-            format!(", target {}: {}", share(1.0 - target), if met { "met" } else { "MISSED" })
+        (Some(target), met) => {
+            let met = match met {
+                Some(true) => "met",
+                Some(false) => "MISSED",
+                None => "not known",
+            };
+            format!(", target {}: {met}", share(1.0 - target))
         }
-        _ => String::new(),
+        (None, _) => String::new(),
     };
     let (below, above) = (one.ppm_below, one.ppm_above);
     page.line(&format!("  yield {}{}{target}", rejected(below, above), outside(below, above)));
@@ -146,6 +151,7 @@ pub(super) fn verdict(one: &CharacteristicReport) -> String {
     let met = match one.met {
         Some(true) => ", target met",
         Some(false) => ", target MISSED",
+        None if one.target_yield.is_some() => ", target not known",
         None => "",
     };
     format!("yield {}{met}", rejected(one.ppm_below, one.ppm_above))

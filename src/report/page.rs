@@ -18,10 +18,15 @@ pub struct Style {
     pub detail: Detail,
     /// Whether signs such as ± may be used.
     pub unicode: bool,
+    /// No line is longer, if that can be.
+    pub width: usize,
 }
 
-/// No line is longer.
-pub(super) const WIDTH: usize = 100;
+impl Style {
+    /// The width of what is written to no terminal.
+    pub const WIDTH: usize = 100;
+}
+
 /// Before every column.
 const GAP: usize = 2;
 /// Names longer than this are shortened in their middle, to no less than `SHORTEST` where a table would be too wide.
@@ -62,7 +67,7 @@ impl Page {
         for word in text.split([' ', '\n']).filter(|word| !word.is_empty()) {
             if line.trim().is_empty() {
                 line += word;
-            } else if line.chars().count() + 1 + word.chars().count() <= WIDTH {
+            } else if line.chars().count() + 1 + word.chars().count() <= self.style.width {
                 line = line + " " + word;
             } else {
                 self.line(&line.replace('\u{a0}', " "));
@@ -72,7 +77,8 @@ impl Page {
         self.line(&line.replace('\u{a0}', " "));
     }
 
-    /// Prints a table that is indented by two and no wider than the page: names, in the first column, give way.
+    /// Prints a table that is indented by two and no wider than the page: names, in the first column, give way, and columns
+    /// that have no room stand in a table of their own below, with the names again.
     pub(super) fn print<const N: usize>(&mut self, table: &Grid<N>) {
         let mut widths = [0; N];
         for row in table.rows.iter().chain([&table.titles.map(str::to_owned)]) {
@@ -80,18 +86,33 @@ impl Page {
                 *width = (*width).max(self.signs(cell).chars().count());
             }
         }
-        let total: usize = widths.iter().map(|width| width + GAP).sum();
-        let name = widths[0].saturating_sub(total.saturating_sub(WIDTH)).max(SHORTEST);
+        let least = widths[0].min(SHORTEST) + GAP;
+        let (mut columns, mut taken) = (vec![0], least);
+        for (column, width) in widths.iter().enumerate().skip(1) {
+            if taken + width + GAP > self.style.width && columns.len() > 1 {
+                self.part(table, &columns, &widths);
+                (columns, taken) = (vec![0], least);
+            }
+            columns.push(column);
+            taken += width + GAP;
+        }
+        self.part(table, &columns, &widths);
+    }
+
+    /// Some columns of a table.
+    fn part<const N: usize>(&mut self, table: &Grid<N>, columns: &[usize], widths: &[usize; N]) {
+        let total: usize = columns.iter().map(|&column| widths[column] + GAP).sum();
+        let name = widths[0].saturating_sub(total.saturating_sub(self.style.width)).max(SHORTEST);
         let mut printed = Table::new();
         printed.load_style(comfy_table::presets::NOTHING);
-        printed.set_header(table.titles.map(|title| self.signs(title)));
+        printed.set_header(columns.iter().map(|&column| self.signs(table.titles[column])));
         for row in &table.rows {
-            let cell = |(column, cell): (usize, &String)| {
-                self.signs(&if column == 0 { shortened(cell, name) } else { cell.clone() })
-            };
-            printed.add_row(row.iter().enumerate().map(cell));
+            let cell =
+                |&column: &usize| self.signs(&if column == 0 { shortened(&row[0], name) } else { row[column].clone() });
+            printed.add_row(columns.iter().map(cell));
         }
-        for (column, alignment) in printed.column_iter_mut().zip(table.alignment.chars()) {
+        let alignments = columns.iter().filter_map(|&column| table.alignment.chars().nth(column));
+        for (column, alignment) in printed.column_iter_mut().zip(alignments) {
             column.set_padding((GAP as u16, 0));
             if alignment == '>' {
                 column.set_cell_alignment(CellAlignment::Right);

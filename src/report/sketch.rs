@@ -4,7 +4,7 @@ use super::number::{plain, significant};
 use super::page::Page;
 use crate::pearson::Pearson;
 
-/// Columns of the picture.
+/// Columns of the picture, where there is room.
 const COLUMNS: usize = 64;
 /// Its lines.
 const LINES: usize = 5;
@@ -19,24 +19,25 @@ const PLAIN: [char; 4] = [' ', '.', ':', '#'];
 
 /// Draws the density between its extreme quantiles, limits included where they are near.
 pub(super) fn sketch(page: &mut Page, law: &Pearson, limits: [Option<f64>; 2]) {
+    let columns = COLUMNS.min(page.style().width.saturating_sub(2)).max(1);
     let (from, to) = (law.quantile(TAIL), law.upper_quantile(TAIL));
     let width = to - from;
     let near = |limit: &&f64| **limit > from - OUTSIDE * width && **limit < to + OUTSIDE * width;
     let marks: Vec<f64> = limits.iter().flatten().filter(near).copied().collect();
     // Half a column beyond a limit, for its mark to stand in the picture.
-    let low = marks.iter().fold(from, |low, limit| low.min(limit - width / COLUMNS as f64));
-    let high = marks.iter().fold(to, |high, limit| high.max(limit + width / COLUMNS as f64));
-    let step = (high - low) / COLUMNS as f64;
+    let low = marks.iter().fold(from, |low, limit| low.min(limit - width / columns as f64));
+    let high = marks.iter().fold(to, |high, limit| high.max(limit + width / columns as f64));
+    let step = (high - low) / columns as f64;
     if !(step > 0.0 && step.is_finite()) {
         return;
     }
     // By probability rather than density, which may be infinite at an end of the support.
     let below: Vec<[f64; 2]> =
-        (0..=COLUMNS).map(|column| low + step * column as f64).map(|x| [law.cdf(x), law.sf(x)]).collect();
+        (0..=columns).map(|column| low + step * column as f64).map(|x| [law.cdf(x), law.sf(x)]).collect();
     let heights: Vec<f64> =
         below.windows(2).map(|edges| (edges[1][0] - edges[0][0]).min(edges[0][1] - edges[1][1]).max(0.0)).collect();
     let highest = heights.iter().copied().fold(0.0, f64::max);
-    let column = |x: f64| (((x - low) / step) as usize).min(COLUMNS - 1);
+    let column = |x: f64| (((x - low) / step) as usize).min(columns - 1);
     let bars: Vec<usize> = marks.iter().map(|&limit| column(limit)).collect();
     let unicode = page.style().unicode;
     let (levels, bar): (&[char], char) = if unicode { (&BLOCKS, '│') } else { (&PLAIN, '|') };
@@ -52,29 +53,29 @@ pub(super) fn sketch(page: &mut Page, law: &Pearson, limits: [Option<f64>; 2]) {
         page.line(&format!("  {}", heights.iter().enumerate().map(cell).collect::<String>()));
     }
     let (rule, cross) = if unicode { ('─', '┴') } else { ('-', '+') };
-    let axis: String = (0..COLUMNS).map(|column| if bars.contains(&column) { cross } else { rule }).collect();
+    let axis: String = (0..columns).map(|column| if bars.contains(&column) { cross } else { rule }).collect();
     page.line(&format!("  {axis}"));
-    page.line(&format!("  {}", labels(limits, low, high, column)));
+    page.line(&format!("  {}", labels(limits, [low, high], columns, column)));
 }
 
 /// The limits below their marks, those outside the picture at its edge with where they are; without limits the ends.
-fn labels(limits: [Option<f64>; 2], low: f64, high: f64, column: impl Fn(f64) -> usize) -> String {
-    let mut line = vec![' '; COLUMNS];
+fn labels(limits: [Option<f64>; 2], [low, high]: [f64; 2], columns: usize, column: impl Fn(f64) -> usize) -> String {
+    let mut line = vec![' '; columns];
     let mut write = |text: &str, start: usize| {
-        let start = start.min(COLUMNS.saturating_sub(text.chars().count()));
+        let start = start.min(columns.saturating_sub(text.chars().count()));
         for (cell, c) in line[start..].iter_mut().zip(text.chars()) {
             *cell = c;
         }
     };
     if limits == [None, None] {
         write(&significant(low, 4), 0);
-        write(&significant(high, 4), COLUMNS);
+        write(&significant(high, 4), columns);
     }
     for limit in limits.into_iter().flatten() {
         let text = plain(limit);
         match limit {
             _ if limit < low => write(&format!("< {text}"), 0),
-            _ if limit > high => write(&format!("{text} >"), COLUMNS),
+            _ if limit > high => write(&format!("{text} >"), columns),
             _ => write(&text, column(limit).saturating_sub(text.chars().count() / 2)),
         }
     }

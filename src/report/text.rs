@@ -237,7 +237,7 @@ fn source(report: &Report, rows: &[(&SensitivityReport, &DimensionReport)]) -> O
 }
 
 /// A derivative to six digits; what rounding alone can make is 0 as far as anybody knows.
-fn derivative(value: Option<f64>, rounding: Option<f64>) -> String {
+pub(super) fn derivative(value: Option<f64>, rounding: Option<f64>) -> String {
     match (value, rounding) {
         (None, _) => UNKNOWN.to_owned(),
         (Some(value), Some(rounding)) if value.abs() <= 2.0 * rounding => "0".to_owned(),
@@ -246,18 +246,23 @@ fn derivative(value: Option<f64>, rounding: Option<f64>) -> String {
 }
 
 /// Beside sigma, where nothing but zeros is 0.
-fn rounded(shift: f64, sigma: f64) -> String {
+pub(super) fn rounded(shift: f64, sigma: f64) -> String {
     let text = beside(shift, sigma);
     if text.parse() == Ok(0.0) { "0".to_owned() } else { text }
 }
 
+/// The ends of a tolerance band as drawings have them.
+pub(super) fn band([lower, upper]: [f64; 2]) -> String {
+    if lower == -upper {
+        return format!("± {}", plain(upper));
+    }
+    let signed = |value: f64| if value >= 0.0 { format!("+{}", plain(value)) } else { plain(value) };
+    format!("{} / {}", signed(lower), signed(upper))
+}
+
 pub(super) fn tolerance(dimension: &DimensionReport) -> String {
     match dimension.tolerance {
-        Some([lower, upper]) if lower == -upper => format!("± {}", plain(upper)),
-        Some([lower, upper]) => {
-            let signed = |value: f64| if value >= 0.0 { format!("+{}", plain(value)) } else { plain(value) };
-            format!("{} / {}", signed(lower), signed(upper))
-        }
+        Some(ends) => band(ends),
         None if dimension.sigma > 0.0 => format!("sigma {}", significant(dimension.sigma, 4)),
         None => UNKNOWN.to_owned(),
     }

@@ -44,7 +44,8 @@ pub(super) struct StudyFile {
     /// The key characteristics: what is asked.
     #[serde(default)]
     pub(super) characteristics: Entries<CharacteristicEntry>,
-    /// What the tolerances of dimensions cost, for `sensitol allocate`; dimensions without a cost keep theirs.
+    /// What the tolerances of dimensions cost, for `sensitol allocate`; dimensions without a cost keep theirs. A band opens and
+    /// closes about its middle, so that no mean moves because a tolerance does.
     #[serde(default)]
     pub(super) costs: Entries<CostEntry>,
     /// Pairs of dimensions that vary together.

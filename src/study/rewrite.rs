@@ -11,7 +11,7 @@ use super::error::StudyError;
 use super::externals::{Externals, JournalPlace};
 use super::source::Format;
 use super::tree::{Key, Tree, Value};
-use crate::dimension::Dimension;
+use crate::dimension::{Dimension, about_middle};
 use crate::problem::Problem;
 
 /// A study written anew.
@@ -197,11 +197,13 @@ impl Entry<'_> {
             match (key.name.as_str(), &value.value) {
                 ("nominal", _) if moves => replace(nominal.0.clone()),
                 ("tolerance", Value::Array(items)) if scales => {
-                    for (side, item) in items.iter().enumerate() {
-                        edits.push((item.span.clone(), self.deviation(&item.value, factor, width, side == 0)));
+                    for (side, (item, end)) in items.iter().zip(self.band(factor)).enumerate() {
+                        edits.push((item.span.clone(), self.deviation(&item.value, end, width, side == 0)));
                     }
                 }
-                ("tolerance", Value::Text(_)) if scales => replace(self.deviation(&value.value, factor, width, false)),
+                ("tolerance", Value::Text(_)) if scales => {
+                    replace(self.deviation(&value.value, width, width, false));
+                }
                 ("tolerance", _) if scales => replace(half.clone()),
                 ("position", _) if scales => replace(cut(2.0 * width)),
                 ("limits", _) => {
@@ -278,23 +280,20 @@ impl Entry<'_> {
         (text, rounded)
     }
 
-    /// The band with `factor` times its width.
+    /// The band with `factor` times its width about the same middle.
     fn band(&self, factor: f64) -> [f64; 2] {
-        let [lower, upper] = self.old.tolerance().unwrap_or_else(|| self.old.reach());
-        [factor * lower, factor * upper]
+        about_middle(self.old.tolerance().unwrap_or_else(|| self.old.reach()), factor)
     }
 
-    /// A number, or percent of the nominal, in the same way: rounded towards the inside of a band of this half width.
-    fn deviation(&self, value: &Value, factor: f64, width: f64, up: bool) -> String {
-        match value {
-            Value::Text(text) => {
-                let percent: f64 = text.trim().trim_end_matches('%').trim_end().parse().unwrap_or(f64::NAN);
-                let about = (self.old.nominal() / self.new.nominal()).abs();
-                format!("\"{}%\"", rounded(percent * factor * about, percent * factor * about, up))
+    /// An end of the band in the way in which the old one is written, as a number or in percent of the nominal: rounded towards
+    /// the inside of a band of this half width.
+    fn deviation(&self, written: &Value, end: f64, width: f64, up: bool) -> String {
+        match written {
+            Value::Text(_) => {
+                let percent = 100.0 / self.new.nominal().abs();
+                format!("\"{}%\"", rounded(percent * end, percent * width, up))
             }
-            Value::Integer(value) => rounded(*value as f64 * factor, width, up),
-            Value::Number(value) => rounded(value * factor, width, up),
-            _ => String::new(),
+            _ => rounded(end, width, up),
         }
     }
 }

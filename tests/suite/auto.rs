@@ -144,8 +144,37 @@ fn tails_that_the_law_misses_are_told_of() {
     assert!(law < 0.7 * exact, "{law} {exact}");
     assert_eq!(codes(&found), ["tails-missed"]);
     assert!(one.error_estimate.as_ref().unwrap().yield_.unwrap() > 0.7 * (exact - law));
+    // Far out the law rejects next to nothing, and twenty points of sixty thousand are enough to see that it is wrong.
+    let found = of(-0.2);
+    let one = &found.characteristics[0];
+    let (law, exact) = (one.capability.unwrap().rejected().unwrap(), below(-0.2));
+    assert!(exact > 3e-4 && law < 0.2 * exact, "{law} {exact}");
+    assert_eq!(codes(&found), ["tails-missed"]);
+    assert!(one.error_estimate.as_ref().unwrap().yield_.unwrap() > 0.7 * (exact - law));
     // In the middle of the distribution the two agree.
     assert!(codes(&of(-0.05)).is_empty(), "{:?}", codes(&of(-0.05)));
+}
+
+/// A target is met, missed, or not known: where the surface's tails speak against the law, and where points have no value.
+#[test]
+fn verdicts_that_are_in_doubt_are_not_given() {
+    let verdict = |f: fn(&[f64]) -> f64, lower: f64, target: f64, method: Method| {
+        let dimensions = vec![Dimension::normal("a", 0.0, 0.1).unwrap(), Dimension::uniform("b", 0.0, 0.06).unwrap()];
+        let limited = Characteristic::new("y").with_limits(SpecLimits::new(Some(lower), None).unwrap());
+        let limited = limited.with_target_yield(target).unwrap();
+        let problem = Problem::new(dimensions, Closure::scalar("y", f)).unwrap().asking([limited]).unwrap();
+        analyze(&problem, &method.into()).unwrap().characteristics[0].met()
+    };
+    // 0.287 % lie below -0.175, and the law says less than 0.2 % (the test above).
+    let straight = |x: &[f64]| x[0] - 2.0 * x[1];
+    for (target, met) in [(0.99, Some(true)), (0.998, None), (0.9999, Some(false))] {
+        assert_eq!(verdict(straight, -0.175, target, Method::Auto), met, "{target}");
+    }
+    // No value where b is below -0.03, a quarter of all: what the others keep is not what all keep.
+    let failing = |x: &[f64]| if x[1] < -0.03 { f64::NAN } else { x[0] - 2.0 * x[1] };
+    assert_eq!(verdict(failing, -0.5, 0.95, Method::Full), None);
+    assert_eq!(verdict(failing, 0.5, 0.95, Method::Full), Some(false), "missed all the same");
+    assert_eq!(verdict(straight, -0.5, 0.95, Method::Full), Some(true));
 }
 
 #[test]

@@ -1,7 +1,10 @@
 //! The command line: output to the letter, exit codes, files, pipes and wrong input.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Stdio};
+
+use sensitol::report::{About, Detail, Report, Style, text};
 
 use super::support::repository;
 
@@ -444,4 +447,27 @@ fn studies_run_from_any_folder() {
     let absolute = repository(ENGINE);
     let output = sensitol(&["analyze", absolute.to_str().unwrap(), "-q"]).current_dir(Path::new("/")).output().unwrap();
     assert!(output.status.success() && output.stderr.is_empty());
+}
+
+/// On a narrow terminal a report takes more lines and says the same: no line is wider, and no number is lost.
+#[test]
+fn reports_fit_their_width() {
+    for name in ["stacked-blocks", "engine-balance", "first-study"] {
+        let study = sensitol::Study::read(&repository(&format!("examples/{name}/study.toml"))).unwrap();
+        let analysis = sensitol::analyze(&study.problem, &study.options).unwrap();
+        let report = Report::of(&study.problem, &analysis, About::default());
+        let of = |width: usize| text(&report, Style { detail: Detail::Full, unicode: true, width });
+        let numbers = |text: &str| -> BTreeSet<String> {
+            let words = text.split(|c: char| c.is_whitespace() || ",;:()".contains(c));
+            words.filter(|word| word.parse::<f64>().is_ok()).map(str::to_owned).collect()
+        };
+        let usual = numbers(&of(Style::WIDTH));
+        assert!(usual.len() > 20, "{name}: {usual:?}");
+        for width in [60, 72, 80, 120] {
+            let text = of(width);
+            let wide = text.lines().map(|line| line.chars().count()).max().unwrap();
+            assert!(wide <= width, "{name}: {wide} columns of {width}\n{text}");
+            assert_eq!(numbers(&text), usual, "{name} at {width}");
+        }
+    }
 }

@@ -44,7 +44,7 @@ pub fn allocate_html(report: &AllocationReport) -> String {
         status: report.status,
         good: matches!(report.status, "optimal" | "almost-optimal"),
         costs: costs(report),
-        requirements: report.requirements.iter().map(requirement).collect(),
+        requirements: report.requirements.iter().map(|one| requirement(report, one)).collect(),
         tolerances: report.tolerances.iter().map(|one| tolerance(one, dearest)).collect(),
         recentred: (report.recentred.iter())
             .map(|one| [one.dimension.clone(), plain(one.before), plain(one.after)])
@@ -116,7 +116,7 @@ fn costs(report: &AllocationReport) -> Option<[String; 3]> {
     ])
 }
 
-fn requirement(one: &KeptReport) -> [String; 6] {
+fn requirement(report: &AllocationReport, one: &KeptReport) -> [String; 6] {
     let value = |value: f64| if one.requirement == "yield" { share(1.0 - value) } else { significant(value, 5) };
     let text = |of: Option<f64>| of.map_or(UNKNOWN.to_owned(), value);
     [
@@ -125,7 +125,18 @@ fn requirement(one: &KeptReport) -> [String; 6] {
         value(one.required),
         text(one.before),
         text(one.after),
-        if one.met { "met" } else { "missed" }.to_owned(),
+        // Where nothing was found there is only what was.
+        match (
+            report.cost_after.is_some() || !report.recentred.is_empty() || one.after.is_some(),
+            one.met,
+            one.met_before,
+        ) {
+            (true, true, _) => "met",
+            (true, false, _) => "missed",
+            (false, _, true) => "met before",
+            (false, _, false) => "missed before",
+        }
+        .to_owned(),
     ]
 }
 

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::super::limits::share;
 use super::super::number::{UNKNOWN, beside, percent, plain, significant, unsigned_zero};
+use super::super::text::{band, derivative, rounded};
 use super::super::{CharacteristicReport, Report, Stack, StackNote, WarningReport};
 use super::chart::{Bins, Scale, Span, Spread, quantiles};
 use super::what_if::WhatIf;
@@ -426,34 +427,29 @@ fn spans(one: &CharacteristicReport) -> (Vec<Span>, Vec<f64>) {
 }
 
 fn sensitivities(report: &Report, one: &CharacteristicReport) -> Vec<[String; 10]> {
-    let number = |value: Option<f64>| value.map_or(UNKNOWN.to_owned(), |value| significant(value, 5));
     let part = |value: Option<f64>| value.map_or(UNKNOWN.to_owned(), percent);
     let pairs = one.sensitivities.iter().zip(&report.dimensions);
     pairs
         .filter(|(row, dimension)| dimension.sigma > 0.0 || row.first.is_some_and(|first| first != 0.0))
         .map(|(row, dimension)| {
+            let number = |value, order: usize| derivative(value, row.rounding.map(|rounding| rounding[order]));
             [
                 row.dimension.clone(),
                 dimension.unit.clone().unwrap_or_default(),
                 plain(dimension.nominal),
-                tolerance(dimension.tolerance),
+                dimension.tolerance.map_or(String::new(), band),
                 significant(dimension.sigma, 5),
-                format!("{}{}", number(row.first), if row.exact { "" } else { " \u{2248}" }),
-                number(row.second),
+                format!("{}{}", number(row.first, 0), if row.exact { "" } else { " \u{2248}" }),
+                number(row.second, 1),
                 part(row.linear_share),
                 part(row.curvature_share),
-                number(row.mean_shift),
+                match (row.mean_shift, one.sigma) {
+                    (Some(shift), Some(sigma)) => rounded(shift, sigma),
+                    _ => UNKNOWN.to_owned(),
+                },
             ]
         })
         .collect()
-}
-
-fn tolerance(band: Option<[f64; 2]>) -> String {
-    match band {
-        None => String::new(),
-        Some([lower, upper]) if lower == -upper => format!("\u{b1}{}", plain(upper)),
-        Some(ends) => ends.map(|end| format!("{}{}", if end > 0.0 { "+" } else { "" }, plain(end))).join(" / "),
-    }
 }
 
 fn interaction(pair: &super::super::InteractionReport) -> [String; 4] {
@@ -481,7 +477,7 @@ fn stacked(stack: &Stack) -> Option<Stacked> {
             row.dimension.name.clone(),
             row.direction.clone(),
             plain(row.dimension.nominal),
-            tolerance(Some(row.deviations)),
+            band(row.deviations),
             scaled(row.contribution),
             row.share.map_or(UNKNOWN.to_owned(), percent),
         ]

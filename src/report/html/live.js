@@ -7,9 +7,9 @@ const live = (() => {
     const shifts = new Float64Array(data.dimensions.length), stretches = new Float64Array(data.dimensions.length).fill(1);
     data.dimensions.forEach((of, i) => {
       const { factor, shift } = settings[i];
-      // The middle of an asymmetric band moves as the band scales, and with it the mean of a skewed law over the band; what a
-      // normal law is off the middle stays.
-      const scaling = of.normal ? of.middle : of.middle + of.offset;
+      // The middle of a band stays; the mean of a skewed law over it moves as the band scales, and what a normal law is off the
+      // middle stays.
+      const scaling = of.normal ? 0 : of.offset;
       shifts[i] = ((factor - 1) * scaling + shift) / of.sigma;
       stretches[i] = factor;
     });
@@ -75,10 +75,11 @@ const live = (() => {
       // A mode is a value of the dimension, and moves with the band.
       const mode = name === "distribution" && /\bmode = ([^,} ]+)/.exec(text);
       if (!mode) return [name, text];
-      return [name, text.replace(/\bmode = [^,} ]+/, `mode = ${number(of.nominal + factor * (Number(mode[1]) - of.nominal) + shift)}`)];
+      const middle = of.nominal + of.middle;
+      return [name, text.replace(/\bmode = [^,} ]+/, `mode = ${number(middle + factor * (Number(mode[1]) - middle) + shift)}`)];
     });
     if (of.band !== null) {
-      const [lower, upper] = of.band.map((end) => factor * end + band);
+      const [lower, upper] = of.band.map((end) => of.middle + factor * (end - of.middle) + band);
       lines.push(["tolerance", lower === -upper ? number(upper) : `[${number(lower)}, ${number(upper)}]`]);
     }
     if (of.normal) {

@@ -22,7 +22,8 @@
   const share = (rejected) => {
     const percent = 100 * rejected;
     if (percent <= 0) return "100 %";
-    return `${(100 - percent).toFixed(Math.min(12, Math.max(2, 2 - Math.floor(Math.log10(percent)))))} %`;
+    const text = (100 - percent).toFixed(Math.min(12, Math.max(2, 2 - Math.floor(Math.log10(percent)))));
+    return `${/^100\.0*$/.test(text) ? "100" : /^0\.0*$/.test(text) ? "0" : text} %`;
   };
   const figures = (found) => {
     const or = (x, text) => x === null ? "-" : text(x), ppm = (x) => significant(1e6 * x, 4);
@@ -102,9 +103,11 @@
         cards[i].querySelector(`[data-before="${name}"]`).textContent = then[name];
       }
       const badge = cards[i].querySelector('[data-figure="verdict"]');
-      badge.textContent = met === null ? "" : met ? "target met" : "target missed";
-      badge.classList.toggle("good", met === true);
-      badge.classList.toggle("bad", met === false);
+      const sure = !of.one.unsure;
+      badge.textContent = met === null ? "" : !sure ? "not known" : met ? "target met" : "target missed";
+      badge.classList.toggle("good", sure && met === true);
+      badge.classList.toggle("bad", sure && met === false);
+      badge.classList.toggle("unsure", !sure);
       draw(cards[i], of, before[i], results[i]);
     });
     shares();

@@ -98,6 +98,8 @@ pub(super) struct Wanted {
     parts: Vec<[f64; 4]>,
     pairs: Pairs,
     unexplained: Option<f64>,
+    /// Whether what else is known speaks against the yield of the law.
+    unsure: bool,
 }
 
 /// Products, column by column.
@@ -122,7 +124,9 @@ impl WhatIf {
         };
         let dimension = |(&d, shape): (&usize, &InputShape)| Tried::of(&problem.dimensions()[d], index(shape));
         let dimensions = surface.varying.iter().zip(&surface.shapes).map(dimension).collect();
-        let characteristics = problem.characteristics().iter().zip(&surface.characteristics).map(|(one, fit)| {
+        let all = analysis.characteristics.iter().zip(&surface.characteristics);
+        let characteristics = all.map(|(found, fit)| {
+            let one = &found.characteristic;
             let limits = one.limits();
             let empty = || (0.0, Vec::new(), Pairs::default(), None);
             let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), contents);
@@ -137,6 +141,7 @@ impl WhatIf {
                 parts,
                 pairs,
                 unexplained,
+                unsure: one.target_yield().is_some() && found.met().is_none(),
             }
         });
         let characteristics = characteristics.collect();
