@@ -33,6 +33,10 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Moments, sensitivities and contributions of every characteristic
+    ///
+    /// Several studies are read, then analysed, one after another, each with --budget and --time for itself. One that fails does
+    /// not keep the others from being done. The exit code is the worst of all: 130 interrupted, 2 an error, 3 a characteristic
+    /// without result, 1 a target missed, 0 done. With --json they are one array, in the order given.
     #[command(after_help = "Example: sensitol analyze examples/engine-balance/study.toml --method full")]
     Analyze(AnalyzeArgs),
     /// Monte Carlo: the model itself at random or quasi-random points, with standard errors
@@ -55,7 +59,9 @@ pub(super) enum Command {
     /// What would be evaluated, how often, and why; evaluates nothing
     #[command(after_help = "Example: sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
     Plan(PlanArgs),
-    /// Validates a study; neither evaluates nor executes anything
+    /// Validates studies; neither evaluates nor executes anything
+    ///
+    /// Every one is validated, whatever is wrong with another; the exit code is 2 when one is wrong.
     #[command(after_help = "Example: sensitol check examples/stacked-blocks/study.toml")]
     Check(CheckArgs),
     /// The built-in models, or one of them with its inputs and outputs
@@ -90,6 +96,13 @@ pub(super) struct StudyArgs {
     /// The study, a .toml or .json file
     pub(super) study: PathBuf,
 
+    #[command(flatten)]
+    pub(super) how: HowArgs,
+}
+
+/// How a study is to be analysed.
+#[derive(Debug, Args)]
+pub(super) struct HowArgs {
     /// The method [default: that of the study, or auto]
     #[arg(short, long, value_name = "METHOD")]
     pub(super) method: Option<MethodArg>,
@@ -157,8 +170,12 @@ pub(super) struct WorkArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct AnalyzeArgs {
+    /// The study, a .toml or .json file; several are analysed one after another
+    #[arg(value_name = "STUDY", required = true)]
+    pub(super) studies: Vec<PathBuf>,
+
     #[command(flatten)]
-    pub(super) study: StudyArgs,
+    pub(super) how: HowArgs,
 
     #[command(flatten)]
     pub(super) work: WorkArgs,
@@ -175,11 +192,11 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FORMAT", conflicts_with = "json", help_heading = OUTPUT)]
     pub(super) stack: Option<StackArg>,
 
-    /// Write the report as one HTML page, in which other tolerances can be tried
+    /// Write the report as one HTML page, in which other tolerances can be tried; several studies: a folder of pages, STUDY.html
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,
 
-    /// Write the tables of the report as CSV files into DIR, which is made where it is missing
+    /// Write the tables of the report as CSV files into DIR, which is made where it is missing; several studies: into DIR/STUDY
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
 
@@ -420,8 +437,9 @@ pub(super) struct PlanArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArgs {
-    /// The study, a .toml or .json file
-    pub(super) study: PathBuf,
+    /// The study, a .toml or .json file; several are checked one after another
+    #[arg(value_name = "STUDY", required = true)]
+    pub(super) studies: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]

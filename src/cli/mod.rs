@@ -24,6 +24,7 @@ mod rare;
 mod reference;
 mod running;
 mod schema;
+mod several;
 mod simulate;
 mod study;
 mod sweep;
@@ -48,7 +49,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     output::set_color(arguments.color);
-    let style = output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose };
+    let style =
+        output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose, study: None };
     let result = match &arguments.command {
         Command::Analyze(asked) => analyze::run(asked, style),
         Command::Simulate(asked) => simulate::run(asked, style),

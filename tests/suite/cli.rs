@@ -158,7 +158,7 @@ fn wrong_input() {
         &["analyze", ENGINE, "--method", "dimension-reduction", "--nodes", "4"],
         &["analyze", ENGINE, "--method", "bivariate-dimension-reduction", "--budget", "10"],
         &["analyze", ENGINE, "--method", "full", "--nodes", "5"],
-        &["analyze", ENGINE, "--extremes", "all"],
+        &["analyze", ENGINE, "--extremes=all"],
         &["analyze", ENGINE, "--extremes", "--points", "points.csv"],
         &["schema", ENGINE],
         &["schema", "-o", "/nowhere/study.schema.json"],

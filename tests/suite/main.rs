@@ -36,6 +36,7 @@ mod response_surface;
 mod sampled_cli;
 mod sampling;
 mod schema;
+mod several;
 mod simulation;
 mod stack;
 mod studies;
