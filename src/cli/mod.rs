@@ -38,6 +38,8 @@ use clap::Parser;
 use args::{Arguments, Command};
 use failure::{Exit, Failure};
 
+pub use reference::command;
+
 /// Runs the command with these arguments, the program's name first, and says how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {

@@ -32,6 +32,7 @@ mod process;
 mod published;
 mod quadratures;
 mod rare;
+mod reference;
 mod response_surface;
 mod sampled_cli;
 mod sampling;
