@@ -16,6 +16,7 @@ mod docs;
 mod extremes;
 mod fits;
 mod formulas;
+mod help;
 mod html;
 mod implicit;
 mod init;
