@@ -51,7 +51,7 @@ fn the_measured_table_is_measured() {
 }
 
 /// What stands in a document between the marks of this name is what was generated now.
-fn generated(document: &str, name: &str, text: &str) {
+pub fn generated(document: &str, name: &str, text: &str) {
     let path = repository(document);
     let found = read(document);
     let (begin, end) = (format!("<!-- {name}: begin -->\n"), format!("<!-- {name}: end -->"));

@@ -14,6 +14,7 @@ mod derivatives;
 mod distributions;
 mod docs;
 mod extremes;
+mod figures;
 mod fits;
 mod formulas;
 mod help;
