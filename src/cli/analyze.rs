@@ -1,5 +1,6 @@
 //! `sensitol analyze`.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::args::{AnalyzeArgs, StackArg};
@@ -10,7 +11,7 @@ use super::output::{Destination, Look, json};
 use super::points;
 use super::progress::Bar;
 use super::running::{Clock, externals, on_threads};
-use super::study;
+use super::{several, study};
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::{Progress, Run, Table};
 use crate::characteristic::Characteristic;
@@ -19,38 +20,81 @@ use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_markdown
 use crate::study::Study;
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
+    match &asked.studies[..] {
+        [study] => one(study, asked, look),
+        studies => several::analyze(studies, asked, look),
+    }
+}
+
+fn one(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
-    let mut study = study::read(&asked.study, externals(asked.work.journal.as_deref(), look, given.clone()))?;
+    let study = read(path, asked, given.clone(), look)?;
+    let destination = Destination::open(&asked.output)?;
+    let files = Files::open(&study, asked.csv.as_deref(), asked.html.as_deref())?;
+    let show = |report: &Report| destination.write(&printed(report, asked, look));
+    analyzed(&study, asked, files, given.as_deref(), look, show)
+}
+
+/// The study as it is to be analysed.
+pub(super) fn read(path: &Path, asked: &AnalyzeArgs, given: Option<Arc<Table>>, look: Look) -> Result<Study, Failure> {
+    let externals = externals(asked.work.journal.as_deref(), look, given);
+    let mut study = study::read_file(path, &asked.how, externals)?;
     study.options.seed = asked.seed.or(study.options.seed);
     study.options.extremes |= asked.extremes;
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }
-    let destination = Destination::open(&asked.output)?;
-    let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
-    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
-    let page = asked.html.as_deref().map(Destination::file).transpose()?;
-    let clock = Clock::start(asked.work.time);
-    let analysis = analyze(&study, asked.threads, &clock, look)?;
-    let about = clock.about(&study, study.options.seed);
-    let report = Report::of(&study.problem, &analysis, about);
-    let printed = match asked.stack {
-        None if asked.output.json => json(&report),
-        None => text(&report, look.style(&asked.output)),
+    Ok(study)
+}
+
+/// The files of a report beside what is printed.
+pub(super) struct Files {
+    folder: Option<CsvFolder>,
+    page: Option<Destination>,
+}
+
+impl Files {
+    /// Opens them: tables in this folder, a page of this name.
+    pub(super) fn open(study: &Study, csv: Option<&Path>, html: Option<&Path>) -> Result<Self, Failure> {
+        let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
+        let folder = csv.map(|folder| CsvFolder::open(folder, &names)).transpose()?;
+        Ok(Self { folder, page: html.map(Destination::file).transpose()? })
+    }
+}
+
+pub(super) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> String {
+    match asked.stack {
+        None if asked.output.json => json(report),
+        None => text(report, look.style(&asked.output)),
         Some(StackArg::Text) => stack_text(&report.stacks(), look.style(&asked.output)),
         Some(StackArg::Csv) => stack_csv(&report.stacks()),
         Some(StackArg::Markdown) => stack_markdown(&report.stacks()),
-    };
-    let written = destination.write(&printed);
-    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));
-    let written = written.and(page.map_or(Ok(()), |page| {
+    }
+}
+
+/// Analyses a study, shows the report, writes its files, and tells of its warnings.
+pub(super) fn analyzed(
+    study: &Study,
+    asked: &AnalyzeArgs,
+    files: Files,
+    given: Option<&Table>,
+    look: Look,
+    show: impl FnOnce(&Report) -> Result<(), Failure>,
+) -> Result<Exit, Failure> {
+    let clock = Clock::start(asked.work.time);
+    let analysis = analyze(study, asked.threads, &clock, look)?;
+    let about = clock.about(study, study.options.seed);
+    let report = Report::of(&study.problem, &analysis, about);
+    let written = show(&report);
+    let written = written.and(files.folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));
+    let written = written.and(files.page.map_or(Ok(()), |page| {
         let what_if = WhatIf::of(&study.problem, &analysis, &study.lines, &study.costs);
         page.write(&analyze_html(&report, Some(&what_if)))
     }));
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }
-    if let Some(given) = &given {
+    if let Some(given) = given {
         unmatched(given, look);
     }
     if interrupt::stopped() {

@@ -13,6 +13,7 @@ const OUTPUT: &str = "Output";
 /// The open, CAD-agnostic parametric tolerance engine.
 #[derive(Debug, Parser)]
 #[command(name = "sensitol", version, about, max_term_width = 100, subcommand_required = true)]
+#[command(after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml")]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Command,
@@ -33,54 +34,74 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Moments, sensitivities and contributions of every characteristic
-    #[command(after_help = "Example: sensitol analyze examples/engine-balance/study.toml --method full")]
+    ///
+    /// Several studies are read, then analysed, one after another, each with --budget and --time for itself. One that fails does
+    /// not keep the others from being done. The exit code is the worst of all: 130 interrupted, 2 an error, 3 a characteristic
+    /// without result, 1 a target missed, 0 done. With --json they are one array, in the order given.
+    #[command(
+        after_help = "Examples:\n  sensitol analyze examples/engine-balance/study.toml --method full\n  sensitol analyze examples/first-study/study.toml examples/first-study/tighter.toml --check --html pages"
+    )]
     Analyze(AnalyzeArgs),
     /// Monte Carlo: the model itself at random or quasi-random points, with standard errors
-    #[command(after_help = "Example: sensitol simulate examples/engine-balance/study.toml --samples 1000000")]
+    #[command(
+        after_help = "Examples:\n  sensitol simulate examples/engine-balance/study.toml --samples 1000000\n  sensitol simulate examples/first-study/study.toml --rare"
+    )]
     Simulate(SimulateArgs),
     /// The trade of speed for accuracy: every method that fits, against a reference
-    #[command(after_help = "Example: sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
+    #[command(after_help = "Examples:\n  sensitol compare examples/stacked-blocks/study.toml --svg trade.svg")]
     Compare(CompareArgs),
     /// Mean and quantile band of every characteristic along a parameter
     #[command(
-        after_help = "Example: sensitol sweep examples/connecting-rod/crank-angle.toml --over theta=-180:180:73 --svg band.svg"
+        after_help = "Examples:\n  sensitol sweep examples/connecting-rod/crank-angle.toml --over theta=-180:180:73 --svg band.svg"
     )]
     Sweep(SweepArgs),
     /// The cheapest tolerances with which every characteristic keeps what is required
     ///
     /// What tolerances cost stands in [costs], what is required at each characteristic: a target_yield or a require. Method auto
     /// stands for full, and above twenty dimensions for six-n.
-    #[command(after_help = "Example: sensitol allocate examples/shaft-and-housing/study.toml --write cheaper.toml")]
+    #[command(
+        after_help = "Examples:\n  sensitol allocate examples/shaft-and-housing/study.toml --write cheaper.toml\n  sensitol allocate examples/first-study/study.toml --confirm 100000"
+    )]
     Allocate(AllocateArgs),
     /// What would be evaluated, how often, and why; evaluates nothing
-    #[command(after_help = "Example: sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
+    #[command(after_help = "Examples:\n  sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
     Plan(PlanArgs),
-    /// Validates a study; neither evaluates nor executes anything
-    #[command(after_help = "Example: sensitol check examples/stacked-blocks/study.toml")]
+    /// Validates studies; neither evaluates nor executes anything
+    ///
+    /// Every one is validated, whatever is wrong with another; the exit code is 2 when one is wrong.
+    #[command(
+        after_help = "Examples:\n  sensitol check examples/stacked-blocks/study.toml\n  sensitol check examples/stacked-blocks/study.toml examples/engine-balance/study.toml"
+    )]
     Check(CheckArgs),
     /// The built-in models, or one of them with its inputs and outputs
-    #[command(after_help = "Example: sensitol models engine-balance")]
+    #[command(after_help = "Examples:\n  sensitol models engine-balance")]
     Models(ModelsArgs),
     /// Writes a commented study that runs as it is
-    #[command(after_help = "Example: sensitol init gap && sensitol analyze gap.toml")]
+    #[command(
+        after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml\n  sensitol init balance --model engine-balance"
+    )]
     Init(InitArgs),
     /// The JSON Schema of study files
-    #[command(after_help = "Example: sensitol schema -o study.schema.json")]
+    #[command(after_help = "Examples:\n  sensitol schema -o study.schema.json")]
     Schema(SchemaArgs),
     /// The Pearson distribution of four moments: densities, probabilities, quantiles
-    #[command(after_help = "Example: sensitol pearson --skewness 0.5 --kurtosis 3.4 --sf 4 --upper-quantile 1e-6,1e-9")]
+    #[command(
+        after_help = "Examples:\n  sensitol pearson --skewness 0.5 --kurtosis 3.4 --sf 4 --upper-quantile 1e-6,1e-9"
+    )]
     Pearson(PearsonArgs),
     /// Completions for a shell, to be sourced by it
-    #[command(after_help = "Example: sensitol completions bash > ~/.local/share/bash-completion/completions/sensitol")]
+    #[command(
+        after_help = "Examples:\n  sensitol completions bash > ~/.local/share/bash-completion/completions/sensitol"
+    )]
     Completions(CompletionsArgs),
     /// The manual page
-    #[command(after_help = "Example: sensitol man | man -l -")]
+    #[command(after_help = "Examples:\n  sensitol man | man -l -")]
     Man,
     /// Checks an external model: protocol, names, repeatability, noise, speed, least step
-    #[command(after_help = "Example: sensitol probe examples/external-python/study.toml")]
+    #[command(after_help = "Examples:\n  sensitol probe examples/external-python/study.toml")]
     Probe(ProbeArgs),
     /// What is kept of external models: show, export or forget it
-    #[command(after_help = "Example: sensitol journal show gap.journal.sqlite")]
+    #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
     Journal(JournalArgs),
 }
 
@@ -90,6 +111,13 @@ pub(super) struct StudyArgs {
     /// The study, a .toml or .json file
     pub(super) study: PathBuf,
 
+    #[command(flatten)]
+    pub(super) how: HowArgs,
+}
+
+/// How a study is to be analysed.
+#[derive(Debug, Args)]
+pub(super) struct HowArgs {
     /// The method [default: that of the study, or auto]
     #[arg(short, long, value_name = "METHOD")]
     pub(super) method: Option<MethodArg>,
@@ -98,7 +126,7 @@ pub(super) struct StudyArgs {
     #[arg(long = "kc", value_name = "NAME")]
     pub(super) characteristics: Vec<String>,
 
-    /// Wanted relative error of sigma, for auto
+    /// Wanted relative error of sigma, for auto [default: that of the study, or 0.01]
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(super) accuracy: Option<f64>,
 
@@ -157,8 +185,12 @@ pub(super) struct WorkArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct AnalyzeArgs {
+    /// The study, a .toml or .json file; several are analysed one after another
+    #[arg(value_name = "STUDY", required = true)]
+    pub(super) studies: Vec<PathBuf>,
+
     #[command(flatten)]
-    pub(super) study: StudyArgs,
+    pub(super) how: HowArgs,
 
     #[command(flatten)]
     pub(super) work: WorkArgs,
@@ -175,11 +207,11 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FORMAT", conflicts_with = "json", help_heading = OUTPUT)]
     pub(super) stack: Option<StackArg>,
 
-    /// Write the report as one HTML page, in which other tolerances can be tried
+    /// Write the report as one HTML page, in which other tolerances can be tried; several studies: a folder of pages, STUDY.html
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,
 
-    /// Write the tables of the report as CSV files into DIR, which is made where it is missing
+    /// Write the tables of the report as CSV files into DIR, which is made where it is missing; several studies: into DIR/STUDY
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
 
@@ -420,8 +452,9 @@ pub(super) struct PlanArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArgs {
-    /// The study, a .toml or .json file
-    pub(super) study: PathBuf,
+    /// The study, a .toml or .json file; several are checked one after another
+    #[arg(value_name = "STUDY", required = true)]
+    pub(super) studies: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -459,6 +492,7 @@ pub(super) struct JournalArgs {
 #[derive(Debug, Subcommand)]
 pub(super) enum JournalCommand {
     /// The models in a journal, with how much is known of each
+    #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
     Show {
         /// The journal
         file: PathBuf,
@@ -466,6 +500,7 @@ pub(super) enum JournalCommand {
         output: OutputArgs,
     },
     /// Every answer of a model as CSV: dimensions, outputs, reasons for no value
+    #[command(after_help = "Examples:\n  sensitol journal export gap.journal.sqlite --model 2 -o answers.csv")]
     Export {
         /// The journal
         file: PathBuf,
@@ -476,6 +511,7 @@ pub(super) enum JournalCommand {
         output: OutputArgs,
     },
     /// Forgets the answers of a model
+    #[command(after_help = "Examples:\n  sensitol journal forget gap.journal.sqlite --model 2")]
     Forget {
         /// The journal
         file: PathBuf,

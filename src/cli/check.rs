@@ -1,12 +1,29 @@
 //! `sensitol check`.
 
+use std::path::Path;
+
 use super::args::{CheckArgs, OutputArgs};
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look};
+use super::several;
 use crate::study::Study;
 
 pub(super) fn run(asked: &CheckArgs, look: Look) -> Result<Exit, Failure> {
-    let study = Study::read(&asked.study)?;
+    match &asked.studies[..] {
+        [study] => one(study, look),
+        studies => {
+            let mut exit = Exit::Done;
+            for study in studies {
+                let name = study.display().to_string();
+                exit = exit.worse(several::outcome(&name, one(study, look.of(&name)))?);
+            }
+            Ok(exit)
+        }
+    }
+}
+
+fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
+    let study = Study::read(path)?;
     study.warnings.iter().for_each(|warning| look.warn(warning.code(), &warning.message()));
     let procedure = study.options.method.procedure();
     let plan = procedure.plan(&study.problem, &study.options)?;
@@ -14,7 +31,7 @@ pub(super) fn run(asked: &CheckArgs, look: Look) -> Result<Exit, Failure> {
         study.problem.characteristics().iter().map(|characteristic| characteristic.name()).collect();
     let summary = format!(
         "{}: valid\n  {} dimensions, {} of which vary and matter\n  characteristics: {}\n  {} would evaluate {} points\n",
-        asked.study.display(),
+        path.display(),
         study.problem.dimensions().len(),
         plan.varying().len(),
         characteristics.join(", "),

@@ -12,6 +12,12 @@ pub(super) struct CsvFolder(Vec<Destination>);
 impl CsvFolder {
     /// For files of these names.
     pub(super) fn open(folder: &Path, names: &[String]) -> Result<Self, Failure> {
+        Self::make(folder)?;
+        names.iter().map(|name| Destination::file(&folder.join(name))).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// Makes the folder where it is missing.
+    pub(super) fn make(folder: &Path) -> Result<(), Failure> {
         std::fs::create_dir_all(folder).map_err(|error| {
             // What the system says of a file in the way depends on where in the path it is.
             let in_the_way = folder.ancestors().find(|path| path.is_file());
@@ -19,8 +25,7 @@ impl CsvFolder {
                 Some(file) => Failure::NoFolder { path: file.to_owned() },
                 None => Failure::Unwritable { path: folder.to_owned(), error },
             }
-        })?;
-        names.iter().map(|name| Destination::file(&folder.join(name))).collect::<Result<_, _>>().map(Self)
+        })
     }
 
     /// The files, in the order of their names.

@@ -33,6 +33,21 @@ pub(super) enum Exit {
     Interrupted = 130,
 }
 
+impl Exit {
+    /// Of several studies the one that is to be heard: what nobody knows is worse than a target that is known to be missed.
+    pub(super) fn worse(self, other: Self) -> Self {
+        let rank = |exit: Self| match exit {
+            Self::Done => 0,
+            Self::Missed => 1,
+            Self::NotAllocated => 2,
+            Self::NoResult => 3,
+            Self::Usage => 4,
+            Self::Interrupted => 5,
+        };
+        if rank(other) > rank(self) { other } else { self }
+    }
+}
+
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
         Self::from(exit as u8)
@@ -84,6 +99,12 @@ pub(super) enum Failure {
     OntoItself { path: PathBuf },
     #[error("{path} is a file, and --csv needs a folder", path = path.display())]
     NoFolder { path: PathBuf },
+    #[error("--html {path} is {what}, and several studies need a folder for their pages", path = path.display())]
+    NoFolderOfPages { path: PathBuf, what: &'static str },
+    #[error("{first} and {second} would both write {name}: analyse them in two calls, or rename one", first = first.display(), second = second.display())]
+    SameName { first: PathBuf, second: PathBuf, name: String },
+    #[error("--points is of one study, and there are {count}: analyse each in a call of its own")]
+    PointsOfOne { count: usize },
     #[error("cannot write to standard output: {0}")]
     Stdout(std::io::Error),
     #[error("cannot start {threads} threads: {reason}")]
@@ -102,13 +123,23 @@ impl Failure {
 
     /// The message with its place in the file, or None where there is nothing to say.
     pub(super) fn render(&self) -> Option<String> {
+        self.rendered(String::new())
+    }
+
+    /// The same of one study of several, which it names.
+    pub(super) fn render_of(&self, study: &str) -> Option<String> {
+        self.rendered(format!("{study}: "))
+    }
+
+    fn rendered(&self, of: String) -> Option<String> {
         match self {
             Self::ClosedPipe => None,
+            // It names its file by itself.
             Self::Study(error) => Some(render(error)),
             Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. }) => {
-                Some(title(&self.to_string(), Some(format!("did you mean `{nearest}`?"))))
+                Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
             }
-            _ => Some(title(&self.to_string(), None)),
+            _ => Some(title(&format!("{of}{self}"), None)),
         }
     }
 }

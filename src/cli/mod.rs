@@ -24,6 +24,7 @@ mod rare;
 mod reference;
 mod running;
 mod schema;
+mod several;
 mod simulate;
 mod study;
 mod sweep;
@@ -37,6 +38,8 @@ use clap::Parser;
 use args::{Arguments, Command};
 use failure::{Exit, Failure};
 
+pub use reference::command;
+
 /// Runs the command with these arguments, the program's name first, and says how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
@@ -48,7 +51,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     output::set_color(arguments.color);
-    let style = output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose };
+    let style =
+        output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose, study: None };
     let result = match &arguments.command {
         Command::Analyze(asked) => analyze::run(asked, style),
         Command::Simulate(asked) => simulate::run(asked, style),

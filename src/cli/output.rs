@@ -4,7 +4,7 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use clap::ColorChoice;
-use tempfile::NamedTempFile;
+use tempfile::TempPath;
 
 use super::args::OutputArgs;
 use super::failure::Failure;
@@ -12,13 +12,20 @@ use crate::report::{Detail, Style};
 
 /// What the user wants to see.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Look {
+pub(super) struct Look<'s> {
     pub(super) color: ColorChoice,
     pub(super) quiet: bool,
     pub(super) verbose: bool,
+    /// The study that warnings are of, where there are several.
+    pub(super) study: Option<&'s str>,
 }
 
-impl Look {
+impl<'s> Look<'s> {
+    /// For what concerns one study of several.
+    pub(super) fn of(self, study: &'s str) -> Self {
+        Self { study: Some(study), ..self }
+    }
+
     pub(super) fn style(self, output: &OutputArgs) -> Style {
         let detail = if self.verbose { Detail::Full } else { Detail::Short };
         let width = if output.output.is_none() { terminal_width() } else { Style::WIDTH };
@@ -28,7 +35,8 @@ impl Look {
     /// Tells of something that is no error.
     pub(super) fn warn(self, code: &str, message: &str) {
         if !self.quiet {
-            anstream::eprintln!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {message}");
+            let of = self.study.map(|study| format!("{study}: ")).unwrap_or_default();
+            anstream::eprintln!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {of}{message}");
         }
     }
 }
@@ -67,10 +75,11 @@ fn utf8_locale() -> bool {
 /// Where a result goes: opened before the work, so that a file that cannot be written costs no evaluation.
 pub(super) enum Destination {
     Stdout,
-    /// Written under another name and renamed, so that no half result ever bears the name.
+    /// Written under another name and renamed, so that no half result ever bears the name. Made and closed again: however many
+    /// results there are to be, none keeps a file open.
     File {
         path: PathBuf,
-        file: NamedTempFile,
+        file: TempPath,
     },
     /// What is no ordinary file, such as a pipe or a device, is written to as it is.
     Special {
@@ -113,7 +122,7 @@ impl Destination {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.prefix(".sensitol-").tempfile_in(folder).map_err(unwritable)?;
-        Ok(Self::File { path: path.to_owned(), file })
+        Ok(Self::File { path: path.to_owned(), file: file.into_temp_path() })
     }
 
     pub(super) fn write(self, text: &str) -> Result<(), Failure> {
@@ -132,8 +141,8 @@ impl Destination {
                     written => written.map_err(|error| Failure::Unwritable { path, error }),
                 }
             }
-            Self::File { path, mut file } => {
-                let written = file.write_all(text.as_bytes()).and_then(|()| file.flush());
+            Self::File { path, file } => {
+                let written = std::fs::write(&file, text);
                 let renamed = written.and_then(|()| file.persist(&path).map_err(|error| error.error));
                 renamed.map(drop).map_err(|error| Failure::Unwritable { path, error })
             }

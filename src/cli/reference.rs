@@ -12,11 +12,22 @@ pub(super) fn completions(asked: &CompletionsArgs) -> Result<Exit, Failure> {
     print(&script)
 }
 
+/// The command line as it is parsed: what the manual page and `docs/reference/commands.md` are made from.
+///
+/// ```
+/// let analyze = sensitol::cli::command().find_subcommand("analyze").cloned().unwrap();
+/// assert!(analyze.get_arguments().any(|option| option.get_long() == Some("method")));
+/// ```
+pub fn command() -> clap::Command {
+    let mut command = Arguments::command();
+    command.build();
+    command
+}
+
 /// One page: the command, and every subcommand below it.
 pub(super) fn man() -> Result<Exit, Failure> {
     let mut page = Vec::new();
-    let mut command = Arguments::command();
-    command.build();
+    let command = command();
     clap_mangen::Man::new(command.clone()).render(&mut page).map_err(Failure::Stdout)?;
     for subcommand in command.get_subcommands().filter(|one| one.get_name() != "help") {
         let man = clap_mangen::Man::new(subcommand.clone());

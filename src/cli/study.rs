@@ -1,6 +1,8 @@
 //! A study as the command line changes it.
 
-use super::args::{DerivativesArg, SampledArgs, SensitivitiesArg, StencilArg, StudyArgs};
+use std::path::Path;
+
+use super::args::{DerivativesArg, HowArgs, SampledArgs, SensitivitiesArg, StencilArg, StudyArgs};
 use super::failure::Failure;
 use super::output::Look;
 use super::pairs;
@@ -25,15 +27,20 @@ fn asking(mut study: Study, characteristics: &[String]) -> Result<Study, Failure
 
 /// Reads the study; what the command line says wins over its `[analysis]`.
 pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Failure> {
-    changed(Study::read_with(&asked.study, externals)?, asked)
+    read_file(&asked.study, &asked.how, externals)
+}
+
+/// The same of a file that stands for itself.
+pub(super) fn read_file(path: &Path, asked: &HowArgs, externals: Externals) -> Result<Study, Failure> {
+    changed(Study::read_with(path, externals)?, asked)
 }
 
 /// The same for a sweep over this parameter.
 pub(super) fn read_sweeping(asked: &StudyArgs, externals: Externals, parameter: &str) -> Result<Study, Failure> {
-    changed(Study::read_sweeping(&asked.study, externals, parameter)?, asked)
+    changed(Study::read_sweeping(&asked.study, externals, parameter)?, &asked.how)
 }
 
-fn changed(study: Study, asked: &StudyArgs) -> Result<Study, Failure> {
+fn changed(study: Study, asked: &HowArgs) -> Result<Study, Failure> {
     let mut study = asking(study, &asked.characteristics)?;
     let options = &mut study.options;
     if let Some(method) = asked.method {

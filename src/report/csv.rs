@@ -65,11 +65,28 @@ fn stack_file_names<'n>(characteristics: impl IntoIterator<Item = &'n str>) -> V
     taken
 }
 
+/// The columns of a table of stacks.
+const STACK: &str = "characteristic,row,name,unit,nominal,lower,upper,slope,contribution,share,from,to,within_limits";
+
 /// Stacks as one table: dimensions and totals of every characteristic, by `row`. Of a total, `nominal` is the middle, and `lower`
 /// and `upper` are its half width as deviations.
 pub fn stack_csv(stacks: &[Stack]) -> String {
-    let header = "characteristic,row,name,unit,nominal,lower,upper,slope,contribution,share,from,to,within_limits";
-    let mut table = Table::new(header);
+    let mut table = Table::new(STACK);
+    stack_rows(&mut table, stacks);
+    table.text
+}
+
+/// The stacks of several studies as one table, with the study's name before the columns of [`stack_csv`].
+pub fn stack_csv_of_studies(studies: &[(String, Vec<Stack>)]) -> String {
+    let mut table = Table::new(&format!("study,{STACK}"));
+    for (study, stacks) in studies {
+        table.lead(text(study));
+        stack_rows(&mut table, stacks);
+    }
+    table.text
+}
+
+fn stack_rows(table: &mut Table, stacks: &[Stack]) {
     for stack in stacks {
         for row in &stack.rows {
             let dimension = &row.dimension;
@@ -109,7 +126,6 @@ pub fn stack_csv(stacks: &[Stack]) -> String {
             ]);
         }
     }
-    table.text
 }
 
 fn dimensions(report: &Report) -> String {

@@ -48,7 +48,7 @@ pub use compare::{CompareReport, ComparedReport, ErrorReport, FiguresReport, Met
 pub use compare_csv::compare_csv;
 pub use compare_svg::compare_svg;
 pub use compare_text::compare_text;
-pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv};
+pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv, stack_csv_of_studies};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
 pub use estimate::{ErrorEstimateReport, ModelSamplingReport};
 pub use head::Head;

@@ -3,14 +3,22 @@
 /// A table as it grows.
 pub(super) struct Table {
     pub(super) text: String,
+    /// What every row begins with.
+    lead: String,
 }
 
 impl Table {
     pub(super) fn new(header: &str) -> Self {
-        Self { text: format!("{header}\n") }
+        Self { text: format!("{header}\n"), lead: String::new() }
+    }
+
+    /// Rows from now on begin with this cell.
+    pub(super) fn lead(&mut self, cell: String) {
+        self.lead = cell + ",";
     }
 
     pub(super) fn row<const N: usize>(&mut self, cells: [String; N]) {
+        self.text += &self.lead;
         self.text += &cells.join(",");
         self.text.push('\n');
     }

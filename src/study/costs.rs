@@ -26,7 +26,8 @@ pub(super) struct CostEntry {
     /// The cost over the half band T: reciprocal a + b/T, reciprocal-power a + b/T^k, exponential a + b exp(-T/c).
     #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::cost_models())))]
     model: Option<Spanned<String>>,
-    /// The cost that no tolerance saves; 0 unless given.
+    /// The cost that no tolerance saves.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
     a: Option<Spanned<f64>>,
     /// The factor of what falls as the tolerance opens.
     b: Option<Spanned<f64>>,
@@ -58,7 +59,8 @@ struct ProcessEntry {
     /// The cost over a range of half bands, as of a dimension.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::cost_models())))]
     model: Option<Spanned<String>>,
-    /// The cost that no tolerance saves; 0 unless given.
+    /// The cost that no tolerance saves.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
     a: Option<Spanned<f64>>,
     /// The factor of what falls as the tolerance opens.
     b: Option<Spanned<f64>>,

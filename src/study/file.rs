@@ -11,6 +11,8 @@ use serde::de::{MapAccess, SeqAccess, Visitor, value};
 use serde::{Deserialize, Deserializer};
 
 use super::values::{NominalEntry, ToleranceEntry};
+#[cfg(feature = "cli")]
+use crate::method::{ACCURACY, Options};
 
 /// A whole study file.
 #[derive(Debug, Deserialize)]
@@ -29,7 +31,9 @@ pub(super) struct StudyFile {
     /// Fixed numbers for formulas and models.
     #[serde(default)]
     pub(super) constants: Entries<f64>,
-    /// Intermediate values by name, in any order, without cycles.
+    /// Intermediate values by name, in any order, without cycles. A formula knows + - * / ^, comparisons, if(condition, x, y), abs,
+    /// sign, floor, ceil, sqrt, exp, ln, log10, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, hypot, min, max, and the
+    /// constants pi and deg = pi/180; angles are radians; a name with other characters than letters, digits and _ stands in backquotes.
     #[serde(default)]
     pub(super) formulas: Entries<String>,
     /// What equations and loops determine: where the search for each begins.
@@ -67,38 +71,41 @@ pub(super) struct Entries<T>(pub(super) Vec<(Spanned<String>, Spanned<T>)>);
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, expecting = "a table such as { nominal = 10.0, tolerance = 0.3 }")]
 pub(super) struct DimensionEntry {
-    /// The value on the drawing, two of a position; that of a built-in model where it is left out.
+    /// The value on the drawing, [x, y] of a position. Where it is left out: that of a built-in model, the mean of measured values.
     pub(super) nominal: Option<Spanned<NominalEntry>>,
-    /// Half the tolerance band, or lower and upper deviation from the nominal; numbers or percent of the nominal.
+    /// Half the tolerance band, 0.3, or lower and upper deviation from the nominal, [-0.1, 0.3]; each a number or percent of the
+    /// nominal, "2 %". Without tolerance and sigma a dimension is constant.
     pub(super) tolerance: Option<Spanned<ToleranceEntry>>,
     /// Lower and upper limit, in place of a tolerance.
     pub(super) limits: Option<Spanned<[f64; 2]>>,
-    /// A tolerance class of ISO 286, such as H7, in place of a tolerance; the unit must be mm.
+    /// A tolerance class of ISO 286, H7 or g6, in place of a tolerance; the unit must be mm.
     pub(super) fit: Option<Spanned<String>>,
-    /// Diameter of the circular zone of a position: two dimensions, NAME_x and NAME_y.
+    /// Diameter of the circular zone of a position, in place of a tolerance: two dimensions, NAME_x and NAME_y.
     pub(super) position: Option<Spanned<f64>>,
     /// The unit, which is shown and never converted.
     pub(super) unit: Option<String>,
-    /// How it is distributed: normal unless said otherwise.
+    /// How it is distributed: the name of a kind, or a table with its parameters.
     #[serde(default, deserialize_with = "distribution")]
-    #[cfg_attr(feature = "cli", schemars(schema_with = "schema::distribution"))]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "schema::distribution", extend("default" = "normal")))]
     pub(super) distribution: Option<Spanned<DistributionEntry>>,
-    /// Standard deviation.
+    /// Standard deviation: half the band by sigmas unless given, and none of a kind whose sigma follows from its band.
     pub(super) sigma: Option<Spanned<f64>>,
-    /// How many sigmas half a tolerance band has: 3 unless said otherwise.
+    /// How many sigmas half the tolerance band has.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::SIGMAS)))]
     pub(super) sigmas: Option<Spanned<f64>>,
-    /// Process capability: sigmas/3.
+    /// Process capability, another way to say sigmas: cp = sigmas/3.
     pub(super) cp: Option<Spanned<f64>>,
-    /// How far the mean lies off the middle of the band.
+    /// How far the mean lies off the middle of the band; of a kind with a tail, off the nominal.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
     pub(super) shift: Option<Spanned<f64>>,
-    /// Central moments 2 to 8, where nothing else is known of the distribution.
+    /// Central moments 2 to 8 about the mean, where nothing else is known of the distribution; it cannot be sampled then.
     pub(super) moments: Option<Spanned<[f64; 7]>>,
-    /// A CSV file of measured values, relative to the study's folder.
+    /// A CSV file of measured values, relative to the study's folder; they stand for the distribution.
     pub(super) measured: Option<Spanned<String>>,
-    /// The column of the file; its only one where it is left out.
+    /// The column of the measured file, by the name in its first line; its only one where it is left out.
     pub(super) column: Option<Spanned<String>>,
-    /// What is made of measured values: empirical unless said otherwise, or pearson.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::measured_models())))]
+    /// What is made of measured values: empirical, each with the same probability, or the pearson law with their moments.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::measured_models(), "default" = schema::measured_models()[0])))]
     pub(super) model: Option<Spanned<String>>,
     /// Evaluation step in sigmas, in place of the nodes that suit the distribution.
     pub(super) step: Option<Spanned<f64>>,
@@ -134,13 +141,14 @@ pub(super) struct DistributionEntry {
     pub(super) kind: String,
     /// Of a triangular distribution its most probable value; the band's middle unless given.
     pub(super) mode: Option<Spanned<f64>>,
-    /// Of a trapezoidal distribution the share of the band over which it is flat.
+    /// Of a trapezoidal distribution the share of the band over which it is flat, from 0 to 1.
     pub(super) top: Option<Spanned<f64>>,
-    /// Of a beta distribution the exponent at the lower end.
+    /// Of a beta distribution the exponent at the lower end, above 0.
     pub(super) alpha: Option<Spanned<f64>>,
-    /// Of a beta distribution the exponent at the upper end.
+    /// Of a beta distribution the exponent at the upper end, above 0.
     pub(super) beta: Option<Spanned<f64>>,
-    /// Where a distribution with a tail begins; 0 unless given.
+    /// Where a distribution with a tail begins.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
     pub(super) origin: Option<Spanned<f64>>,
     /// The parts of a mixture by name.
     pub(super) parts: Option<Spanned<Entries<PartEntry>>>,
@@ -159,9 +167,9 @@ pub(super) struct PartEntry {
     pub(super) tolerance: Option<Spanned<ToleranceEntry>>,
     /// Its limits, in place of a tolerance.
     pub(super) limits: Option<Spanned<[f64; 2]>>,
-    /// How it is distributed: normal unless said otherwise.
+    /// How it is distributed: the name of a kind, or a table with its parameters.
     #[serde(default, deserialize_with = "distribution")]
-    #[cfg_attr(feature = "cli", schemars(schema_with = "schema::distribution"))]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "schema::distribution", extend("default" = "normal")))]
     pub(super) distribution: Option<Spanned<DistributionEntry>>,
     /// Standard deviation.
     pub(super) sigma: Option<Spanned<f64>>,
@@ -205,13 +213,13 @@ pub(super) struct CharacteristicEntry {
     pub(super) formula: Option<Spanned<String>>,
     /// The unit, which is shown and never converted.
     pub(super) unit: Option<String>,
-    /// Lower limit.
+    /// Lower limit; without a limit there is no yield.
     pub(super) lower: Option<Spanned<f64>>,
     /// Upper limit.
     pub(super) upper: Option<Spanned<f64>>,
-    /// The share of assemblies that must keep the limits, between 0 and 1.
+    /// The share of assemblies that must keep the limits, between 0 and 1; what --check looks at, and what allocate keeps.
     pub(super) target_yield: Option<Spanned<f64>>,
-    /// What it must keep when tolerances are allocated; its target yield unless said otherwise.
+    /// What it must keep when tolerances are allocated, in place of its target_yield: linear worst case, rss, or a number.
     pub(super) require: Option<Spanned<RequireEntry>>,
 }
 
@@ -242,17 +250,21 @@ pub(super) struct ModelEntry {
     /// A built-in model, by name: `sensitol models` lists them.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::built_in_models())))]
     pub(super) builtin: Option<Spanned<String>>,
-    /// A program and its arguments, run in the study's folder.
+    /// A program and its arguments, each a text of its own, run in the study's folder; it speaks the adapter protocol.
     pub(super) command: Option<Spanned<Vec<String>>>,
     /// Processes side by side.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::program().workers)))]
     pub(super) workers: Option<Spanned<u64>>,
     /// Seconds that an evaluation may take.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::program().timeout.as_secs())))]
     pub(super) timeout_s: Option<Spanned<f64>>,
     /// Seconds that the program may take to start.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::program().start_timeout.as_secs())))]
     pub(super) start_timeout_s: Option<Spanned<f64>>,
-    /// How often a point is tried again.
+    /// How often a point that failed is tried again.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::program().retries)))]
     pub(super) retries: Option<Spanned<u64>>,
-    /// Files that the model depends on: other contents make other answers.
+    /// Files that the model depends on, relative to the study's folder: with other contents nothing kept in the journal is used.
     pub(super) files: Option<Vec<Spanned<String>>>,
 }
 
@@ -262,9 +274,10 @@ pub(super) struct ModelEntry {
 #[serde(deny_unknown_fields, expecting = "a table of options")]
 pub(super) struct AnalysisEntry {
     /// The method.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::methods())))]
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::methods(), "default" = Options::default().method.name())))]
     pub(super) method: Option<Spanned<String>>,
     /// Wanted relative error of sigma, for auto.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = ACCURACY)))]
     pub(super) accuracy: Option<Spanned<f64>>,
     /// Wanted error of the skewness, for auto.
     pub(super) accuracy_skewness: Option<Spanned<f64>>,
@@ -272,27 +285,30 @@ pub(super) struct AnalysisEntry {
     pub(super) accuracy_kurtosis: Option<Spanned<f64>>,
     /// Wanted error of the yield, a share such as 1e-5, for auto.
     pub(super) accuracy_yield: Option<Spanned<f64>>,
-    /// Most evaluations that may be spent.
+    /// Most evaluations that may be spent; a method that needs more is an error, auto stays below.
     pub(super) budget: Option<Spanned<u64>>,
     /// Evaluate at so many sigma on either side, in place of the nodes that suit each distribution.
     pub(super) step: Option<Spanned<f64>>,
-    /// The interactions that six-n examines.
+    /// The interactions that six-n examines: strongest, adjacent, or a list of pairs of names.
     pub(super) pairs: Option<Spanned<PairsEntry>>,
     /// How six-n evaluates an interaction.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::stencils())))]
     pub(super) stencil: Option<Spanned<String>>,
-    /// How many nodes the quadrature rules of dimension-reduction have: 5 unless said otherwise.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = [3, 5, 7])))]
+    /// How many nodes the quadrature rules of dimension-reduction have, univariate or bivariate.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = [3, 5, 7], "default" = 5)))]
     pub(super) nodes: Option<Spanned<u64>>,
-    /// Whether dimensions without tolerance get a sensitivity too.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::sensitivities())))]
+    /// Sensitivities of all dimensions, at two evaluations more for each without tolerance, or of the varying ones alone.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::sensitivities(), "default" = "varying")))]
     pub(super) sensitivities: Option<Spanned<String>>,
-    /// Where derivatives come from, for sensitivities and moments alike.
+    /// Where derivatives come from, for sensitivities and moments alike. Left out: exact sensitivities where the model gives them,
+    /// moments by differences.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::derivatives())))]
     pub(super) derivatives: Option<Spanned<String>>,
     /// Whether the true extremes in the box of the tolerance bands are searched too.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = false)))]
     pub(super) extremes: Option<bool>,
-    /// Seed of random numbers.
+    /// Seed of random numbers, for what draws some.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = Options::SEED)))]
     pub(super) seed: Option<Spanned<u64>>,
 }
 

@@ -10,12 +10,14 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
 
 use super::costs::{RequireEntry, RequireTable, WORDS};
+pub(super) use super::dimension::SIGMAS;
 use super::dimension::{self, MODELS};
 use super::file::{
     CorrelationEntry, Correlations, DistributionEntry, Entries, PairsEntry, StudyFile, TermEntry, UnknownEntry,
 };
 use super::values::{Deviation, NominalEntry, ToleranceEntry};
 use crate::allocation::CurveKind;
+use crate::assembly::process::Settings;
 use crate::method::{ALL as METHODS, DerivativeSource, Pairs};
 use crate::models;
 use crate::plan::Stencil;
@@ -91,6 +93,11 @@ pub(super) fn sensitivities() -> Vec<&'static str> {
 /// The sources of derivatives.
 pub(super) fn derivatives() -> Vec<&'static str> {
     DerivativeSource::NAMES.to_vec()
+}
+
+/// How external programs are run unless the study says otherwise.
+pub(super) fn program() -> Settings {
+    Settings::new([""])
 }
 
 /// The kinds of distribution.

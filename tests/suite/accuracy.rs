@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use sensitol::plan::Stencil;
 use sensitol::{Method, Options, Study, analyze};
 
+use super::figures::says;
 use super::support::{data, repository};
 
 /// What is wanted of `auto`.
@@ -231,13 +232,89 @@ fn summary(text: &mut String) {
     writeln!(text, "| smooth functions of which the model had to be sampled | {} |", share(sampled)).unwrap();
     *text += "\n| method | median error, smooth | largest | within 3 estimates, where there is one | no estimate |\n|---|--:|--:|--:|--:|\n";
     for (index, (name, _)) in contenders().iter().enumerate() {
-        let mut errors: Vec<f64> = smooth().map(|row| row.runs[index].error).collect();
-        errors.sort_by(f64::total_cmp);
         let known: Vec<bool> = rows().iter().filter_map(|row| row.runs[index].covered()).collect();
         let covered = if known.is_empty() { "-".to_owned() } else { share(count(&known, |covered| **covered)) };
-        let [median, largest] = [errors[errors.len() / 2], errors[errors.len() - 1]].map(digit);
+        let [median, largest] = median_and_largest(index);
         writeln!(text, "| {name} | {median} | {largest} | {covered} | {} |", rows().len() - known.len()).unwrap();
     }
+}
+
+/// The errors of a contender where functions are smooth.
+fn median_and_largest(contender: usize) -> [String; 2] {
+    let mut errors: Vec<f64> = smooth().map(|row| row.runs[contender].error).collect();
+    errors.sort_by(f64::total_cmp);
+    [errors[errors.len() / 2], errors[errors.len() - 1]].map(digit)
+}
+
+/// The how-to pages quote these tables.
+#[test]
+fn the_how_to_pages_quote_what_was_measured() {
+    const CHOOSE: &str = "docs/how-to/choose-a-method.md";
+    let all = contenders();
+    let contender = |name: &str| all.iter().position(|(known, _)| known == name).unwrap();
+    let kinked = ["none", "one", "two", "three", "four", "five", "six"][rows().len() - smooth().count()];
+    says(CHOOSE, &format!("{} functions of 1 to 200 dimensions, {kinked} of them with a kink", rows().len()));
+    for (name, shown) in
+        [("rss", "`rss`"), ("second-order", "`second-order`"), ("six-n", "`six-n`"), ("full", "`full`")]
+    {
+        let [median, largest] = median_and_largest(contender(&format!("`{name}`")));
+        says(CHOOSE, &format!("| {shown} | {median} | {largest} |"));
+    }
+    let auto = contender("`auto` 1 %");
+    let [median, largest] = median_and_largest(auto);
+    says(CHOOSE, &format!("| `auto`, 1 % wanted | {median} | {largest} |"));
+    let ran =
+        |function: &str, contender: usize| &rows().iter().find(|row| row.name == function).unwrap().runs[contender];
+    let [rss, six_n, full] = ["`rss`", "`six-n`", "`full`"].map(contender);
+    let figures = |function: &str, contender: usize| {
+        let ran = ran(function, contender);
+        (ran.evaluations, digit(ran.error).replace('<', "below "))
+    };
+    let [one, two, three] = [rss, full, auto].map(|of| figures("product-200", of));
+    says(
+        CHOOSE,
+        &format!(
+            "`rss` {} evaluations and an error of {}, `full` {} and {}, `auto` {} and {}.",
+            one.0, one.1, two.0, two.1, three.0, three.1
+        ),
+    );
+    let [one, two, three] = [six_n, full, auto].map(|of| figures("sparse-25-of-50", of));
+    says(
+        CHOOSE,
+        &format!(
+            "`six-n` {} and {}, `full` {} and {}, `auto` {} and {}.",
+            one.0, one.1, two.0, two.1, three.0, three.1
+        ),
+    );
+    let kink: Vec<f64> = (0..auto - 1).map(|of| ran("tied-gaps-4", of).error).collect();
+    let percent = |error: f64| 100.0 * digit(error).parse::<f64>().unwrap();
+    let least = kink.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = kink.iter().copied().fold(0.0, f64::max);
+    let (evaluations, error) = figures("tied-gaps-4", auto);
+    says(
+        CHOOSE,
+        &format!(
+            "every derivative method {:.0} % to {:.0} % off, `auto` at 1 % by {evaluations} evaluations {error}.",
+            percent(least),
+            percent(most)
+        ),
+    );
+    let covered = count(rows().iter().flat_map(self::auto), |ran| ran.covered() == Some(true));
+    let derivative = [full, six_n, contender("`classic`"), contender("`six-n --stencil four-point`")];
+    let runs = rows().iter().flat_map(|row| derivative.map(|of| &row.runs[of]));
+    let others = count(runs.filter_map(Ran::covered), |covered| *covered);
+    says(
+        "docs/how-to/trust-a-result.md",
+        &format!(
+            "Over {} functions the error of sigma was within three times its estimate in {} of {} cases for `auto` and in {} of {} \
+             for `six-n`, `full`, `classic` and the four-point `six-n`",
+            rows().len(),
+            covered.0,
+            covered.1,
+            others.0,
+            others.1
+        ),
+    );
 }
 
 /// An error to its first digit; what is below the reference's own error as that.

@@ -8,6 +8,7 @@ use sensitol::plan::Stencil;
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Method, Options, Study, analyze};
 
+use super::reference;
 use super::support::{INSTALLED, data, repository};
 
 /// Console blocks of the README, the documents and every example, run from the repository's root; none leaves anything out.
@@ -50,7 +51,7 @@ fn the_measured_table_is_measured() {
 }
 
 /// What stands in a document between the marks of this name is what was generated now.
-fn generated(document: &str, name: &str, text: &str) {
+pub fn generated(document: &str, name: &str, text: &str) {
     let path = repository(document);
     let found = read(document);
     let (begin, end) = (format!("<!-- {name}: begin -->\n"), format!("<!-- {name}: end -->"));
@@ -61,6 +62,33 @@ fn generated(document: &str, name: &str, text: &str) {
         return;
     }
     assert_eq!(&found[start..stop], text, "{document}: SENSITOL_UPDATE_DOCS=1 writes it anew");
+}
+
+/// Every key of a study file, from the schema.
+#[test]
+fn the_reference_of_study_files_is_generated() {
+    page("docs/reference/study-file.md", "the_reference_of_study_files_is_generated", &reference::study_file());
+}
+
+/// Every command and option, from what is parsed.
+#[test]
+fn the_reference_of_commands_is_generated() {
+    page("docs/reference/commands.md", "the_reference_of_commands_is_generated", &reference::commands());
+}
+
+/// A document is what was generated now.
+fn page(document: &str, test: &str, text: &str) {
+    if std::env::var_os("SENSITOL_UPDATE_DOCS").is_some() {
+        std::fs::write(repository(document), text).unwrap();
+        return;
+    }
+    let found = std::fs::read_to_string(repository(document)).unwrap_or_default();
+    let line = found.lines().zip(text.lines()).take_while(|(found, text)| found == text).count() + 1;
+    assert!(
+        found == text,
+        "{document} is not what the program says, from line {line} on: SENSITOL_UPDATE_DOCS=1 cargo test --test suite \
+         docs::{test} writes it anew"
+    );
 }
 
 /// A method of the papers: its name there, seconds on their computer, and what it is here.

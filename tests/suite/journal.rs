@@ -291,7 +291,7 @@ fn answers_are_kept_exactly() {
     assert_eq!((store.models().unwrap()[0].values, store.models().unwrap()[0].errors), (5, 1));
 }
 
-fn interrupt(pid: u32) {
+pub fn interrupt(pid: u32) {
     assert!(Command::new("kill").args(["-INT", &pid.to_string()]).status().unwrap().success());
 }
 

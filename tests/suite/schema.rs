@@ -167,3 +167,51 @@ fn every_key_is_described() {
     }
     walk(&sensitol::study::schema(), "");
 }
+
+/// What the schema calls a default is what a study without the key has.
+#[test]
+fn defaults_are_what_is_left_out() {
+    let schema = sensitol::study::schema();
+    let read = |dimension: &Value, analysis: &Value| {
+        let study = serde_json::json!({
+            "dimensions": { "a": dimension, "b": { "nominal": 2, "tolerance": 0.1 }, "c": { "nominal": 1 } },
+            "characteristics": { "y": { "formula": "a*b + c" } },
+            "analysis": analysis,
+        });
+        Study::from_json(&study.to_string(), "study.json").unwrap_or_else(|error| panic!("{study}: {error}"))
+    };
+    let with = |base: &Value, key: &str, value: &Value| {
+        let mut table = base.clone();
+        table[key] = value.clone();
+        table
+    };
+    let defaults = |entry: &str| -> Vec<(String, Value)> {
+        let keys = schema["$defs"][entry]["properties"].as_object().unwrap();
+        keys.iter().filter_map(|(key, value)| Some((key.clone(), value.get("default")?.clone()))).collect()
+    };
+    let plain = serde_json::json!({ "nominal": 1, "tolerance": 0.3 });
+    let of_dimension = defaults("DimensionEntry");
+    assert_eq!(
+        of_dimension.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>(),
+        ["distribution", "model", "shift", "sigmas"]
+    );
+    for (key, value) in of_dimension.iter().filter(|(key, _)| key != "model") {
+        let (with, without) =
+            (read(&with(&plain, key, value), &serde_json::json!({})), read(&plain, &serde_json::json!({})));
+        assert_eq!(format!("{:?}", with.problem.dimensions()), format!("{:?}", without.problem.dimensions()), "{key}");
+    }
+    let of_analysis = defaults("AnalysisEntry");
+    assert_eq!(of_analysis.len(), 6, "{of_analysis:?}");
+    for (key, value) in of_analysis {
+        let base = match key.as_str() {
+            "nodes" => serde_json::json!({ "method": "dimension-reduction" }),
+            _ => serde_json::json!({}),
+        };
+        let found = |analysis: &Value| {
+            let study = read(&plain, analysis);
+            let analysis = sensitol::analyze(&study.problem, &study.options).unwrap();
+            (study.options.method, analysis.evaluations, format!("{:?}", analysis.characteristics))
+        };
+        assert_eq!(found(&with(&base, &key, &value)), found(&base), "{key}");
+    }
+}

@@ -155,7 +155,6 @@ fn the_command() {
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!((lines.len(), lines[0].split(',').count()), (6, lines[1].split(',').count()));
     assert!(lines[1].starts_with("y,mm,k,1,5,") && lines[5].starts_with("y,mm,k,3,13,"), "{csv}");
-    insta::assert_snapshot!("help-sweep", run(&["sweep", "--help"]));
 }
 
 #[test]

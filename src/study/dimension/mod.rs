@@ -20,6 +20,8 @@ use crate::dimension::{Dimension, DimensionError};
 pub(super) use kinds::kinds;
 #[cfg(feature = "cli")]
 pub(super) use measured::MODELS;
+#[cfg(feature = "cli")]
+pub(super) use spread::SIGMAS;
 use spread::Spread;
 
 /// The dimensions of this line, or what is wrong at which key below the dimension's; `model` knows the values that the model

@@ -10,7 +10,7 @@ use super::conflict;
 use crate::distribution::Distribution;
 
 /// Sigmas within half a tolerance band, unless the study says otherwise.
-pub(super) const SIGMAS: f64 = 3.0;
+pub(in crate::study) const SIGMAS: f64 = 3.0;
 /// Two ways of giving sigma agree when they differ by no more than this.
 const AGREE: f64 = 1e-9;
 

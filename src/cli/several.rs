@@ -1,0 +1,207 @@
+//! Several studies in one call: all of them are read before any is evaluated, and none is kept from its report by another.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::analyze::{Files, analyzed, printed, read};
+use super::args::{AnalyzeArgs, StackArg};
+use super::csv::CsvFolder;
+use super::failure::{Exit, Failure};
+use super::interrupt;
+use super::output::{Destination, Look, error, json};
+use crate::report::{Report, Stack, stack_csv_of_studies};
+use crate::study::Study;
+
+/// Tells what is wrong with one study, and how it ended. What ends all is that nothing can be printed any more.
+pub(super) fn outcome(study: &str, result: Result<Exit, Failure>) -> Result<Exit, Failure> {
+    match result {
+        Err(failure @ (Failure::ClosedPipe | Failure::Stdout(_))) => Err(failure),
+        Err(failure) => {
+            tell(study, &failure);
+            Ok(failure.exit())
+        }
+        done => done,
+    }
+}
+
+fn tell(study: &str, failure: &Failure) {
+    if let Some(message) = failure.render_of(study) {
+        error(&message);
+    }
+}
+
+/// `sensitol analyze` of several studies.
+pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
+    if asked.points.is_some() {
+        return Err(Failure::PointsOfOne { count: paths.len() });
+    }
+    if asked.csv.is_some() || asked.html.is_some() {
+        distinct(paths)?;
+    }
+    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    let studies = paths.iter().zip(&names).map(|(path, name)| read(path, asked, None, look.of(name)));
+    let studies: Vec<Result<Study, Failure>> = studies.collect();
+    for (name, study) in names.iter().zip(&studies) {
+        if let Err(failure) = study {
+            tell(name, failure);
+        }
+    }
+    let mut printer = Printer::open(asked, look)?;
+    let studies = open(paths, studies, asked)?;
+    let mut exit = Exit::Done;
+    for (name, study) in names.iter().zip(studies) {
+        let (study, files) = match study {
+            Ok(ready) => ready,
+            Err(failure) => {
+                printer.failed(name, failure.to_string());
+                exit = exit.worse(failure.exit());
+                continue;
+            }
+        };
+        if interrupt::stopped() {
+            look.of(name).warn("stopped", "interrupted before it was analysed");
+            printer.failed(name, "interrupted before it was analysed".to_owned());
+            exit = Exit::Interrupted;
+            continue;
+        }
+        let shown = printer.shown;
+        let result = analyzed(&study, asked, files, None, look.of(name), |report| printer.show(name, report));
+        // Who has a report whose files could not be written has it all the same.
+        if let (Err(failure), false) = (&result, printer.shown > shown) {
+            printer.failed(name, failure.to_string());
+        }
+        exit = exit.worse(outcome(name, result)?);
+    }
+    printer.finish()?;
+    Ok(exit)
+}
+
+/// That no two studies write files of the same name, on any file system.
+fn distinct(paths: &[PathBuf]) -> Result<(), Failure> {
+    for (index, second) in paths.iter().enumerate() {
+        let same = |first: &&PathBuf| stem(first).to_lowercase() == stem(second).to_lowercase();
+        if let Some(first) = paths[..index].iter().find(same) {
+            return Err(Failure::SameName { first: first.clone(), second: second.clone(), name: stem(second) });
+        }
+    }
+    Ok(())
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// A study that was read with its files open, or why it was not.
+type Ready = Result<(Study, Files), Failure>;
+
+/// Opens the files of every study that was read: what cannot be written costs no evaluation.
+fn open(paths: &[PathBuf], studies: Vec<Result<Study, Failure>>, asked: &AnalyzeArgs) -> Result<Vec<Ready>, Failure> {
+    asked.html.as_deref().map(folder_of_pages).transpose()?;
+    asked.csv.as_deref().map(CsvFolder::make).transpose()?;
+    let of = |(path, study): (&PathBuf, Result<Study, Failure>)| {
+        let study = match study {
+            Ok(study) => study,
+            Err(failure) => return Ok(Err(failure)),
+        };
+        let tables = asked.csv.as_deref().map(|folder| folder.join(stem(path)));
+        let page = asked.html.as_deref().map(|folder| folder.join(stem(path) + ".html"));
+        let files = Files::open(&study, tables.as_deref(), page.as_deref())?;
+        Ok(Ok((study, files)))
+    };
+    paths.iter().zip(studies).map(of).collect()
+}
+
+/// The folder, made where it is missing; the name of a page is most likely meant as one.
+fn folder_of_pages(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Ok(());
+    }
+    let wrong = |what| Err(Failure::NoFolderOfPages { path: path.to_owned(), what });
+    if path.exists() {
+        return wrong("a file");
+    }
+    if path.extension().is_some_and(|extension| extension == "html" || extension == "htm") {
+        return wrong("the name of one page");
+    }
+    std::fs::create_dir_all(path).map_err(|error| Failure::Unwritable { path: path.to_owned(), error })
+}
+
+/// A study in the array of reports.
+#[derive(Serialize)]
+struct Entry {
+    study: String,
+    #[serde(flatten)]
+    outcome: Outcome,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Outcome {
+    Report(Box<Report>),
+    Failed { error: String },
+}
+
+/// Prints reports as they come where that can be, and all in the end where they are one value or one file.
+struct Printer<'a> {
+    asked: &'a AnalyzeArgs,
+    look: Look<'a>,
+    /// None where reports are printed as they come.
+    destination: Option<Destination>,
+    text: String,
+    entries: Vec<Entry>,
+    stacks: Vec<(String, Vec<Stack>)>,
+    shown: usize,
+}
+
+impl<'a> Printer<'a> {
+    fn open(asked: &'a AnalyzeArgs, look: Look<'a>) -> Result<Self, Failure> {
+        let whole = asked.output.json || asked.output.output.is_some() || asked.stack == Some(StackArg::Csv);
+        let destination = whole.then(|| Destination::open(&asked.output)).transpose()?;
+        let (text, entries, stacks) = (String::new(), Vec::new(), Vec::new());
+        Ok(Self { asked, look, destination, text, entries, stacks, shown: 0 })
+    }
+
+    fn show(&mut self, name: &str, report: &Report) -> Result<(), Failure> {
+        let first = self.shown == 0;
+        self.shown += 1;
+        if self.asked.output.json {
+            let outcome = Outcome::Report(Box::new(report.clone()));
+            self.entries.push(Entry { study: name.to_owned(), outcome });
+            return Ok(());
+        }
+        let heading = match self.asked.stack {
+            Some(StackArg::Csv) => {
+                self.stacks.push((name.to_owned(), report.stacks()));
+                return Ok(());
+            }
+            Some(StackArg::Markdown) => format!("## `{name}`\n\n"),
+            None | Some(StackArg::Text) => format!("==> {name} <==\n"),
+        };
+        let gap = if first { "" } else { "\n" };
+        let text = format!("{gap}{heading}{}", printed(report, self.asked, self.look));
+        match self.destination {
+            None => Destination::Stdout.write(&text),
+            Some(_) => {
+                self.text += &text;
+                Ok(())
+            }
+        }
+    }
+
+    /// A study without report.
+    fn failed(&mut self, name: &str, error: String) {
+        let entry = Entry { study: name.to_owned(), outcome: Outcome::Failed { error } };
+        self.entries.push(entry);
+    }
+
+    /// Writes what was kept; where there is no report, what stands there stays.
+    fn finish(self) -> Result<(), Failure> {
+        let Some(destination) = self.destination.filter(|_| self.shown > 0) else { return Ok(()) };
+        destination.write(&match self.asked.stack {
+            Some(StackArg::Csv) => stack_csv_of_studies(&self.stacks),
+            _ if self.asked.output.json => json(&self.entries),
+            _ => self.text,
+        })
+    }
+}
