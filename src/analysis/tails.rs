@@ -17,7 +17,7 @@ const ROWS: usize = 1024;
 /// and how many times as many where fewer than so many lie beyond and the dimensions are no more than this.
 const MORE: usize = 4;
 const FEW: f64 = 64.0;
-const QUICK: usize = 64;
+const QUICK: usize = 16;
 /// Standard errors, as if the law were right, of a random sample, of which a quasi-random one has less, from which a difference is one,
 const SEEN: f64 = 4.0;
 /// and points beyond those, as few are not spread as a normal law.
@@ -47,9 +47,13 @@ impl Tails {
         (apart > chance + SURE || -apart > chance).then_some(apart.abs() / n)
     }
 
-    /// What the law is off by the points, chance included; less than one of them is not seen.
+    /// What the law is off by the points: all of a difference that is seen, and of others what two standard errors leave of it;
+    /// less than one point is not seen.
     fn off(&self) -> f64 {
-        (self.surface - self.law).abs().max(1.0 / self.points as f64)
+        let n = self.points as f64;
+        let chance = (self.surface * n).max(1.0).sqrt() / n;
+        let open = (self.surface - self.law).abs() - 2.0 * chance;
+        self.difference().unwrap_or(open).max(1.0 / n)
     }
 
     /// What the sample says of a target, where it speaks against the law.

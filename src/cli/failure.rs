@@ -48,6 +48,25 @@ impl Exit {
     }
 }
 
+impl Exit {
+    /// Every exit code and what it says, for the manual.
+    pub(super) const ALL: [(Self, &'static str); 6] = [
+        (Self::Done, "done, with warnings perhaps; a pipe that was closed"),
+        (
+            Self::Missed,
+            "`--check`: a target is missed, or nobody knows; `allocate --confirm`: the sample refutes what was found; `probe`: a \
+             check failed",
+        ),
+        (Self::Usage, "the command line or the study is wrong, or an output cannot be written"),
+        (Self::NoResult, "the model gave a characteristic that was asked for no result"),
+        (Self::NotAllocated, "`allocate`: no tolerances keep what is required, or they were not found in time"),
+        (
+            Self::Interrupted,
+            "interrupted: the first Ctrl-C reports what is known, the second gives up what is under way, the third ends at once",
+        ),
+    ];
+}
+
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
         Self::from(exit as u8)

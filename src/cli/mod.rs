@@ -38,7 +38,7 @@ use clap::Parser;
 use args::{Arguments, Command};
 use failure::{Exit, Failure};
 
-pub use reference::command;
+pub use reference::{command, exit_codes};
 
 /// Runs the command with these arguments, the program's name first, and says how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {

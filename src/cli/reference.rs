@@ -24,6 +24,24 @@ pub fn command() -> clap::Command {
     command
 }
 
+/// Exit codes and what they say, in ascending order.
+///
+/// ```
+/// assert_eq!(sensitol::cli::exit_codes().next().unwrap().0, 0);
+/// ```
+pub fn exit_codes() -> impl Iterator<Item = (u8, &'static str)> {
+    Exit::ALL.into_iter().map(|(exit, meaning)| (exit as u8, meaning))
+}
+
+/// What the program reads of its surroundings.
+const ENVIRONMENT: [(&str, &str); 2] = [
+    ("NO_COLOR", "when set, no colours where --color does not ask for them"),
+    (
+        "LC_ALL, LC_CTYPE, LANG",
+        "the first that is set says whether signs beyond ASCII are printed: where it names UTF-8",
+    ),
+];
+
 /// One page: the command, and every subcommand below it.
 pub(super) fn man() -> Result<Exit, Failure> {
     let mut page = Vec::new();
@@ -35,8 +53,29 @@ pub(super) fn man() -> Result<Exit, Failure> {
         man.render_description_section(&mut page).map_err(Failure::Stdout)?;
         man.render_synopsis_section(&mut page).map_err(Failure::Stdout)?;
         man.render_options_section(&mut page).map_err(Failure::Stdout)?;
+        if let Some(examples) = subcommand.get_after_help() {
+            let examples = examples.to_string();
+            let lines = examples.lines().filter(|line| line.starts_with(' ')).map(str::trim);
+            page.extend(
+                format!(".SS EXAMPLES\n.nf\n{}\n.fi\n", lines.map(roff).collect::<Vec<_>>().join("\n")).bytes(),
+            );
+        }
+    }
+    page.extend(b".SH \"EXIT STATUS\"\n");
+    for (code, meaning) in exit_codes() {
+        page.extend(format!(".TP\n{code}\n{}\n", roff(&meaning.replace('`', ""))).bytes());
+    }
+    page.extend(b".SH ENVIRONMENT\n");
+    for (name, meaning) in ENVIRONMENT {
+        page.extend(format!(".TP\n{name}\n{}\n", roff(meaning)).bytes());
     }
     print(&page)
+}
+
+/// Text in which nothing is a request of roff.
+fn roff(text: &str) -> String {
+    let text = text.replace('\\', "\\e").replace('-', "\\-");
+    if text.starts_with(['.', '\'']) { format!("\\&{text}") } else { text }
 }
 
 fn print(text: &[u8]) -> Result<Exit, Failure> {

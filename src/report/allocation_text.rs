@@ -40,7 +40,7 @@ pub fn allocation_text(report: &AllocationReport, style: Style) -> String {
     if let Some(table) = &report.dimensions_table {
         page.line("");
         page.line("[dimensions]");
-        table.lines().for_each(|line| page.line(line));
+        table.lines().for_each(|line| page.verbatim(line));
     }
     page.finish()
 }

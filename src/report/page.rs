@@ -54,8 +54,24 @@ impl Page {
         self.text
     }
 
+    /// A line; on a narrow page what is too long for it goes on in the next one.
     pub(super) fn line(&mut self, text: &str) {
-        self.text += self.signs(text).trim_end();
+        let mut rest = self.signs(text).trim_end().to_owned();
+        let width = self.style.width;
+        while width < Style::WIDTH && rest.chars().count() > width {
+            let letters: Vec<char> = rest.chars().collect();
+            let words = letters.iter().take_while(|&&letter| letter == ' ').count();
+            let Some(space) = (words + 1..=width).rev().find(|&at| letters[at] == ' ') else { break };
+            let [line, more] = [&letters[..space], &letters[space..]].map(|part| part.iter().collect::<String>());
+            self.verbatim(line.trim_end());
+            rest = format!("    {}", more.trim_start());
+        }
+        self.verbatim(&rest);
+    }
+
+    /// A line that stays as it is, however long.
+    pub(super) fn verbatim(&mut self, text: &str) {
+        self.text += text;
         self.text.push('\n');
     }
 

@@ -86,6 +86,22 @@ test("sliders and boxes change the numbers, and the study comes back", async () 
   await page.close();
 });
 
+test("costs follow the sliders, and only where there are costs", async () => {
+  const page = await browser.open(report("analyze", "examples/first-study/study.toml", "costs"));
+  const cost = () => page.evaluate("document.getElementById('cost').textContent");
+  // 1 + 0.2/0.1 for the housing and 2 + 0.24/0.06 for the bearing.
+  assert.equal(await cost(), "9.00000");
+  await page.evaluate(`(${SET})(0, "factor", 0.05)`);
+  await page.evaluate(FRAME);
+  assert.equal(await cost(), "11.0000 (22.22 % more)");
+  quiet(page);
+  await page.close();
+  const free = await browser.open(report("analyze", "examples/stacked-blocks/study.toml", "no-costs"));
+  assert.equal(await free.evaluate("document.getElementById('cost')"), null);
+  quiet(free);
+  await free.close();
+});
+
 test("the browser computes what the engine computes", async () => {
   const files = readdirSync(cases).filter((file) => file.endsWith(".expected.json"));
   assert.ok(files.length >= 5, "the suite left its cases");

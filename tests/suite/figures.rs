@@ -52,7 +52,7 @@ fn the_tutorial_reads_its_output_right() {
     says(TUTORIAL, &format!("so its mean is {mean:.3}: that is {:.3} mm.", number(&spacer.0["nominal"]) - mean));
     says(TUTORIAL, &format!("The tilt takes {:.4} mm away", -number(&tilt.1["mean_shift"])));
     let normal = 100.0 * number(&gap["normal_fit"]["yield"]);
-    says(TUTORIAL, &format!("- Yield {:.3} %, target met.", 100.0 * of("yield")));
+    says(TUTORIAL, &format!("- Yield {:.3} %, target not known.", 100.0 * of("yield")));
     says(TUTORIAL, &format!("would say {normal:.2} %: kurtosis {:.2} instead of 3", of("kurtosis")));
     let [low, high] = [0, 1].map(|end| number(&gap["worst_case"]["linear"][end]));
     says(TUTORIAL, &format!("- Worst case {low:.3} .. {high:.3}:"));
@@ -73,7 +73,14 @@ fn the_tutorial_reads_its_output_right() {
             of("ppm_below") + of("ppm_above")
         ),
     );
-    says(TUTORIAL, &format!("rejects are {after:.0} ppm instead of {before:.0}."));
+    let law = number(&first(&["analyze", "examples/first-study/tighter.toml"])["ppm_below"]);
+    says(TUTORIAL, &format!("({law:.0} ppm, and the model rejects {after:.0} ppm instead of {before:.0})"));
+    let warnings = report["warnings"].as_array().unwrap();
+    let tails = warnings.iter().find(|one| one["code"] == "tails-missed").unwrap()["message"].as_str().unwrap();
+    let ppm = tails.split("that has these moments ").nth(1).unwrap().split(' ').next().unwrap();
+    says(TUTORIAL, &format!("reject more than the target allows ({ppm} ppm):"));
+    let error = 100.0 * number(&gap["error_estimate"]["yield"]);
+    says(TUTORIAL, &format!("an estimated error of the yield of {error:.2} %."));
 }
 
 /// What is required of the first study, what its tolerances cost, and what the model says of them.

@@ -158,7 +158,16 @@ fn the_manual_page_is_set_without_a_warning() {
     writing.join().unwrap();
     assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
     let set = String::from_utf8(output.stdout).unwrap();
-    for section in ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "SENSITOL ANALYZE", "SENSITOL JOURNAL"] {
+    for section in [
+        "NAME",
+        "SYNOPSIS",
+        "DESCRIPTION",
+        "OPTIONS",
+        "SENSITOL ANALYZE",
+        "SENSITOL JOURNAL",
+        "EXIT STATUS",
+        "ENVIRONMENT",
+    ] {
         assert!(set.lines().any(|line| line == section), "{section}: {set}");
     }
     // Lines are set to one width: spaces between words do not count.

@@ -243,15 +243,12 @@ pub fn commands() -> String {
         "# Commands\n\n\
          This page is made from what the program parses; `sensitol help COMMAND` prints the same. Results go to stdout, or to the file of\n\
          `-o`; progress, warnings and errors to stderr.\n\n\
-         | exit code | meaning |\n|--:|---|\n\
-         | 0 | done, with warnings perhaps; a pipe that was closed |\n\
-         | 1 | `--check`: a target is missed; `probe`: a check failed |\n\
-         | 2 | the command line or the study is wrong, or an output cannot be written |\n\
-         | 3 | the model gave a characteristic that was asked for no result |\n\
-         | 4 | `allocate`: no tolerances keep what is required, or they were not found in time |\n\
-         | 130 | interrupted: the first Ctrl-C reports what is known, the second gives up what is under way, the third ends at once |\n\n\
-         With `--json` the report is printed with 1, 3 and 4 too.\n\n",
+         | exit code | meaning |\n|--:|---|\n",
     );
+    for (code, meaning) in sensitol::cli::exit_codes() {
+        writeln!(page, "| {code} | {meaning} |").unwrap();
+    }
+    page += "\nWith `--json` the report is printed with 1, 3 and 4 too.\n\n";
     let mut values = BTreeMap::new();
     page += "## Every command\n\n";
     options(&mut page, command.get_arguments().filter(|one| !one.is_positional()), &mut values);
