@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::args::{AnalyzeArgs, StackArg};
-use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
+use super::files::Files;
 use super::interrupt;
-use super::output::{Destination, Look, json};
+use super::output::{Look, json};
 use super::points;
 use super::progress::Bar;
 use super::running::{Clock, externals, on_threads};
@@ -26,7 +26,9 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
         return Err(Failure::NothingToCheck);
     }
-    let destination = Destination::open(&asked.output)?;
+    let mut files = Files::of(&asked.study.study, &study, asked.work.journal.as_deref());
+    asked.points.iter().for_each(|points| files.reads(points, "read by --points"));
+    let destination = files.output(&asked.output)?;
     let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
     let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
     let page = asked.html.as_deref().map(Destination::file).transpose()?;

@@ -80,8 +80,12 @@ pub(super) enum Failure {
     Unwritable { path: PathBuf, error: std::io::Error },
     #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]
     Exists { path: PathBuf },
-    #[error("--write {path} is the study itself, which would be lost: name a new file", path = path.display())]
-    OntoItself { path: PathBuf },
+    #[error("`{path}` is {what}, which would be lost: name another file", path = path.display())]
+    WouldBeLost { path: PathBuf, what: &'static str },
+    #[error("--write {path}: the study names {names}, and its paths start from its own folder: write into that folder, and move study and files together", path = path.display())]
+    AnotherFolder { path: PathBuf, names: String },
+    #[error("`{path}` is asked for twice: name two files", path = path.display())]
+    AskedTwice { path: PathBuf },
     #[error("{path} is a file, and --csv needs a folder", path = path.display())]
     NoFolder { path: PathBuf },
     #[error("cannot write to standard output: {0}")]

@@ -9,6 +9,7 @@ mod check;
 mod compare;
 mod csv;
 mod failure;
+mod files;
 mod init;
 mod interrupt;
 mod journal;

@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use super::args::PlanArgs;
 use super::failure::{Exit, Failure};
-use super::output::{Destination, Look, json};
-use super::study;
+use super::files::Files;
+use super::output::{Look, json};
+use super::{points, study};
 use crate::method::DerivativeSource;
 use crate::plan::{Known, Plan, Purpose, Stage};
 use crate::problem::Problem;
@@ -59,8 +60,9 @@ const EXACT: &str = "exact derivatives: the means, and the nominal values where 
 
 pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read(&asked.study, Externals::default())?;
-    let destination = Destination::open(&asked.output)?;
-    let points = asked.write_points.as_deref().map(Destination::file).transpose()?;
+    let mut files = Files::of(&asked.study.study, &study, None);
+    let destination = files.output(&asked.output)?;
+    let written = files.file(asked.write_points.as_deref())?;
     let procedure = study.options.method.procedure();
     let plan = procedure.plan(&study.problem, &study.options)?;
     let (evaluations, stages) = plan.cost();

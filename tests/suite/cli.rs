@@ -314,6 +314,71 @@ fn files_are_written_whole_or_not_at_all() {
 /// The points of a stage as exact numbers, a column per dimension.
 #[test]
 fn points_can_be_written() {
+/// No option writes over what the command reads, by whatever path, nor two of them the same file; nothing is evaluated then.
+#[test]
+fn what_is_read_is_never_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let text = "[dimensions]\na = { measured = \"data.csv\", tolerance = 0.5, nominal = 1 }\nb = { nominal = 2, tolerance = 0.1 }\n\
+                [characteristics]\ny = { formula = \"a + b\", lower = 2, target_yield = 0.9 }\n\
+                [costs]\nb = { model = \"reciprocal\", b = 1 }\n";
+    let data = "d\n0.9\n1.0\n1.1\n1.2\n0.8\n1.05\n";
+    let (study, csv) = (at("study.toml"), at("data.csv"));
+    std::fs::create_dir(folder.path().join("sub")).unwrap();
+    let around = at("sub/../study.toml");
+    let mut tries: Vec<(Vec<&str>, &str, &str)> = vec![
+        (vec!["analyze", &study, "--html", &study], &study, "the study itself"),
+        (vec!["analyze", &study, "-o", &study], &study, "the study itself"),
+        (vec!["analyze", &study, "-o", &around], &around, "the study itself"),
+        (vec!["analyze", &study, "-o", &csv], &csv, "measured data of the study"),
+        (vec!["plan", &study, "--write-points", &study], &study, "the study itself"),
+        (vec!["plan", &study, "-o", &csv], &csv, "measured data of the study"),
+        (vec!["sweep", &study, "--over", "b=1:2:3", "--svg", &study], &study, "the study itself"),
+        (vec!["compare", &study, "--svg", &study], &study, "the study itself"),
+        (vec!["simulate", &study, "--html", &csv], &csv, "measured data of the study"),
+        (vec!["simulate", &study, "--rare", "-o", &study], &study, "the study itself"),
+        (vec!["allocate", &study, "--write", &csv], &csv, "measured data of the study"),
+        (vec!["probe", &study, "-o", &study], &study, "the study itself"),
+    ];
+    let link = at("link.html");
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(&study, &link).unwrap();
+        tries.push((vec!["analyze", &study, "--html", &link], &link, "the study itself"));
+    }
+    std::fs::write(&study, text).unwrap();
+    std::fs::write(&csv, data).unwrap();
+    let kept = || {
+        let read = |path: &str| std::fs::read_to_string(path).unwrap();
+        read(&study) == text && read(&csv) == data
+    };
+    for (arguments, path, what) in tries {
+        let output = sensitol(&arguments).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments:?}: {error}");
+        assert!(error.contains(&format!("`{path}` is {what}, which would be lost")), "{arguments:?}: {error}");
+        assert!(kept(), "{arguments:?}");
+    }
+    // One file for two reports: neither is written.
+    let twice = at("twice.html");
+    for second in [twice.clone(), at("sub/../twice.html")] {
+        let output = sensitol(&["analyze", &study, "-o", &twice, "--html", &second]).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            output.status.code() == Some(2) && error.contains(&format!("`{second}` is asked for twice")),
+            "{error}"
+        );
+        assert!(!Path::new(&twice).exists());
+    }
+    // Tables of --csv are files as others are.
+    std::fs::rename(&csv, at("sweep.csv")).unwrap();
+    std::fs::write(&study, text.replace("data.csv", "sweep.csv")).unwrap();
+    let here = folder.path().to_str().unwrap();
+    let output = sensitol(&["sweep", &study, "--over", "b=1:2:3", "--csv", here]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(std::fs::read_to_string(at("sweep.csv")).unwrap(), data);
+}
+
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("points.csv");
     let output = sensitol(&["plan", ENGINE, "--write-points", path.to_str().unwrap()]).output().unwrap();
