@@ -1,5 +1,6 @@
 //! `sensitol analyze`.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::args::{AnalyzeArgs, StackArg};
@@ -30,8 +31,9 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     asked.points.iter().for_each(|points| files.reads(points, "read by --points"));
     let destination = files.output(&asked.output)?;
     let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
-    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
-    let page = asked.html.as_deref().map(Destination::file).transpose()?;
+    let folder = files.folder(asked.csv.as_deref(), &names)?;
+    let page = files.file(asked.html.as_deref())?;
+    let missing = files.file(asked.write_missing.as_deref())?;
     let clock = Clock::start(asked.work.time);
     let analysis = analyze(&study, asked.threads, &clock, look)?;
     let about = clock.about(&study, study.options.seed);
@@ -49,11 +51,13 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
         let what_if = WhatIf::of(&study.problem, &analysis, &study.lines, &study.costs);
         page.write(&analyze_html(&report, Some(&what_if)))
     }));
+    let points = given.as_ref().map(|given| given.missing()).unwrap_or_default();
+    let written = written.and(missing.map_or(Ok(()), |missing| missing.write(&points::table(&study.problem, &points))));
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }
     if let Some(given) = &given {
-        unmatched(given, look);
+        unmatched(given, asked.write_missing.as_deref(), look);
     }
     if interrupt::stopped() {
         look.warn("stopped", &format!("interrupted after {} evaluations", analysis.evaluations));
@@ -76,10 +80,22 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
 }
 
 /// Tells of points without an answer, and of answers to points that nobody asked for.
-fn unmatched(given: &Table, look: Look) {
-    match given.missing() {
-        0 => {}
-        count => look.warn("missing-points", &format!("{count} points have no answer; plan --write-points lists all")),
+fn unmatched(given: &Table, written: Option<&Path>, look: Look) {
+    match (given.missing().len(), written) {
+        (0, _) => {}
+        (count, None) => {
+            look.warn(
+                "missing-points",
+                &format!("{count} points have no answer; --write-missing NEXT.csv writes them"),
+            );
+        }
+        (count, Some(path)) => look.warn(
+            "missing-points",
+            &format!(
+                "{count} points have no answer: append the answers to those of {} and run it again",
+                path.display()
+            ),
+        ),
     }
     let unused = given.unused();
     if !unused.is_empty() {

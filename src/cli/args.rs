@@ -167,6 +167,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with = "journal")]
     pub(super) points: Option<PathBuf>,
 
+    /// Write the points of the next stage that have no answer in the file of --points, as plan --write-points does
+    #[arg(long, value_name = "FILE.csv", requires = "points", help_heading = OUTPUT)]
+    pub(super) write_missing: Option<PathBuf>,
+
     /// Search the true extremes in the box of the tolerance bands too, at some 2N evaluations or more for either side
     #[arg(long, conflicts_with = "points")]
     pub(super) extremes: bool,

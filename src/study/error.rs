@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::data::DataFault;
 use crate::allocation::{CostError, RequirementError};
 use crate::assembly::formula::FormulaFault;
+use crate::assembly::NoColumn;
 use crate::assembly::implicit::ConditionsError;
 use crate::characteristic::LimitsError;
 use crate::correlation::Refusal;
@@ -229,11 +230,8 @@ pub enum StudyFault {
         path: std::path::PathBuf,
     },
     /// Answers evaluated elsewhere do not say for which value of a dimension.
-    #[error("the points that were evaluated elsewhere have no column `{dimension}`")]
-    MissingColumn {
-        /// The dimension.
-        dimension: String,
-    },
+    #[error(transparent)]
+    MissingColumn(#[from] NoColumn),
     /// Answers evaluated elsewhere, for a study that asks nobody.
     #[error("points that were evaluated elsewhere are the answers of a [model] command, and the study has none")]
     NothingExternal,
