@@ -47,7 +47,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         });
     let about = clock.about(&study, Some(options.seed));
     let report = AllocationReport::of(&study.problem, &allocation, table.as_ref(), about);
-    let printed = if asked.output.json { json(&report) } else { allocation_text(&report, look.style()) };
+    let printed = if asked.output.json { json(&report) } else { allocation_text(&report, look.style(&asked.output)) };
     let mut result = destination.write(&printed);
     result = result.and(folder.map_or(Ok(()), |folder| folder.write(&allocation_csv(&report))));
     result = result.and(chart.map_or(Ok(()), |chart| chart.write(&allocation_svg(&report))));

@@ -40,8 +40,8 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let report = Report::of(&study.problem, &analysis, about);
     let printed = match asked.stack {
         None if asked.output.json => json(&report),
-        None => text(&report, look.style()),
-        Some(StackArg::Text) => stack_text(&report.stacks(), look.style()),
+        None => text(&report, look.style(&asked.output)),
+        Some(StackArg::Text) => stack_text(&report.stacks(), look.style(&asked.output)),
         Some(StackArg::Csv) => stack_csv(&report.stacks()),
         Some(StackArg::Markdown) => stack_markdown(&report.stacks()),
     };

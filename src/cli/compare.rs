@@ -31,8 +31,11 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let comparison = on_threads(asked.of.threads, || compare_within(&study.problem, &options, &run))??;
     let about = clock.about(&study, Some(options.seed));
     let report = CompareReport::of(&comparison, about);
-    let written =
-        destination.write(&if asked.output.json { json(&report) } else { compare_text(&report, look.style()) });
+    let written = destination.write(&if asked.output.json {
+        json(&report)
+    } else {
+        compare_text(&report, look.style(&asked.output))
+    });
     let written = written.and(table.map_or(Ok(()), |table| table.write(&[compare_csv(&report)])));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&compare_svg(&report))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&compare_html(&report))));

@@ -66,6 +66,10 @@ pub(super) enum Failure {
     Journal(#[from] JournalError),
     #[error("{}; there are {known}", number.map_or("--model N says which of several models".to_owned(), |number| format!("there is no model {number} in the journal")))]
     UnknownJournalModel { number: Option<i64>, known: String },
+    #[error(
+        "{answers} answers would be forgotten, and nobody is at a terminal to be asked: --yes does it all the same"
+    )]
+    NotAgreed { answers: usize },
     #[error("{path}: {reason}", path = path.display())]
     Points { path: PathBuf, reason: String },
     #[error("the table cannot be written: {reason}")]

@@ -19,9 +19,14 @@ pub(super) struct Look {
 }
 
 impl Look {
-    pub(super) fn style(self) -> Style {
+    /// Of a report that goes there: a file has no colours, unless they are asked for always.
+    pub(super) fn style(self, asked: &OutputArgs) -> Style {
         let detail = if self.verbose { Detail::Full } else { Detail::Short };
-        Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale() }
+        let color = match asked.output {
+            Some(_) => self.color == ColorChoice::Always,
+            None => anstream::AutoStream::choice(&std::io::stdout()) != anstream::ColorChoice::Never,
+        };
+        Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale(), color }
     }
 
     /// Tells of something that is no error.

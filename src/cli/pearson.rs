@@ -62,7 +62,7 @@ fn text(asked: &PearsonArgs, answers: &Answers, law: &Pearson, look: Look) -> St
         .flat_map(|(name, xs, ys)| xs.iter().zip(ys).map(move |(x, y)| (format!("{name}({x})"), *y)))
         .collect();
     if lines.is_empty() {
-        return law_text(law, look.style());
+        return law_text(law, look.style(&asked.output));
     }
     let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     lines.iter().map(|(name, value)| format!("{name:width$}  {value:?}\n")).collect()

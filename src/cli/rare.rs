@@ -32,7 +32,11 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     let found = sampling(threads, &clock, look, |run, pace| rare_within(&study.problem, &options, run, pace))??;
     let about = clock.about(study, Some(options.seed));
     let report = RareReport::of(&study.problem, &found, about);
-    let written = destination.write(&if asked.output.json { json(&report) } else { rare_text(&report, look.style()) });
+    let written = destination.write(&if asked.output.json {
+        json(&report)
+    } else {
+        rare_text(&report, look.style(&asked.output))
+    });
     let written = written.and(folder.map_or(Ok(()), |folder| {
         let [name] = names;
         folder.write(&[CsvFile { name, text: rare_csv(&report) }])

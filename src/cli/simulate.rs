@@ -53,8 +53,11 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look)?;
     let about = clock.about(&study, Some(options.seed));
     let report = SimulationReport::of(&study.problem, &simulation, about);
-    let written =
-        destination.write(&if asked.output.json { json(&report) } else { simulation_text(&report, look.style()) });
+    let written = destination.write(&if asked.output.json {
+        json(&report)
+    } else {
+        simulation_text(&report, look.style(&asked.output))
+    });
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&simulation_csv(&report))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
     for warning in &report.warnings {

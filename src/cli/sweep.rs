@@ -26,7 +26,11 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let clock = Clock::start(asked.work.time);
     let sweep = swept(&study, asked, &clock, look)?;
     let report = SweepReport::of(&study.problem, &sweep, clock.about(&study, study.options.seed));
-    let written = destination.write(&if asked.output.json { json(&report) } else { sweep_text(&report, look.style()) });
+    let written = destination.write(&if asked.output.json {
+        json(&report)
+    } else {
+        sweep_text(&report, look.style(&asked.output))
+    });
     let written = written.and(table.map_or(Ok(()), |table| table.write(&[sweep_csv(&report)])));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&sweep_svg(&report))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&sweep_html(&report))));

@@ -18,7 +18,26 @@ pub struct Style {
     pub detail: Detail,
     /// Whether signs such as ± may be used.
     pub unicode: bool,
+    /// Whether verdicts are coloured.
+    pub color: bool,
 }
+
+/// Escape sequences of good, doubtful and bad, and what ends them.
+const GREEN: &str = "\u{1b}[32m";
+const YELLOW: &str = "\u{1b}[33m";
+const RED: &str = "\u{1b}[1;31m";
+const PLAIN: &str = "\u{1b}[0m";
+/// Words that tell whether what was wanted is so, anywhere in a report.
+const VERDICTS: [(&str, &str); 5] = [
+    ("met", GREEN),
+    ("within the limits", GREEN),
+    ("MISSED", RED),
+    ("EXCEEDS the limits", RED),
+    ("the sample does not tell", YELLOW),
+];
+/// How an allocation ended, before a colon at the beginning of its line.
+const STATUSES: [(&str, &str); 4] =
+    [("optimal", GREEN), ("almost-optimal", YELLOW), ("out-of-time", YELLOW), ("infeasible", RED)];
 
 /// No line is longer.
 pub(super) const WIDTH: usize = 100;
@@ -46,7 +65,7 @@ impl Page {
     }
 
     pub(super) fn finish(self) -> String {
-        self.text
+        if self.style.color { self.text.lines().map(|line| coloured(line) + "\n").collect() } else { self.text }
     }
 
     pub(super) fn line(&mut self, text: &str) {
@@ -127,6 +146,27 @@ impl<const N: usize> Grid<N> {
     pub(super) fn row(&mut self, cells: [String; N]) {
         self.rows.push(cells);
     }
+}
+
+/// A line with its verdicts in colour: at the end, as escape sequences have no width.
+fn coloured(line: &str) -> String {
+    for (status, color) in STATUSES {
+        if let Some(rest) = line.strip_prefix(status).filter(|rest| rest.starts_with(':')) {
+            return format!("{color}{status}{PLAIN}{rest}");
+        }
+    }
+    VERDICTS.iter().fold(line.to_owned(), |line, (verdict, color)| {
+        let (mut text, mut rest) = (String::new(), line.as_str());
+        while let Some(at) = rest.find(verdict) {
+            let (before, after) = (&rest[..at], &rest[at + verdict.len()..]);
+            let inside = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+            let word = !inside(before.chars().next_back()) && !inside(after.chars().next());
+            text += before;
+            text += &if word { format!("{color}{verdict}{PLAIN}") } else { (*verdict).to_owned() };
+            rest = after;
+        }
+        text + rest
+    })
 }
 
 /// A name on one line that does not push everything else off it.

@@ -169,7 +169,12 @@ impl Study {
         let format = match path.extension().and_then(|extension| extension.to_str()) {
             Some("toml") => Format::Toml,
             Some("json") => Format::Json,
-            _ => return Err(failed("", StudyFault::UnknownFormat)),
+            _ => {
+                let ending = |ending: &str| PathBuf::from(format!("{name}.{ending}"));
+                let beside = ["toml", "json"].map(ending).into_iter().find(|study| study.is_file());
+                let beside = beside.map(|study| study.display().to_string());
+                return Err(failed("", StudyFault::UnknownFormat { beside }));
+            }
         };
         let bytes =
             std::fs::read(path).map_err(|error| failed("", StudyFault::Unreadable { reason: error.to_string() }))?;

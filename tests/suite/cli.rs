@@ -143,6 +143,9 @@ fn wrong_input() {
         &["analyze", ENGINE, "--kc", "f"],
         &["analyze", ENGINE, "--budget", "20"],
         &["analyze", ENGINE, "--budget", "-1"],
+        &["analyze", ENGINE, "--budget", "2.5"],
+        &["help", "analize"],
+        &["check", "examples/engine-balance/study"],
         &["analyze", ENGINE, "--step", "0"],
         &["analyze", ENGINE, "--step", "nan"],
         &["analyze", ENGINE, "--accuracy", "much"],
@@ -311,9 +314,6 @@ fn files_are_written_whole_or_not_at_all() {
     }
 }
 
-/// The points of a stage as exact numbers, a column per dimension.
-#[test]
-fn points_can_be_written() {
 /// No option writes over what the command reads, by whatever path, nor two of them the same file; nothing is evaluated then.
 #[test]
 fn what_is_read_is_never_written() {
@@ -379,6 +379,9 @@ fn what_is_read_is_never_written() {
     assert_eq!(std::fs::read_to_string(at("sweep.csv")).unwrap(), data);
 }
 
+/// The points of a stage as exact numbers, a column per dimension.
+#[test]
+fn points_can_be_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("points.csv");
     let output = sensitol(&["plan", ENGINE, "--write-points", path.to_str().unwrap()]).output().unwrap();
@@ -416,6 +419,71 @@ fn colours_are_for_terminals() {
     assert!(coloured(&[&warns[..], &["--color", "always"]].concat(), &[]));
     assert!(!coloured(&[&warns[..], &["--color", "never"]].concat(), &[("CLICOLOR_FORCE", "1")]));
     assert!(!coloured(&warns, &[("NO_COLOR", "1")]));
+}
+
+/// Verdicts have a colour on a terminal, and where colours are asked for; never in a file or a pipe otherwise.
+#[test]
+fn verdicts_are_coloured() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let text = |target: f64| {
+        format!(
+            "[dimensions]\na = {{ nominal = 1, tolerance = 0.3 }}\n[characteristics]\n\
+             y = {{ formula = \"a\", lower = 0.7, target_yield = {target} }}\n[costs]\na = {{ model = \"reciprocal\", b = 1 }}\n"
+        )
+    };
+    let study = |target: f64| {
+        std::fs::write(&study, text(target)).unwrap();
+        study.to_str().unwrap().to_owned()
+    };
+    let stdout = |arguments: &[&str]| String::from_utf8(sensitol(arguments).output().unwrap().stdout).unwrap();
+    let always = |command: &str, target: f64| stdout(&[command, &study(target), "--color", "always"]);
+    let (red, green, yellow) = ("\u{1b}[1;31mMISSED\u{1b}[0m", "\u{1b}[32mmet\u{1b}[0m", "\u{1b}[33m");
+    assert!(always("analyze", 0.9999).contains(&format!("target {red}")));
+    assert!(always("analyze", 0.99).contains(&format!("target {green}")));
+    assert!(always("simulate", 0.9999).contains(red) && always("simulate", 0.99).contains(green));
+    // 99.865 % of the assemblies: a hundred points cannot tell whether 99 % are reached.
+    let few = stdout(&["simulate", &study(0.99), "--samples", "100", "--color", "always"]);
+    assert!(few.contains(&format!("{yellow}the sample does not tell")), "{few}");
+    assert!(always("allocate", 0.99).starts_with("\u{1b}[32moptimal\u{1b}[0m: cost"));
+    // The colours are all that is added.
+    let plain = stdout(&["analyze", &study(0.9999)]);
+    assert!(!plain.contains('\u{1b}'));
+    let bare = |text: String| {
+        ["\u{1b}[1;31m", "\u{1b}[32m", "\u{1b}[33m", "\u{1b}[0m"].iter().fold(text, |text, code| text.replace(code, ""))
+    };
+    assert_eq!(bare(always("analyze", 0.9999)), plain);
+    for command in ["analyze", "simulate", "allocate"] {
+        let json = stdout(&[command, &study(0.99), "--json", "--color", "always"]);
+        assert!(!json.contains('\u{1b}'), "{command}");
+    }
+}
+
+/// Counts as people write them, and parts in percent.
+#[test]
+fn numbers_may_be_written_short() {
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_slice(&sensitol(arguments).output().unwrap().stdout).unwrap()
+    };
+    assert_eq!(json(&["simulate", ENGINE, "--samples", "1e3", "--json"])["samples"], 1000);
+    let percent = json(&["analyze", ENGINE, "-m", "auto", "--accuracy", "1%", "--budget", "1e3", "--json"]);
+    let share = json(&["analyze", ENGINE, "-m", "auto", "--accuracy", "0.01", "--budget", "1000", "--json"]);
+    assert_eq!(
+        (&percent["evaluations"], &percent["characteristics"]),
+        (&share["evaluations"], &share["characteristics"])
+    );
+}
+
+/// Help that cannot be printed is an error, as any result is.
+#[test]
+#[cfg(target_os = "linux")]
+fn help_into_a_full_device_is_an_error() {
+    for arguments in [&["help"][..], &["--help"], &["--version"], &["analyze", "--help"]] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = sensitol(arguments).stdout(full).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && error.contains("cannot write to standard output"), "{error}");
+    }
 }
 
 /// `--color never` and a locale without UTF-8 get plain ASCII.

@@ -391,7 +391,13 @@ fn the_journal_can_be_read() {
     assert_eq!(journal(&["export", &file, "--model", "7"]).0, 2);
     assert_eq!(journal(&["show", "nowhere.sqlite"]).0, 2);
     assert_eq!(journal(&["forget"]).0, 2);
-    assert_eq!(journal(&["forget", &file]), (0, "7 answers forgotten\n".into()));
+    // Nobody at a terminal: what took hours is not forgotten by a slip, nor written over.
+    let (code, asked) = journal(&["forget", &file]);
+    assert!(code == 2 && asked.contains("7 answers would be forgotten") && asked.contains("--yes"), "{asked}");
+    let (code, kept) = journal(&["export", &file, "-o", &file]);
+    assert!(code == 2 && kept.contains("is the journal itself, which would be lost"), "{kept}");
+    assert!(journal(&["show", &file]).1.contains("7 points"));
+    assert_eq!(journal(&["forget", &file, "--yes"]), (0, "7 answers forgotten\n".into()));
     study.run(&[]);
     assert_eq!(study.evaluations(), 12);
 }

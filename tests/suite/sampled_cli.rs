@@ -155,7 +155,8 @@ fn wrong_wishes() {
     let mut all = String::new();
     for arguments in [
         &["simulate", BLOCKS, "--samples", "0"][..],
-        &["simulate", BLOCKS, "--samples", "1e5"],
+        &["simulate", BLOCKS, "--samples", "1.5"],
+        &["simulate", BLOCKS, "--samples", "-3"],
         &["simulate", BLOCKS, "--until", "-1"],
         &["simulate", BLOCKS, "--sampler", "halton"],
         &["simulate", BLOCKS, "--kc", "gab"],
