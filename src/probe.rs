@@ -1,6 +1,6 @@
 //! Whether a model can be trusted, and how it is best asked: repeatability, order, errors, noise, speed.
 //!
-//! Evaluations: `2N + 31` for N varying dimensions. The points are always the same ones.
+//! Evaluations: `2N + 31` for N varying dimensions, one where it gives no value. The points are always the same ones.
 //!
 //! Source of the noise level: Moré and Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), algorithm
 //! ECnoise: the standard deviation of differences of order k of values at equal distances, where it no longer depends on k.
@@ -20,6 +20,10 @@ const CLOSE: f64 = 1e-5;
 const FAR: f64 = 30.0;
 /// Noise may spoil a slope by this part at the least step.
 const SPOILT: f64 = 1e-3;
+/// Points without a value that are named.
+const NAMED: usize = 5;
+/// One point without a value in so many is too much.
+const MANY: usize = 5;
 
 /// What a probe found out.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,8 +49,36 @@ pub struct Probe {
 pub struct Check {
     /// What.
     pub what: &'static str,
-    /// What is wrong with it; None when nothing is.
-    pub fault: Option<String>,
+    /// Whether it does.
+    pub verdict: Verdict,
+}
+
+/// What a check came to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Verdict {
+    /// It is as it should be.
+    Passed,
+    /// An analysis gets along with it, and should not have to.
+    Doubtful(String),
+    /// It is not as it should be.
+    Failed(String),
+    /// There were no values to check it with.
+    NotChecked,
+}
+
+impl Verdict {
+    /// What is wrong, where anything is.
+    pub fn fault(&self) -> Option<&str> {
+        match self {
+            Self::Doubtful(fault) | Self::Failed(fault) => Some(fault),
+            Self::Passed | Self::NotChecked => None,
+        }
+    }
+
+    /// A fault, or none.
+    fn of(fault: Option<String>) -> Self {
+        fault.map_or(Self::Passed, Self::Failed)
+    }
 }
 
 /// One characteristic.
@@ -66,13 +98,28 @@ pub struct Probed {
 }
 
 impl Probe {
-    /// Whether everything is as it should be.
+    /// Whether nothing is as it should not be, and everything could be checked.
     pub fn passed(&self) -> bool {
-        self.checks.iter().all(|check| check.fault.is_none())
+        self.checks.iter().all(|check| matches!(check.verdict, Verdict::Passed | Verdict::Doubtful(_)))
     }
 }
 
-/// Probes the model of a problem.
+/// What is checked once the nominal dimensions have values.
+const LATER: [&str; 6] = [TWICE, WITHIN, ORDER, AFTER, FAILING, REACTS];
+const TWICE: &str = "the same point twice has the same values";
+const WITHIN: &str = "every point within the tolerances has values";
+const ORDER: &str = "the order of the points does not matter";
+const AFTER: &str = "the nominal values are the same after other points";
+const FAILING: &str = "the nominal values are the same after points where it may fail";
+const REACTS: &str = "every characteristic reacts to some dimension";
+
+/// Most evaluations of a probe: fewer where the nominal dimensions have no values.
+pub fn evaluations(problem: &Problem) -> usize {
+    let run = Run::to_the_end();
+    2 * Asked { problem, run: &run }.varying().len() + 2 * SCATTERED + LINE + 6
+}
+
+/// Probes the model of a problem. Without any value at the nominal dimensions nothing else is asked.
 ///
 /// # Errors
 /// When the model cannot be used at all.
@@ -89,17 +136,32 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
         asked.rows(rows)
     };
     let mut checks = Vec::new();
-    let mut check = |what, fault| checks.push(Check { what, fault });
+    let mut check = |what, verdict| checks.push(Check { what, verdict });
 
     // The first point may warm something up.
+    let begun = Instant::now();
     let first = ask(std::slice::from_ref(&nominal));
+    let alone = begun.elapsed();
+    let missing = (0..names.len()).find(|&c| first.value(0, c).is_none());
+    let fault = missing.map(|c| format!("`{}`: {}", names[c], reason(&first, 0, c)));
+    check("the nominal dimensions have values", Verdict::of(fault));
+    if (0..names.len()).all(|c| first.value(0, c).is_none()) {
+        LATER.into_iter().for_each(|what| check(what, Verdict::NotChecked));
+        let unknown = |name: &String| Probed {
+            name: name.clone(),
+            nominal: None,
+            noise: None,
+            least_step: vec![None; problem.dimensions().len()],
+            silent: Vec::new(),
+        };
+        let characteristics = names.iter().map(unknown).collect();
+        return Ok(Probe { adapter, evaluations, start, alone, together: alone, checks, characteristics });
+    }
     let begun = Instant::now();
     let second = ask(std::slice::from_ref(&nominal));
     let alone = begun.elapsed();
-    let missing = (0..names.len()).find(|&c| first.value(0, c).is_none());
-    check("the nominal dimensions have values", missing.map(|c| format!("`{}`: {}", names[c], reason(&first, 0, c))));
-    let same = |a: &Responses, row: usize, b: &Responses, other: usize| differing(&names, a, row, b, other, 0.0);
-    check("the same point twice has the same values", same(&first, 0, &second, 0));
+    let same = |rows: &[(usize, usize)], a: &Responses, b: &Responses, by: f64| same(&names, rows, a, b, by);
+    check(TWICE, same(&[(0, 0)], &first, &second, 0.0));
 
     let scattered: Vec<Vec<f64>> = (0..SCATTERED).map(|index| asked.scattered(index)).collect();
     let begun = Instant::now();
@@ -115,25 +177,20 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
         })
         .collect();
     let largest = noise.iter().flatten().copied().fold(0.0, f64::max);
-    let order =
-        (0..SCATTERED).find_map(|row| differing(&names, &forward, row, &backward, SCATTERED - 1 - row, 10.0 * largest));
-    check("the order of the points does not matter", order);
     let after = ask(std::slice::from_ref(&nominal));
-    check(
-        "the nominal values are the same after other points",
-        differing(&names, &first, 0, &after, 0, 10.0 * largest),
-    );
     // Whether these fail is the model's business; what matters is what comes after.
     let outside: Vec<Vec<f64>> = [FAR, -FAR].map(|far| asked.along(&nominal, far)).to_vec();
     ask(&outside);
-    let after = ask(std::slice::from_ref(&nominal));
-    check(
-        "the nominal values are the same after points where it may fail",
-        differing(&names, &first, 0, &after, 0, 10.0 * largest),
-    );
-
+    let failing = ask(std::slice::from_ref(&nominal));
     let steps: Vec<Vec<f64>> = asked.steps(&nominal);
     let stepped = ask(&steps);
+
+    check(WITHIN, asked.within(&nominal, &[(&scattered, &forward), (&line, &close), (&steps, &stepped)]));
+    let turned: Vec<(usize, usize)> = (0..SCATTERED).map(|row| (row, SCATTERED - 1 - row)).collect();
+    check(ORDER, same(&turned, &forward, &backward, 10.0 * largest));
+    check(AFTER, same(&[(0, 0)], &first, &after, 10.0 * largest));
+    check(FAILING, same(&[(0, 0)], &first, &failing, 10.0 * largest));
+
     let varying = asked.varying();
     let characteristics = names.iter().enumerate().map(|(c, name)| {
         let change = |index: usize| Some((stepped.value(2 * index, c)? - stepped.value(2 * index + 1, c)?).abs() / 2.0);
@@ -156,11 +213,18 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
         }
     });
     let characteristics: Vec<Probed> = characteristics.collect();
-    let mute = characteristics.iter().find(|one| !varying.is_empty() && one.silent.len() == varying.len());
-    check(
-        "every characteristic reacts to some dimension",
-        mute.map(|one| format!("`{}` is the same at every point within one sigma", one.name)),
-    );
+    let known = |c: usize| (0..steps.len()).filter_map(|row| stepped.value(row, c)).collect::<Vec<f64>>();
+    let mute = |&c: &usize| {
+        let known = known(c);
+        first.value(0, c).is_some_and(|nominal| !known.is_empty() && known.iter().all(|value| *value == nominal))
+    };
+    let unknown = |c: usize| first.value(0, c).is_none() || (!steps.is_empty() && known(c).is_empty());
+    let reacts = match (0..names.len()).find(mute) {
+        Some(c) => Verdict::Failed(format!("`{}` is the same at every point within one sigma", names[c])),
+        None if (0..names.len()).any(unknown) => Verdict::NotChecked,
+        None => Verdict::Passed,
+    };
+    check(REACTS, reacts);
     Ok(Probe { adapter, evaluations, start, alone, together, checks, characteristics })
 }
 
@@ -197,6 +261,43 @@ impl Asked<'_> {
         self.problem.dimensions().iter().enumerate().map(place).collect()
     }
 
+    /// Whether all points within the tolerances have values, and which have none.
+    fn within(&self, nominal: &[f64], asked: &[(&Vec<Vec<f64>>, &Responses)]) -> Verdict {
+        let outputs = self.problem.outputs().len();
+        let mut failed: Vec<String> = Vec::new();
+        let mut points = 0;
+        for (rows, out) in asked {
+            points += rows.len();
+            for (row, point) in rows.iter().enumerate() {
+                if let Some(c) = (0..outputs).find(|&c| out.value(row, c).is_none()) {
+                    failed.push(format!("{}: {}", self.place(nominal, point), reason(out, row, c)));
+                }
+            }
+        }
+        if failed.is_empty() {
+            return Verdict::Passed;
+        }
+        let shown = failed.iter().take(NAMED).cloned().collect::<Vec<_>>().join("; ");
+        let more = failed.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+        let fault = format!("{} of {points} points had no value: {shown}{more}", failed.len());
+        if failed.len() * MANY > points { Verdict::Failed(fault) } else { Verdict::Doubtful(fault) }
+    }
+
+    /// The dimensions of a point that are not nominal.
+    fn place(&self, nominal: &[f64], point: &[f64]) -> String {
+        let moved = self.problem.dimensions().iter().zip(nominal.iter().zip(point)).filter(|(_, (x, at))| x != at);
+        let mut words: Vec<String> = moved.map(|(dimension, (_, at))| format!("{} = {at}", dimension.name())).collect();
+        if words.is_empty() {
+            return "the nominal dimensions".to_owned();
+        }
+        if words.len() > NAMED {
+            words.truncate(NAMED);
+            words.push("...".to_owned());
+        }
+        words.join(", ")
+    }
+
     /// One sigma up and down for every dimension that varies.
     fn steps(&self, nominal: &[f64]) -> Vec<Vec<f64>> {
         let step = |d: usize, sigmas: f64| {
@@ -212,15 +313,25 @@ fn reason(out: &Responses, row: usize, c: usize) -> String {
     out.error(row, c).map_or("it was not evaluated".to_owned(), ToString::to_string)
 }
 
-/// The first characteristic that differs between two answers by more than this.
-fn differing(names: &[String], a: &Responses, row: usize, b: &Responses, other: usize, by: f64) -> Option<String> {
-    names.iter().enumerate().find_map(|(c, name)| match (a.value(row, c), b.value(other, c)) {
-        (Some(x), Some(y)) if (x - y).abs() <= by => None,
-        (None, None) => None,
-        (Some(x), Some(y)) => Some(format!("`{name}` was {x} and then {y}")),
-        (Some(x), None) => Some(format!("`{name}` was {x} and then had no value: {}", reason(b, other, c))),
-        (None, Some(y)) => Some(format!("`{name}` had no value ({}) and then was {y}", reason(a, row, c))),
-    })
+/// Whether two answers to the same points are the same but for this much, by pairs of their rows.
+fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses, by: f64) -> Verdict {
+    let mut compared = false;
+    for &(row, other) in rows {
+        for (c, name) in names.iter().enumerate() {
+            let fault = match (a.value(row, c), b.value(other, c)) {
+                (Some(x), Some(y)) if (x - y).abs() <= by => {
+                    compared = true;
+                    continue;
+                }
+                (None, None) => continue,
+                (Some(x), Some(y)) => format!("`{name}` was {x} and then {y}"),
+                (Some(x), None) => format!("`{name}` was {x} and then had no value: {}", reason(b, other, c)),
+                (None, Some(y)) => format!("`{name}` had no value ({}) and then was {y}", reason(a, row, c)),
+            };
+            return Verdict::Failed(fault);
+        }
+    }
+    if compared { Verdict::Passed } else { Verdict::NotChecked }
 }
 
 /// The noise in values at equal distances; None where their differences show none.

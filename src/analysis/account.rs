@@ -64,6 +64,7 @@ pub(super) fn account(
     let possible = plan.possible_pairs();
     parts.push(match (climbed.probes, climbed.direct) {
         _ if possible == 0 => "no interactions possible".to_owned(),
+        (0, 0) if climbed.rest != Rest::Reached => format!("no interaction of {possible} examined"),
         (0, 0) => format!("no interactions of {possible} needed"),
         (0, direct) => format!("{direct} of {possible} interactions examined one by one"),
         (probes, 0) => format!("interactions sought by {probes} probes of 2 points that move all dimensions"),
@@ -76,8 +77,10 @@ pub(super) fn account(
         Some(samples) => parts.push(format!("the model was sampled at {samples} points more")),
         None => parts.push(format!("{evaluations} evaluations where every second derivative takes {full}")),
     }
-    if climbed.rest == Rest::Budget {
-        parts.push("the budget ended it".to_owned());
+    match climbed.rest {
+        Rest::Budget => parts.push("the budget ended it".to_owned()),
+        Rest::Stopped => parts.push("interrupted".to_owned()),
+        Rest::Reached | Rest::Exhausted => {}
     }
     Some(parts.join("; "))
 }

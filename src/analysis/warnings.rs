@@ -128,10 +128,11 @@ fn failed_points(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warni
     let known = &outcome.evaluated.known;
     let mut errors = known.errors().filter(|&(_, of, _)| of == c);
     let (point, _, error) = errors.next()?;
+    let failed_more = errors.count();
     Some(Warning::FailedPoints {
         characteristic: name(problem, c),
-        failed: 1 + errors.count(),
-        points: outcome.evaluated.evaluations,
+        failed: 1 + failed_more,
+        points: 1 + failed_more + known.values(c).count(),
         point: described(problem, outcome, point),
         error: error.to_string(),
     })

@@ -24,6 +24,9 @@ pub enum EvaluationError {
     /// The table of answers that were evaluated elsewhere has none for this point.
     #[error("no answer is given for this point")]
     NotGiven,
+    /// The table of answers that were evaluated elsewhere has none at all for an output.
+    #[error(transparent)]
+    NoColumn(#[from] super::given::NoColumn),
     /// The answer could not be kept, or what is kept could not be read.
     #[error("{message}")]
     NotKept {

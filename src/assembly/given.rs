@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
+use super::process::Adapter;
 use super::{Ask, AssemblyFunction, EvaluationError, Responses, Run, Signature};
+use crate::names::nearest;
 
 /// Coordinates are the same when they differ by no more than this part of themselves: a spreadsheet keeps 15 digits.
 const SAME: f64 = 1e-12;
@@ -13,15 +15,23 @@ const SAME: f64 = 1e-12;
 pub struct Table {
     columns: Vec<String>,
     rows: Vec<Vec<Option<f64>>>,
-    /// Rows that answered some point, and points that no row answers.
-    asked: Mutex<(Vec<bool>, usize)>,
+    asked: Mutex<Asked>,
+}
+
+/// What was asked of a table so far.
+#[derive(Debug, Default)]
+struct Asked {
+    /// Rows that answered some point.
+    used: Vec<bool>,
+    /// Points of the first batch that lacked answers, each once: what was asked after it depends on them.
+    missing: Vec<Vec<f64>>,
 }
 
 impl Table {
     /// Every row has a cell for every column.
     pub fn new(columns: Vec<String>, rows: Vec<Vec<Option<f64>>>) -> Self {
         assert!(rows.iter().all(|row| row.len() == columns.len()), "a row has a cell for every column");
-        let asked = Mutex::new((vec![false; rows.len()], 0));
+        let asked = Mutex::new(Asked { used: vec![false; rows.len()], missing: Vec::new() });
         Self { columns, rows, asked }
     }
 
@@ -33,16 +43,38 @@ impl Table {
     /// Rows, from 0, that answered no point so far.
     pub fn unused(&self) -> Vec<usize> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
-        (0..self.rows.len()).filter(|&row| !asked.0[row]).collect()
+        (0..self.rows.len()).filter(|&row| !asked.used[row]).collect()
     }
 
-    /// Points asked for so far that no row answers.
-    pub fn missing(&self) -> usize {
-        self.asked.lock().unwrap_or_else(PoisonError::into_inner).1
+    /// Points that no row answers, each once: those of the first batch in which there are any, as what is asked after it would
+    /// be something else with their answers. Coordinates in the order of the inputs.
+    pub fn missing(&self) -> Vec<Vec<f64>> {
+        self.asked.lock().unwrap_or_else(PoisonError::into_inner).missing.clone()
     }
 
     fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column == name)
+    }
+}
+
+/// A dimension or output for which a table has no column.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the points that were evaluated elsewhere have no column `{name}`{}", self.instead())]
+pub struct NoColumn {
+    /// The name of what is wanted.
+    pub name: String,
+    /// The most similar column.
+    pub nearest: Option<String>,
+}
+
+impl NoColumn {
+    fn of(name: &str, table: &Table) -> Self {
+        let nearest = nearest(name, table.columns.iter().map(String::as_str)).map(str::to_owned);
+        Self { name: name.to_owned(), nearest }
+    }
+
+    fn instead(&self) -> String {
+        self.nearest.as_ref().map(|nearest| format!("; there is `{nearest}`")).unwrap_or_default()
     }
 }
 
@@ -61,14 +93,16 @@ impl Given {
     ///
     /// # Errors
     /// The first dimension for which there is no column.
-    pub fn new(signature: Signature, table: std::sync::Arc<Table>) -> Result<Self, String> {
-        let column = |input: &super::Input| table.column(&input.name).ok_or_else(|| input.name.clone());
-        let inputs = signature.inputs.iter().map(column).collect::<Result<Vec<usize>, String>>()?;
+    pub fn new(signature: Signature, table: std::sync::Arc<Table>) -> Result<Self, NoColumn> {
+        let column = |input: &super::Input| table.column(&input.name).ok_or_else(|| NoColumn::of(&input.name, &table));
+        let inputs = signature.inputs.iter().map(column).collect::<Result<Vec<usize>, NoColumn>>()?;
         let exact = (table.rows.iter().enumerate())
             .filter_map(|(row, cells)| {
                 Some((bits(&inputs.iter().map(|&column| cells[column]).collect::<Option<Vec<_>>>()?), row))
             })
             .collect();
+        // Somebody evaluates every point that is asked for: nobody samples such a model unasked.
+        let signature = Signature { costly: true, ..signature };
         Ok(Self { signature, table, inputs, exact })
     }
 
@@ -93,21 +127,29 @@ impl AssemblyFunction for Given {
         &self.signature
     }
 
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+        let names = outputs.iter().map(|&output| &self.signature.outputs[output].name);
+        match names.into_iter().find(|name| self.table.column(name).is_none()) {
+            Some(name) => Err(EvaluationError::NoColumn(NoColumn::of(name, &self.table))),
+            None => Ok(None),
+        }
+    }
+
     fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
         let columns: Vec<Option<usize>> =
             ask.outputs.iter().map(|&output| self.table.column(&self.signature.outputs[output].name)).collect();
         let mut known = 0;
+        let mut missing: Vec<Vec<f64>> = Vec::new();
         for row in 0..ask.points.rows() {
-            let found = self.find(&ask.points.row(row));
-            {
-                let mut asked = self.table.asked.lock().unwrap_or_else(PoisonError::into_inner);
-                match found {
-                    Some(found) => {
-                        asked.0[found] = true;
-                        known += 1;
-                    }
-                    None => asked.1 += 1,
+            let point = ask.points.row(row);
+            let found = self.find(&point);
+            match found {
+                Some(found) => {
+                    self.table.asked.lock().unwrap_or_else(PoisonError::into_inner).used[found] = true;
+                    known += 1;
                 }
+                None if missing.contains(&point) => {}
+                None => missing.push(point),
             }
             for (output, column) in columns.iter().enumerate() {
                 match found.zip(*column).and_then(|(found, column)| self.table.rows[found][column]) {
@@ -116,6 +158,11 @@ impl AssemblyFunction for Given {
                 }
             }
         }
+        let mut asked = self.table.asked.lock().unwrap_or_else(PoisonError::into_inner);
+        if asked.missing.is_empty() {
+            asked.missing = missing;
+        }
+        drop(asked);
         // Nothing was evaluated here: what is known was known before, and the rest costs nothing.
         out.reused(known);
         out.spent(known as i64 - ask.points.rows() as i64);

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::args::AllocateArgs;
-use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
-use super::output::{Destination, Look, json};
+use super::files::Files;
+use super::output::{Look, json};
 use super::progress::Bar;
 use super::running::{Clock, externals, on_threads};
 use super::{interrupt, study};
@@ -16,15 +16,17 @@ use crate::report::html::allocate_html;
 use crate::report::{
     AllocationReport, WrittenAnew, allocation_csv, allocation_csv_names, allocation_svg, allocation_text,
 };
-use crate::study::{Rewritten, Study};
+use crate::study::{NamedFile, Rewritten, Study};
 
 pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read(&asked.study, externals(asked.work.journal.as_deref(), look, None))?;
-    let destination = Destination::open(&asked.output)?;
-    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &allocation_csv_names())).transpose()?;
-    let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
-    let page = asked.html.as_deref().map(Destination::file).transpose()?;
-    let written = asked.write.as_deref().map(|path| beside(&asked.study.study, path)).transpose()?;
+    let mut files = Files::of(&asked.study.study, &study, asked.work.journal.as_deref());
+    let destination = files.output(&asked.output)?;
+    let folder = files.folder(asked.csv.as_deref(), &allocation_csv_names())?;
+    let chart = files.file(asked.svg.as_deref())?;
+    let page = files.file(asked.html.as_deref())?;
+    asked.write.as_deref().map_or(Ok(()), |path| stays_beside(path, &asked.study.study, &study))?;
+    let written = files.file(asked.write.as_deref())?;
     let clock = Clock::start(asked.work.time);
     let options = AllocationOptions {
         analysis: study.options.clone(),
@@ -83,10 +85,19 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     })
 }
 
-/// Where the study is written anew: never onto itself.
-fn beside(study: &Path, path: &Path) -> Result<Destination, Failure> {
-    let same = std::fs::canonicalize(path).ok().zip(std::fs::canonicalize(study).ok()).is_some_and(|(a, b)| a == b);
-    if same { Err(Failure::OntoItself { path: path.to_owned() }) } else { Destination::file(path) }
+/// Paths in a study start from its folder: in another one they would lead elsewhere.
+fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Failure> {
+    let folder = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        std::fs::canonicalize(folder).ok()
+    };
+    let (there, here) = (folder(path), folder(study_path));
+    let mut names: Vec<String> = study.files.iter().filter(|file| file.is_relative()).map(NamedFile::shown).collect();
+    names.dedup();
+    match there.is_some() && there != here && !names.is_empty() {
+        true => Err(Failure::AnotherFolder { path: path.to_owned(), names: names.join(", ") }),
+        false => Ok(()),
+    }
 }
 
 /// Points of a chart when nobody said how many.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::args::{AnalyzeArgs, StackArg};
 use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
+use super::files::Files;
 use super::interrupt;
 use super::output::{Destination, Look, json};
 use super::points;
@@ -29,10 +30,13 @@ pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
 fn one(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
     let study = read(path, asked, given.clone(), look)?;
-    let destination = Destination::open(&asked.output)?;
-    let files = Files::open(&study, asked.csv.as_deref(), asked.html.as_deref())?;
+    let mut files = Files::of(path, &study, asked.work.journal.as_deref());
+    asked.points.iter().for_each(|points| files.reads(points, "read by --points"));
+    let destination = files.output(&asked.output)?;
+    let mut beside = Beside::open(&mut files, &study, asked.csv.as_deref(), asked.html.as_deref())?;
+    beside.missing = files.file(asked.write_missing.as_deref())?;
     let show = |report: &Report| destination.write(&printed(report, asked, look));
-    analyzed(&study, asked, files, given.as_deref(), look, show)
+    analyzed(&study, asked, beside, given.as_deref(), look, show)
 }
 
 /// The study as it is to be analysed.
@@ -48,17 +52,22 @@ pub(super) fn read(path: &Path, asked: &AnalyzeArgs, given: Option<Arc<Table>>, 
 }
 
 /// The files of a report beside what is printed.
-pub(super) struct Files {
+pub(super) struct Beside {
     folder: Option<CsvFolder>,
     page: Option<Destination>,
+    missing: Option<Destination>,
 }
 
-impl Files {
+impl Beside {
     /// Opens them: tables in this folder, a page of this name.
-    pub(super) fn open(study: &Study, csv: Option<&Path>, html: Option<&Path>) -> Result<Self, Failure> {
+    pub(super) fn open(
+        files: &mut Files,
+        study: &Study,
+        csv: Option<&Path>,
+        html: Option<&Path>,
+    ) -> Result<Self, Failure> {
         let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
-        let folder = csv.map(|folder| CsvFolder::open(folder, &names)).transpose()?;
-        Ok(Self { folder, page: html.map(Destination::file).transpose()? })
+        Ok(Self { folder: files.folder(csv, &names)?, page: files.file(html)?, missing: None })
     }
 }
 
@@ -76,7 +85,7 @@ pub(super) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> Strin
 pub(super) fn analyzed(
     study: &Study,
     asked: &AnalyzeArgs,
-    files: Files,
+    files: Beside,
     given: Option<&Table>,
     look: Look,
     show: impl FnOnce(&Report) -> Result<(), Failure>,
@@ -91,11 +100,14 @@ pub(super) fn analyzed(
         let what_if = WhatIf::of(&study.problem, &analysis, &study.lines, &study.costs);
         page.write(&analyze_html(&report, Some(&what_if)))
     }));
+    let points = given.map(Table::missing).unwrap_or_default();
+    let written =
+        written.and(files.missing.map_or(Ok(()), |missing| missing.write(&points::table(&study.problem, &points))));
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }
     if let Some(given) = given {
-        unmatched(given, look);
+        unmatched(given, asked.write_missing.as_deref(), look);
     }
     if interrupt::stopped() {
         look.warn("stopped", &format!("interrupted after {} evaluations", analysis.evaluations));
@@ -118,10 +130,22 @@ pub(super) fn analyzed(
 }
 
 /// Tells of points without an answer, and of answers to points that nobody asked for.
-fn unmatched(given: &Table, look: Look) {
-    match given.missing() {
-        0 => {}
-        count => look.warn("missing-points", &format!("{count} points have no answer; plan --write-points lists all")),
+fn unmatched(given: &Table, written: Option<&Path>, look: Look) {
+    match (given.missing().len(), written) {
+        (0, _) => {}
+        (count, None) => {
+            look.warn(
+                "missing-points",
+                &format!("{count} points have no answer; --write-missing NEXT.csv writes them"),
+            );
+        }
+        (count, Some(path)) => look.warn(
+            "missing-points",
+            &format!(
+                "{count} points have no answer: append the answers to those of {} and run it again",
+                path.display()
+            ),
+        ),
     }
     let unused = given.unused();
     if !unused.is_empty() {

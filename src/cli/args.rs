@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
 pub(super) use super::values::{DerivativesArg, MethodArg, Over, SamplerArg, SensitivitiesArg, StackArg, StencilArg};
-use super::values::{finite, over, positive, probability};
+use super::values::{count, finite, over, part, positive, probability, samples, whole};
 
 /// The heading of the options that say what is printed, and where.
 const OUTPUT: &str = "Output";
@@ -127,7 +127,7 @@ pub(super) struct HowArgs {
     pub(super) characteristics: Vec<String>,
 
     /// Wanted relative error of sigma, for auto [default: that of the study, or 0.01]
-    #[arg(long, value_name = "R", value_parser = positive)]
+    #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(super) accuracy: Option<f64>,
 
     /// Wanted error of the skewness, for auto
@@ -139,11 +139,11 @@ pub(super) struct HowArgs {
     pub(super) accuracy_kurtosis: Option<f64>,
 
     /// Wanted error of the yield, a share such as 1e-5, for auto
-    #[arg(long, value_name = "E", value_parser = positive)]
+    #[arg(long, value_name = "E", value_parser = part, allow_negative_numbers = true)]
     pub(super) accuracy_yield: Option<f64>,
 
     /// Most evaluations that may be spent
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(super) budget: Option<usize>,
 
     /// Evaluate at K sigma on either side instead of at the nodes that suit each distribution
@@ -199,6 +199,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", conflicts_with = "journal")]
     pub(super) points: Option<PathBuf>,
 
+    /// Write the points of the next stage that have no answer in the file of --points, as plan --write-points does
+    #[arg(long, value_name = "FILE.csv", requires = "points", help_heading = OUTPUT)]
+    pub(super) write_missing: Option<PathBuf>,
+
     /// Search the true extremes in the box of the tolerance bands too, at some 2N evaluations or more for either side
     #[arg(long, conflicts_with = "points")]
     pub(super) extremes: bool,
@@ -220,7 +224,7 @@ pub(super) struct AnalyzeArgs {
     pub(super) check: bool,
 
     /// Seed of random numbers, for the methods that draw some; kept in the report
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
@@ -242,7 +246,7 @@ pub(super) struct SampledArgs {
     pub(super) characteristics: Vec<String>,
 
     /// Seed of what is drawn [default: that of the study, or 1]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
 
     #[command(flatten)]
@@ -261,7 +265,7 @@ pub(super) struct SimulateArgs {
     pub(super) of: SampledArgs,
 
     /// Points [default: 100000, or as many as --until takes; with --rare 10000, of an external model 1000]; Sobol' takes 16 times a power of two, at least as many
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
+    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
     pub(super) samples: Option<u64>,
 
     /// How points are drawn: random, or sobol for scrambled Sobol' points
@@ -269,11 +273,11 @@ pub(super) struct SimulateArgs {
     pub(super) sampler: SamplerArg,
 
     /// Go on until the standard error of every sigma (with --rare: of every probability) is below this part of it
-    #[arg(long, value_name = "R", value_parser = positive)]
+    #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
 
     /// Go on until half the 95 % interval of every yield is below this
-    #[arg(long, value_name = "R", value_parser = positive)]
+    #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(super) until_yield: Option<f64>,
 
     /// Sample only what the surrogate of an analysis leaves unexplained: the same standard errors with fewer points
@@ -310,11 +314,11 @@ pub(super) struct CompareArgs {
     pub(super) of: SampledArgs,
 
     /// Most evaluations of one method
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(super) budget: Option<usize>,
 
     /// Points of the reference [default: 1048576, or 2000 of an external model]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
+    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
     pub(super) samples: Option<u64>,
 
     /// Write the report as one HTML page
@@ -346,7 +350,7 @@ pub(super) struct SweepArgs {
     pub(super) work: WorkArgs,
 
     /// Seed of random numbers, for the methods that draw some; kept in the report
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
@@ -379,18 +383,18 @@ pub(super) struct AllocateArgs {
     pub(super) recentre: Vec<String>,
 
     /// The front of cost against yield (or Cpk), in N points
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(super) front: Option<usize>,
 
     /// Confirm the tolerances found by Monte Carlo: N points of the model
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1 << 52))]
+    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
     pub(super) confirm: Option<u64>,
 
     #[command(flatten)]
     pub(super) work: WorkArgs,
 
     /// Seed of what is drawn [default: that of the study, or 1]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
@@ -510,7 +514,7 @@ pub(super) enum JournalCommand {
         #[command(flatten)]
         output: OutputArgs,
     },
-    /// Forgets the answers of a model
+    /// Forgets the answers of a model, when --yes or the terminal says so
     #[command(after_help = "Examples:\n  sensitol journal forget gap.journal.sqlite --model 2")]
     Forget {
         /// The journal
@@ -521,6 +525,9 @@ pub(super) enum JournalCommand {
         /// Forget every model
         #[arg(long)]
         all: bool,
+        /// Forget without being asked
+        #[arg(short, long)]
+        yes: bool,
     },
 }
 

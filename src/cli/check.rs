@@ -36,7 +36,10 @@ fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
         plan.varying().len(),
         characteristics.join(", "),
         procedure.name(),
-        plan.cost().0,
+        match procedure.range(&study.problem, &study.options) {
+            Some([least, most]) if least < most => format!("{least} to {most}"),
+            _ => plan.cost().0.to_string(),
+        },
     );
     Destination::open(&OutputArgs { json: false, output: None })?.write(&summary)?;
     Ok(Exit::Done)

@@ -1,9 +1,9 @@
 //! `sensitol compare`.
 
 use super::args::CompareArgs;
-use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
-use super::output::{Destination, Look, json};
+use super::files::Files;
+use super::output::{Look, json};
 use super::running::{Clock, on_threads};
 use super::{interrupt, study};
 use crate::assembly::Run;
@@ -14,11 +14,12 @@ use crate::report::{CompareReport, compare_csv, compare_svg, compare_text};
 
 pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
-    let destination = Destination::open(&asked.output)?;
+    let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref());
+    let destination = files.output(&asked.output)?;
     let names = ["comparison.csv".to_owned()];
-    let table = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
-    let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
-    let page = asked.html.as_deref().map(Destination::file).transpose()?;
+    let table = files.folder(asked.csv.as_deref(), &names)?;
+    let chart = files.file(asked.svg.as_deref())?;
+    let page = files.file(asked.html.as_deref())?;
     let options = CompareOptions {
         budget: asked.budget.or(study.options.budget),
         reference: asked.samples,

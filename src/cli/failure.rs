@@ -100,6 +100,10 @@ pub(super) enum Failure {
     Journal(#[from] JournalError),
     #[error("{}; there are {known}", number.map_or("--model N says which of several models".to_owned(), |number| format!("there is no model {number} in the journal")))]
     UnknownJournalModel { number: Option<i64>, known: String },
+    #[error(
+        "{answers} answers would be forgotten, and nobody is at a terminal to be asked: --yes does it all the same"
+    )]
+    NotAgreed { answers: usize },
     #[error("{path}: {reason}", path = path.display())]
     Points { path: PathBuf, reason: String },
     #[error("the table cannot be written: {reason}")]
@@ -114,8 +118,12 @@ pub(super) enum Failure {
     Unwritable { path: PathBuf, error: std::io::Error },
     #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]
     Exists { path: PathBuf },
-    #[error("--write {path} is the study itself, which would be lost: name a new file", path = path.display())]
-    OntoItself { path: PathBuf },
+    #[error("`{path}` is {what}, which would be lost: name another file", path = path.display())]
+    WouldBeLost { path: PathBuf, what: &'static str },
+    #[error("--write {path}: the study names {names}, and its paths start from its own folder: write into that folder, and move study and files together", path = path.display())]
+    AnotherFolder { path: PathBuf, names: String },
+    #[error("`{path}` is asked for twice: name two files", path = path.display())]
+    AskedTwice { path: PathBuf },
     #[error("{path} is a file, and --csv needs a folder", path = path.display())]
     NoFolder { path: PathBuf },
     #[error("--html {path} is {what}, and several studies need a folder for their pages", path = path.display())]

@@ -84,7 +84,7 @@ for line in sys.stdin:
 
 pub(super) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
     let path = study_path(asked.name.as_deref().unwrap_or("study"));
-    let name = path.display();
+    let name = quoted(&path);
     let mut files: Vec<(PathBuf, String)> = Vec::new();
     match &asked.model {
         Some(model) => files.push((path.clone(), of_model(known(model)?))),
@@ -110,9 +110,20 @@ pub(super) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
     } else {
         format!("\n      sensitol allocate {name}")
     };
-    let said = format!("written: {name}\nnext: sensitol {next} {name}{more}\n");
+    let said = format!("written: {}\nnext: sensitol {next} {name}{more}\n", path.display());
     Destination::open(&OutputArgs { json: false, output: None })?.write(&said)?;
     Ok(Exit::Done)
+}
+
+/// A path as a shell takes it.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "_-./:+,@%".contains(c) || cfg!(windows) && c == '\\';
+    match text.chars().all(plain) {
+        true => text,
+        false if cfg!(windows) => format!("\"{text}\""),
+        false => format!("'{}'", text.replace('\'', "'\\''")),
+    }
 }
 
 /// `gap` and `gap.toml` both mean gap.toml.

@@ -1,11 +1,14 @@
 //! `sensitol journal`: what is kept of external models.
 
 use std::collections::BTreeMap;
+use std::io::IsTerminal;
+use std::path::Path;
 
 use serde::Serialize;
 
 use super::args::{JournalArgs, JournalCommand, OutputArgs};
 use super::failure::{Exit, Failure};
+use super::files::Files;
 use super::output::{Destination, Look, json};
 use crate::journal::{Kept, KnownModel, Store};
 
@@ -26,7 +29,11 @@ pub(super) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {
         JournalCommand::Show { file, output } => {
             let models = Store::open_existing(file)?.models()?;
             let reports: Vec<ModelReport> = models.into_iter().map(ModelReport::of).collect();
-            print(output, &if output.json { json(&reports) } else { reports.iter().map(ModelReport::text).collect() })
+            print(
+                file,
+                output,
+                &if output.json { json(&reports) } else { reports.iter().map(ModelReport::text).collect() },
+            )
         }
         JournalCommand::Export { file, model, output } => {
             let store = Store::open_existing(file)?;
@@ -35,23 +42,41 @@ pub(super) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {
             // In order of the numbers, not of their bytes.
             let order = |kept: &Kept| kept.point.clone();
             answers.sort_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal));
-            print(output, &table(&model, &answers)?)
+            print(file, output, &table(&model, &answers)?)
         }
-        JournalCommand::Forget { file, model, all } => {
+        JournalCommand::Forget { file, model, all, yes } => {
             let mut store = Store::open_existing(file)?;
-            let id = if *all { None } else { Some(chosen(&store, *model)?.id) };
+            let models = if *all { store.models()? } else { vec![chosen(&store, *model)?] };
+            let answers: usize = models.iter().map(|model| model.values + model.errors).sum();
+            if !yes && !agreed(answers)? {
+                return Ok(Exit::Usage);
+            }
+            let id = if *all { None } else { models.first().map(|model| model.id) };
             let forgotten = store.forget(id)?;
             if !look.quiet {
-                print(&OutputArgs { json: false, output: None }, &format!("{forgotten} answers forgotten\n"))?;
+                Destination::Stdout.write(&format!("{forgotten} answers forgotten\n"))?;
             }
             Ok(Exit::Done)
         }
     }
 }
 
-fn print(output: &OutputArgs, text: &str) -> Result<Exit, Failure> {
-    Destination::open(output)?.write(text)?;
+fn print(journal: &Path, output: &OutputArgs, text: &str) -> Result<Exit, Failure> {
+    let mut files = Files::default();
+    files.reads(journal, "the journal itself");
+    files.output(output)?.write(text)?;
     Ok(Exit::Done)
+}
+
+/// Whether somebody at the terminal agrees that so much is lost.
+fn agreed(answers: usize) -> Result<bool, Failure> {
+    let (mut said, stdin) = (String::new(), std::io::stdin());
+    if !stdin.is_terminal() || !std::io::stderr().is_terminal() {
+        return Err(Failure::NotAgreed { answers });
+    }
+    anstream::eprint!("forget {answers} answers, each of which was evaluated? [y/N] ");
+    stdin.read_line(&mut said).map_err(|_| Failure::NotAgreed { answers })?;
+    Ok(["y", "yes"].contains(&said.trim().to_lowercase().as_str()))
 }
 
 /// The model of this number; the only one where none is named.

@@ -9,6 +9,7 @@ mod check;
 mod compare;
 mod csv;
 mod failure;
+mod files;
 mod init;
 mod interrupt;
 mod journal;
@@ -31,24 +32,51 @@ mod sweep;
 mod values;
 
 use std::ffi::OsString;
+use std::io::Write;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::error::{ContextKind, ContextValue};
+use clap::{CommandFactory, Parser};
 
 use args::{Arguments, Command};
 use failure::{Exit, Failure};
 
+use crate::names::nearest;
 pub use reference::{command, exit_codes};
+
+/// Prints what the command line itself has to say. Help and version are results, everything else is a usage error.
+fn told(error: clap::Error) -> Exit {
+    let printed = error.print().and_then(|()| std::io::stdout().flush());
+    match printed {
+        _ if error.use_stderr() => Exit::Usage,
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            let failure = Failure::Stdout(error);
+            failure.render().iter().for_each(|message| output::error(message));
+            failure.exit()
+        }
+        _ => Exit::Done,
+    }
+}
+
+/// `help analize` names the nearest command, as `analize` does.
+fn with_suggestion(mut error: clap::Error) -> clap::Error {
+    let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidSubcommand) else { return error };
+    if error.get(ContextKind::SuggestedSubcommand).is_none() {
+        let command = Arguments::command();
+        let known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+        if let Some(nearest) = nearest(found, known) {
+            let nearest = ContextValue::Strings(vec![nearest.to_owned()]);
+            error.insert(ContextKind::SuggestedSubcommand, nearest);
+        }
+    }
+    error
+}
 
 /// Runs the command with these arguments, the program's name first, and says how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            // Help and version are results, everything else is a usage error; a closed pipe is neither.
-            let _ = error.print();
-            return if error.use_stderr() { Exit::Usage } else { Exit::Done }.into();
-        }
+        Err(error) => return told(with_suggestion(error)).into(),
     };
     output::set_color(arguments.color);
     let style =

@@ -26,10 +26,17 @@ impl<'s> Look<'s> {
         Self { study: Some(study), ..self }
     }
 
-    pub(super) fn style(self, output: &OutputArgs) -> Style {
+    /// Of a report that goes there: a file has no colours, unless they are asked for always, and the usual width.
+    pub(super) fn style(self, asked: &OutputArgs) -> Style {
         let detail = if self.verbose { Detail::Full } else { Detail::Short };
-        let width = if output.output.is_none() { terminal_width() } else { Style::WIDTH };
-        Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale(), width }
+        let (color, width) = match asked.output {
+            Some(_) => (self.color == ColorChoice::Always, Style::WIDTH),
+            None => {
+                let color = anstream::AutoStream::choice(&std::io::stdout()) != anstream::ColorChoice::Never;
+                (color, terminal_width())
+            }
+        };
+        Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale(), color, width }
     }
 
     /// Tells of something that is no error.

@@ -6,10 +6,11 @@ use serde::Serialize;
 
 use super::args::PlanArgs;
 use super::failure::{Exit, Failure};
-use super::output::{Destination, Look, json};
-use super::study;
+use super::files::Files;
+use super::output::{Look, json};
+use super::{points, study};
 use crate::method::DerivativeSource;
-use crate::plan::{Known, Plan, Purpose, Stage};
+use crate::plan::{Known, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
 
@@ -59,8 +60,9 @@ const EXACT: &str = "exact derivatives: the means, and the nominal values where 
 
 pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read(&asked.study, Externals::default())?;
-    let destination = Destination::open(&asked.output)?;
-    let points = asked.write_points.as_deref().map(Destination::file).transpose()?;
+    let mut files = Files::of(&asked.study.study, &study, None);
+    let destination = files.output(&asked.output)?;
+    let written = files.file(asked.write_points.as_deref())?;
     let procedure = study.options.method.procedure();
     let plan = procedure.plan(&study.problem, &study.options)?;
     let (evaluations, stages) = plan.cost();
@@ -84,10 +86,10 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         let purposes = vec![PurposeReport { points: left, purpose: purpose.words() }];
         report.stages.push(StageReport { evaluations: left, known_beforehand: false, purposes });
     }
-    if let Some(points) = points {
-        points.write(&csv(&study.problem, &*plan, &first))?;
+    if let Some(file) = written {
+        file.write(&points::table(&study.problem, &rows(&*plan, &first)))?;
         if stages > 1 {
-            look.warn("first-stage-only", "the points of later stages depend on the answers to those of the first");
+            look.warn("first-stage-only", "the points of later stages depend on the answers to those of the first: analyze --points ANSWERS.csv --write-missing NEXT.csv writes them");
         }
     }
     study.warnings.iter().for_each(|warning| look.warn(warning.code(), &warning.message()));
@@ -161,18 +163,15 @@ fn text(report: &PlanReport) -> String {
     lines.join("\n") + "\n"
 }
 
-/// A column per dimension, a row per point, every number to its last digit.
-fn csv(problem: &Problem, plan: &dyn Plan, stage: &Stage) -> String {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let names = problem.dimensions().iter().map(|dimension| dimension.name());
-    writer.write_record(names).expect("memory takes any record");
+/// Every point of a stage, a coordinate for every dimension.
+fn rows(plan: &dyn Plan, stage: &Stage) -> Vec<Vec<f64>> {
     let centre = plan.centre();
-    for (point, _) in &stage.points {
+    let row = |point: &Point| {
         let mut row = centre.clone();
         for at in point.at() {
             row[at.dimension as usize] = plan.axis(at.dimension as usize).nodes[at.node as usize].x;
         }
-        writer.write_record(row.iter().map(f64::to_string)).expect("memory takes any record");
-    }
-    String::from_utf8(writer.into_inner().expect("memory is always flushed")).expect("text and numbers are UTF-8")
+        row
+    };
+    stage.points.iter().map(|(point, _)| row(point)).collect()
 }

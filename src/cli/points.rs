@@ -1,9 +1,22 @@
-//! `--points`: answers that were evaluated elsewhere, as CSV.
+//! Points that are evaluated elsewhere, as CSV: written without answers, read with them.
 
 use std::path::Path;
 
 use super::failure::Failure;
 use crate::assembly::Table;
+use crate::dimension::Dimension;
+use crate::problem::Problem;
+
+/// A column for every dimension, a row for every point, every number to its last digit.
+pub(super) fn table(problem: &Problem, points: &[Vec<f64>]) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let names = problem.dimensions().iter().map(Dimension::name);
+    writer.write_record(names).expect("memory takes any record");
+    for point in points {
+        writer.write_record(point.iter().map(f64::to_string)).expect("memory takes any record");
+    }
+    String::from_utf8(writer.into_inner().expect("memory is always flushed")).expect("text and numbers are UTF-8")
+}
 
 /// Reads a table with a header. Empty cells are unknown; everything else is a finite number.
 pub(super) fn read(path: &Path) -> Result<Table, Failure> {

@@ -4,13 +4,15 @@ use serde::Serialize;
 
 use super::args::ProbeArgs;
 use super::failure::{Exit, Failure};
-use super::output::{Destination, Look, json};
+use super::files::Files;
+use super::output::{Look, json};
+use super::progress::Bar;
 use super::running::listener;
 use super::{interrupt, study};
-use crate::assembly::Run;
+use crate::assembly::{Progress, Run};
 use crate::method::MethodError;
-use crate::probe::{Probe, probe};
-use crate::report::number::significant;
+use crate::probe::{Probe, Verdict, evaluations, probe};
+use crate::report::number::{plural, significant};
 use crate::study::{Externals, JournalPlace};
 
 /// What `probe --json` prints.
@@ -38,7 +40,9 @@ struct AdapterReport {
 #[derive(Debug, Serialize)]
 struct CheckReport {
     check: &'static str,
-    passed: bool,
+    /// None where there were no values to check it with.
+    passed: Option<bool>,
+    verdict: &'static str,
     fault: Option<String>,
 }
 
@@ -63,10 +67,17 @@ pub(super) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
     let externals =
         Externals { journal: JournalPlace::Nowhere, listener: listener(look), points: None, sentinels: false };
     let study = study::read(&asked.study, externals)?;
-    let destination = Destination::open(&asked.output)?;
+    let mut files = Files::of(&asked.study.study, &study, None);
+    let destination = files.output(&asked.output)?;
     interrupt::listen();
-    let within = Run::to_the_end().stopping_when(&interrupt::stopped).abandoning_when(&interrupt::abandoned);
-    let found = probe(&study.problem, &within).map_err(|error| MethodError::Model { error })?;
+    let costly = study.problem.function().signature().costly;
+    let bar = costly.then(|| Bar::new(evaluations(&study.problem), look.quiet));
+    let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
+    let within =
+        Run::to_the_end().stopping_when(&interrupt::stopped).abandoning_when(&interrupt::abandoned).showing(&show);
+    let found = probe(&study.problem, &within);
+    bar.iter().for_each(Bar::clear);
+    let found = found.map_err(|error| MethodError::Model { error })?;
     if interrupt::stopped() {
         return Ok(Exit::Interrupted);
     }
@@ -85,8 +96,18 @@ impl ProbeReport {
         });
         let check = |check: &crate::probe::Check| CheckReport {
             check: check.what,
-            passed: check.fault.is_none(),
-            fault: check.fault.clone(),
+            passed: match check.verdict {
+                Verdict::Passed | Verdict::Doubtful(_) => Some(true),
+                Verdict::Failed(_) => Some(false),
+                Verdict::NotChecked => None,
+            },
+            verdict: match check.verdict {
+                Verdict::Passed => "ok",
+                Verdict::Doubtful(_) => "warn",
+                Verdict::Failed(_) => "fail",
+                Verdict::NotChecked => "not-checked",
+            },
+            fault: check.verdict.fault().map(str::to_owned),
         };
         let characteristic = |one: &crate::probe::Probed| CharacteristicReport {
             name: one.name.clone(),
@@ -122,19 +143,27 @@ impl ProbeReport {
         }
         let seconds = |value: f64| format!("{} s", significant(value, 2));
         text += &format!(
-            "ready after {}; {} for a point alone, {} for one of many; {} evaluations\n\n",
+            "ready after {}; {} for a point alone, {} for one of many; {}\n\n",
             seconds(self.start_s),
             seconds(self.evaluation_alone_s),
             seconds(self.evaluation_together_s),
-            self.evaluations,
+            plural(self.evaluations, "evaluation", "evaluations"),
         );
         for check in &self.checks {
             let fault = check.fault.as_ref().map(|fault| format!(": {fault}")).unwrap_or_default();
-            text += &format!("  {}  {}{fault}\n", if check.passed { "ok  " } else { "FAIL" }, check.check);
+            let verdict = match check.verdict {
+                "ok" => "ok  ",
+                "warn" => "WARN",
+                "fail" => "FAIL",
+                _ => "-   ",
+            };
+            let unknown = if check.passed.is_none() { ": not checked, as there are no values" } else { "" };
+            text += &format!("  {verdict}  {}{fault}{unknown}\n", check.check);
         }
         for one in &self.characteristics {
             let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| significant(value, 6));
-            let noise = one.noise.map_or("none to be seen".to_owned(), |noise| significant(noise, 2));
+            let none = if one.nominal.is_some() { "none to be seen" } else { "-" };
+            let noise = one.noise.map_or(none.to_owned(), |noise| significant(noise, 2));
             text += &format!("\n{}: nominal {}, noise {noise}\n", one.name, number(one.nominal));
             let coarse = one.steps.iter().filter_map(|step| step.least_step).fold(0.0, f64::max);
             if coarse > 0.0 {

@@ -1,10 +1,10 @@
 //! `sensitol simulate --rare`.
 
 use super::args::SimulateArgs;
-use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
+use super::files::Files;
 use super::interrupt;
-use super::output::{Destination, Look, json};
+use super::output::{Look, json};
 use super::running::Clock;
 use super::simulate::{sampling, surrogate};
 use crate::method::Options;
@@ -16,9 +16,10 @@ use crate::study::Study;
 const SAMPLES: [u64; 2] = [10_000, 1000];
 
 pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exit, Failure> {
-    let destination = Destination::open(&asked.output)?;
+    let mut files = Files::of(&asked.of.study, study, asked.of.work.journal.as_deref());
+    let destination = files.output(&asked.output)?;
     let names = ["rare.csv".to_owned()];
-    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
+    let folder = files.folder(asked.csv.as_deref(), &names)?;
     let costly = study.problem.function().signature().costly;
     let options = RareOptions {
         samples: asked.samples.unwrap_or(SAMPLES[usize::from(costly)]),

@@ -50,12 +50,7 @@ impl Clock {
 
 /// Where the answers of an external model are kept, and who hears it.
 pub(super) fn externals(journal: Option<&Path>, look: Look, points: Option<Arc<Table>>) -> Externals {
-    let journal = match journal {
-        None => JournalPlace::BesideStudy,
-        Some(path) if path.as_os_str() == "none" => JournalPlace::Nowhere,
-        Some(path) => JournalPlace::At(path.to_owned()),
-    };
-    Externals { journal, listener: listener(look), points, sentinels: true }
+    Externals { journal: JournalPlace::asked(journal), listener: listener(look), points, sentinels: true }
 }
 
 /// Who shows what an external program writes to stderr: somebody, when all details are asked for.

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::analyze::{Files, analyzed, printed, read};
+use super::analyze::{Beside, analyzed, printed, read};
 use super::args::{AnalyzeArgs, StackArg};
 use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
+use super::files::Files;
 use super::interrupt;
 use super::output::{Destination, Look, error, json};
 use crate::report::{Report, Stack, stack_csv_of_studies};
@@ -47,11 +48,15 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
             tell(name, failure);
         }
     }
-    let mut printer = Printer::open(asked, look)?;
-    let studies = open(paths, studies, asked)?;
+    let mut files = Files::default();
+    for (path, study) in paths.iter().zip(&studies) {
+        study.iter().for_each(|study| files.study(path, study, asked.work.journal.as_deref()));
+    }
+    let mut printer = Printer::open(asked, look, &mut files)?;
+    let studies = open(paths, studies, asked, &mut files)?;
     let mut exit = Exit::Done;
     for (name, study) in names.iter().zip(studies) {
-        let (study, files) = match study {
+        let (study, beside) = match study {
             Ok(ready) => ready,
             Err(failure) => {
                 printer.failed(name, failure.to_string());
@@ -66,7 +71,7 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
             continue;
         }
         let shown = printer.shown;
-        let result = analyzed(&study, asked, files, None, look.of(name), |report| printer.show(name, report));
+        let result = analyzed(&study, asked, beside, None, look.of(name), |report| printer.show(name, report));
         // Who has a report whose files could not be written has it all the same.
         if let (Err(failure), false) = (&result, printer.shown > shown) {
             printer.failed(name, failure.to_string());
@@ -93,10 +98,15 @@ fn stem(path: &Path) -> String {
 }
 
 /// A study that was read with its files open, or why it was not.
-type Ready = Result<(Study, Files), Failure>;
+type Ready = Result<(Study, Beside), Failure>;
 
 /// Opens the files of every study that was read: what cannot be written costs no evaluation.
-fn open(paths: &[PathBuf], studies: Vec<Result<Study, Failure>>, asked: &AnalyzeArgs) -> Result<Vec<Ready>, Failure> {
+fn open(
+    paths: &[PathBuf],
+    studies: Vec<Result<Study, Failure>>,
+    asked: &AnalyzeArgs,
+    files: &mut Files,
+) -> Result<Vec<Ready>, Failure> {
     asked.html.as_deref().map(folder_of_pages).transpose()?;
     asked.csv.as_deref().map(CsvFolder::make).transpose()?;
     let of = |(path, study): (&PathBuf, Result<Study, Failure>)| {
@@ -106,8 +116,8 @@ fn open(paths: &[PathBuf], studies: Vec<Result<Study, Failure>>, asked: &Analyze
         };
         let tables = asked.csv.as_deref().map(|folder| folder.join(stem(path)));
         let page = asked.html.as_deref().map(|folder| folder.join(stem(path) + ".html"));
-        let files = Files::open(&study, tables.as_deref(), page.as_deref())?;
-        Ok(Ok((study, files)))
+        let beside = Beside::open(files, &study, tables.as_deref(), page.as_deref())?;
+        Ok(Ok((study, beside)))
     };
     paths.iter().zip(studies).map(of).collect()
 }
@@ -155,9 +165,9 @@ struct Printer<'a> {
 }
 
 impl<'a> Printer<'a> {
-    fn open(asked: &'a AnalyzeArgs, look: Look<'a>) -> Result<Self, Failure> {
+    fn open(asked: &'a AnalyzeArgs, look: Look<'a>, files: &mut Files) -> Result<Self, Failure> {
         let whole = asked.output.json || asked.output.output.is_some() || asked.stack == Some(StackArg::Csv);
-        let destination = whole.then(|| Destination::open(&asked.output)).transpose()?;
+        let destination = whole.then(|| files.output(&asked.output)).transpose()?;
         let (text, entries, stacks) = (String::new(), Vec::new(), Vec::new());
         Ok(Self { asked, look, destination, text, entries, stacks, shown: 0 })
     }

@@ -4,9 +4,9 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use super::args::{SamplerArg, SimulateArgs};
-use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
-use super::output::{Destination, Look, json};
+use super::files::Files;
+use super::output::{Look, json};
 use super::progress::Samples;
 use super::running::{Clock, on_threads};
 use super::{interrupt, rare, study};
@@ -32,10 +32,11 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     if asked.rare {
         return rare::run(asked, &study, look);
     }
-    let destination = Destination::open(&asked.output)?;
+    let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref());
+    let destination = files.output(&asked.output)?;
     let names = ["estimates.csv", "histogram.csv"].map(str::to_owned);
-    let folder = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
-    let page = asked.html.as_deref().map(Destination::file).transpose()?;
+    let folder = files.folder(asked.csv.as_deref(), &names)?;
+    let page = files.file(asked.html.as_deref())?;
     let wanted = asked.until.is_some() || asked.until_yield.is_some();
     let options = SimulationOptions {
         samples: asked.samples.unwrap_or(if wanted { 1 << 52 } else { SAMPLES }),

@@ -1,9 +1,9 @@
 //! `sensitol sweep`.
 
 use super::args::SweepArgs;
-use super::csv::CsvFolder;
 use super::failure::{Exit, Failure};
-use super::output::{Destination, Look, json};
+use super::files::Files;
+use super::output::{Look, json};
 use super::progress::Bar;
 use super::running::{Clock, externals, on_threads};
 use super::{interrupt, study};
@@ -17,11 +17,12 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let externals = externals(asked.work.journal.as_deref(), look, None);
     let mut study = study::read_sweeping(&asked.study, externals, &asked.over.name)?;
     study.options.seed = asked.seed.or(study.options.seed);
-    let destination = Destination::open(&asked.output)?;
+    let mut files = Files::of(&asked.study.study, &study, asked.work.journal.as_deref());
+    let destination = files.output(&asked.output)?;
     let names = ["sweep.csv".to_owned()];
-    let table = asked.csv.as_deref().map(|folder| CsvFolder::open(folder, &names)).transpose()?;
-    let chart = asked.svg.as_deref().map(Destination::file).transpose()?;
-    let page = asked.html.as_deref().map(Destination::file).transpose()?;
+    let table = files.folder(asked.csv.as_deref(), &names)?;
+    let chart = files.file(asked.svg.as_deref())?;
+    let page = files.file(asked.html.as_deref())?;
     let clock = Clock::start(asked.work.time);
     let sweep = swept(&study, asked, &clock, look)?;
     let report = SweepReport::of(&study.problem, &sweep, clock.about(&study, study.options.seed));

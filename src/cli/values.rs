@@ -13,6 +13,41 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |value| value.is_finite() && value > 0.0, "it must be a number above 0")
 }
 
+/// A part of something: 0.01, or 1 %.
+pub(super) fn part(text: &str) -> Result<f64, String> {
+    match text.trim().strip_suffix('%') {
+        Some(percent) => positive(percent).map(|percent| percent / 100.0),
+        None => positive(text),
+    }
+}
+
+/// A count, as digits or as 1e6.
+pub(super) fn whole(text: &str) -> Result<u64, String> {
+    /// Beyond it not every whole number is a double.
+    const MOST: f64 = (1u64 << 53) as f64;
+    if let Ok(count) = text.trim().parse::<u64>() {
+        return Ok(count);
+    }
+    match text.trim().parse::<f64>() {
+        Ok(value) if (0.0..=MOST).contains(&value) && value.fract() == 0.0 => Ok(value as u64),
+        _ => Err("it is a whole number from 0 on, such as 1000 or 1e6".to_owned()),
+    }
+}
+
+/// Points of a sample.
+pub(super) fn samples(text: &str) -> Result<u64, String> {
+    const MOST: u64 = 1 << 52;
+    match whole(text)? {
+        count @ 2..=MOST => Ok(count),
+        count => Err(format!("{count} is not in 2..={MOST}")),
+    }
+}
+
+/// Evaluations, or points of a front.
+pub(super) fn count(text: &str) -> Result<usize, String> {
+    usize::try_from(whole(text)?).map_err(|_| "it is too large".to_owned())
+}
+
 pub(super) fn finite(text: &str) -> Result<f64, String> {
     number(text, f64::is_finite, "it must be a finite number")
 }

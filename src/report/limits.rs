@@ -115,7 +115,8 @@ fn differs(one: &CharacteristicReport, normal: &NormalFitReport) -> bool {
     far(seen(one.ppm_below), seen(normal.ppm_below)) || far(seen(one.ppm_above), seen(normal.ppm_above))
 }
 
-fn rejected(below: Option<f64>, above: Option<f64>) -> String {
+/// The yield that leaves these parts per million.
+pub(super) fn rejected(below: Option<f64>, above: Option<f64>) -> String {
     match (below, above) {
         (None, None) => "unknown".to_owned(),
         (below, above) => share(1e-6 * (below.unwrap_or(0.0) + above.unwrap_or(0.0))),

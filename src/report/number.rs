@@ -4,7 +4,7 @@
 pub(crate) const UNKNOWN: &str = "-";
 
 /// A count with what is counted.
-pub(super) fn plural(count: usize, one: &str, many: &str) -> String {
+pub(crate) fn plural(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 

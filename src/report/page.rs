@@ -18,6 +18,8 @@ pub struct Style {
     pub detail: Detail,
     /// Whether signs such as ± may be used.
     pub unicode: bool,
+    /// Whether verdicts are coloured.
+    pub color: bool,
     /// No line is longer, if that can be.
     pub width: usize,
 }
@@ -26,6 +28,24 @@ impl Style {
     /// The width of what is written to no terminal.
     pub const WIDTH: usize = 100;
 }
+
+/// Escape sequences of good, doubtful and bad, and what ends them.
+const GREEN: &str = "\u{1b}[32m";
+const YELLOW: &str = "\u{1b}[33m";
+const RED: &str = "\u{1b}[1;31m";
+const PLAIN: &str = "\u{1b}[0m";
+/// Words that tell whether what was wanted is so, anywhere in a report.
+const VERDICTS: [(&str, &str); 6] = [
+    ("met", GREEN),
+    ("within the limits", GREEN),
+    ("MISSED", RED),
+    ("EXCEEDS the limits", RED),
+    ("the sample does not tell", YELLOW),
+    ("not known", YELLOW),
+];
+/// How an allocation ended, before a colon at the beginning of its line.
+const STATUSES: [(&str, &str); 4] =
+    [("optimal", GREEN), ("almost-optimal", YELLOW), ("out-of-time", YELLOW), ("infeasible", RED)];
 
 /// Before every column.
 const GAP: usize = 2;
@@ -51,7 +71,7 @@ impl Page {
     }
 
     pub(super) fn finish(self) -> String {
-        self.text
+        if self.style.color { self.text.lines().map(|line| coloured(line) + "\n").collect() } else { self.text }
     }
 
     /// A line; on a narrow page what is too long for it goes on in the next one.
@@ -164,6 +184,27 @@ impl<const N: usize> Grid<N> {
     pub(super) fn row(&mut self, cells: [String; N]) {
         self.rows.push(cells);
     }
+}
+
+/// A line with its verdicts in colour: at the end, as escape sequences have no width.
+fn coloured(line: &str) -> String {
+    for (status, color) in STATUSES {
+        if let Some(rest) = line.strip_prefix(status).filter(|rest| rest.starts_with(':')) {
+            return format!("{color}{status}{PLAIN}{rest}");
+        }
+    }
+    VERDICTS.iter().fold(line.to_owned(), |line, (verdict, color)| {
+        let (mut text, mut rest) = (String::new(), line.as_str());
+        while let Some(at) = rest.find(verdict) {
+            let (before, after) = (&rest[..at], &rest[at + verdict.len()..]);
+            let inside = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+            let word = !inside(before.chars().next_back()) && !inside(after.chars().next());
+            text += before;
+            text += &if word { format!("{color}{verdict}{PLAIN}") } else { (*verdict).to_owned() };
+            rest = after;
+        }
+        text + rest
+    })
 }
 
 /// A name on one line that does not push everything else off it.

@@ -91,6 +91,10 @@ pub struct SweptPointReport {
     /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
+    /// Rejected below the lower limit, in parts per million.
+    pub ppm_below: Option<f64>,
+    /// Rejected above the upper limit.
+    pub ppm_above: Option<f64>,
 }
 
 impl SweepReport {
@@ -155,6 +159,7 @@ fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport>
 impl SweptPointReport {
     fn of(at: f64, analysis: Option<&CharacteristicAnalysis>) -> Self {
         let moments = analysis.and_then(|analysis| analysis.moments);
+        let capability = analysis.and_then(|analysis| analysis.capability);
         let law = analysis.and_then(|analysis| analysis.law.as_ref()).and_then(|law| law.as_ref().ok());
         let quantiles = match law {
             Some(Law::Point { at }) => NAMES.iter().map(|&name| (name, Some(*at))).collect(),
@@ -172,7 +177,9 @@ impl SweptPointReport {
             kurtosis: moments.and_then(|moments| moments.kurtosis()),
             rss: analysis.and_then(|analysis| analysis.rss),
             quantiles: OptionalQuantiles(quantiles),
-            yield_: analysis.and_then(|analysis| analysis.capability).and_then(|capability| capability.yield_()),
+            yield_: capability.and_then(|capability| capability.yield_()),
+            ppm_below: capability.and_then(|capability| capability.below).map(|share| 1e6 * share),
+            ppm_above: capability.and_then(|capability| capability.above).map(|share| 1e6 * share),
         }
     }
 

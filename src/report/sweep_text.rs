@@ -1,5 +1,6 @@
 //! The report of a sweep for people.
 
+use super::limits::rejected;
 use super::number::{UNKNOWN, beside, plain, plural, significant};
 use super::page::{Grid, Page, Style, clean, short};
 use super::sweep::{SweepReport, SweptReport};
@@ -61,7 +62,7 @@ fn swept(page: &mut Page, report: &SweepReport, one: &SweptReport) {
             high,
             match point.yield_ {
                 _ if !limited => String::new(),
-                Some(share) => significant(100.0 * share, 6),
+                Some(_) => rejected(point.ppm_below, point.ppm_above).trim_end_matches(" %").to_owned(),
                 None => UNKNOWN.to_owned(),
             },
         ]);

@@ -28,7 +28,8 @@ pub struct SimulatedCharacteristic {
     pub skewness: Option<Estimate>,
     /// Fourth standardised moment, 3 for a normal; None where nothing varies.
     pub kurtosis: Option<Estimate>,
-    /// Quantiles of the probabilities [`QUANTILES`].
+    /// Quantiles of the probabilities [`QUANTILES`]; None where the sample is too small for one value beyond, on average, and
+    /// without standard error below five.
     pub quantiles: [Option<Estimate>; 7],
     /// The share of assemblies within the limits; None without any limit.
     pub yield_: Option<YieldEstimate>,
@@ -109,8 +110,11 @@ impl SimulatedCharacteristic {
         let quantiles = fine
             .as_ref()
             .map_or([None; 7], |fine| QUANTILES.map(|p| quantile(p, fine, all.range(), &count.replicates)));
-        let [low, high] = [quantiles[0], quantiles[6]].map(|quantile| quantile.map(|quantile| quantile.value));
         let range = (known > 0).then(|| all.range());
+        let outer = |index: usize, end: usize| {
+            quantiles[index].map(|quantile| quantile.value).or(range.map(|range: [f64; 2]| range[end]))
+        };
+        let (low, high) = (outer(0, 0), outer(6, 1));
         Self {
             characteristic: characteristic.clone(),
             samples: known,
@@ -240,6 +244,10 @@ pub(super) fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option
 /// and above it, or that of the replicates.
 fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Replicate]) -> Option<Estimate> {
     let n = fine.total() as f64;
+    // With no value to be expected beyond it, it would be the least or the greatest one, whatever the tail is.
+    if p.min(1.0 - p) * n < 1.0 {
+        return None;
+    }
     let value = fine.at_rank(p * n)?.clamp(least, greatest);
     let beyond = p.min(1.0 - p) * n / replicates.len() as f64;
     let standard_error = match replicates.len() {

@@ -10,6 +10,7 @@ use super::data::Data;
 use super::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
+use super::files::{self, NamedFile};
 use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
 use super::source::Source;
@@ -35,6 +36,8 @@ pub(super) struct Built {
     pub(super) warnings: Vec<Warning>,
     /// The files that it read beside the study.
     pub(super) data: Vec<Arc<[u8]>>,
+    /// These files, and those of the model.
+    pub(super) files: Vec<NamedFile>,
 }
 
 pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
@@ -65,7 +68,9 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     let options = super::options::options(&file.analysis, &problem)?;
     let costs = costs(file, &problem)?;
     let requirements = requirements(file, &problem)?;
-    Ok(Built { problem, options, costs, requirements, warnings, data: data.bytes() })
+    let mut files = data.files();
+    files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), &source.folder)));
+    Ok(Built { problem, options, costs, requirements, warnings, data: data.bytes(), files })
 }
 
 /// What each characteristic must keep.

@@ -1,8 +1,9 @@
 //! Tables of measured values: CSV files beside a study.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
+use super::files::{FileRole, NamedFile};
 use crate::names::nearest;
 use crate::warning::Warning;
 
@@ -173,7 +174,7 @@ impl DataProblem {
 pub(super) struct Data<'s> {
     folder: &'s Path,
     /// Every file once, in the order of the dimensions.
-    files: Vec<(PathBuf, Arc<[u8]>)>,
+    files: Vec<(NamedFile, Arc<[u8]>)>,
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -197,6 +198,11 @@ impl<'s> Data<'s> {
         self.files.iter().map(|(_, bytes)| Arc::clone(bytes)).collect()
     }
 
+    /// Every file that was read.
+    pub(super) fn files(&self) -> Vec<NamedFile> {
+        self.files.iter().map(|(file, _)| file.clone()).collect()
+    }
+
     /// A column of a file; without a name the only one, or the only one that holds nothing but numbers.
     pub(super) fn column(&mut self, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
         let bytes = self.read(file)?;
@@ -215,7 +221,7 @@ impl<'s> Data<'s> {
 
     fn read(&mut self, file: &str) -> Result<Arc<[u8]>, DataFault> {
         let path = self.folder.join(file);
-        if let Some((_, bytes)) = self.files.iter().find(|(known, _)| *known == path) {
+        if let Some((_, bytes)) = self.files.iter().find(|(known, _)| known.path == path) {
             return Ok(Arc::clone(bytes));
         }
         let bytes: Arc<[u8]> = match std::fs::read(&path) {
@@ -225,7 +231,8 @@ impl<'s> Data<'s> {
                 return Err(DataFault { file: file.to_owned(), line: None, column: None, problem });
             }
         };
-        self.files.push((path, Arc::clone(&bytes)));
+        let named = NamedFile { role: FileRole::Measured, written: file.to_owned(), path };
+        self.files.push((named, Arc::clone(&bytes)));
         Ok(bytes)
     }
 }

@@ -4,7 +4,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::data::DataFault;
+use super::file::CORRELATIONS;
 use crate::allocation::{CostError, RequirementError};
+use crate::assembly::NoColumn;
 use crate::assembly::formula::FormulaFault;
 use crate::assembly::implicit::ConditionsError;
 use crate::characteristic::LimitsError;
@@ -85,7 +87,10 @@ pub enum StudyFault {
     },
     /// No study format ends like this.
     #[error("a study is a .toml or a .json file")]
-    UnknownFormat,
+    UnknownFormat {
+        /// The study of this name with such an ending, if there is one.
+        beside: Option<String>,
+    },
     /// The text is no TOML or JSON.
     #[error("{message}")]
     Syntax {
@@ -229,11 +234,8 @@ pub enum StudyFault {
         path: std::path::PathBuf,
     },
     /// Answers evaluated elsewhere do not say for which value of a dimension.
-    #[error("the points that were evaluated elsewhere have no column `{dimension}`")]
-    MissingColumn {
-        /// The dimension.
-        dimension: String,
-    },
+    #[error(transparent)]
+    MissingColumn(#[from] NoColumn),
     /// Answers evaluated elsewhere, for a study that asks nobody.
     #[error("points that were evaluated elsewhere are the answers of a [model] command, and the study has none")]
     NothingExternal,
@@ -284,6 +286,10 @@ impl StudyFault {
         let one_of = |known: &[String]| format!("it is one of {}", known.join(", "));
         match self {
             Self::IsFolder { within: Some(study) } => Some(format!("did you mean {study}?")),
+            Self::UnknownFormat { beside: Some(study) } => Some(format!("did you mean {study}?")),
+            Self::WrongType { expected, .. } if expected == CORRELATIONS => {
+                Some("write three lines for each pair:\n[[correlation]]\nbetween = [\"a\", \"b\"]\nvalue = 0.9".into())
+            }
             Self::IsFolder { within: None } => Some("name the study file in it".into()),
             Self::UnknownKey { nearest: Some(name), .. } | Self::UnknownWord { nearest: Some(name), .. } => {
                 Some(meant(name))

@@ -38,6 +38,15 @@ pub enum JournalPlace {
 }
 
 impl JournalPlace {
+    /// What the command line asks for: a file, `none`, or nothing.
+    pub fn asked(path: Option<&Path>) -> Self {
+        match path {
+            None => Self::BesideStudy,
+            Some(path) if path.as_os_str() == "none" => Self::Nowhere,
+            Some(path) => Self::At(path.to_owned()),
+        }
+    }
+
     /// The file for the study of this name.
     pub fn path(&self, study: &str) -> Option<PathBuf> {
         match self {

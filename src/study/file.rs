@@ -223,6 +223,9 @@ pub(super) struct CharacteristicEntry {
     pub(super) require: Option<Spanned<RequireEntry>>,
 }
 
+/// What correlations are, where something else stands.
+pub(super) const CORRELATIONS: &str = "a list, each pair of dimensions below its own [[correlation]],";
+
 /// Every `[[correlation]]`, in the order of the file.
 #[derive(Debug, Default)]
 pub(super) struct Correlations(pub(super) Vec<Spanned<CorrelationEntry>>);
@@ -386,7 +389,7 @@ impl<'de> Deserialize<'de> for Correlations {
             type Value = Correlations;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a list, each pair of dimensions below its own [[correlation]],")
+                f.write_str(CORRELATIONS)
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {

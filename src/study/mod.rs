@@ -45,6 +45,7 @@ mod dimension;
 mod error;
 mod externals;
 mod file;
+mod files;
 mod implicit;
 mod lines;
 mod model;
@@ -61,6 +62,7 @@ mod values;
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};
+pub use files::{FileRole, NamedFile};
 pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "cli")]
 pub use schema::schema;
@@ -103,6 +105,8 @@ pub struct Study {
     /// SHA-256 of the file's bytes, followed by those of every file of measured values, each once, in the order of the
     /// dimensions; in hexadecimal. As `cat gap.toml pin.csv | sha256sum` prints it.
     pub sha256: String,
+    /// The files that it names, in the order of the dimensions, those of the model last.
+    pub files: Vec<NamedFile>,
     /// What it was read from.
     text: Arc<str>,
     format: Format,
@@ -165,7 +169,12 @@ impl Study {
         let format = match path.extension().and_then(|extension| extension.to_str()) {
             Some("toml") => Format::Toml,
             Some("json") => Format::Json,
-            _ => return Err(failed("", StudyFault::UnknownFormat)),
+            _ => {
+                let ending = |ending: &str| PathBuf::from(format!("{name}.{ending}"));
+                let beside = ["toml", "json"].map(ending).into_iter().find(|study| study.is_file());
+                let beside = beside.map(|study| study.display().to_string());
+                return Err(failed("", StudyFault::UnknownFormat { beside }));
+            }
         };
         let bytes =
             std::fs::read(path).map_err(|error| failed("", StudyFault::Unreadable { reason: error.to_string() }))?;
@@ -243,6 +252,7 @@ impl Study {
             costs: built.costs,
             requirements: built.requirements,
             warnings: built.warnings,
+            files: built.files,
             format,
             name: source.name,
             folder: source.folder,

@@ -137,7 +137,7 @@ pub(super) fn process(
     let signature = Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() };
     if let Some(table) = &source.externals.points {
         let given = Given::new(signature, Arc::clone(table));
-        return Ok(Arc::new(given.map_err(|dimension| StudyFault::MissingColumn { dimension })?));
+        return Ok(Arc::new(given.map_err(StudyFault::MissingColumn)?));
     }
     let process = Process::new(signature, greeting, program.settings.clone());
     #[cfg(feature = "journal")]

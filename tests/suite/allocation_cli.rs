@@ -295,6 +295,34 @@ fn wrong_wishes_are_refused() {
     assert!(wrong(known, &[]).starts_with("exit 0"));
 }
 
+/// Paths in a study start from its folder: written into another one it would name files that are not there.
+#[test]
+fn a_study_with_files_stays_in_its_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::create_dir(folder.path().join("sub")).unwrap();
+    std::fs::write(at("data.csv"), "d\n0.9\n1.0\n1.1\n1.2\n0.8\n1.05\n").unwrap();
+    let text = |file: &str| {
+        format!(
+            "[dimensions]\na = {{ measured = {file:?} }}\nb = {{ nominal = 2, tolerance = 0.1 }}\n[characteristics]\n\
+             y = {{ formula = \"a + b\", lower = 2, target_yield = 0.9 }}\n[costs]\nb = {{ model = \"reciprocal\", b = 1 }}\n"
+        )
+    };
+    std::fs::write(at("study.toml"), text("data.csv")).unwrap();
+    let write = |to: &str| sensitol(&["allocate", &at("study.toml"), "--write", &at(to)]).output().unwrap();
+    let refused = write("sub/new.toml");
+    let error = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!((refused.status.code(), refused.stdout.len()), (Some(2), 0), "{error}");
+    assert!(error.contains("the study names `data.csv`") && !Path::new(&at("sub/new.toml")).exists(), "{error}");
+    // Beside the study, or with a path that means the same everywhere, it is written and can be read.
+    assert_eq!(write("new.toml").status.code(), Some(0));
+    std::fs::write(at("study.toml"), text(&at("data.csv"))).unwrap();
+    assert_eq!(write("sub/new.toml").status.code(), Some(0));
+    for new in ["new.toml", "sub/new.toml"] {
+        assert!(sensitol(&["check", &at(new)]).output().unwrap().status.success());
+    }
+}
+
 /// `--time` ends it with what is known, exit 4.
 #[test]
 fn a_time_that_is_too_short_is_exit_4() {

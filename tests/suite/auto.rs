@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use sensitol::assembly::EvaluationError;
+use sensitol::analysis::analyze_within;
+use sensitol::assembly::{EvaluationError, Run};
 use sensitol::distribution::Exponential;
 use sensitol::method::Accuracies;
 use sensitol::simulation::{SimulationOptions, simulate};
@@ -404,4 +405,25 @@ fn points_that_check_are_of_the_distribution() {
     analyze(&problem, &auto(0.01)).unwrap();
     let points = asked.points();
     assert!(points.iter().flatten().all(|x| x.abs() <= 1.0));
+}
+
+/// What ended a climb is told as it was: a budget, or somebody.
+#[test]
+fn the_account_says_what_ended_it() {
+    let problem = || {
+        let function = Closure::scalar("y", |x: &[f64]| (x[0] * x[1]).exp() * x[2].sin() + x[3].powi(4));
+        Problem::new(normals(&[0.5, 0.6, 0.7, 0.8], &[0.3; 4]), function).unwrap()
+    };
+    let account = |options: &Options, stop: bool| {
+        let stop = || stop;
+        let run = Run::to_the_end().stopping_when(&stop);
+        analyze_within(&problem(), options, &run).unwrap().account.unwrap()
+    };
+    let stopped = account(&Method::Auto.into(), true);
+    assert!(stopped.ends_with("; interrupted") && stopped.contains("no interaction of 6 examined"), "{stopped}");
+    assert!(stopped.contains("0 points check") && !stopped.contains("budget"), "{stopped}");
+    let short = account(&Options { budget: Some(26), accuracy: Some(1e-6), ..Method::Auto.into() }, false);
+    assert!(short.ends_with("the budget ended it") && !short.contains("needed"), "{short}");
+    let whole = account(&Method::Auto.into(), false);
+    assert!(!whole.contains("budget") && !whole.contains("interrupted"), "{whole}");
 }

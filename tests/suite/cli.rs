@@ -138,6 +138,9 @@ fn wrong_input() {
         &["analyze", ENGINE, "--kc", "f"],
         &["analyze", ENGINE, "--budget", "20"],
         &["analyze", ENGINE, "--budget", "-1"],
+        &["analyze", ENGINE, "--budget", "2.5"],
+        &["help", "analize"],
+        &["check", "examples/engine-balance/study"],
         &["analyze", ENGINE, "--step", "0"],
         &["analyze", ENGINE, "--step", "nan"],
         &["analyze", ENGINE, "--accuracy", "much"],
@@ -306,6 +309,71 @@ fn files_are_written_whole_or_not_at_all() {
     }
 }
 
+/// No option writes over what the command reads, by whatever path, nor two of them the same file; nothing is evaluated then.
+#[test]
+fn what_is_read_is_never_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let text = "[dimensions]\na = { measured = \"data.csv\", tolerance = 0.5, nominal = 1 }\nb = { nominal = 2, tolerance = 0.1 }\n\
+                [characteristics]\ny = { formula = \"a + b\", lower = 2, target_yield = 0.9 }\n\
+                [costs]\nb = { model = \"reciprocal\", b = 1 }\n";
+    let data = "d\n0.9\n1.0\n1.1\n1.2\n0.8\n1.05\n";
+    let (study, csv) = (at("study.toml"), at("data.csv"));
+    std::fs::create_dir(folder.path().join("sub")).unwrap();
+    let around = at("sub/../study.toml");
+    let mut tries: Vec<(Vec<&str>, &str, &str)> = vec![
+        (vec!["analyze", &study, "--html", &study], &study, "the study itself"),
+        (vec!["analyze", &study, "-o", &study], &study, "the study itself"),
+        (vec!["analyze", &study, "-o", &around], &around, "the study itself"),
+        (vec!["analyze", &study, "-o", &csv], &csv, "measured data of the study"),
+        (vec!["plan", &study, "--write-points", &study], &study, "the study itself"),
+        (vec!["plan", &study, "-o", &csv], &csv, "measured data of the study"),
+        (vec!["sweep", &study, "--over", "b=1:2:3", "--svg", &study], &study, "the study itself"),
+        (vec!["compare", &study, "--svg", &study], &study, "the study itself"),
+        (vec!["simulate", &study, "--html", &csv], &csv, "measured data of the study"),
+        (vec!["simulate", &study, "--rare", "-o", &study], &study, "the study itself"),
+        (vec!["allocate", &study, "--write", &csv], &csv, "measured data of the study"),
+        (vec!["probe", &study, "-o", &study], &study, "the study itself"),
+    ];
+    let link = at("link.html");
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(&study, &link).unwrap();
+        tries.push((vec!["analyze", &study, "--html", &link], &link, "the study itself"));
+    }
+    std::fs::write(&study, text).unwrap();
+    std::fs::write(&csv, data).unwrap();
+    let kept = || {
+        let read = |path: &str| std::fs::read_to_string(path).unwrap();
+        read(&study) == text && read(&csv) == data
+    };
+    for (arguments, path, what) in tries {
+        let output = sensitol(&arguments).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments:?}: {error}");
+        assert!(error.contains(&format!("`{path}` is {what}, which would be lost")), "{arguments:?}: {error}");
+        assert!(kept(), "{arguments:?}");
+    }
+    // One file for two reports: neither is written.
+    let twice = at("twice.html");
+    for second in [twice.clone(), at("sub/../twice.html")] {
+        let output = sensitol(&["analyze", &study, "-o", &twice, "--html", &second]).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            output.status.code() == Some(2) && error.contains(&format!("`{second}` is asked for twice")),
+            "{error}"
+        );
+        assert!(!Path::new(&twice).exists());
+    }
+    // Tables of --csv are files as others are.
+    std::fs::rename(&csv, at("sweep.csv")).unwrap();
+    std::fs::write(&study, text.replace("data.csv", "sweep.csv")).unwrap();
+    let here = folder.path().to_str().unwrap();
+    let output = sensitol(&["sweep", &study, "--over", "b=1:2:3", "--csv", here]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(std::fs::read_to_string(at("sweep.csv")).unwrap(), data);
+}
+
 /// The points of a stage as exact numbers, a column per dimension.
 #[test]
 fn points_can_be_written() {
@@ -346,6 +414,71 @@ fn colours_are_for_terminals() {
     assert!(coloured(&[&warns[..], &["--color", "always"]].concat(), &[]));
     assert!(!coloured(&[&warns[..], &["--color", "never"]].concat(), &[("CLICOLOR_FORCE", "1")]));
     assert!(!coloured(&warns, &[("NO_COLOR", "1")]));
+}
+
+/// Verdicts have a colour on a terminal, and where colours are asked for; never in a file or a pipe otherwise.
+#[test]
+fn verdicts_are_coloured() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let text = |target: f64| {
+        format!(
+            "[dimensions]\na = {{ nominal = 1, tolerance = 0.3 }}\n[characteristics]\n\
+             y = {{ formula = \"a\", lower = 0.7, target_yield = {target} }}\n[costs]\na = {{ model = \"reciprocal\", b = 1 }}\n"
+        )
+    };
+    let study = |target: f64| {
+        std::fs::write(&study, text(target)).unwrap();
+        study.to_str().unwrap().to_owned()
+    };
+    let stdout = |arguments: &[&str]| String::from_utf8(sensitol(arguments).output().unwrap().stdout).unwrap();
+    let always = |command: &str, target: f64| stdout(&[command, &study(target), "--color", "always"]);
+    let (red, green, yellow) = ("\u{1b}[1;31mMISSED\u{1b}[0m", "\u{1b}[32mmet\u{1b}[0m", "\u{1b}[33m");
+    assert!(always("analyze", 0.9999).contains(&format!("target {red}")));
+    assert!(always("analyze", 0.99).contains(&format!("target {green}")));
+    assert!(always("simulate", 0.9999).contains(red) && always("simulate", 0.99).contains(green));
+    // 99.865 % of the assemblies: a hundred points cannot tell whether 99 % are reached.
+    let few = stdout(&["simulate", &study(0.99), "--samples", "100", "--color", "always"]);
+    assert!(few.contains(&format!("{yellow}the sample does not tell")), "{few}");
+    assert!(always("allocate", 0.99).starts_with("\u{1b}[32moptimal\u{1b}[0m: cost"));
+    // The colours are all that is added.
+    let plain = stdout(&["analyze", &study(0.9999)]);
+    assert!(!plain.contains('\u{1b}'));
+    let bare = |text: String| {
+        ["\u{1b}[1;31m", "\u{1b}[32m", "\u{1b}[33m", "\u{1b}[0m"].iter().fold(text, |text, code| text.replace(code, ""))
+    };
+    assert_eq!(bare(always("analyze", 0.9999)), plain);
+    for command in ["analyze", "simulate", "allocate"] {
+        let json = stdout(&[command, &study(0.99), "--json", "--color", "always"]);
+        assert!(!json.contains('\u{1b}'), "{command}");
+    }
+}
+
+/// Counts as people write them, and parts in percent.
+#[test]
+fn numbers_may_be_written_short() {
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_slice(&sensitol(arguments).output().unwrap().stdout).unwrap()
+    };
+    assert_eq!(json(&["simulate", ENGINE, "--samples", "1e3", "--json"])["samples"], 1000);
+    let percent = json(&["analyze", ENGINE, "-m", "auto", "--accuracy", "1%", "--budget", "1e3", "--json"]);
+    let share = json(&["analyze", ENGINE, "-m", "auto", "--accuracy", "0.01", "--budget", "1000", "--json"]);
+    assert_eq!(
+        (&percent["evaluations"], &percent["characteristics"]),
+        (&share["evaluations"], &share["characteristics"])
+    );
+}
+
+/// Help that cannot be printed is an error, as any result is.
+#[test]
+#[cfg(target_os = "linux")]
+fn help_into_a_full_device_is_an_error() {
+    for arguments in [&["help"][..], &["--help"], &["--version"], &["analyze", "--help"]] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = sensitol(arguments).stdout(full).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && error.contains("cannot write to standard output"), "{error}");
+    }
 }
 
 /// `--color never` and a locale without UTF-8 get plain ASCII.
@@ -448,7 +581,7 @@ fn reports_fit_their_width() {
         let study = sensitol::Study::read(&repository(&format!("examples/{name}/study.toml"))).unwrap();
         let analysis = sensitol::analyze(&study.problem, &study.options).unwrap();
         let report = Report::of(&study.problem, &analysis, About::default());
-        let of = |width: usize| text(&report, Style { detail: Detail::Full, unicode: true, width });
+        let of = |width: usize| text(&report, Style { detail: Detail::Full, unicode: true, color: false, width });
         let numbers = |text: &str| -> BTreeSet<String> {
             let words = text.split(|c: char| c.is_whitespace() || ",;:()".contains(c));
             words.filter(|word| word.parse::<f64>().is_ok()).map(str::to_owned).collect()

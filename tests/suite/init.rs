@@ -44,6 +44,18 @@ fn every_first_study_runs() {
     }
 }
 
+/// What is said to be next can be typed as it stands.
+#[test]
+fn a_name_with_a_space_is_quoted() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = done(&within(folder.path(), &["init", "cad gap", "--process"]));
+    assert!(said.starts_with("written: cad gap.toml\nnext: sensitol probe "), "{said}");
+    if cfg!(unix) {
+        assert!(said.ends_with("probe 'cad gap.toml'\n"), "{said}");
+    }
+    done(&within(folder.path(), &["probe", "cad gap.toml"]));
+}
+
 /// Nothing that is there is lost, and nothing is half written.
 #[test]
 fn what_is_there_stays() {

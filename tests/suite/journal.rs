@@ -391,7 +391,13 @@ fn the_journal_can_be_read() {
     assert_eq!(journal(&["export", &file, "--model", "7"]).0, 2);
     assert_eq!(journal(&["show", "nowhere.sqlite"]).0, 2);
     assert_eq!(journal(&["forget"]).0, 2);
-    assert_eq!(journal(&["forget", &file]), (0, "7 answers forgotten\n".into()));
+    // Nobody at a terminal: what took hours is not forgotten by a slip, nor written over.
+    let (code, asked) = journal(&["forget", &file]);
+    assert!(code == 2 && asked.contains("7 answers would be forgotten") && asked.contains("--yes"), "{asked}");
+    let (code, kept) = journal(&["export", &file, "-o", &file]);
+    assert!(code == 2 && kept.contains("is the journal itself, which would be lost"), "{kept}");
+    assert!(journal(&["show", &file]).1.contains("7 points"));
+    assert_eq!(journal(&["forget", &file, "--yes"]), (0, "7 answers forgotten\n".into()));
     study.run(&[]);
     assert_eq!(study.evaluations(), 12);
 }
@@ -446,6 +452,89 @@ fn points_may_be_evaluated_elsewhere() {
     assert!(refused("x0,x1,x2,x0\n1,2,3,4\n").contains("column `x0` stands twice"));
     assert!(refused("x0,x1,x2,y\n1,2,3,many\n").contains("line 2, column `y`: `many` is no finite number"));
     assert!(refused("x0,x1,x2,y\n1,2\n").contains("answers.csv"));
+    // A column that is not the characteristic's is not silently nothing.
+    assert!(refused("x0,x1,x2,Y\n1,2,3,4\n").contains("no column `y`; there is `Y`"));
+    assert!(refused("x0,x1,x2,weight\n1,2,3,4\n").contains("no column `y`"));
+    assert!(refused("x0,x1,x3,y\n1,2,3,4\n").contains("no column `x2`; there is `x"));
+    // Points that nobody has answered are points all the same.
+    std::fs::write(&answered, "x0,x1,x2,y\n9,9,9,1\n").unwrap();
+    let none = sensitol(&["analyze", "--points", &answered]);
+    let error = String::from_utf8_lossy(&none.stderr).into_owned();
+    let told = error.split("`y` has no value at ").nth(1).unwrap_or_else(|| panic!("{error}"));
+    let counts: Vec<usize> = told.split(' ').filter_map(|word| word.parse().ok()).take(2).collect();
+    assert!(counts[0] >= 13 && counts[0] == counts[1], "{error}");
+}
+
+/// Stage after stage evaluated elsewhere: what is missing is written, answered and appended, until nothing is; nothing is
+/// sampled that nobody asked for, and the result is that of the function.
+#[test]
+fn all_stages_may_be_evaluated_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let rest = "[dimensions]\na = { nominal = 1, tolerance = 0.6 }\nb = { nominal = 2, tolerance = 0.6 }\n\
+                c = { nominal = 3, tolerance = 0.6, distribution = \"uniform\" }\n[characteristics]\n";
+    let y = |x: &[f64]| (0.4 * x[0]).exp() * x[1] + x[1] * x[2];
+    let elsewhere = format!("[model]\ncommand = [\"nobody-starts-this\"]\n{rest}y = {{}}\n");
+    std::fs::write(at("elsewhere.toml"), elsewhere).unwrap();
+    let sensitol = |arguments: &[&str]| {
+        let output = Command::new(assert_cmd::cargo::cargo_bin!("sensitol")).args(arguments).output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output, error)
+    };
+    let (points, answers, next) = (at("points.csv"), at("answers.csv"), at("next.csv"));
+    let wanted = ["--accuracy", "1e-5"];
+    let answered = |path: &str| -> Vec<String> {
+        let text = std::fs::read_to_string(path).unwrap();
+        assert_eq!(text.lines().next(), Some("a,b,c"));
+        let answer = |line: &str| {
+            let x: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            format!("{line},{}", y(&x))
+        };
+        text.lines().skip(1).map(answer).collect()
+    };
+    let (planned, error) =
+        sensitol(&[&["plan", &at("elsewhere.toml"), "--write-points", &points][..], &wanted].concat());
+    assert!(planned.status.success() && error.contains("--write-missing"), "{error}");
+    let mut table = vec!["a,b,c,y".to_owned()];
+    table.extend(answered(&points));
+    let study = at("elsewhere.toml");
+    let analyze = [&["analyze", &study, "--points", &answers, "--json"][..], &wanted].concat();
+    let mut rounds = 0;
+    let last = loop {
+        std::fs::write(&answers, table.join("\n") + "\n").unwrap();
+        let (told, error) = sensitol(&analyze);
+        let (output, written) = sensitol(&[&analyze[..], &["--write-missing", &next]].concat());
+        let more = answered(&next);
+        if more.is_empty() {
+            assert!(!error.contains("missing-points") && told.status.success(), "{error}");
+            break output;
+        }
+        assert!(error.contains(&format!("{} points have no answer; --write-missing", more.len())), "{error}");
+        assert!(written.contains(&format!("append the answers to those of {next}")), "{written}");
+        table.extend(more);
+        rounds += 1;
+        assert!(rounds < 30, "it comes to an end");
+    };
+    assert!(rounds >= 1, "one stage was not all of it");
+    // All that was asked for was of use, and no row is of a point that nobody asked for.
+    assert_eq!(field(&last, "reused") as usize, table.len() - 1);
+    // Exactly, by hand: b (exp(0.4 a) + c) with independent factors, a normal of mean 1 and sigma 0.2, b of 2 and 0.2, c uniform.
+    let (first, second) = (0.4032f64.exp(), 0.8128f64.exp());
+    let mean = 2.0 * (first + 3.0);
+    let sigma = (4.04 * (second + 6.0 * first + 9.12) - mean * mean).sqrt();
+    let report: serde_json::Value = serde_json::from_slice(&last.stdout).unwrap();
+    let of = |key: &str| report["characteristics"][0][key].as_f64().unwrap();
+    // Five points of each dimension and every pair leave out products of three and of higher powers.
+    assert!((of("mean") - mean).abs() < 1e-4 * sigma, "{} {mean}", of("mean"));
+    assert!((of("sigma") - sigma).abs() < 1e-3 * sigma, "{} {sigma}", of("sigma"));
+    // It is of --points, and writes over nothing.
+    assert_eq!(sensitol(&["analyze", &at("elsewhere.toml"), "--write-missing", &next]).0.status.code(), Some(2));
+    let onto = sensitol(&[&analyze[..], &["--write-missing", &answers]].concat());
+    assert!(
+        onto.0.status.code() == Some(2) && onto.1.contains("is read by --points, which would be lost"),
+        "{}",
+        onto.1
+    );
 }
 
 /// A study that is moved with its program and its journal is the same study: paths start from its folder.

@@ -3,9 +3,10 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use sensitol::assembly::Run;
-use sensitol::probe::{Probe, probe};
+use sensitol::probe::{Probe, Verdict, evaluations, probe};
 use sensitol::{Closure, Problem};
 
+use super::cli::sensitol;
 use super::support::{normals, refusing};
 
 fn of(function: Closure) -> Probe {
@@ -18,7 +19,7 @@ fn scalar(function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Probe {
 
 /// The checks that failed.
 fn failed(probe: &Probe) -> Vec<&'static str> {
-    probe.checks.iter().filter(|check| check.fault.is_some()).map(|check| check.what).collect()
+    probe.checks.iter().filter(|check| matches!(check.verdict, Verdict::Failed(_))).map(|check| check.what).collect()
 }
 
 #[test]
@@ -87,7 +88,84 @@ fn models_that_remember_are_found_out() {
 #[test]
 fn models_without_values_or_reaction_fail() {
     let none = of(refusing(|x| x[0], |_| true));
-    assert!(failed(&none).contains(&"the nominal dimensions have values"));
+    // Nothing else is asked, and nothing is said of what was not seen.
+    assert_eq!((failed(&none), none.evaluations), (vec!["the nominal dimensions have values"], 1));
+    assert!(none.checks[1..].iter().all(|check| check.verdict == Verdict::NotChecked), "{:?}", none.checks);
+    assert!(!none.passed());
     let mute = scalar(|_| 7.0);
     assert_eq!(failed(&mute), ["every characteristic reacts to some dimension"]);
+}
+
+/// A point of the plan without a value is named: few of them are a doubt, many a fault, and a check without values is none.
+#[test]
+fn points_without_values_are_named() {
+    // x0 has the mean 3 and sigma 0.1, of which only the step up and, of the scattered points, some reach beyond.
+    let verdict =
+        |found: &Probe, what: &str| found.checks.iter().find(|check| check.what == what).unwrap().verdict.clone();
+    let within = "every point within the tolerances has values";
+    let one = of(refusing(|x| x[0] * x[1], |x| x[1] == 2.0 && x[0] > 3.05));
+    let Verdict::Doubtful(fault) = verdict(&one, within) else { panic!("{:?}", one.checks) };
+    assert!(fault.starts_with("1 of 21 points had no value: x0 = 3.1: "), "{fault}");
+    assert!(one.passed() && failed(&one).is_empty());
+    let half = of(refusing(|x| x[0] * x[1], |x| x[0] > 3.0));
+    let Verdict::Failed(fault) = verdict(&half, within) else { panic!("{:?}", half.checks) };
+    // Four of the nine points on the line and a step are above, and some of the scattered points: five are named.
+    assert!(fault.matches("x0 = ").count() == 5 && fault.contains("; and "), "{fault}");
+    // Values at the nominal dimensions alone: neither order nor reaction can be told.
+    let lonely = of(refusing(|x| x[0], |x| x[0] != 3.0 || x[1] != 2.0));
+    for what in ["the order of the points does not matter", "every characteristic reacts to some dimension"] {
+        assert_eq!(verdict(&lonely, what), Verdict::NotChecked);
+    }
+    assert_eq!(verdict(&lonely, "the nominal values are the same after other points"), Verdict::Passed);
+    assert!(!lonely.passed());
+    let problem = Problem::new(normals(&[3.0, 2.0], &[0.3, 0.6]), Closure::scalar("y", |x| x[0])).unwrap();
+    assert_eq!((evaluations(&problem), half.evaluations), (35, 35));
+}
+
+/// A program by what it does at a point `x`, behind a study of one dimension with sigma 1/30, and what a command says of it.
+fn program(does: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let script = format!(
+        "import json, os, sys\nhello = json.loads(sys.stdin.readline())\nprint(json.dumps({{'ready': True}}), flush=True)\n\
+         for line in sys.stdin:\n    request = json.loads(line)\n    x = request['x'][0]\n    {does}\n    \
+         print(json.dumps({{'id': request['id'], 'y': [2 * x]}}), flush=True)\n"
+    );
+    std::fs::write(folder.path().join("model.py"), script).unwrap();
+    let study = folder.path().join("study.toml");
+    let text = "[model]\ncommand = [\"python3\", \"model.py\"]\nretries = 0\n[dimensions]\n\
+                hub_od = { nominal = 70, tolerance = 0.1 }\n[characteristics]\npressure = { lower = 139 }\n";
+    std::fs::write(&study, text).unwrap();
+    let output = sensitol(&[&[arguments[0], study.to_str().unwrap()], &arguments[1..]].concat()).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+/// A model that crashes beyond 1.7 sigma is told of, by the point and by how it ended.
+#[test]
+fn a_program_that_crashes_at_a_point_is_told_of() {
+    let crashes = "if 70.057 < x < 71: sys.exit(3)";
+    let (code, text, _) = program(crashes, &["probe"]);
+    let line = text.lines().find(|line| line.contains("every point within the tolerances")).unwrap();
+    assert!(line.starts_with("  WARN  ") && line.contains(" of 19 points had no value: hub_od = 70.0"), "{text}");
+    assert!(line.contains("the model ended while it evaluated this point (exit code 3)"), "{text}");
+    assert_eq!(code, Some(0));
+}
+
+/// A model that prints among its answers: one point is asked, nothing is called good, and the error says what to do.
+#[test]
+fn a_program_that_prints_is_told_where_to() {
+    let prints = "print('rebuilding', flush=True)";
+    let hint = "`rebuilding`; stdout belongs to the protocol: print to stderr";
+    let (code, text, _) = program(prints, &["probe"]);
+    assert!(code == Some(1) && text.contains("; 1 evaluation\n") && text.contains(hint), "{text}");
+    assert!(text.contains("FAIL  the nominal dimensions have values: ") && !text.contains("  ok  "), "{text}");
+    assert_eq!(text.matches(": not checked, as there are no values").count(), 6, "{text}");
+    let (_, text, _) = program(prints, &["probe", "--json"]);
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let checks = report["checks"].as_array().unwrap();
+    assert_eq!((&checks[0]["passed"], &checks[0]["verdict"]), (&false.into(), &"fail".into()));
+    assert!(checks[1..].iter().all(|check| check["passed"].is_null() && check["verdict"] == "not-checked"));
+    assert_eq!(report["passed"], false);
+    let (code, _, error) = program(prints, &["analyze", "--method", "rss", "--journal", "none"]);
+    assert!(code == Some(3) && error.contains(hint), "{error}");
 }

@@ -133,6 +133,7 @@ fn models_that_cannot_start() {
     assert!(matches!(fault_of(never).fault, ProcessFault::SilentAtStart { .. }));
     let talks = fault_of(settings("talks-first", &[])).to_string();
     assert!(talks.contains("Loading CAD kernel 7.3"), "{talks}");
+    assert!(talks.contains("stdout belongs to the protocol: print to stderr"), "{talks}");
     assert!(matches!(fault_of(settings("answers-first", &[])).fault, ProcessFault::NotReady { .. }));
     let refuses = fault_of(settings("refuses", &[])).to_string();
     assert!(refuses.contains("no dimension `b`; there are a, c"), "{refuses}");
@@ -171,6 +172,8 @@ fn a_point_that_goes_wrong_takes_no_other_with_it() {
         for output in 0..2 {
             let fault = fault(&out, 2, output);
             assert!(is(&fault), "{mode}: {fault:?}");
+            // Only a line that was meant for people belongs elsewhere.
+            assert_eq!(fault.to_string().contains("print to stderr"), mode == "garbage", "{mode}: {fault}");
         }
         // One try more, and it is counted; a whole line with the wrong number of values is an answer like any other.
         assert_eq!(out.extra(), if ["wrong-length", "wrong-gradients"].contains(&mode) { 0 } else { 1 }, "{mode}");

@@ -36,6 +36,26 @@ fn a_simulation_prints_estimates_with_standard_errors() {
     assert!(one["standard_error"]["quantiles"]["0.5"].as_f64().unwrap() > 0.0);
 }
 
+/// With no value to be expected beyond a quantile, it is not the least one of the sample.
+#[test]
+fn quantiles_beyond_a_small_sample_are_unknown() {
+    let report = json(&["simulate", BLOCKS, "--samples", "13", "--json"]);
+    let one = &report["characteristics"][0];
+    let known: Vec<bool> = ["0.00135", "0.01", "0.05", "0.5", "0.95", "0.99", "0.99865"]
+        .iter()
+        .map(|p| one["distribution"]["quantiles"][p].is_f64())
+        .collect();
+    assert_eq!(known, [false, false, false, true, false, false, false]);
+    // Twenty values have one beyond five percent on average, without a standard error as yet; the histogram stays.
+    let report = json(&["simulate", BLOCKS, "--samples", "2e1", "--json"]);
+    let one = &report["characteristics"][0];
+    assert!(one["distribution"]["quantiles"]["0.05"].is_f64() && one["standard_error"]["quantiles"]["0.05"].is_null());
+    assert_eq!(one["histogram"]["counts"].as_array().unwrap().iter().filter_map(Value::as_u64).sum::<u64>(), 20);
+    let text = run(&["simulate", BLOCKS, "--samples", "13"]);
+    let line = text.lines().find(|line| line.contains("quantile 0.00135")).unwrap();
+    assert_eq!(line.split_whitespace().collect::<Vec<_>>(), ["quantile", "0.00135", "-", "-"]);
+}
+
 /// A costly model's answers are kept: the second run asks for nothing.
 #[test]
 fn samples_of_programs_are_journaled() {
@@ -135,7 +155,8 @@ fn wrong_wishes() {
     let mut all = String::new();
     for arguments in [
         &["simulate", BLOCKS, "--samples", "0"][..],
-        &["simulate", BLOCKS, "--samples", "1e5"],
+        &["simulate", BLOCKS, "--samples", "1.5"],
+        &["simulate", BLOCKS, "--samples", "-3"],
         &["simulate", BLOCKS, "--until", "-1"],
         &["simulate", BLOCKS, "--sampler", "halton"],
         &["simulate", BLOCKS, "--kc", "gab"],

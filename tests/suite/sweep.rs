@@ -37,6 +37,21 @@ fn problem() -> (Problem, Arc<Mutex<Vec<usize>>>) {
     (Problem::new(dimensions, Counted { inner, batches: Arc::clone(&batches) }).unwrap(), batches)
 }
 
+/// A yield of nearly all is not all: as many digits as the rejects have, as `analyze` prints them.
+#[test]
+fn nearly_all_is_not_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    // Limits at 5 sigma and at 6: 0.287 and 0.000987 ppm.
+    let text =
+        "[dimensions]\na = { nominal = 5, tolerance = 3 }\n[characteristics]\ny = { formula = \"a\", lower = 0 }\n";
+    std::fs::write(&study, text).unwrap();
+    let table = run(&["sweep", study.to_str().unwrap(), "--over", "a=5:6:2"]);
+    assert!(table.contains("99.9999713\n") && table.contains("99.9999999013\n"), "{table}");
+    let nothing = run(&["sweep", study.to_str().unwrap(), "--over", "a=50:60:2"]);
+    assert!(nothing.contains("  100\n"), "{nothing}");
+}
+
 /// The same bits as analyses one by one, for every method, in one batch for each stage.
 #[test]
 fn a_sweep_is_its_analyses() {

@@ -52,7 +52,7 @@ pub enum ProcessFault {
         message: String,
     },
     /// Its first line was none of the protocol.
-    #[error("the model's first line is no `ready` of this protocol: {line}")]
+    #[error("the model's first line is no `ready` of this protocol: {line}{}", hint(line))]
     NotReady {
         /// What it wrote.
         line: Quoted,
@@ -70,7 +70,7 @@ pub enum ProcessFault {
         after: Duration,
     },
     /// It wrote a line that is no answer.
-    #[error("the model wrote a line that is no answer ({reason}): {line}")]
+    #[error("the model wrote a line that is no answer ({reason}): {line}{}", hint(line))]
     Garbage {
         /// What is wrong with it.
         reason: String,
@@ -174,6 +174,14 @@ impl fmt::Display for StderrTail {
             return Ok(());
         }
         write!(f, "; its stderr ended with: {}", self.0.join(" | "))
+    }
+}
+
+/// What to do about a line that was printed for people.
+fn hint(line: &Quoted) -> &'static str {
+    match line.0.is_empty() || line.0.starts_with('{') {
+        true => "",
+        false => "; stdout belongs to the protocol: print to stderr",
     }
 }
 

@@ -50,6 +50,8 @@ pub enum Rest {
     Budget,
     /// Nothing that could be bought is expected to help.
     Exhausted,
+    /// It was stopped before any of that.
+    Stopped,
 }
 
 /// Evaluations of derivatives beyond which it does not go, failed points apart.

@@ -216,11 +216,11 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
     let climbed = Climbed {
         accuracy: options.accuracy.unwrap_or(ACCURACY),
         accuracies: options.accuracies,
-        rest: climb.rest.unwrap_or(Rest::Budget),
+        rest: if evaluated.stopped { Rest::Stopped } else { climb.rest.unwrap_or(Rest::Budget) },
         refined: (0..climb.refined.len()).filter(|&j| climb.refined[j]).collect(),
         direct: climb.bought.direct.len(),
         probes: climb.bought.judging.len() + climb.bought.fitted.len(),
-        checks: 2 * climb.bought.checks.len(),
+        checks: climb.bought.checks.iter().flatten().filter(|point| known.tried(point)).count(),
         all_pairs: climb.bought.direct.len() == plan.possible_pairs(),
         noise: of(|view| view.noise),
         tails: of(|view| view.tail),
