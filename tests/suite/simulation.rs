@@ -169,9 +169,11 @@ fn nothing_known_is_none() {
     let still = Problem::new(standard(1), Closure::scalar("y", |_| 4.0)).unwrap();
     let one = run(&still, 1000, Sampler::Random, 1).characteristics.remove(0);
     assert_eq!((one.mean.unwrap().value, one.sigma.unwrap().value, one.skewness, one.kurtosis), (4.0, 0.0, None, None));
-    // Ten points say nothing of the 0.00135 quantile's uncertainty.
+    // Ten points say nothing of the 0.00135 quantile, and two thousand nothing of its uncertainty.
     let (problem, _) = lognormal();
-    assert_eq!(run(&problem, 10, Sampler::Random, 1).characteristics[0].quantiles[0].unwrap().standard_error, None);
+    let quantile = |samples| run(&problem, samples, Sampler::Random, 1).characteristics[0].quantiles[0];
+    assert!(quantile(10).is_none());
+    assert_eq!(quantile(2000).unwrap().standard_error, None);
 }
 
 /// Quantiles where sigma says nothing of the bulk: a rare part far away, and a tail of a hundred sigmas' width.
