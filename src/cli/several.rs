@@ -1,5 +1,6 @@
 //! Several studies in one call: all of them are read before any is evaluated, and none is kept from its report by another.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -37,9 +38,10 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
     if asked.points.is_some() {
         return Err(Failure::PointsOfOne { count: paths.len() });
     }
-    if asked.csv.is_some() || asked.html.is_some() {
-        distinct(paths)?;
-    }
+    let stems = match asked.csv.is_some() || asked.html.is_some() {
+        true => stems(paths)?,
+        false => vec![String::new(); paths.len()],
+    };
     let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
     let studies = paths.iter().zip(&names).map(|(path, name)| read(path, asked, None, look.of(name)));
     let studies: Vec<Result<Study, Failure>> = studies.collect();
@@ -53,7 +55,7 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
         study.iter().for_each(|study| files.study(path, study, asked.work.journal.as_deref()));
     }
     let mut printer = Printer::open(asked, look, &mut files)?;
-    let studies = open(paths, studies, asked, &mut files)?;
+    let studies = open(&stems, studies, asked, &mut files)?;
     let mut exit = Exit::Done;
     for (name, study) in names.iter().zip(studies) {
         let (study, beside) = match study {
@@ -82,19 +84,28 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
     Ok(exit)
 }
 
-/// That no two studies write files of the same name, on any file system.
-fn distinct(paths: &[PathBuf]) -> Result<(), Failure> {
-    for (index, second) in paths.iter().enumerate() {
-        let same = |first: &&PathBuf| stem(first).to_lowercase() == stem(second).to_lowercase();
-        if let Some(first) = paths[..index].iter().find(same) {
-            return Err(Failure::SameName { first: first.clone(), second: second.clone(), name: stem(second) });
+/// The names of the studies' files: those of the studies, with their folders' where several have the same. No two are the same on
+/// any file system.
+fn stems(paths: &[PathBuf]) -> Result<Vec<String>, Failure> {
+    let text = |part: Option<&OsStr>| part.map(|part| part.to_string_lossy().into_owned()).unwrap_or_default();
+    let own: Vec<String> = paths.iter().map(|path| text(path.file_stem())).collect();
+    let same = |a: &String, b: &String| a.to_lowercase() == b.to_lowercase();
+    let full = |(path, stem): (&PathBuf, &String)| {
+        // A study is named without its folder in that folder.
+        let folder = path.canonicalize().ok().and_then(|path| Some(text(path.parent()?.file_name())));
+        match own.iter().filter(|other| same(other, stem)).count() {
+            1 => stem.clone(),
+            _ => format!("{}-{stem}", folder.unwrap_or_default()),
+        }
+    };
+    let stems: Vec<String> = paths.iter().zip(&own).map(full).collect();
+    for (index, name) in stems.iter().enumerate() {
+        if let Some(first) = stems[..index].iter().position(|other| same(other, name)) {
+            let [first, second] = [first, index].map(|place| paths[place].clone());
+            return Err(Failure::SameName { first, second, name: name.clone() });
         }
     }
-    Ok(())
-}
-
-fn stem(path: &Path) -> String {
-    path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+    Ok(stems)
 }
 
 /// A study that was read with its files open, or why it was not.
@@ -102,24 +113,24 @@ type Ready = Result<(Study, Beside), Failure>;
 
 /// Opens the files of every study that was read: what cannot be written costs no evaluation.
 fn open(
-    paths: &[PathBuf],
+    stems: &[String],
     studies: Vec<Result<Study, Failure>>,
     asked: &AnalyzeArgs,
     files: &mut Files,
 ) -> Result<Vec<Ready>, Failure> {
     asked.html.as_deref().map(folder_of_pages).transpose()?;
     asked.csv.as_deref().map(CsvFolder::make).transpose()?;
-    let of = |(path, study): (&PathBuf, Result<Study, Failure>)| {
+    let of = |(stem, study): (&String, Result<Study, Failure>)| {
         let study = match study {
             Ok(study) => study,
             Err(failure) => return Ok(Err(failure)),
         };
-        let tables = asked.csv.as_deref().map(|folder| folder.join(stem(path)));
-        let page = asked.html.as_deref().map(|folder| folder.join(stem(path) + ".html"));
+        let tables = asked.csv.as_deref().map(|folder| folder.join(stem));
+        let page = asked.html.as_deref().map(|folder| folder.join(format!("{stem}.html")));
         let beside = Beside::open(files, &study, tables.as_deref(), page.as_deref())?;
         Ok(Ok((study, beside)))
     };
-    paths.iter().zip(studies).map(of).collect()
+    stems.iter().zip(studies).map(of).collect()
 }
 
 /// The folder, made where it is missing; the name of a page is most likely meant as one.

@@ -152,6 +152,21 @@ fn files_are_written_for_every_study() {
     assert_eq!(stacks, expected);
 }
 
+/// Studies of one name in several folders have their folders' names too.
+#[test]
+fn pages_of_one_name_have_their_folders() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name: &str, file: &str| {
+        let inside = folder.path().join(name);
+        std::fs::create_dir(&inside).unwrap();
+        study(&inside, file, "a", "")
+    };
+    let (gear, pump, other) = (of("gear", "study.toml"), of("pump", "Study.toml"), of("other", "alone.toml"));
+    let pages = folder.path().join("pages");
+    let (code, ..) = parts(&["analyze", &gear, &pump, &other, "--html", pages.to_str().unwrap()]);
+    assert_eq!((code, names(&pages).join(" ")), (0, "alone.html gear-study.html pump-Study.html".to_owned()));
+}
+
 /// What cannot be written, or would be written twice, is said before anything is evaluated.
 #[test]
 fn wrong_calls_evaluate_nothing() {
@@ -165,8 +180,8 @@ fn wrong_calls_evaluate_nothing() {
     let shown = folder.path().to_str().unwrap();
     let mut all = String::new();
     for arguments in [
-        &[&*first, &same, "--html", pages.to_str().unwrap()][..],
-        &[&first, &same, "--csv", pages.to_str().unwrap()],
+        &[&*same, &same, "--html", pages.to_str().unwrap()][..],
+        &[&first, &same, &same, "--csv", pages.to_str().unwrap()],
         &[&first, &other, "--html", &first],
         &[&first, &other, "--html", &format!("{shown}/report.html")],
         &[&first, &other, "--html", &format!("{first}/pages")],

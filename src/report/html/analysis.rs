@@ -126,7 +126,7 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
 fn facts(report: &Report) -> Vec<Fact> {
     let procedure = ALL.iter().find(|procedure| procedure.name() == report.method);
     let method = match procedure {
-        Some(procedure) => format!("{}: {} ({} evaluations)", report.method, procedure.about(), procedure.count()),
+        Some(procedure) => format!("{}: {}; evaluations: {}", report.method, procedure.about(), procedure.count()),
         None => report.method.to_owned(),
     };
     let mut facts = vec![fact("method", method)];
@@ -238,7 +238,7 @@ fn characteristic<'r>(report: &'r Report, one: &'r CharacteristicReport, stack: 
         interactions: interactions.iter().take(INTERACTIONS).map(|pair| interaction(pair)).collect(),
         more_interactions: (more > 0).then(|| {
             let (examined, possible) = (one.interactions.len(), one.possible_interactions);
-            format!("interactions examined: {examined} of {possible}; those that are not shown are weaker, and in the JSON report")
+            format!("Interactions examined: {examined} of {possible}; those that are not shown are weaker, and in the JSON report")
         }),
         notes: notes(one),
         stack: stacked(stack),
@@ -296,14 +296,14 @@ fn notes(one: &CharacteristicReport) -> Vec<String> {
     if let Some(of) = &one.surrogate_sampling {
         let [sigma, skewness, kurtosis] = [of.sigma, of.skewness, of.kurtosis].map(|of| error(Some(of)));
         notes.push(format!(
-            "sampled from the surrogate at {} points; standard errors: sigma {sigma}, skewness {skewness}, kurtosis {kurtosis}",
+            "Sampled from the surrogate at {} points; standard errors: sigma {sigma}, skewness {skewness}, kurtosis {kurtosis}",
             of.samples
         ));
     }
     if let Some(of) = &one.model_sampling {
         let [mean, sigma, skewness, kurtosis] = [of.mean, of.sigma, of.skewness, of.kurtosis].map(error);
         notes.push(format!(
-            "from {} points of the model, as the surrogate was not trusted; standard errors: mean {mean}, sigma {sigma}, \
+            "From {} points of the model, as the surrogate was not trusted; standard errors: mean {mean}, sigma {sigma}, \
              skewness {skewness}, kurtosis {kurtosis}",
             of.samples
         ));
@@ -313,7 +313,7 @@ fn notes(one: &CharacteristicReport) -> Vec<String> {
     }
     if let Some(of) = &one.least_squares {
         notes.push(format!(
-            "a surface of {} coefficients fitted to {} points; residual standard error {}",
+            "A surface of {} coefficients fitted to {} points; residual standard error {}",
             of.coefficients,
             of.points,
             error(of.residual_standard_error)

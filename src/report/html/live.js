@@ -39,7 +39,8 @@ const live = (() => {
     let found = mathematics.moments(surrogate, shapes);
     if (one.unexplained !== null) found = mathematics.beside(found, one.unexplained);
     const { mean, sigma, skewness, excess } = found;
-    const shares = Float64Array.from(surrogate.pairs.a, (a) => (a * found.perSigma) ** 2);
+    const shares = new Float64Array(surrogate.pairs.a.length);
+    for (let i = 0; i < shares.length; i++) shares[i] = (surrogate.pairs.a[i] * found.perSigma) ** 2;
     const law = skewness === null ? null : pearson.law(mean, sigma, skewness, excess);
     let kept = { below: null, above: null, rejected: null, yield: null, cp: null, cpk: null, met: null };
     if (law !== null) kept = limited(one, mean, sigma, law.tails);

@@ -158,9 +158,9 @@ const mathematics = (() => {
       where.fill(j, count, count + 3);
       w.fill(0, j);
       for (let i = 0; i < count; i += 4) {
-        const [e, f, g, h] = [where[i], where[i + 1], where[i + 2], where[i + 3]];
-        const ae = all[j * n + e], af = all[j * n + f], ag = all[j * n + g], ah = all[j * n + h];
-        for (let l = j; l < n; l++) w[l] += ae * all[e * n + l] + af * all[f * n + l] + ag * all[g * n + l] + ah * all[h * n + l];
+        const e = where[i] * n, f = where[i + 1] * n, g = where[i + 2] * n, h = where[i + 3] * n;
+        const ae = all[e + j], af = all[f + j], ag = all[g + j], ah = all[h + j];
+        for (let l = j; l < n; l++) w[l] += ae * all[e + l] + af * all[f + l] + ag * all[g + l] + ah * all[h + l];
       }
       sums[j].ww += w[j] * w[j];
       for (let k = j + 1; k < n; k++) {
@@ -180,16 +180,17 @@ const mathematics = (() => {
     const terms = surrogate.parts.map((c, i) => term(c, shapes[i])), { pairs } = surrogate;
     const mean = exact([surrogate.centre, ...terms.map((of) => of.mean)]);
     let largest = Math.max(0, ...terms.map((of) => of.largest));
-    for (const a of pairs.a) largest = Math.max(largest, Math.abs(a));
+    for (let i = 0; i < pairs.a.length; i++) largest = Math.max(largest, Math.abs(pairs.a[i]));
     if (largest === 0) {
       const none = terms.map(() => 0);
       return { mean, sigma: 0, skewness: null, excess: null, linear: none, curvature: none, perSigma: 0 };
     }
-    const variances = terms.map((of) => {
+    const n = terms.length, variances = new Float64Array(n + pairs.a.length);
+    terms.forEach((of, i) => {
       const { p, hh } = parted(of, 1 / largest);
-      return p * p + hh;
+      variances[i] = p * p + hh;
     });
-    for (const a of pairs.a) variances.push((a / largest) ** 2);
+    for (let i = 0; i < pairs.a.length; i++) variances[n + i] = (pairs.a[i] / largest) ** 2;
     const relative = Math.sqrt(exact(variances)), perSigma = 1 / largest / relative;
     const parts = terms.map((of) => part(of, perSigma)), sums = rows(parts, pairs, perSigma);
     const over = (f) => exact(parts.map((one, i) => f(one, sums[i])));
