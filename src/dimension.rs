@@ -148,10 +148,10 @@ impl Dimension {
     ///
     /// ```
     /// use sensitol::Dimension;
-    /// let b = Dimension::normal_between("b", 30.0, [-0.1, 0.3])?;
+    /// let b = Dimension::normal_between("b", 30.0, [-0.25, 0.75])?;
     /// let half = b.scaled(0.5).expect("a normal dimension scales")?;
-    /// assert_eq!(half.tolerance(), Some([0.0, 0.2]));
-    /// assert!((half.mean() - 30.1).abs() < 1e-14 && (half.sigma() - 0.1 / 3.0).abs() < 1e-15);
+    /// assert_eq!(half.tolerance(), Some([0.0, 0.5]));
+    /// assert!((half.mean() - 30.25).abs() < 1e-14 && (half.sigma() - 0.25 / 3.0).abs() < 1e-15);
     /// # Ok::<(), sensitol::DimensionError>(())
     /// ```
     pub fn scaled(&self, factor: f64) -> Option<Result<Self, DimensionError>> {

@@ -1,6 +1,6 @@
 //! Answers that were evaluated elsewhere: a table of points and values in place of a program.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, PoisonError};
 
 use super::process::Adapter;
@@ -139,7 +139,7 @@ impl AssemblyFunction for Given {
         let columns: Vec<Option<usize>> =
             ask.outputs.iter().map(|&output| self.table.column(&self.signature.outputs[output].name)).collect();
         let mut known = 0;
-        let mut missing: Vec<Vec<f64>> = Vec::new();
+        let (mut missing, mut seen) = (Vec::new(), HashSet::new());
         for row in 0..ask.points.rows() {
             let point = ask.points.row(row);
             let found = self.find(&point);
@@ -148,8 +148,8 @@ impl AssemblyFunction for Given {
                     self.table.asked.lock().unwrap_or_else(PoisonError::into_inner).used[found] = true;
                     known += 1;
                 }
-                None if missing.contains(&point) => {}
-                None => missing.push(point),
+                None if seen.insert(bits(&point)) => missing.push(point),
+                None => {}
             }
             for (output, column) in columns.iter().enumerate() {
                 match found.zip(*column).and_then(|(found, column)| self.table.rows[found][column]) {

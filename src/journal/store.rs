@@ -1,9 +1,9 @@
 //! The file: SQLite in WAL mode, which several runs may share and any SQLite tool can read.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use rusqlite::{Connection, ErrorCode, OptionalExtension, TransactionBehavior, params};
+use rusqlite::{Connection, ErrorCode, OptionalExtension, Transaction, TransactionBehavior, params};
 
 /// What is in the file, for `PRAGMA user_version`.
 const VERSION: i32 = 1;
@@ -11,6 +11,8 @@ const VERSION: i32 = 1;
 const APPLICATION: i32 = 0x736e_736c;
 /// How long to wait for another run that is writing.
 const PATIENCE: Duration = Duration::from_secs(30);
+/// And how long before it is tried once more.
+const AGAIN: Duration = Duration::from_millis(5);
 
 const TABLES: &str = "
     CREATE TABLE model (
@@ -118,11 +120,18 @@ impl Store {
     pub fn open(path: &Path) -> Result<Self, JournalError> {
         let store =
             Self { path: path.to_owned(), connection: Connection::open(path).map_err(|error| at(path, &error))? };
-        store.prepare().map_err(|error| match error {
-            Opening::Sqlite(error) => at(path, &error),
-            Opening::Fault(fault) => JournalError { path: path.to_owned(), fault },
-        })?;
-        Ok(store)
+        let begun = Instant::now();
+        loop {
+            match store.prepare() {
+                Ok(()) => return Ok(store),
+                // SQLite does not wait by itself for another run that is just changing how the file is written.
+                Err(Opening::Sqlite(error)) if is_busy(&error) && begun.elapsed() < PATIENCE => {
+                    std::thread::sleep(AGAIN);
+                }
+                Err(Opening::Sqlite(error)) => return Err(at(path, &error)),
+                Err(Opening::Fault(fault)) => return Err(JournalError { path: path.to_owned(), fault }),
+            }
+        }
     }
 
     /// Opens a journal that must be there.
@@ -139,9 +148,12 @@ impl Store {
     fn prepare(&self) -> Result<(), Opening> {
         let connection = &self.connection;
         connection.busy_timeout(PATIENCE)?;
-        let pragma = |name: &str| connection.pragma_query_value(None, name, |row| row.get::<_, i32>(0));
+        // All at one moment: another run may be making the tables, and its mark is not older than they are.
+        let look = connection.unchecked_transaction()?;
+        let pragma = |name: &str| look.pragma_query_value(None, name, |row| row.get::<_, i32>(0));
         let (application, version) = (pragma("application_id")?, pragma("user_version")?);
-        let tables: i64 = connection.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
+        let tables: i64 = look.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
+        look.commit()?;
         if tables > 0 && application != APPLICATION {
             return Err(Opening::Fault(JournalFault::NotAJournal));
         }
@@ -155,10 +167,12 @@ impl Store {
         if tables == 0 {
             // Another run may be at it too: whoever comes second finds the tables.
             let script = format!(
-                "BEGIN IMMEDIATE; {}; PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {VERSION}; COMMIT;",
+                "{}; PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {VERSION};",
                 TABLES.replace("CREATE TABLE", "CREATE TABLE IF NOT EXISTS").trim().trim_end_matches(';')
             );
-            connection.execute_batch(&script)?;
+            let making = Transaction::new_unchecked(connection, TransactionBehavior::Immediate)?;
+            making.execute_batch(&script)?;
+            making.commit()?;
         }
         Ok(())
     }
@@ -293,6 +307,10 @@ impl Store {
         })();
         self.failed(forgotten)
     }
+}
+
+fn is_busy(error: &rusqlite::Error) -> bool {
+    matches!(error.sqlite_error_code(), Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked))
 }
 
 enum Opening {

@@ -201,6 +201,25 @@ fn runs_share_a_journal() {
     assert_eq!(field(&study.run(&[]), "evaluations"), 0);
 }
 
+/// A journal that many open at the very beginning is one journal for all of them.
+#[test]
+fn a_journal_may_be_made_by_many_at_once() {
+    for _ in 0..20 {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sqlite");
+        let begin = std::sync::Barrier::new(8);
+        std::thread::scope(|scope| {
+            let open = || {
+                begin.wait();
+                Store::open(&path).unwrap().model("one", &["a".to_owned()]).unwrap()
+            };
+            let all: Vec<_> = (0..8).map(|_| scope.spawn(open)).collect();
+            let ids: Vec<i64> = all.into_iter().map(|one| one.join().unwrap()).collect();
+            assert_eq!(ids, [1; 8]);
+        });
+    }
+}
+
 /// A disk that is full: what was known and what was answered is in the report or in the file, and the error says why it ended.
 #[test]
 #[cfg(unix)]
