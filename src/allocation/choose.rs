@@ -20,9 +20,8 @@ pub(super) enum Choice {
 pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
     let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
     let free = setting.priced.iter().all(|group| group.offers.len() == 1);
-    let inside = |(group, t): (&Priced, &f64)| (group.tightest()..=group.loosest()).contains(t);
     // What the start keeps can be kept: means that move with tolerances may make the tightest ones the worst.
-    let here = free && setting.priced.iter().zip(start).all(inside) && kept(setting.value(start));
+    let here = free && within_bounds(setting.priced, start) && kept(setting.value(start));
     for constraint in setting.constraints.iter().filter(|_| !here) {
         // Nearly always the tightest tolerances keep what any do.
         if kept(constraint.value(setting.responses, setting.priced, &tight)) {
@@ -78,6 +77,11 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
             })
         }
     }
+}
+
+/// Whether some process of each group may hold these half bands.
+pub(super) fn within_bounds(priced: &[Priced], at: &[f64]) -> bool {
+    priced.iter().zip(at).all(|(group, t)| (group.tightest()..=group.loosest()).contains(t))
 }
 
 fn unattainable(setting: &Setting<'_>, constraint: &Constraint, at: &[f64]) -> Attainable {

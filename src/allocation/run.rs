@@ -1,6 +1,6 @@
 //! From a problem with costs to tolerances that the model confirms.
 
-use super::choose::{Choice, choose};
+use super::choose::{Choice, choose, within_bounds};
 use super::constraint::{Constraint, kept};
 use super::cost::Priced;
 use super::front::front;
@@ -502,10 +502,6 @@ fn shorter(reach: f64) -> f64 {
 }
 
 /// Whether every group may have its half band.
-fn within_bounds(priced: &[Priced], at: &[f64]) -> bool {
-    priced.iter().zip(at).all(|(group, t)| (group.tightest()..=group.loosest()).contains(t))
-}
-
 /// The groups with free tolerances no farther from these half bands than by a factor.
 fn within_reach(priced: &[Priced], at: &[f64], reach: f64) -> Vec<Priced> {
     let mut priced = priced.to_vec();

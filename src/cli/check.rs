@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::args::{CheckArgs, OutputArgs};
+use super::args::CheckArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look};
 use super::several;
@@ -41,6 +41,6 @@ fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
             _ => plan.cost().0.to_string(),
         },
     );
-    Destination::open(&OutputArgs { json: false, output: None })?.write(&summary)?;
+    Destination::Stdout.write(&summary)?;
     Ok(Exit::Done)
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::args::{InitArgs, OutputArgs};
+use super::args::InitArgs;
 use super::failure::{Exit, Failure};
 use super::models::known;
 use super::output::Destination;
@@ -111,7 +111,7 @@ pub(super) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
         format!("\n      sensitol allocate {name}")
     };
     let said = format!("written: {}\nnext: sensitol {next} {name}{more}\n", path.display());
-    Destination::open(&OutputArgs { json: false, output: None })?.write(&said)?;
+    Destination::Stdout.write(&said)?;
     Ok(Exit::Done)
 }
 

@@ -2,7 +2,7 @@
 
 use clap::CommandFactory;
 
-use super::args::{Arguments, CompletionsArgs, OutputArgs};
+use super::args::{Arguments, CompletionsArgs};
 use super::failure::{Exit, Failure};
 use super::output::Destination;
 
@@ -79,7 +79,6 @@ fn roff(text: &str) -> String {
 }
 
 fn print(text: &[u8]) -> Result<Exit, Failure> {
-    let destination = Destination::open(&OutputArgs { json: false, output: None })?;
-    destination.write(&String::from_utf8_lossy(text))?;
+    Destination::Stdout.write(&String::from_utf8_lossy(text))?;
     Ok(Exit::Done)
 }

@@ -49,7 +49,7 @@ const live = (() => {
   };
 
   /// What these settings cost, by the cheapest process that holds the tightest member of each group, as the engine counts it
-  /// (Priced::cost_to_hold); null where no process does.
+  /// (Priced::cost_to_hold); no finite number where no process does.
   const cost = (data, settings) => mathematics.exact(data.costs.map(({ members, others, parts, offers }) => {
     const t = Math.min(others ?? Infinity, ...members.map((i) => settings[i].factor * data.dimensions[i].half));
     const alone = offers.length === 1;
