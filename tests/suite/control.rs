@@ -324,7 +324,7 @@ fn without_a_surrogate_it_is_refused() {
 #[test]
 fn it_stops_when_told_to() {
     let (problem, _) = lognormal(0.15);
-    let run = Run::to_the_end().stopping_when(&|| true);
+    let run = Run::to_the_end().stopping_when(&|| Some(StopReason::Requested));
     let found = simulate_within(&problem, &options(1000, Sampler::Random, 1), &run, &|_| {}).unwrap();
     assert!(found.stopped && found.samples == 0 && found.characteristics[0].mean.is_none());
 }

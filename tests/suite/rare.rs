@@ -264,7 +264,7 @@ fn failed_points_bound_the_probability() {
 #[test]
 fn it_stops_when_told_to() {
     let problem = lognormal(0.15, 4.5);
-    let run = Run::to_the_end().stopping_when(&|| true);
+    let run = Run::to_the_end().stopping_when(&|| Some(StopReason::Requested));
     let found = rare_within(&problem, &RareOptions::default(), &run, &|_| {}).unwrap();
     assert!(found.stopped && found.samples == 0 && sides(&found) == [None, None]);
     // After the surrogate and some points, what is known is told.
