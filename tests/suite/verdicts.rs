@@ -14,15 +14,16 @@ use serde_json::Value;
 use super::cli::sensitol;
 use super::support::{relative, repository};
 
-/// `y = 60 (b - 2)(c - 3) + a` behind a child that takes `seconds` for every point, as a study.
+/// `y = 60 (b - 2)(c - 3) + a` behind a child that takes `seconds` for every interaction's points, as a study.
 fn slow(folder: &Path, seconds: f64) -> String {
     let script = folder.join("model.py");
     let program = format!(
         "import json, sys, time\n\
-         print(json.dumps({{'ready': True, 'adapter': 'slow', 'version': '1'}}), flush=True)\n\
-         sys.stdin.readline()\n\
+         nominal = json.loads(sys.stdin.readline())['nominal']\n\
+         print(json.dumps({{'ready': True, 'name': 'slow', 'version': '1'}}), flush=True)\n\
          for line in sys.stdin:\n    \
-             asked = json.loads(line)\n    time.sleep({seconds})\n    a, b, c = asked['x']\n    \
+             asked = json.loads(line)\n    a, b, c = asked['x']\n    \
+             time.sleep({seconds} if sum(x != at for x, at in zip(asked['x'], nominal)) > 1 else 0)\n    \
              print(json.dumps({{'id': asked['id'], 'y': [60 * (b - 2) * (c - 3) + a]}}), flush=True)\n"
     );
     std::fs::write(&script, program).unwrap();
@@ -41,7 +42,7 @@ fn slow(folder: &Path, seconds: f64) -> String {
 #[test]
 fn a_stopped_run_says_so_and_meets_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let study = slow(folder.path(), 0.05);
+    let study = slow(folder.path(), 0.0);
     let page = folder.path().join("page.html").display().to_string();
     let more = ["--method", "full", "--journal", "none", "--check"];
     let done = sensitol(&["analyze", &study, "--json"]).args(more).output().unwrap();
@@ -52,14 +53,15 @@ fn a_stopped_run_says_so_and_meets_nothing() {
     relative(done["characteristics"][0]["sigma"].as_f64().unwrap(), 0.37f64.sqrt(), 1e-9);
     assert_eq!(done["characteristics"][0]["verdict"], "missed");
 
-    // The program has no time at all, however slow the machine is.
-    let short = sensitol(&["analyze", &study, "--json", "--time", "0", "--html", &page]).args(more).output().unwrap();
+    // Six points of two seconds, and three seconds for all: however fast the machine is, it is not done.
+    slow(folder.path(), 2.0);
+    let short = sensitol(&["analyze", &study, "--json", "--time", "3", "--html", &page]).args(more).output().unwrap();
     let report: Value = serde_json::from_slice(&short.stdout).unwrap();
     assert_eq!((short.status.code(), &report["stopped"]), (Some(3), &"time-limit".into()));
     assert_ne!(report["characteristics"][0]["met"], true);
     assert!(String::from_utf8(short.stderr).unwrap().contains("warning[stopped]: stopped by the time limit"));
     assert!(std::fs::read_to_string(page).unwrap().contains("the time limit"));
-    let text = sensitol(&["analyze", &study, "--time", "0"]).args(more).output().unwrap();
+    let text = sensitol(&["analyze", &study, "--time", "0.001"]).args(more).output().unwrap();
     assert!(String::from_utf8(text.stdout).unwrap().contains(", stopped by the time limit"));
 }
 
