@@ -53,6 +53,7 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
                     dimension: dimension(),
                     slopes,
                     between,
+                    others: Vec::new(),
                 });
                 continue;
             }
@@ -63,6 +64,7 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
                     dimension: dimension(),
                     by,
                     between,
+                    others: Vec::new(),
                 });
                 continue;
             }
@@ -76,8 +78,8 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
             (coefficients[0] * (u.powi(3) - 3.0 * u) + coefficients[1] * (u.powi(4) - 6.0 * u * u + 3.0)).powi(2)
         });
         if share > HELD {
-            let (characteristic, dimension) = (characteristic(), dimension());
-            warnings.push(Warning::HigherOrder { characteristic, dimension, coefficients, held: true });
+            let (characteristic, dimension, others) = (characteristic(), dimension(), Vec::new());
+            warnings.push(Warning::HigherOrder { characteristic, dimension, coefficients, held: true, others });
         }
     }
     warnings

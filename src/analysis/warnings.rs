@@ -7,7 +7,7 @@ use crate::method::{Basis, Lacking, Order, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::surrogate::Surrogate;
-use crate::warning::{Loss, Warning};
+use crate::warning::{Loss, Warning, aggregated};
 
 /// A rounding error of one value above this part of sigma is worth a warning.
 const NOISE: f64 = 1e-4;
@@ -43,6 +43,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
             dimension: problem.dimensions()[d].name().to_owned(),
             from: moved.from,
             to: moved.to,
+            others: Vec::new(),
         };
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
@@ -66,22 +67,20 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
     if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
-    warnings
+    aggregated(warnings)
 }
 
 /// Measured dimensions whose sample was not drawn anew.
-fn not_resampled<'a>(problem: &'a Problem, outcome: &'a Outcome) -> impl Iterator<Item = Warning> + 'a {
+fn not_resampled(problem: &Problem, outcome: &Outcome) -> Option<Warning> {
     let correlated = outcome.plan.inputs().correlation().is_some();
     let integrated = outcome.basis == Basis::Quadrature;
-    let measured = move |d: &&usize| {
+    let measured = |d: &&usize| {
         let law = problem.dimensions()[**d].distribution();
         (correlated || integrated) && law.is_some_and(|law| law.measured().is_some())
     };
-    let warning = move |d: &usize| Warning::NoSamplingInterval {
-        dimension: problem.dimensions()[*d].name().to_owned(),
-        correlated,
-    };
-    outcome.plan.varying().iter().filter(measured).map(warning)
+    let name = |d: &usize| problem.dimensions()[*d].name().to_owned();
+    let dimensions: Vec<String> = outcome.plan.varying().iter().filter(measured).map(name).collect();
+    (!dimensions.is_empty()).then_some(Warning::NoSamplingInterval { dimensions, correlated })
 }
 
 /// External models that do not answer as they did: one warning for each output.
@@ -91,18 +90,13 @@ pub(crate) fn history(problem: &Problem, doubts: &[Doubt]) -> Vec<Warning> {
         let doubt = &doubts[index];
         let same = || doubts.iter().filter(|other| other.output == doubt.output);
         let far = |a: f64, b: f64| (a - b).abs() > FLIP * doubt.spread;
-        Warning::History {
-            output: doubt.output.clone(),
-            expected: doubt.expected,
-            found: doubt.found,
-            flip: doubt.expected.zip(doubt.found).is_some_and(|(a, b)| far(a, b)),
-            times: same().count(),
-            points: same().map(|doubt| doubt.suspects.len()).sum(),
-            suspects: same()
-                .flat_map(|doubt| &doubt.suspects)
-                .take(SUSPECTS)
-                .map(|point| words(problem, point))
-                .collect(),
+        let (output, expected, found) = (doubt.output.clone(), doubt.expected, doubt.found);
+        let (times, points) = (same().count(), same().map(|doubt| doubt.suspects.len()).sum());
+        let suspects = same().flat_map(|doubt| &doubt.suspects).take(SUSPECTS);
+        let suspects = suspects.map(|point| words(problem, point)).collect();
+        match expected.zip(found).is_some_and(|(a, b)| far(a, b)) {
+            true => Warning::BranchFlip { output, expected, found, times, points, suspects },
+            false => Warning::NotRepeatable { output, expected, found, times, points, suspects },
         }
     };
     (0..doubts.len()).filter(first).map(warning).collect()
@@ -115,13 +109,12 @@ fn words(problem: &Problem, point: &[f64]) -> String {
 }
 
 /// Dimensions that vary and on which no characteristic can depend.
-fn unused(problem: &Problem) -> Vec<Warning> {
+fn unused(problem: &Problem) -> Option<Warning> {
     let dependence = problem.dependence();
     let idle = |&d: &usize| !dependence.iter().any(|row| row[d]);
-    (0..problem.dimensions().len())
-        .filter(idle)
-        .map(|d| Warning::UnusedDimension { dimension: problem.dimensions()[d].name().to_owned() })
-        .collect()
+    let idle = (0..problem.dimensions().len()).filter(idle);
+    let dimensions: Vec<String> = idle.map(|d| problem.dimensions()[d].name().to_owned()).collect();
+    (!dimensions.is_empty()).then_some(Warning::UnusedDimension { dimensions })
 }
 
 fn failed_points(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
@@ -175,8 +168,12 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
     let (plan, fitted, known) = (&outcome.plan, &outcome.fitted[c], &outcome.evaluated.known);
     let mut warnings = Vec::new();
     let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
-    let lost =
-        |dimensions: Vec<String>, loss| Warning::LostDerivative { characteristic: name(problem, c), dimensions, loss };
+    let lost = |dimensions: Vec<String>, loss| Warning::LostDerivative {
+        characteristic: name(problem, c),
+        dimensions,
+        loss,
+        others: Vec::new(),
+    };
     if fitted.centre.is_none() {
         return vec![lost(Vec::new(), Loss::Centre)];
     }
@@ -194,6 +191,7 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
                     dimension: dimension(d),
                     failed: axis.nodes[slot[0] as usize].u,
                     used,
+                    others: Vec::new(),
                 });
             }
         }
@@ -225,6 +223,7 @@ fn long_tails(problem: &Problem, outcome: &Outcome, analysis: &CharacteristicAna
             farthest: tail.farthest,
             reach: tail.reach,
             share,
+            others: Vec::new(),
         })
     };
     outcome.plan.varying().iter().filter_map(warning).collect()

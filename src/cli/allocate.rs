@@ -17,6 +17,7 @@ use crate::report::{
     AllocationReport, WrittenAnew, allocation_csv, allocation_csv_names, allocation_svg, allocation_text,
 };
 use crate::study::{NamedFile, Rewritten, Study};
+use crate::warning::{Counted, Warning};
 
 pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read(&asked.study, externals(asked.work.journal.as_deref(), look, None))?;
@@ -55,23 +56,21 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     match (written, anew) {
         (Some(file), Some(Ok(anew))) => result = result.and(file.write(&anew.text)),
         (Some(_), Some(Err(error))) => result = result.and(Err(Failure::Rewrite(error))),
-        (Some(_), None) => {
-            look.warn("not-written", "there are no tolerances to write: the file of --write is as it was")
-        }
-        (None, Some(Err(error))) => look.warn("not-written", &error.to_string()),
+        (Some(_), None) => look.warn(&Warning::NothingToWrite),
+        (None, Some(Err(error))) => look.warn(&Warning::NotWritten { reason: error.to_string() }),
         (None, _) => {}
     }
     for warning in &report.warnings {
-        look.warn(warning.code, &warning.message);
+        look.tell(warning);
     }
-    let after = format!("after {} evaluations", allocation.evaluations);
+    let stopped = clock.stopped(allocation.evaluations as u64, None, Counted::Evaluations);
     if interrupt::stopped() {
-        look.warn("stopped", &format!("interrupted {after}"));
+        look.warn(&stopped);
         result?;
         return Ok(Exit::Interrupted);
     }
-    if let (true, Some(limit)) = (allocation.stopped, asked.work.time) {
-        look.warn("stopped", &format!("stopped after {limit} s, {after}"));
+    if allocation.stopped && clock.limited() {
+        look.warn(&stopped);
     }
     result?;
     let incomplete = allocation.before.characteristics.iter().any(|one| one.moments.is_none());

@@ -19,6 +19,7 @@ use crate::characteristic::Characteristic;
 use crate::report::html::{WhatIf, analyze_html};
 use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_markdown, stack_text, text};
 use crate::study::Study;
+use crate::warning::{Counted, Warning};
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     match &asked.studies[..] {
@@ -104,18 +105,19 @@ pub(super) fn analyzed(
     let written =
         written.and(files.missing.map_or(Ok(()), |missing| missing.write(&points::table(&study.problem, &points))));
     for warning in &report.warnings {
-        look.warn(warning.code, &warning.message);
+        look.tell(warning);
     }
     if let Some(given) = given {
         unmatched(given, asked.write_missing.as_deref(), look);
     }
+    let stopped = clock.stopped(analysis.evaluations as u64, None, Counted::Evaluations);
     if interrupt::stopped() {
-        look.warn("stopped", &format!("interrupted after {} evaluations", analysis.evaluations));
+        look.warn(&stopped);
         written?;
         return Ok(Exit::Interrupted);
     }
-    if let (true, Some(limit)) = (analysis.stopped, asked.work.time) {
-        look.warn("stopped", &format!("stopped after {limit} s with {} evaluations", analysis.evaluations));
+    if analysis.stopped && clock.limited() {
+        look.warn(&stopped);
     }
     written?;
     let complete = analysis.characteristics.iter().all(|characteristic| characteristic.moments.is_some());
@@ -129,31 +131,16 @@ pub(super) fn analyzed(
     Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
 }
 
-/// Tells of points without an answer, and of answers to points that nobody asked for.
+/// Tells of points without an answer, and of answers to points that are not in the plan.
 fn unmatched(given: &Table, written: Option<&Path>, look: Look) {
-    match (given.missing().len(), written) {
-        (0, _) => {}
-        (count, None) => {
-            look.warn(
-                "missing-points",
-                &format!("{count} points have no answer; --write-missing NEXT.csv writes them"),
-            );
-        }
-        (count, Some(path)) => look.warn(
-            "missing-points",
-            &format!(
-                "{count} points have no answer: append the answers to those of {} and run it again",
-                path.display()
-            ),
-        ),
+    let count = given.missing().len();
+    if count > 0 {
+        look.warn(&Warning::MissingPoints { count, written: written.map(|path| path.display().to_string()) });
     }
     let unused = given.unused();
     if !unused.is_empty() {
-        let lines: Vec<String> = unused.iter().take(10).map(|row| (row + 2).to_string()).collect();
-        let more = if unused.len() > 10 { ", ..." } else { "" };
-        let what =
-            format!("{} answers are of points that nobody asked for: lines {}{more}", unused.len(), lines.join(", "));
-        look.warn("unmatched-points", &what);
+        let lines = unused.iter().take(10).map(|row| row + 2).collect();
+        look.warn(&Warning::UnmatchedPoints { count: unused.len(), lines });
     }
 }
 

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
+use super::advice;
 use crate::allocation::AllocateError;
 use crate::compare::CompareError;
 use crate::journal::JournalError;
@@ -15,6 +16,7 @@ use crate::rare::RareError;
 use crate::simulation::SimulationError;
 use crate::study::{RewriteError, StudyError};
 use crate::sweep::SweepError;
+use crate::warning::Advice;
 
 /// The exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,6 +150,18 @@ impl Failure {
         }
     }
 
+    /// What to do about it, where the library can say that.
+    fn advice(&self) -> Vec<Advice> {
+        match self {
+            Self::Method(error) | Self::Sweep(SweepError::Method(error)) => error.advice(),
+            Self::Simulation(error)
+            | Self::Rare(RareError::Simulation(error))
+            | Self::Compare(CompareError::Reference(error)) => error.advice(),
+            Self::Allocate(error) => error.advice(),
+            _ => Vec::new(),
+        }
+    }
+
     /// The message with its place in the file, or None where there is nothing to say.
     pub(super) fn render(&self) -> Option<String> {
         self.rendered(String::new())
@@ -166,23 +180,28 @@ impl Failure {
             Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. }) => {
                 Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
             }
-            _ => Some(title(&format!("{of}{self}"), None)),
+            _ => Some(title(&format!("{of}{self}"), advice::help(&self.advice()))),
         }
     }
+}
+
+/// What to write instead, or what to do.
+fn help(error: &StudyError) -> Option<String> {
+    error.help().or_else(|| advice::help(&error.fault.advice()))
 }
 
 /// Title, the lines of the file concerned with what is wrong underlined, and what to write instead.
 fn render(error: &StudyError) -> String {
     let Some(span) = error.span.clone().filter(|_| !error.text.is_empty()) else {
         let place = if error.key.is_empty() { error.file.clone() } else { format!("{}: {}", error.file, error.key) };
-        return title(&format!("{place}: {}", error.fault), error.help());
+        return title(&format!("{place}: {}", error.fault), help(error));
     };
     let heading = error.fault.to_string();
     let label = error.key.as_str();
     let snippet =
         Snippet::source(&*error.text).path(&error.file).annotation(AnnotationKind::Primary.span(span).label(label));
     let mut group = Group::with_title(Level::ERROR.primary_title(heading)).element(snippet);
-    if let Some(help) = error.help() {
+    if let Some(help) = help(error) {
         group = group.element(Level::HELP.message(help));
     }
     Renderer::styled().render(&[group])

@@ -11,6 +11,7 @@ use crate::method::Options;
 use crate::rare::{RareOptions, rare_within};
 use crate::report::{CsvFile, RareCharacteristicReport, RareReport, rare_csv, rare_text};
 use crate::study::Study;
+use crate::warning::{Counted, Warning};
 
 /// Points unless the user says otherwise, of a cheap model and of a costly one.
 const SAMPLES: [u64; 2] = [10_000, 1000];
@@ -42,18 +43,18 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
         folder.write(&[CsvFile { name, text: rare_csv(&report) }])
     }));
     for warning in &report.warnings {
-        look.warn(warning.code, &warning.message);
+        look.tell(warning);
     }
-    let after = format!("after {} points", found.samples);
+    let stopped = clock.stopped(found.samples, None, Counted::Points);
     if interrupt::stopped() {
-        look.warn("stopped", &format!("interrupted {after}"));
+        look.warn(&stopped);
         written?;
         return Ok(Exit::Interrupted);
     }
     if found.reached == Some(false) {
-        look.warn("under-resolved", &format!("{after} the standard errors are larger than wanted"));
+        look.warn(&Warning::TargetErrorMissed { points: found.samples });
     } else if found.stopped {
-        look.warn("stopped", &format!("stopped by --time {after}"));
+        look.warn(&stopped);
     }
     written?;
     let nothing = |one: &RareCharacteristicReport| {

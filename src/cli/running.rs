@@ -11,6 +11,7 @@ use crate::assembly::Table;
 use crate::assembly::process::Listener;
 use crate::report::About;
 use crate::study::{Externals, JournalPlace, Study};
+use crate::warning::{Counted, StopCause, Warning};
 
 /// Since when a command runs, and for how long it may.
 pub(super) struct Clock {
@@ -34,6 +35,15 @@ impl Clock {
     /// Whether to stop: the time is up, or the user said so.
     pub(super) fn stop(&self) -> bool {
         interrupt::stopped() || self.limit.is_some_and(|limit| self.begun.elapsed() >= limit)
+    }
+
+    /// The warning that a run ended before all was done.
+    pub(super) fn stopped(&self, done: u64, planned: Option<u64>, counted: Counted) -> Warning {
+        let cause = match self.limit {
+            Some(limit) if !interrupt::stopped() => StopCause::TimeLimit { limit_s: limit.as_secs_f64() },
+            _ => StopCause::Interrupted,
+        };
+        Warning::Stopped { cause, done, planned, counted }
     }
 
     /// What a report says of the study beside the results.

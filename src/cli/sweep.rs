@@ -12,6 +12,7 @@ use crate::report::html::sweep_html;
 use crate::report::{SweepReport, sweep_csv, sweep_svg, sweep_text};
 use crate::study::Study;
 use crate::sweep::{Sweep, sweep_within};
+use crate::warning::Counted;
 
 pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let externals = externals(asked.work.journal.as_deref(), look, None);
@@ -35,12 +36,11 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&sweep_svg(&report))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&sweep_html(&report))));
     for warning in &report.warnings {
-        look.warn(warning.code, &warning.message);
+        look.tell(warning);
     }
     if sweep.stopped {
-        let by = if interrupt::stopped() { "interrupted" } else { "stopped by --time" };
         let done = sweep.analyses.iter().flatten().count();
-        look.warn("stopped", &format!("{by} with {done} of {} values done", sweep.values.len()));
+        look.warn(&clock.stopped(done as u64, Some(sweep.values.len() as u64), Counted::Values));
     }
     written?;
     if interrupt::stopped() {

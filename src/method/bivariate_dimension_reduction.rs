@@ -48,10 +48,6 @@ impl Procedure for BivariateDimensionReduction {
         Method::BivariateDimensionReduction
     }
 
-    fn name(&self) -> &'static str {
-        "bivariate-dimension-reduction"
-    }
-
     fn about(&self) -> &'static str {
         "every two dimensions together, integrated by products of their Gauss rules"
     }

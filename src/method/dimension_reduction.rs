@@ -39,10 +39,6 @@ impl Procedure for DimensionReduction {
         Method::DimensionReduction
     }
 
-    fn name(&self) -> &'static str {
-        "dimension-reduction"
-    }
-
     fn about(&self) -> &'static str {
         "every dimension by itself, integrated by its own Gauss rule"
     }

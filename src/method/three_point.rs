@@ -38,10 +38,6 @@ impl Procedure for ThreePoint {
         Method::ThreePoint
     }
 
-    fn name(&self) -> &'static str {
-        "three-point"
-    }
-
     fn about(&self) -> &'static str {
         "all combinations of three levels of every dimension, weighted by its moments"
     }

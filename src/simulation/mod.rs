@@ -14,9 +14,10 @@ use rayon::prelude::*;
 
 use crate::assembly::process::Doubt;
 use crate::assembly::{Ask, EvaluationError, Responses, Run};
-use crate::method::{MethodError, Options, Outcome};
+use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
+use crate::warning::Advice;
 use control::Control;
 pub(crate) use surrogates::{Surrogates, chosen};
 use tally::{Block, Lens, Tally};
@@ -157,7 +158,7 @@ pub enum SimulationError {
         /// The characteristic.
         characteristic: String,
         /// The method.
-        method: &'static str,
+        method: Method,
         /// What is unknown.
         reason: String,
     },
@@ -178,6 +179,19 @@ pub enum SimulationError {
         /// The value.
         value: f64,
     },
+}
+
+impl SimulationError {
+    /// What to do about it.
+    pub fn advice(&self) -> Vec<Advice> {
+        match self {
+            Self::NoSurrogate { method, .. } if !method.has_surrogate() => {
+                vec![Advice::UseMethod { methods: vec![Method::Full] }]
+            }
+            Self::Method(error) => error.advice(),
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// Counts are exact in a double up to here.

@@ -25,7 +25,7 @@ use crate::method::Options;
 use crate::models::{self, Model};
 use crate::names::nearest;
 use crate::problem::Problem;
-use crate::warning::Warning;
+use crate::warning::{NameKind, Warning, aggregated};
 
 /// What a study file comes to.
 pub(super) struct Built {
@@ -59,7 +59,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     known_to_model(file, model, &used)?;
     let (characteristics, outputs) = characteristics(file, model, program)?;
     let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
-    let mut warnings = std::mem::take(&mut data.warnings);
+    let mut warnings = aggregated(std::mem::take(&mut data.warnings));
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
@@ -384,12 +384,9 @@ fn unused(
     used: &dyn Fn(&str) -> bool,
 ) -> Vec<Warning> {
     let (needed, solved) = composite.used();
-    let idle_formulas = (written.formulas.iter().zip(needed))
-        .filter(|(_, needed)| !needed)
-        .map(|(named, _)| Warning::UnusedName { what: "formula", name: named.name.clone() });
-    let idle_unknowns = (file.unknowns.names().into_iter())
-        .filter(|_| !solved)
-        .map(|name| Warning::UnusedName { what: "unknown", name: name.get_ref().clone() });
+    let idle_formulas =
+        (written.formulas.iter().zip(needed)).filter(|(_, needed)| !needed).map(|(named, _)| named.name.clone());
+    let idle_unknowns = (file.unknowns.names().into_iter()).filter(|_| !solved).map(|name| name.get_ref().clone());
     let is_input = |name: &str| match model {
         None => false,
         Some(ModelOf::BuiltIn(model)) => model.inputs.iter().any(|input| input.name == name),
@@ -398,8 +395,14 @@ fn unused(
     };
     let idle_constants = (file.constants.names().into_iter())
         .filter(|name| !used(name.get_ref()) && !is_input(name.get_ref()))
-        .map(|name| Warning::UnusedName { what: "constant", name: name.get_ref().clone() });
-    idle_constants.chain(idle_formulas).chain(idle_unknowns).collect()
+        .map(|name| name.get_ref().clone());
+    let idle = [
+        (NameKind::Constant, idle_constants.collect::<Vec<_>>()),
+        (NameKind::Formula, idle_formulas.collect()),
+        (NameKind::Unknown, idle_unknowns.collect()),
+    ];
+    let some = idle.into_iter().filter(|(_, names)| !names.is_empty());
+    some.map(|(kind, names)| Warning::UnusedName { kind, names }).collect()
 }
 
 impl<T> Entries<T> {

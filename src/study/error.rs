@@ -16,6 +16,7 @@ use crate::distribution::DistributionError;
 use crate::fits::FitError;
 use crate::method::MethodError;
 use crate::problem::ProblemError;
+use crate::warning::Advice;
 
 /// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -280,6 +281,11 @@ pub enum StudyFault {
 }
 
 impl StudyFault {
+    /// What to do about it, beside changing what is written.
+    pub fn advice(&self) -> Vec<Advice> {
+        if let Self::Method(error) = self { error.advice() } else { Vec::new() }
+    }
+
     /// What to write instead, where that can be said.
     pub fn help(&self) -> Option<String> {
         let meant = |name: &String| format!("did you mean `{name}`?");

@@ -40,7 +40,7 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
     };
     if let Some(method) = &entry.method {
         let known: Vec<&str> = METHODS.iter().map(|method| method.name()).collect();
-        options.method = Method::by_name(method.get_ref()).ok_or_else(|| word(method, "method", "method", &known))?;
+        options.method = method.get_ref().parse::<Method>().map_err(|_| word(method, "method", "method", &known))?;
     }
     if let Some(pairs) = &entry.pairs {
         options.pairs = Some(match pairs.get_ref() {

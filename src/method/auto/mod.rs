@@ -48,7 +48,6 @@ pub(super) const AUTO: Auto = Auto;
 const BASE: Ladder = Ladder {
     method: Method::Auto,
     runs: Method::Auto,
-    name: "auto",
     about: "the default: buys evaluations where they lower the error of sigma most, until it is known well enough",
     count: "2N+17 for what is linear or a parabola",
     spread: Spread::Pair,
@@ -101,10 +100,6 @@ impl Procedure for Auto {
         Method::Auto
     }
 
-    fn name(&self) -> &'static str {
-        BASE.name
-    }
-
     fn about(&self) -> &'static str {
         BASE.about
     }
@@ -126,7 +121,7 @@ impl Procedure for Auto {
             return EXACT.fits(problem, options);
         }
         // It makes do with less than it would like.
-        Cost::of(&BASE.differences(problem, options)?).within(BASE.name, problem, options)?;
+        Cost::of(&BASE.differences(problem, options)?).within(self.name(), problem, options)?;
         Ok(Cost::of(&*self.plan(problem, options)?))
     }
 
