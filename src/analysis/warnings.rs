@@ -151,7 +151,7 @@ fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
 fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let because = match outcome.fitted[c].lacking? {
         Lacking::Points { lost, of } => format!(
-            "{lost} of the {of} values of its quadrature {} missing, and none is made up",
+            "{lost} of the {of} values of its quadrature {} missing",
             if lost == 1 { "is" } else { "are" }
         ),
         Lacking::NotEstimable { left, coefficients } => {

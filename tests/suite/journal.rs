@@ -452,7 +452,7 @@ fn points_may_be_evaluated_elsewhere() {
     write(99, 14, "9,9,9,1\n");
     let rounded = sensitol(&["analyze", "--points", &answered]);
     let error = String::from_utf8_lossy(&rounded.stderr).into_owned();
-    assert!(rounded.status.success() && error.contains("unmatched-points") && error.contains("lines 15"), "{error}");
+    assert!(rounded.status.success() && error.contains("unmatched-points") && error.contains("line 15"), "{error}");
     // Some are missing.
     write(9, 17, "");
     let counted = sensitol(&["analyze", "--json", "--points", &answered]);
