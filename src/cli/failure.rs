@@ -10,6 +10,7 @@ use crate::allocation::AllocateError;
 use crate::compare::CompareError;
 use crate::journal::JournalError;
 use crate::method::MethodError;
+use crate::names::UnknownName;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
 use crate::rare::RareError;
@@ -114,8 +115,8 @@ pub(super) enum Failure {
     NothingToCheck,
     #[error("--pairs {text}: {fault}")]
     Pairs { text: String, fault: &'static str },
-    #[error("there is no built-in model `{name}`; {help}")]
-    UnknownModel { name: String, help: String },
+    #[error(transparent)]
+    UnknownName(#[from] UnknownName),
     #[error("{path} cannot be written: {error}", path = path.display())]
     Unwritable { path: PathBuf, error: std::io::Error },
     #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]

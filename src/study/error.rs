@@ -15,6 +15,7 @@ use crate::dimension::DimensionFault;
 use crate::distribution::DistributionError;
 use crate::fits::FitError;
 use crate::method::MethodError;
+use crate::names::UnknownName;
 use crate::problem::ProblemError;
 use crate::warning::Advice;
 
@@ -278,6 +279,13 @@ pub enum StudyFault {
     /// Dimensions, model and characteristics do not fit together.
     #[error(transparent)]
     Problem(#[from] ProblemError),
+}
+
+impl From<UnknownName> for StudyFault {
+    fn from(UnknownName { what, name, nearest, known }: UnknownName) -> Self {
+        let known = known.into_iter().map(str::to_owned).collect();
+        Self::UnknownWord { what, found: name, nearest, known }
+    }
 }
 
 impl StudyFault {

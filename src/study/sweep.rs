@@ -5,7 +5,7 @@ use super::error::{Fault, StudyFault, fault};
 use super::file::{DimensionEntry, StudyFile};
 use super::spanned::Spanned;
 use super::values::NominalEntry;
-use crate::models;
+use crate::models::Model;
 use crate::names::nearest;
 
 /// Makes a dimension without tolerance of a constant, or of an input of the built-in model that the study leaves out.
@@ -15,7 +15,7 @@ pub(super) fn as_dimension(file: &mut StudyFile, name: &str) -> Result<(), Fault
         return Ok(());
     }
     let model = file.model.as_ref().map(Spanned::get_ref);
-    let builtin = model.and_then(|model| model.builtin.as_ref()).and_then(|name| models::by_name(name.get_ref()));
+    let builtin = model.and_then(|model| model.builtin.as_ref()).and_then(|name| name.get_ref().parse::<&Model>().ok());
     let constant = file.constants.0.iter().position(|(constant, _)| constant.get_ref() == name);
     let input = builtin.and_then(|model| model.inputs.iter().find(|input| input.name == name));
     let (key, nominal) = match (constant, input) {

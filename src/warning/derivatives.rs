@@ -26,6 +26,11 @@ pub(super) fn lost_derivative(characteristic: &str, dimensions: &[String], loss:
             "The interaction of {by} in `{characteristic}` could be evaluated at some of its corners only. It is less exact."
         ))
         .advise(Advice::SmallerStep { dimension: None }),
+        Loss::NotEvaluated { derivatives } => say(format!(
+            "The run was stopped before {derivatives} derivatives of `{characteristic}` were evaluated. Its results leave them out, and no \
+             verdict follows."
+        ))
+        .advise(Advice::RaiseTimeLimit),
     };
     Text { message: text.message + &likewise(others), ..text }
 }

@@ -13,6 +13,7 @@ mod correlation;
 mod derivatives;
 mod distributions;
 mod docs;
+mod errors;
 mod extremes;
 mod figures;
 mod fits;

@@ -104,6 +104,7 @@ fn every() -> Vec<Warning> {
         lost(Loss::Curvature, 1, 12),
         lost(Loss::Mixed, 2, 1),
         lost(Loss::OneSidedMixed, 2, 0),
+        lost(Loss::NotEvaluated { derivatives: 27 }, 0, 0),
         Warning::LostMoments {
             characteristic: characteristic(),
             because: text("2 of the 81 values of its quadrature are missing"),
