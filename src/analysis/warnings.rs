@@ -39,7 +39,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
     let mut warnings = Vec::new();
     warnings.extend(unused(problem));
     for &d in outcome.plan.varying() {
-        let moved = |moved: &crate::plan::Moved| Warning::SupportEdge {
+        let moved = |moved: &crate::plan::MovedNode| Warning::SupportEdge {
             dimension: problem.dimensions()[d].name().to_owned(),
             from: moved.from,
             to: moved.to,

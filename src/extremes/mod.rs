@@ -18,7 +18,7 @@
 //! start, of which there are rarely more than three; coordinates that end within the box take up to four in a round, and two in
 //! each of the rounds of refinement, where each pair of them takes one more while there are no more than eight.
 //!
-//! A search finds no certainty. A [`Proof`] is one: branch and bound with formulas in interval arithmetic, until no value can
+//! A search finds no certainty. An [`ExtremesProof`] is one: branch and bound with formulas in interval arithmetic, until no value can
 //! lie beyond the extremes by more than a part in 10^9 of their range, and one in 10^12 of their size for rounding. It costs no
 //! evaluation, and ends with the bounds that it has after 20000 boxes a side, fewer where there are more than ten dimensions.
 //! Should it come upon a value beyond the extremes, the search goes on from there.
@@ -71,12 +71,12 @@ pub struct Extremes {
     /// How the search ended.
     pub ended: Ended,
     /// What interval arithmetic says, where the characteristic is a formula.
-    pub proof: Option<Proof>,
+    pub proof: Option<ExtremesProof>,
 }
 
 /// An interval that no assembly leaves.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Proof {
+pub struct ExtremesProof {
     /// The interval.
     pub bounds: [f64; 2],
     /// Whether both of its ends are as near to the extremes as makes no difference.

@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::assembly::process::{Greeting, Process, Settings};
 use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run, Signature};
-use sensitol::journal::{JournalFault, Journaled, Kept, Store};
+use sensitol::journal::{JournalFault, Journaled, StoredAnswer, Store};
 
 use super::support::repository;
 
@@ -275,7 +275,7 @@ fn files_that_are_no_journals() {
     let broken = folder.path().join("broken.sqlite");
     let mut store = Store::open(&broken).unwrap();
     let model = store.model("{}", &["x".to_owned()]).unwrap();
-    let kept = |x: i32| Kept { point: vec![f64::from(x)], output: "y".into(), answer: Ok(f64::from(x)) };
+    let kept = |x: i32| StoredAnswer { point: vec![f64::from(x)], output: "y".into(), answer: Ok(f64::from(x)) };
     store.keep(model, &(0..2000).map(kept).collect::<Vec<_>>()).unwrap();
     drop(store);
     let mut bytes = std::fs::read(&broken).unwrap();
@@ -296,7 +296,7 @@ fn answers_are_kept_exactly() {
     let mut store = Store::open(&folder.path().join("j.sqlite")).unwrap();
     let model = store.model("{}", &["x".to_owned()]).unwrap();
     let values = [0.1 + 0.2, -0.0, 5e-324, f64::MAX, 1.0 / 3.0];
-    let kept = |&value: &f64| Kept { point: vec![value], output: "y".into(), answer: Ok(value) };
+    let kept = |&value: &f64| StoredAnswer { point: vec![value], output: "y".into(), answer: Ok(value) };
     store.keep(model, &values.iter().map(kept).collect::<Vec<_>>()).unwrap();
     for value in values {
         assert_eq!(store.answer(model, &[value], "y").unwrap(), Some(Ok(value)));
@@ -304,7 +304,7 @@ fn answers_are_kept_exactly() {
     // 0 and -0 are one point.
     assert!(store.answer(model, &[0.0], "y").unwrap().is_some());
     assert_eq!(store.answer(model, &[0.3], "y").unwrap(), None, "0.1 + 0.2 is another point");
-    let reason = Kept { point: vec![0.3], output: "y".into(), answer: Err("face 7 is gone".into()) };
+    let reason = StoredAnswer { point: vec![0.3], output: "y".into(), answer: Err("face 7 is gone".into()) };
     store.keep(model, &[reason]).unwrap();
     assert_eq!(store.answer(model, &[0.3], "y").unwrap(), Some(Err("face 7 is gone".into())));
     assert_eq!((store.models().unwrap()[0].values, store.models().unwrap()[0].errors), (5, 1));

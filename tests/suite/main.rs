@@ -7,6 +7,7 @@ mod analysis;
 mod architecture;
 mod auto;
 mod capability;
+mod circles;
 mod cli;
 mod control;
 mod correlation;

@@ -22,7 +22,7 @@ pub use climb::Rest;
 
 use std::sync::Arc;
 
-use super::check::Check;
+use super::check::SurrogateCheck;
 use super::exact::ExactDerivatives;
 use super::ladder::{Examined, Ladder, Order};
 use super::{Accuracies, Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
@@ -78,7 +78,7 @@ pub struct Climbed {
     /// Whether every pair was examined.
     pub all_pairs: bool,
     /// For every characteristic what the check says; None where it has no surrogate, or nothing was checked.
-    pub checked: Vec<Option<Check>>,
+    pub checked: Vec<Option<SurrogateCheck>>,
     /// What answers next to the means scatter by.
     pub noise: Vec<Option<f64>>,
     /// How many sigmas model and surrogate differ by three sigma out along the steepest line, infinite where the model has no

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::atoms::{Bends, atoms};
 use super::screening::{self, Fit, Probed};
 use crate::distribution::StandardMoments;
-use crate::method::check::{Check, failed};
+use crate::method::check::{SurrogateCheck, failed};
 use crate::method::hidden::hidden;
 use crate::moments::{Interactions, Moments};
 use crate::plan::{DifferencePlan, Known, Mixed, Plan, Point};
@@ -43,7 +43,7 @@ pub(super) struct View {
     pub(super) surrogate: Surrogate,
     /// Of the surrogate.
     pub(super) moments: Moments,
-    pub(super) check: Option<Check>,
+    pub(super) check: Option<SurrogateCheck>,
     /// What parts may hide, by position: variance.
     pub(super) hidden: Vec<f64>,
     /// Variance of every part, and what of it is curved, as a share of the surrogate's.
@@ -141,7 +141,7 @@ impl View {
             (hidden.map_or(0.0, |hidden| hidden.variance), [share(own[j]), share(part.term(shape).part(1.0).curved)])
         };
         let (hidden, shares) = (0..n).map(part).unzip();
-        let check = Check::of(plan, known, c, &bought.checks, (&surrogate, &moments));
+        let check = SurrogateCheck::of(plan, known, c, &bought.checks, (&surrogate, &moments));
         let tail = tail(plan, known, c, bought, (&surrogate, moments.sigma()));
         let noise = bought.noise.as_ref().and_then(|points| scatter(plan, known, c, points, &surrogate));
         let unscreened = unscreened.map(share);
@@ -189,8 +189,8 @@ impl View {
     /// The estimated relative error of sigma.
     pub(super) fn error(&self) -> f64 {
         let sigma = self.moments.sigma().max(f64::MIN_POSITIVE);
-        let unseen = |check: &Check| check.unseen(self.variance()) + check.shown(1) / sigma;
-        let tail = self.tail.map_or(0.0, Check::far_out);
+        let unseen = |check: &SurrogateCheck| check.unseen(self.variance()) + check.shown(1) / sigma;
+        let tail = self.tail.map_or(0.0, SurrogateCheck::far_out);
         self.truncation() + self.left().unwrap_or(0.0) + self.check.as_ref().map_or(0.0, unseen) + tail
     }
 }
