@@ -8,6 +8,7 @@ mod auto;
 mod bivariate_dimension_reduction;
 mod check;
 mod classic;
+mod climbed;
 mod cost;
 mod dimension_reduction;
 mod estimate;
@@ -16,6 +17,7 @@ mod full;
 mod hidden;
 mod ladder;
 mod options;
+mod order;
 mod outcome;
 mod quadrature;
 mod response_surface;
@@ -27,13 +29,15 @@ mod worst_case;
 
 pub use crate::method_kind::Method;
 pub(crate) use auto::climb_until;
-pub use auto::{ACCURACY, Climbed, Rest};
+pub use auto::ACCURACY;
 pub use check::SurrogateCheck;
+pub use climbed::{Climbed, Rest};
 pub use cost::Cost;
 pub use estimate::{ErrorEstimate, ErrorSource, estimate};
 pub use exact::ExactDerivatives;
 pub use options::{Accuracies, DerivativeSource, Options, Pairs};
-pub use outcome::{Basis, Fitted, Integrated, Joint, Lacking, Order, Outcome, Own, Residual};
+pub use order::{Basis, Order};
+pub use outcome::{Fitted, Integrated, Joint, Lacking, Outcome, Own, Residual};
 
 use std::sync::Arc;
 

@@ -2,33 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{Climbed, ExactDerivatives, Method};
+use super::{Basis, Climbed, ExactDerivatives, Method, Order};
 use crate::evaluation::Evaluated;
 use crate::moments::Moments;
 use crate::plan::{Mixed, Plan};
 use crate::surrogate::{Surrogate, Univariate};
-
-/// How much of the derivatives a method makes use of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
-    /// Slopes only.
-    First,
-    /// Curvatures and interactions too.
-    Second,
-}
-
-/// What the moments rest on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Basis {
-    /// A surrogate of exact derivatives.
-    Exact,
-    /// A surrogate of differences.
-    Differences,
-    /// A surrogate fitted by least squares.
-    LeastSquares,
-    /// Quadrature of the values themselves, without a surrogate.
-    Quadrature,
-}
 
 /// What a method found out.
 #[derive(Debug, Clone)]

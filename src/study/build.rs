@@ -13,7 +13,7 @@ use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
 use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
-use super::source::Source;
+use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use crate::allocation::{Priced, Requirement};
 use crate::assembly::formula::{Formula, FormulaError, is_reserved};
@@ -182,12 +182,6 @@ impl Written<'_> {
     fn is_unknown(&self, name: &str) -> bool {
         self.implicit.iter().flat_map(|implicit| implicit.conditions.unknowns()).any(|unknown| unknown.name() == name)
     }
-}
-
-/// A fault within a formula, at its place in the file.
-pub(super) fn in_formula(source: &Source, text: Range<usize>, key: String, error: FormulaError) -> Fault {
-    let span = source.within_string(text, error.span);
-    fault(span, key, StudyFault::Formula(error.fault))
 }
 
 /// Dimensions and constants are inputs of the model, or else a formula uses them.

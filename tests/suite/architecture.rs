@@ -110,6 +110,21 @@ fn layers_import_downward_only() {
     assert!(wrong.is_empty(), "imports that do not lead downward: {wrong:#?}");
 }
 
+/// The table of the house in CONTRIBUTING.md: every module once, from the roof to the ground.
+#[test]
+fn the_table_of_the_house_is_the_list_of_layers() {
+    let text = std::fs::read_to_string(repository("CONTRIBUTING.md")).unwrap();
+    let house = text.split("## The house").nth(1).unwrap().split("\n## ").next().unwrap();
+    let cells = house.lines().filter_map(|line| line.strip_prefix("| `")?.split('|').next());
+    let shown: Vec<&str> = cells.flat_map(|cell| cell.split(',')).map(|name| name.trim().trim_matches('`')).collect();
+    let mut expected: Vec<&str> = LAYERS.concat();
+    assert!(shown.is_sorted_by_key(|module| layer(module)), "the table is not in the order of the layers: {shown:?}");
+    let mut sorted = shown.clone();
+    sorted.sort_unstable();
+    expected.sort_unstable();
+    assert_eq!(sorted, expected, "modules of the table and of the list");
+}
+
 #[test]
 fn the_check_of_imports_sees_every_form() {
     assert_eq!(imports("use crate::plan::Known;"), ["plan"]);

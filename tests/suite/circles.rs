@@ -12,6 +12,18 @@ const ALLOWED: &[&[&str]] = &[
     &["cli/analyze", "cli/several"],
     &["cli/rare", "cli/simulate"],
     &["simulation/characteristic", "simulation/difference", "simulation/tally"],
+    &[
+        "study/costs",
+        "study/data",
+        "study/dimension",
+        "study/dimension/measured",
+        "study/dimension/spread",
+        "study/error",
+        "study/file",
+        "study/files",
+        "study/options",
+        "study/schema",
+    ],
 ];
 
 /// Modules by their path (`allocation/choose`, and `allocation` for its `mod.rs`), with their code without comments and tests.

@@ -3,7 +3,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::view::{Bought, Probe, View, skewed};
+use super::chosen::{ChosenPoints, Probe};
+use super::view::{View, skewed};
+use crate::method::climbed::Rest;
 use crate::plan::{DifferencePlan, Known, Point, Purpose, Stage, scattered};
 use crate::problem::Problem;
 
@@ -41,19 +43,6 @@ const ON_TOP: usize = 16;
 /// The signs are the same for every study of as many dimensions, and no seed of anybody's.
 const KEY: u64 = 0x5e_75_17_02;
 
-/// How a climb ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rest {
-    /// Every characteristic is known as well as it was wanted, by the estimate.
-    Reached,
-    /// The budget does not allow what would be next.
-    Budget,
-    /// Nothing that could be bought is expected to help.
-    Exhausted,
-    /// It was stopped before any of that.
-    Stopped,
-}
-
 /// Evaluations of derivatives beyond which it does not go, failed points apart.
 pub(super) fn most(n: usize) -> usize {
     (OVER_FULL * (n * n + 3 * n + 1) as f64) as usize + ON_TOP
@@ -63,7 +52,7 @@ pub(super) fn most(n: usize) -> usize {
 pub(super) struct Climb<'p> {
     problem: &'p Problem,
     pub(super) plan: DifferencePlan,
-    pub(super) bought: Bought,
+    pub(super) bought: ChosenPoints,
     accuracy: f64,
     budget: usize,
     /// Evaluated so far, and what has been chosen since.
@@ -87,7 +76,7 @@ impl<'p> Climb<'p> {
         let mut climb = Self {
             problem,
             plan,
-            bought: Bought::default(),
+            bought: ChosenPoints::default(),
             accuracy,
             budget,
             spent: 0,

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::atoms::{Bends, atoms};
+use super::chosen::{ChosenPoints, Probe};
 use super::screening::{self, Fit, Probed};
 use crate::distribution::StandardMoments;
 use crate::method::check::{SurrogateCheck, failed};
@@ -13,29 +14,6 @@ use crate::surrogate::{Surrogate, Univariate};
 
 /// Mixed derivatives by pair.
 type Products = BTreeMap<(usize, usize), Mixed>;
-
-/// Every dimension up or down, and all turned round.
-#[derive(Debug, Clone)]
-pub(super) struct Probe {
-    pub(super) signs: Vec<f64>,
-    pub(super) points: [Point; 2],
-}
-
-/// What has been bought beside the axes.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Bought {
-    /// Points of the distribution, in mirrored pairs.
-    pub(super) checks: Vec<[Point; 2]>,
-    /// Two points next to the means, opposite to each other.
-    pub(super) noise: Option<[Point; 2]>,
-    /// For every characteristic that is looked at so, points far out along its steepest line.
-    pub(super) tails: Vec<(usize, [Point; 2])>,
-    /// Pairs with two evaluations of their own.
-    pub(super) direct: Vec<(usize, usize)>,
-    /// Probes that judge, and probes that are fitted.
-    pub(super) judging: Vec<Probe>,
-    pub(super) fitted: Vec<Probe>,
-}
 
 /// One characteristic as far as it is known.
 pub(super) struct View {
@@ -61,7 +39,7 @@ pub(super) struct View {
 
 impl View {
     /// None without a value at the means, or where a part is unknown.
-    pub(super) fn of(plan: &DifferencePlan, known: &Known, bought: &Bought, c: usize, accuracy: f64) -> Option<Self> {
+    pub(super) fn of(plan: &DifferencePlan, known: &Known, bought: &ChosenPoints, c: usize, accuracy: f64) -> Option<Self> {
         let centre = known.value(&Point::Centre, c)?;
         let mut parts: Vec<Option<Univariate>> = plan.varying().iter().map(|&d| plan.part(known, c, d)).collect();
         let n = parts.len();
@@ -212,7 +190,7 @@ fn left_at(
     plan: &DifferencePlan,
     known: &Known,
     c: usize,
-    bought: &Bought,
+    bought: &ChosenPoints,
     surrogate: &Surrogate,
 ) -> Option<Vec<Option<f64>>> {
     let points: Vec<&Point> = bought.checks.iter().flatten().collect();
@@ -239,7 +217,7 @@ fn tail(
     plan: &DifferencePlan,
     known: &Known,
     c: usize,
-    bought: &Bought,
+    bought: &ChosenPoints,
     (surrogate, sigma): (&Surrogate, f64),
 ) -> Option<f64> {
     let off = |point: &Point| {
@@ -269,7 +247,7 @@ impl<'a> Screened<'a> {
     fn of(
         plan: &DifferencePlan,
         known: &Known,
-        bought: &'a Bought,
+        bought: &'a ChosenPoints,
         c: usize,
         (centre, parts, products): (f64, &[Option<Univariate>], &Products),
     ) -> Option<Self> {
