@@ -150,10 +150,9 @@ fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
 /// Moments that could not be had by a method that is no difference plan.
 fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let because = match outcome.fitted[c].lacking? {
-        Lacking::Points { lost, of } => format!(
-            "{lost} of the {of} values of its quadrature {} missing",
-            if lost == 1 { "is" } else { "are" }
-        ),
+        Lacking::Points { lost, of } => {
+            format!("{lost} of the {of} values of its quadrature {} missing", if lost == 1 { "is" } else { "are" })
+        }
         Lacking::NotEstimable { left, coefficients } => {
             format!(
                 "the {left} points that have a value do not determine the {coefficients} coefficients of its surface"

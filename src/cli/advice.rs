@@ -12,8 +12,11 @@ pub(super) fn help(advice: &[Advice]) -> Option<String> {
 fn words(advice: &Advice) -> String {
     match advice {
         Advice::UseMethod { methods } => {
-            let options: Vec<String> = methods.iter().map(|method| format!("--method {method}")).collect();
-            format!("use {}", options.join(" or "))
+            let names: Vec<&str> = methods.iter().map(|method| method.name()).collect();
+            match &names[..] {
+                [most @ .., last] if !most.is_empty() => format!("use --method {} or {last}", most.join(", ")),
+                _ => format!("use --method {}", names.concat()),
+            }
         }
         Advice::RaiseBudget => "raise --budget".to_owned(),
         Advice::RaiseTimeLimit => "raise --time".to_owned(),
@@ -51,7 +54,7 @@ mod tests {
     fn options_where_there_are_some_and_words_elsewhere() {
         let methods = vec![Method::Full, Method::Auto];
         let all = [Advice::UseMethod { methods }, Advice::CheckColumn];
-        assert_eq!(help(&all).unwrap(), "use --method full or --method auto; check column and unit");
+        assert_eq!(help(&all).unwrap(), "use --method full or auto; check column and unit");
         assert_eq!(help(&[]), None);
     }
 }

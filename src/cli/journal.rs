@@ -10,7 +10,7 @@ use super::args::{JournalArgs, JournalCommand, OutputArgs};
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Destination, Look, json};
-use crate::journal::{StoredAnswer, KnownModel, Store};
+use crate::journal::{KnownModel, Store, StoredAnswer};
 
 /// What `journal show --json` prints of one model.
 #[derive(Debug, Serialize)]

@@ -4,7 +4,7 @@ use super::answers::Answers;
 use super::climb::Climb;
 use super::model::{Model, Region};
 use super::start::Starts;
-use super::{Coordinate, Ended, Extreme, Extremes, Place, ExtremesProof, proof};
+use super::{Coordinate, Ended, Extreme, Extremes, ExtremesProof, Place, proof};
 use crate::assembly::Run;
 use crate::dimension::Dimension;
 use crate::distribution::Distribution;

@@ -8,7 +8,7 @@
 
 mod store;
 
-pub use store::{Answer, JournalError, JournalFault, StoredAnswer, KnownModel, Store};
+pub use store::{Answer, JournalError, JournalFault, KnownModel, Store, StoredAnswer};
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};

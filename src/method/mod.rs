@@ -28,8 +28,8 @@ mod three_point;
 mod worst_case;
 
 pub use crate::method_kind::Method;
-pub(crate) use auto::climb_until;
 pub use auto::ACCURACY;
+pub(crate) use auto::climb_until;
 pub use check::SurrogateCheck;
 pub use climbed::{Climbed, Rest};
 pub use cost::Cost;

@@ -59,8 +59,9 @@ impl Assembly {
             Kind::Sparse(rows) => sparse(parts, rows, factor),
             Kind::Dense(matrix) => dense(parts, matrix, factor),
         };
-        let over =
-            |term: &dyn Fn(&JointCumulants, &Row) -> f64| exact(parts.iter().zip(&rows).map(|(part, row)| term(part, row)));
+        let over = |term: &dyn Fn(&JointCumulants, &Row) -> f64| {
+            exact(parts.iter().zip(&rows).map(|(part, row)| term(part, row)))
+        };
         let skewness = [
             over(&|part, _| part.k3),
             3.0 * over(&|part, row| part.p * row.ap),

@@ -322,11 +322,11 @@ impl fmt::Display for StackNote {
                 significant(*mean_shift, 3)
             ),
             Self::NotExamined => {
-                f.write_str("curvature was not examined: this is the stack of its tangent at the means (the method `full` examines all)")
+                f.write_str("curvature was not examined: this is the stack of its tangent at the means (the method full examines all)")
             }
             Self::InteractionsNotExamined { count } => {
                 let which = if *count == 1 { "one interaction".to_owned() } else { format!("{count} interactions") };
-                write!(f, "linear, unless an interaction says otherwise: {which} not examined (the method `full` examines all)")
+                write!(f, "linear, unless an interaction says otherwise: {which} not examined (the method full examines all)")
             }
             Self::SlopeUnknown { dimensions } => write!(f, "without slope, so that the totals are unknown: {}", list(dimensions)),
             Self::ThreeSigma { dimensions } => write!(f, "3 sigma stands for a tolerance of {}", list(dimensions)),

@@ -1,7 +1,6 @@
 //! From the file's types to a problem: names, model, formulas, characteristics.
 
 use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::correlation::correlated;
@@ -16,7 +15,7 @@ use super::model::{ModelOf, model, process};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use crate::allocation::{Priced, Requirement};
-use crate::assembly::formula::{Formula, FormulaError, is_reserved};
+use crate::assembly::formula::{Formula, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};

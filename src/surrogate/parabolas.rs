@@ -19,7 +19,7 @@ use faer::Mat;
 use super::{InputShape, Inputs, Surrogate, Univariate};
 use crate::correlation::Correlation;
 use crate::distribution::StandardMoments;
-use crate::moments::{Contributions, Interactions, Moments, Term, contributions};
+use crate::moments::{Contributions, Interactions, Term, contributions};
 
 /// The surrogate in independent variables: correlated inputs as normal variables, each with its best parabola.
 pub(super) struct Parabolas<'a> {
@@ -39,7 +39,12 @@ pub(super) struct Parabolas<'a> {
 }
 
 impl<'a> Parabolas<'a> {
-    pub(super) fn of(surrogate: &'a Surrogate, parts: Vec<Univariate>, inputs: &'a Inputs, correlation: &'a Correlation) -> Self {
+    pub(super) fn of(
+        surrogate: &'a Surrogate,
+        parts: Vec<Univariate>,
+        inputs: &'a Inputs,
+        correlation: &'a Correlation,
+    ) -> Self {
         let members = correlation.members();
         let m = members.len();
         let mut member = vec![None; parts.len()];

@@ -53,7 +53,7 @@ pub enum Advice {
     IncludeFixedDimensions,
     /// Leave the correlation of dimensions out of the study.
     LeaveOutCorrelation,
-    /// Replace an external program by a formula.
+    /// Replace the model by a formula.
     UseFormula,
 
     /// Look for wrong names in the formulas, or leave the unused ones out.
@@ -144,7 +144,7 @@ impl fmt::Display for Advice {
             Self::UseDifferences => "Take derivatives from differences.",
             Self::IncludeFixedDimensions => "Ask for the sensitivities of all dimensions.",
             Self::LeaveOutCorrelation => "Leave `[[correlation]]` out to see the interval.",
-            Self::UseFormula => "Replace the program by a formula.",
+            Self::UseFormula => "Replace the model by a formula.",
             Self::CheckNames => "Look for a wrong name in the formulas, or leave the unused ones out.",
             Self::CheckNominal => "Check the nominal dimensions.",
             Self::CheckPosition => "Check whether the mechanism is at a dead centre.",

@@ -44,17 +44,24 @@ pub(super) fn likewise(others: &[String]) -> String {
     }
 }
 
-/// Values with their lines, and whether there are more of them.
+/// Values with their lines, and how many more there are.
 pub(super) fn values_and_lines(first: &[(f64, u64)], count: usize) -> String {
     let named: Vec<String> = first.iter().map(|(value, line)| format!("{value} (line {line})")).collect();
-    format!("{}{}", named.join(", "), if count > first.len() { ", ..." } else { "" })
+    format!("{}{}", named.join(", "), more(first.len(), count))
 }
 
-/// Line numbers, and whether there are more of them.
+/// Line numbers, and how many more there are.
 pub(super) fn lines<N: ToString>(first: &[N], count: usize) -> String {
     let named: Vec<String> = first.iter().map(N::to_string).collect();
     let word = if count == 1 { "line" } else { "lines" };
-    format!("{word} {}{}", named.join(", "), if count > first.len() { ", ..." } else { "" })
+    format!("{word} {}{}", named.join(", "), more(first.len(), count))
+}
+
+fn more(shown: usize, count: usize) -> String {
+    match count.saturating_sub(shown) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    }
 }
 
 pub(super) fn places([from, to]: [f64; 2]) -> String {

@@ -40,7 +40,10 @@ impl Sources {
                 if path.is_dir() {
                     folders.push(path);
                 } else if path.extension().is_some_and(|extension| extension == "rs") {
-                    found.insert(module(path.strip_prefix(&root).unwrap()), code(&std::fs::read_to_string(&path).unwrap()));
+                    found.insert(
+                        module(path.strip_prefix(&root).unwrap()),
+                        code(&std::fs::read_to_string(&path).unwrap()),
+                    );
                 }
             }
         }
@@ -92,7 +95,7 @@ impl Sources {
             let in_uses = uses(code).flat_map(|(_, tree)| paths(tree));
             let targets = in_uses.chain(inline(code)).filter_map(|path| {
                 let (mut target, name) = self.resolved(module, &path)?;
-                let name = name?;
+                let name = name.unwrap_or_default();
                 // No name is passed on more often than there are modules.
                 for _ in 0..self.0.len() {
                     match passed.get(&(target.clone(), name.clone())) {
@@ -226,6 +229,14 @@ fn the_check_of_circles_sees_every_form() {
     // By a name that the folder passes on, and by a path in the code.
     let passed = "pub use b::B;\npub(crate) use c::{C, D as E};";
     assert_eq!(of(&[("a", passed), ("a/b", "use super::{C};"), ("a/c", "fn f() -> super::B {}")]), both);
-    assert_eq!(of(&[("a", ""), ("a/b", "use super::c::C;"), ("a/c", "// use super::b::B;\nuse std::fmt;")]), [[""; 0]; 0]);
+    assert_eq!(
+        of(&[("a", ""), ("a/b", "use super::c::C;"), ("a/c", "// use super::b::B;\nuse std::fmt;")]),
+        [[""; 0]; 0]
+    );
+    assert_eq!(
+        of(&[("a", "mod b;"), ("a/b", "use super::c;"), ("a/c", "use super::b::{self, B};")]),
+        both,
+        "whole modules"
+    );
     assert_eq!(of(&[("a", "use b::B;"), ("a/b", "use super::A;")]), [[""; 0]; 0], "a folder and its own file");
 }

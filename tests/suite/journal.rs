@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::assembly::process::{Greeting, Process, Settings};
 use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run, Signature};
-use sensitol::journal::{JournalFault, Journaled, StoredAnswer, Store};
+use sensitol::journal::{JournalFault, Journaled, Store, StoredAnswer};
 
 use super::support::repository;
 
@@ -518,6 +518,9 @@ fn all_stages_may_be_evaluated_elsewhere() {
     table.extend(answered(&points));
     let study = at("elsewhere.toml");
     let analyze = [&["analyze", &study, "--points", &answers, "--json"][..], &wanted].concat();
+    let missing = |count: usize| {
+        if count == 1 { "1 point has no answer.".to_owned() } else { format!("{count} points have no answer.") }
+    };
     let mut rounds = 0;
     let last = loop {
         std::fs::write(&answers, table.join("\n") + "\n").unwrap();
@@ -528,8 +531,8 @@ fn all_stages_may_be_evaluated_elsewhere() {
             assert!(!error.contains("missing-points") && told.status.success(), "{error}");
             break output;
         }
-        assert!(error.contains(&format!("{} points have no answer; --write-missing", more.len())), "{error}");
-        assert!(written.contains(&format!("append the answers to those of {next}")), "{written}");
+        assert!(error.contains(&missing(more.len())) && error.contains("--write-missing"), "{error}");
+        assert!(written.contains(&format!("append the answers to the points of {next}")), "{written}");
         table.extend(more);
         rounds += 1;
         assert!(rounds < 30, "it comes to an end");

@@ -39,7 +39,13 @@ pub(super) struct View {
 
 impl View {
     /// None without a value at the means, or where a part is unknown.
-    pub(super) fn of(plan: &DifferencePlan, known: &Known, bought: &ChosenPoints, c: usize, accuracy: f64) -> Option<Self> {
+    pub(super) fn of(
+        plan: &DifferencePlan,
+        known: &Known,
+        bought: &ChosenPoints,
+        c: usize,
+        accuracy: f64,
+    ) -> Option<Self> {
         let centre = known.value(&Point::Centre, c)?;
         let mut parts: Vec<Option<Univariate>> = plan.varying().iter().map(|&d| plan.part(known, c, d)).collect();
         let n = parts.len();
