@@ -48,4 +48,5 @@ mod studies;
 mod support;
 mod sweep;
 mod tolerances;
+mod type_names;
 mod warnings;
