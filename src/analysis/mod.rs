@@ -24,7 +24,7 @@ pub(crate) use warnings::history;
 use std::time::Duration;
 
 use crate::assembly::Run;
-use crate::extremes::{Found, search};
+use crate::extremes::{SearchedExtremes, search};
 use crate::method::{Basis, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::warning::Warning;
@@ -99,7 +99,7 @@ pub(crate) fn analyze_keeping(
 ) -> Result<(Analysis, Outcome), MethodError> {
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
-    let found = if options.extremes { search(problem, &outcome, left, run) } else { Found::default() };
+    let found = if options.extremes { search(problem, &outcome, left, run) } else { SearchedExtremes::default() };
     outcome.evaluated.doubts.extend(found.spent.doubts);
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.evaluations));

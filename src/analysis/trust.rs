@@ -3,7 +3,7 @@
 use super::errors::beside_sigma;
 use super::shapes::{Shape, higher, shape};
 use super::{CharacteristicAnalysis, Tails};
-use crate::method::{Climbed, Outcome, Rest};
+use crate::method::{ClimbEnd, Climbed, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::warning::{Figure, Warning};
@@ -137,7 +137,7 @@ fn climb(
     let sigma = error.map(|error| (Figure::Sigma, error, climbed.accuracy));
     for (figure, error, wanted) in sigma.into_iter().chain(beside_sigma(analysis, &climbed.accuracies)) {
         if error > wanted {
-            let (error, budget) = (Some(error).filter(|error| error.is_finite()), climbed.rest == Rest::Budget);
+            let (error, budget) = (Some(error).filter(|error| error.is_finite()), climbed.rest == ClimbEnd::Budget);
             warnings.push(Warning::UnderResolved { characteristic: characteristic(), figure, error, wanted, budget });
         }
     }

@@ -62,7 +62,7 @@ impl Table {
 }
 
 /// A table as assembly function: what stands in it is known, nothing else is.
-pub struct Given {
+pub struct GivenAnswers {
     signature: Signature,
     table: std::sync::Arc<Table>,
     /// The table's columns of the dimensions.
@@ -71,7 +71,7 @@ pub struct Given {
     exact: HashMap<Vec<u64>, usize>,
 }
 
-impl Given {
+impl GivenAnswers {
     /// Of the dimensions and outputs of `signature`.
     ///
     /// # Errors
@@ -105,7 +105,7 @@ fn bits(point: &[f64]) -> Vec<u64> {
     point.iter().map(|x| (x + 0.0).to_bits()).collect()
 }
 
-impl AssemblyFunction for Given {
+impl AssemblyFunction for GivenAnswers {
     fn signature(&self) -> &Signature {
         &self.signature
     }

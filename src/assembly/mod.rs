@@ -30,7 +30,7 @@ pub use closure::Closure;
 pub use composite::{Composite, CompositeError, Parts, Source};
 pub use derivatives::{Derivatives, Directions};
 pub use error::{EvaluationError, NoColumn};
-pub use given::{Given, Table};
+pub use given::{GivenAnswers, Table};
 pub use responses::Responses;
 pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};

@@ -48,7 +48,7 @@ const REPEATED: usize = 4;
 
 /// What the search found for every characteristic, and what it took.
 #[derive(Debug, Clone, Default)]
-pub struct Found {
+pub struct SearchedExtremes {
     /// In the problem's order; None where no point in the box has a value.
     pub extremes: Vec<Option<Extremes>>,
     /// What it took.
@@ -129,7 +129,7 @@ pub enum Place {
 ///
 /// Evaluations: as the module says, no more than `budget`; a point that serves several characteristics is evaluated once. A
 /// point at which the model fails is never used.
-pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: &Run<'_>) -> Found {
+pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: &Run<'_>) -> SearchedExtremes {
     let mut answers = Answers::new(problem, budget, run);
     let tasks: Vec<Task> = (0..problem.characteristics().len()).map(|c| Task::of(problem, outcome, c)).collect();
     tasks.iter().for_each(|task| task.learn_from(&mut answers, outcome));
@@ -159,7 +159,7 @@ pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: 
     }
     let result = |((task, proof), asked)| Task::result(task, problem, &answers, asked, proof);
     let extremes = tasks.iter().zip(proofs).zip(asked).map(result).collect();
-    Found { extremes, spent: answers.spent }
+    SearchedExtremes { extremes, spent: answers.spent }
 }
 
 /// A search of one characteristic and side.

@@ -5,7 +5,7 @@ use super::check::SurrogateCheck;
 
 /// How a climb ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rest {
+pub enum ClimbEnd {
     /// Every characteristic is known as well as it was wanted, by the estimate.
     Reached,
     /// The budget does not allow what would be next.
@@ -24,7 +24,7 @@ pub struct Climbed {
     /// What was wanted of other results.
     pub accuracies: Accuracies,
     /// Why it ended.
-    pub rest: Rest,
+    pub rest: ClimbEnd,
     /// Positions of varying dimensions with five points.
     pub refined: Vec<usize>,
     /// Pairs bought for themselves.

@@ -31,13 +31,13 @@ pub use crate::method_kind::Method;
 pub use auto::ACCURACY;
 pub(crate) use auto::climb_until;
 pub use check::SurrogateCheck;
-pub use climbed::{Climbed, Rest};
+pub use climbed::{ClimbEnd, Climbed};
 pub use cost::Cost;
 pub use estimate::{ErrorEstimate, ErrorSource, estimate};
 pub use exact::ExactDerivatives;
 pub use options::{Accuracies, DerivativeSource, Options, Pairs};
 pub use order::{Basis, Order};
-pub use outcome::{Fitted, Integrated, Joint, Lacking, Outcome, Own, Residual};
+pub use outcome::{Fitted, Integrated, InteractionEffect, Lacking, MainEffect, Outcome, Residual};
 
 use std::sync::Arc;
 

@@ -9,7 +9,7 @@ use super::file::ModelEntry;
 use super::source::Source;
 use super::spanned::Spanned;
 use crate::assembly::process::{Greeting, Process, Settings};
-use crate::assembly::{AssemblyFunction, Given, Input, Output, Signature};
+use crate::assembly::{AssemblyFunction, GivenAnswers, Input, Output, Signature};
 use crate::models::Model;
 use crate::names::UnknownName;
 
@@ -130,7 +130,7 @@ pub(super) fn process(
     let outputs = outputs.into_iter().map(|(name, unit)| Output { name, unit, depends_on: None }).collect();
     let signature = Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() };
     if let Some(table) = &source.externals.points {
-        let given = Given::new(signature, Arc::clone(table));
+        let given = GivenAnswers::new(signature, Arc::clone(table));
         return Ok(Arc::new(given.map_err(StudyFault::MissingColumn)?));
     }
     let process = Process::new(signature, greeting, program.settings.clone());

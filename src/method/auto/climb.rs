@@ -5,7 +5,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::chosen::{ChosenPoints, Probe};
 use super::view::{View, skewed};
-use crate::method::climbed::Rest;
+use crate::method::climbed::ClimbEnd;
 use crate::plan::{DifferencePlan, Known, Point, Purpose, Stage, scattered};
 use crate::problem::Problem;
 
@@ -66,7 +66,7 @@ pub(super) struct Climb<'p> {
     /// Every interaction is bought one by one.
     pub(super) dense: bool,
     short_of_budget: bool,
-    pub(super) rest: Option<Rest>,
+    pub(super) rest: Option<ClimbEnd>,
 }
 
 impl<'p> Climb<'p> {
@@ -99,7 +99,7 @@ impl<'p> Climb<'p> {
 
     /// Wants more of sigma than it did, by a factor below 1, where that can lead on; whether it can.
     pub(super) fn tighten(&mut self, factor: f64) -> bool {
-        let on = self.rest == Some(Rest::Reached) && self.accuracy > FINEST;
+        let on = self.rest == Some(ClimbEnd::Reached) && self.accuracy > FINEST;
         if on {
             self.rest = None;
             self.accuracy = (self.accuracy * factor.clamp(0.1, 0.5)).max(FINEST);
@@ -117,7 +117,7 @@ impl<'p> Climb<'p> {
                 if stage.points.len() > left {
                     // Failed points are replaced beyond what was planned.
                     stage.points.truncate(left);
-                    self.rest = Some(Rest::Budget);
+                    self.rest = Some(ClimbEnd::Budget);
                 }
                 return (!stage.points.is_empty()).then_some(stage);
             }
@@ -178,7 +178,7 @@ impl<'p> Climb<'p> {
             if doubtful && self.sets == 1 && self.positions() >= CONFIRM_FROM && self.check() {
                 return true;
             }
-            self.rest = Some(Rest::Reached);
+            self.rest = Some(ClimbEnd::Reached);
             return false;
         }
         let curved = self.refine_hidden(&short);
@@ -189,7 +189,7 @@ impl<'p> Climb<'p> {
             || self.examine_rest(&short)
             || near && self.sets < SETS && self.spent + 2 * CHECKS <= most(self.positions()) && self.check();
         if !found {
-            self.rest = Some(if self.short_of_budget { Rest::Budget } else { Rest::Exhausted });
+            self.rest = Some(if self.short_of_budget { ClimbEnd::Budget } else { ClimbEnd::Exhausted });
         }
         found
     }

@@ -21,7 +21,7 @@ mod view;
 
 use std::sync::Arc;
 
-use super::climbed::{Climbed, Rest};
+use super::climbed::{ClimbEnd, Climbed};
 use super::exact::ExactDerivatives;
 use super::ladder::{Examined, Ladder, Order};
 use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
@@ -173,7 +173,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
     let climbed = Climbed {
         accuracy: options.accuracy.unwrap_or(ACCURACY),
         accuracies: options.accuracies,
-        rest: if evaluated.stopped { Rest::Stopped } else { climb.rest.unwrap_or(Rest::Budget) },
+        rest: if evaluated.stopped { ClimbEnd::Stopped } else { climb.rest.unwrap_or(ClimbEnd::Budget) },
         refined: (0..climb.refined.len()).filter(|&j| climb.refined[j]).collect(),
         direct: climb.bought.direct.len(),
         probes: climb.bought.judging.len() + climb.bought.fitted.len(),
