@@ -46,7 +46,11 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
         let name = one.characteristic.name();
         look.warn("failed-points", &format!("`{name}` has no value at {} points of the reference", one.failed));
     }
-    stopped(&comparison.run, &format!("after {} evaluations; what was not run is named", comparison.run.evaluations), look);
+    stopped(
+        &comparison.run,
+        &format!("after {} evaluations; what was not run is named", comparison.run.evaluations),
+        look,
+    );
     written?;
     if interrupt::stopped() {
         return Ok(Exit::Interrupted);

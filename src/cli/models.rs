@@ -1,5 +1,6 @@
 //! `sensitol models`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::args::ModelsArgs;
@@ -10,8 +11,8 @@ use crate::names::nearest;
 use crate::report::number::plain;
 
 /// What `models --json` prints of one model.
-#[derive(Debug, Serialize)]
-struct ModelReport {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct ModelReport {
     name: &'static str,
     title: &'static str,
     source: &'static str,
@@ -19,7 +20,7 @@ struct ModelReport {
     outputs: Vec<OutputReport>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct InputReport {
     name: &'static str,
     unit: &'static str,
@@ -27,7 +28,7 @@ struct InputReport {
     about: &'static str,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct OutputReport {
     name: &'static str,
     unit: &'static str,

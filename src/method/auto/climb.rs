@@ -42,7 +42,9 @@ const ON_TOP: usize = 16;
 const KEY: u64 = 0x5e_75_17_02;
 
 /// How a climb ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 pub enum Rest {
     /// Every characteristic is known as well as it was wanted, by the estimate.
     Reached,
