@@ -37,6 +37,7 @@ mod published;
 mod quadratures;
 mod rare;
 mod reference;
+mod reports;
 mod response_surface;
 mod sampled_cli;
 mod sampling;
