@@ -30,9 +30,6 @@ pub(super) struct Direction {
     /// How the inputs move along it: those that do, and all by their places.
     slopes: Vec<(usize, f64)>,
     slope_of: Vec<f64>,
-    square: f64,
-    /// Products as a list.
-    products: Vec<(usize, usize, f64)>,
     /// The inputs that belong to this part of the surface.
     members: Vec<usize>,
 }
@@ -93,8 +90,6 @@ impl Direction {
         let slopes: Vec<(usize, f64)> = slopes.into_iter().filter(|&(_, d)| d != 0.0).collect();
         let mut slope_of = vec![0.0; surface.len()];
         slopes.iter().for_each(|&(j, d)| slope_of[j] = d);
-        let products: Vec<(usize, usize, f64)> = surface.products().filter(|(j, _, _)| own(j)).collect();
-        let square = products.iter().map(|&(j, k, b)| b * slope_of[j] * slope_of[k]).sum();
         Some(Self {
             surface: Arc::clone(surface),
             block,
@@ -104,8 +99,6 @@ impl Direction {
             along,
             slopes,
             slope_of,
-            square,
-            products,
             members: members.to_vec(),
         })
     }
@@ -113,6 +106,46 @@ impl Direction {
     /// The law of the direction.
     pub(super) fn input(&self) -> Option<&Input> {
         self.along.map(|j| self.surface.inputs[j].as_ref())
+    }
+
+    /// The inputs of this part of the surface.
+    pub(super) fn members(&self) -> &[usize] {
+        &self.members
+    }
+
+    /// The coordinate that is integrated.
+    pub(super) fn coordinate(&self) -> Option<usize> {
+        self.along
+    }
+
+    /// How the inputs move with a coordinate, where that is linear.
+    pub(super) fn column(&self, coordinate: usize) -> Vec<(usize, f64)> {
+        match self.block.binary_search(&coordinate) {
+            Ok(b) => {
+                let own = self.block.iter().enumerate().map(|(a, &j)| (j, self.axes[(a, b)]));
+                own.filter(|&(_, d)| d != 0.0).collect()
+            }
+            Err(_) => vec![(coordinate, 1.0)],
+        }
+    }
+
+    /// The same part of the surface with every coordinate sampled.
+    pub(super) fn without(mut self) -> Self {
+        self.along = None;
+        self.slopes.clear();
+        self.slope_of.fill(0.0);
+        self
+    }
+
+    /// Variance along the direction, at the mean of the others.
+    pub(super) fn variance(&self) -> f64 {
+        let Some(input) = self.input() else { return 0.0 };
+        let terms = self.terms(&self.surface);
+        let along = self.along(&vec![0.0; self.surface.len()], &terms);
+        let nodes = input.nodes(&along, 0.0, 0.0);
+        let over = |f: &dyn Fn(f64) -> f64| nodes.z.iter().zip(&nodes.weight).map(|(&z, w)| w * f(z)).sum::<f64>();
+        let mean = over(&|z| value(&along, z));
+        over(&|z| (value(&along, z) - mean).powi(2))
     }
 
     /// The other coordinates, each by the place of its input.
@@ -150,33 +183,26 @@ impl Direction {
         }
     }
 
-    /// The surface about its centre as a polynomial of the direction, at inputs for which the direction is 0.
-    pub(super) fn along(&self, z: &[f64]) -> Quartic {
-        let mut c = [0.0; 5];
-        for &(j, k, b) in &self.products {
-            c[0] += b * z[j] * z[k];
-        }
+    /// The products of a surface with the same inputs and parts.
+    pub(super) fn terms(&self, surface: &Surface) -> Terms {
+        let products: Vec<(usize, usize, f64)> =
+            surface.products().filter(|(j, _, _)| self.members.binary_search(j).is_ok()).collect();
+        let square = products.iter().map(|&(j, k, b)| b * self.slope_of[j] * self.slope_of[k]).sum();
+        let mut linear: Vec<(usize, usize, f64)> = Vec::new();
         for &(j, d) in &self.slopes {
-            c[1] += d * self.surface.neighbours[j].iter().map(|&(k, b)| b * z[k]).sum::<f64>();
+            linear.extend(surface.neighbours[j].iter().map(|&(k, b)| (j, k, d * b)));
         }
-        c[2] = self.square;
+        Terms { products, linear, square }
+    }
+
+    /// The surface about its centre as a polynomial of the direction, at inputs for which the direction is 0.
+    pub(super) fn along(&self, z: &[f64], terms: &Terms) -> Quartic {
+        let mut c = [0.0; 5];
+        c[0] = terms.products.iter().map(|&(j, k, b)| b * z[j] * z[k]).sum();
+        c[1] = terms.linear.iter().map(|&(_, k, b)| b * z[k]).sum();
+        c[2] = terms.square;
         for &j in &self.members {
-            let part = &self.surface.parts[j];
-            let d = self.slope_of[j];
-            if d == 0.0 {
-                c[0] += value(part, z[j]);
-                continue;
-            }
-            // Taylor's expansion of the part.
-            let mut factor = 1.0;
-            for (q, c) in c.iter_mut().enumerate() {
-                let mut sum = 0.0;
-                for i in (q..5).rev() {
-                    sum = sum * z[j] + BINOMIAL[i][q] * part[i];
-                }
-                *c += sum * factor;
-                factor *= d;
-            }
+            shifted(&self.surface.parts[j], z[j], self.slope_of[j], &mut c);
         }
         c
     }
@@ -188,6 +214,33 @@ impl Direction {
 
     pub(super) fn surface(&self) -> &Surface {
         &self.surface
+    }
+}
+
+/// The products of a surface as a direction sees them.
+#[derive(Debug, Clone)]
+pub(super) struct Terms {
+    products: Vec<(usize, usize, f64)>,
+    /// Of the inputs that move with the direction: `d_j b_jk` with the place of `k`.
+    linear: Vec<(usize, usize, f64)>,
+    square: f64,
+}
+
+/// Adds the expansion of a part about `z` in steps of `d` (Taylor).
+#[inline]
+pub(super) fn shifted(part: &Quartic, z: f64, d: f64, c: &mut Quartic) {
+    if d == 0.0 {
+        c[0] += value(part, z);
+        return;
+    }
+    let mut factor = 1.0;
+    for (q, c) in c.iter_mut().enumerate() {
+        let mut sum = 0.0;
+        for i in (q..5).rev() {
+            sum = sum * z + BINOMIAL[i][q] * part[i];
+        }
+        *c += sum * factor;
+        factor *= d;
     }
 }
 

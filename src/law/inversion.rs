@@ -64,6 +64,12 @@ impl Inversion {
         self.transform.sigma
     }
 
+    /// The mean about the centre under a tilt, or under the nearest one that the law bears.
+    pub(super) fn tilted_mean(&self, theta: f64) -> f64 {
+        let [low, high] = self.transform.domain;
+        self.transform.cumulants(theta.clamp(0.9 * low, 0.9 * high))[1]
+    }
+
     /// Probability beyond `y` on this side.
     pub(super) fn tail(&self, y: f64, tail: Tail) -> Figure {
         let y = y - self.centre;

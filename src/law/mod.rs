@@ -25,12 +25,16 @@ mod hats;
 mod input;
 mod inversion;
 mod panels;
+mod points;
 mod polynomial;
 mod quantile;
+mod sampled;
 mod single;
 mod single_sum;
 mod steps;
 mod surface;
+mod table;
+mod tilt;
 mod transform;
 mod tree;
 
@@ -42,6 +46,7 @@ use crate::surrogate::{Inputs, Surrogate, shapes};
 
 use direction::Direction;
 use inversion::Inversion;
+use sampled::Sampled;
 use single::Single;
 use steps::Steps;
 use surface::Surface;
@@ -140,9 +145,9 @@ pub enum LawError {
     /// A coefficient that is not a finite number.
     #[error("a coefficient of the surface is not a finite number")]
     NotFinite,
-    /// Components that are neither trees nor forms of normal inputs.
-    #[error("the products of the surface form a cycle")]
-    Cycle,
+    /// A decomposition of a matrix did not converge.
+    #[error("the correlated inputs or the products of the surface have no eigenvalues")]
+    NoEigenvalues,
     /// The variance is not a finite number above 0 although inputs count.
     #[error("the surface has no finite variance")]
     NoVariance,
@@ -200,6 +205,7 @@ enum Kind {
     Steps(Steps),
     Exact(Box<Inversion>),
     Single(Box<Single>),
+    Sampled(Box<Sampled>),
 }
 
 impl SurfaceLaw {
@@ -216,7 +222,6 @@ impl SurfaceLaw {
         options: &LawOptions,
     ) -> Result<Self, LawError> {
         let surface = Arc::new(Surface::of(surrogate, inputs, correlation)?);
-        let _ = options;
         if surface.len() == 0 {
             let at = surface.centre;
             return Ok(Self { kind: Kind::Point(at), range: [at; 2], mean: at, sigma: 0.0, step: true });
@@ -244,7 +249,9 @@ impl SurfaceLaw {
             let moments = [inversion.mean(), inversion.sigma()];
             return with(Kind::Exact(Box::new(inversion)), moments);
         }
-        Err(LawError::Cycle)
+        let [mean, sigma] = moments(surrogate, inputs, correlation)?;
+        let sampled = Sampled::of(&surface, transform, &left, sigma, options).ok_or(LawError::NoEigenvalues)?;
+        with(Kind::Sampled(Box::new(sampled)), [mean, sigma])
     }
 
     /// Probability strictly below a limit, so that a limit itself is kept.
@@ -277,6 +284,7 @@ impl SurfaceLaw {
             Kind::Steps(steps) => steps.tail(y, tail),
             Kind::Exact(inversion) => inversion.tail(y, tail),
             Kind::Single(single) => single.tail(y, tail),
+            Kind::Sampled(sampled) => sampled.tail(y, tail),
         }
     }
 
@@ -293,6 +301,7 @@ impl SurfaceLaw {
             Kind::Point(_) | Kind::Steps(_) => Figure::proven(0.0),
             Kind::Exact(inversion) => inversion.density(y),
             Kind::Single(single) => single.density(y),
+            Kind::Sampled(sampled) => sampled.density(y, self.mean),
         }
     }
 
@@ -325,6 +334,7 @@ impl SurfaceLaw {
         match self.kind {
             Kind::Point(_) | Kind::Steps(_) | Kind::Exact(_) => Branch::Exact,
             Kind::Single(_) => Branch::Single,
+            Kind::Sampled(_) => Branch::Sampled,
         }
     }
 

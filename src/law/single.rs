@@ -43,6 +43,7 @@ impl Single {
         let Some(inner) = self.direction.input() else { return Figure::new(f64::NAN, f64::INFINITY) };
         let surface = self.direction.surface();
         let off = surface.centre - y;
+        let terms = self.direction.terms(surface);
         let buffers = RefCell::new((vec![0.0; surface.len()], Vec::new()));
         let along = |z: Option<(usize, f64)>| {
             let (v, scratch) = &mut *buffers.borrow_mut();
@@ -51,7 +52,7 @@ impl Single {
                 v[outer] = z;
             }
             self.direction.mix(v, scratch);
-            let mut polynomial = self.direction.along(v);
+            let mut polynomial = self.direction.along(v, &terms);
             polynomial[0] += off;
             polynomial
         };

@@ -167,6 +167,25 @@ impl Surface {
         components
     }
 
+    /// The same surface with those products only that are kept.
+    pub(super) fn with_products(&self, keep: impl Fn(usize, usize) -> bool) -> Self {
+        let row = |(j, row): (usize, &Vec<(usize, f64)>)| row.iter().copied().filter(|&(k, _)| keep(j, k)).collect();
+        let neighbours = self.neighbours.iter().enumerate().map(row).collect();
+        Self { neighbours, ..self.clone() }
+    }
+
+    /// The range of what other inputs than these add to the centre; products among them are not bounded.
+    pub(super) fn range_without(&self, members: &[usize]) -> [f64; 2] {
+        let others = (0..self.len()).filter(|j| members.binary_search(j).is_err());
+        others.fold([0.0; 2], |[low, high], j| match self.neighbours[j].is_empty() {
+            true => {
+                let [least, most] = range(&self.parts[j], self.inputs[j].support);
+                [low + least, high + most]
+            }
+            false => [f64::NEG_INFINITY, f64::INFINITY],
+        })
+    }
+
     /// An interval that no value of the surface leaves: exact without products, wider than needed with them.
     pub(super) fn range(&self) -> [f64; 2] {
         let mut total = [self.centre; 2];

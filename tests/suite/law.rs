@@ -153,7 +153,7 @@ fn limits(oracle: &Value, law: &SurfaceLaw) -> Worst {
     list(&oracle["limits"]).iter().flat_map(of).fold(Worst::default(), Worst::with)
 }
 
-fn worst(group_of: Group) -> Worst {
+fn worst(group_of: Group, covered: f64) -> Worst {
     let mut all = Worst::default();
     for oracle in ORACLES.iter().filter(|oracle| group(oracle) == group_of) {
         let law = law_of(&surface(&oracle["surface"]));
@@ -161,7 +161,7 @@ fn worst(group_of: Group) -> Worst {
         if std::env::var("SENSITOL_LAW_TABLE").is_ok() {
             println!("{group_of:?} {:?} {} {worst:?}", law.branch(), oracle["name"]);
         }
-        assert!(worst.covered <= 1.0, "{}: {worst:?}", oracle["name"]);
+        assert!(worst.covered <= covered, "{}: {worst:?}", oracle["name"]);
         all = all.with(worst);
     }
     all
@@ -169,30 +169,37 @@ fn worst(group_of: Group) -> Worst {
 
 #[test]
 fn sums_of_uniforms_agree_with_sums_of_corners() {
-    let worst = worst(Group::Uniforms);
+    let worst = worst(Group::Uniforms, 1.0);
     assert!(worst.absolute < 1e-9 && worst.relative < 1e-7, "{worst:?}");
 }
 
 #[test]
 fn uniforms_and_a_normal_agree_with_repeated_integrals() {
-    let worst = worst(Group::UniformsAndNormal);
+    let worst = worst(Group::UniformsAndNormal, 1.0);
     assert!(worst.absolute < 1e-11 && worst.relative < 1e-10, "{worst:?}");
 }
 
 #[test]
 fn quadratic_forms_agree_with_partial_fractions() {
-    let worst = worst(Group::Forms);
+    let worst = worst(Group::Forms, 1.0);
     assert!(worst.absolute < 1e-6 && worst.relative < 1e-8, "{worst:?}");
 }
 
 #[test]
 fn trees_agree_with_tensor_quadrature() {
-    let worst = worst(Group::Trees);
+    let worst = worst(Group::Trees, 1.0);
     assert!(worst.absolute < 1e-9 && worst.relative < 1e-7, "{worst:?}");
 }
 
 #[test]
 fn two_inputs_agree_with_graded_panels() {
-    let worst = worst(Group::Pairs);
+    let worst = worst(Group::Pairs, 1.0);
     assert!(worst.absolute < 1e-7 && worst.relative < 1e-5, "{worst:?}");
+}
+
+#[test]
+fn cycles_agree_with_tensor_quadrature() {
+    // The stated error leaves one in a hundred beyond: of 108 figures the worst is allowed half as much again.
+    let worst = worst(Group::Cycles, 1.5);
+    assert!(worst.absolute < 1e-4 && worst.relative < 1e-1, "{worst:?}");
 }
