@@ -134,20 +134,20 @@ impl Side {
         let key = (place, doublings as u32, if bend == 0.0 { 0 } else { bend.signum() as i8 });
         let mut contours = self.contours.lock().unwrap_or_else(PoisonError::into_inner);
         let made = contours.entry(key).or_insert_with(|| {
-            Arc::new(Contour {
-                theta,
-                step: 2.0 * std::f64::consts::PI / spacing,
-                bend,
-                log,
-                logs: transform.logs(theta),
-                values: Mutex::default(),
-            })
+            let step = 2.0 * std::f64::consts::PI / spacing;
+            Arc::new(Contour { theta, step, bend, log, logs: transform.logs(theta), values: Mutex::default() })
         });
         Arc::clone(made)
     }
 }
 
 impl Contour {
+    /// With this tilt and these steps, whatever the law is.
+    pub(super) fn fixed(transform: &Transform, theta: f64, step: f64, bend: f64) -> Self {
+        let [log, ..] = transform.cumulants(theta);
+        Self { theta, step, bend, log, logs: transform.logs(theta), values: Mutex::default() }
+    }
+
     /// The point of this index.
     pub(super) fn s(&self, index: usize) -> Complex {
         let t = self.step * index as f64;

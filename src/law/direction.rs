@@ -16,7 +16,7 @@ use super::surface::Surface;
 use crate::distribution::standard_normal;
 
 /// Coordinates of a part of the surface, and the one that is integrated.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Direction {
     surface: Arc<Surface>,
     /// Inputs that are mixtures of normal coordinates of the same places.
@@ -127,6 +127,16 @@ impl Direction {
             }
             Err(_) => vec![(coordinate, 1.0)],
         }
+    }
+
+    /// The same coordinates and direction of another surface over the same inputs.
+    pub(super) fn over(&self, surface: &Arc<Surface>) -> Self {
+        Self { surface: Arc::clone(surface), ..self.clone() }
+    }
+
+    /// How the inputs move along the direction.
+    pub(super) fn slopes(&self) -> &[(usize, f64)] {
+        &self.slopes
     }
 
     /// The same part of the surface with every coordinate sampled.

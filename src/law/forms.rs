@@ -39,6 +39,10 @@ pub(super) struct Block {
     pub(super) curvatures: Vec<f64>,
     /// `beta_i`.
     pub(super) slopes: Vec<f64>,
+    /// `b_j`.
+    pub(super) linear: Vec<f64>,
+    /// `H`; None for a single input.
+    form: Option<Mat<f64>>,
 }
 
 impl Block {
@@ -47,7 +51,8 @@ impl Block {
         let slope = |j: usize| surface.parts[j][1];
         if let [j] = *members {
             let members = vec![j];
-            return Some(Self { members, axes: None, curvatures: vec![surface.parts[j][2]], slopes: vec![slope(j)] });
+            let (curvatures, slopes) = (vec![surface.parts[j][2]], vec![slope(j)]);
+            return Some(Self { members, axes: None, curvatures, linear: slopes.clone(), slopes, form: None });
         }
         let m = members.len();
         let mut form = Mat::<f64>::zeros(m, m);
@@ -62,7 +67,7 @@ impl Block {
         let factor = factor(surface, members)?;
         let rotated = match &factor {
             Some(factor) => factor.transpose() * &form * factor,
-            None => form,
+            None => form.clone(),
         };
         let eigen = rotated.self_adjoint_eigen(Side::Lower).ok()?;
         let axes = match &factor {
@@ -72,7 +77,13 @@ impl Block {
         let largest = (0..m).map(|i| eigen.S()[i].abs()).fold(0.0, f64::max);
         let curvatures = (0..m).map(|i| if eigen.S()[i].abs() > ZERO * largest { eigen.S()[i] } else { 0.0 }).collect();
         let slopes = (0..m).map(|i| (0..m).map(|a| axes[(a, i)] * slope(members[a])).sum()).collect();
-        Some(Self { members: members.to_vec(), axes: Some(axes), curvatures, slopes })
+        let linear = members.iter().map(|&j| slope(j)).collect();
+        Some(Self { members: members.to_vec(), axes: Some(axes), curvatures, slopes, linear, form: Some(form) })
+    }
+
+    /// `H L Q`; None for a single input.
+    pub(super) fn images(&self) -> Option<Mat<f64>> {
+        Some(self.form.as_ref()? * self.axes.as_ref()?)
     }
 }
 

@@ -95,11 +95,14 @@ impl Inversion {
         self.sum(y, tail, Quantity::Density)
     }
 
+    /// Whether the law is a normal distribution.
+    pub(super) fn is_normal(&self) -> bool {
+        self.transform.forms.is_normal() && self.transform.is_form()
+    }
+
     /// The standardised limit, where the law is normal.
     fn normal(&self, y: f64) -> Option<f64> {
-        let transform = &self.transform;
-        let normal = transform.forms.is_normal() && transform.is_form();
-        normal.then(|| (y - transform.mean) / self.sigma())
+        self.is_normal().then(|| (y - self.transform.mean) / self.sigma())
     }
 
     fn side(&self, tail: Tail) -> &Side {
@@ -108,34 +111,116 @@ impl Inversion {
 
     /// Of a limit that is counted from the centre.
     fn sum(&self, y: f64, tail: Tail, quantity: Quantity) -> Figure {
+        let contour = self.side(tail).contour(&self.transform, y);
+        self.along(&contour, y, quantity, None).0
+    }
+
+    /// The sum along a contour, over as many points as it takes or as many as it is told; and how many these were.
+    fn along(&self, contour: &Contour, y: f64, quantity: Quantity, fixed: Option<Window>) -> (Figure, Window) {
         let transform = &self.transform;
-        let contour = self.side(tail).contour(transform, y);
         let most = LAST[usize::from(transform.is_closed())];
-        let (mut count, mut before) = (FIRST, f64::NAN);
-        let (sum, off, largest, count) = loop {
-            let terms = terms(&contour, transform, y, quantity, count);
+        let (mut count, mut before) = (fixed.map_or(FIRST, |window| window.points), f64::NAN);
+        let (sum, off, largest, window) = loop {
+            let terms = terms(contour, transform, y, quantity, count);
             let largest = terms.iter().map(|term| term.abs()).fold(0.0, f64::max);
             let last = terms[terms.len() - terms.len() / 4..].iter().map(|term| term.abs()).fold(0.0, f64::max);
             let plain: f64 = terms.iter().map(|term| term.re).sum();
             let left = last * terms.len() as f64;
+            let window = |smooth: bool| Window { points: terms.len(), smooth };
+            if let Some(fixed) = fixed {
+                let now = if fixed.smooth { windowed(&terms) } else { plain };
+                break (now, if fixed.smooth { LEFT * now.abs() } else { left }, largest, fixed);
+            }
             if left < ENDED * plain.abs() {
-                break (plain, left, largest, terms.len());
+                break (plain, left, largest, window(false));
             }
             let now = windowed(&terms);
             let off = (now - before).abs();
             if off < AGREED * now.abs() || count >= most || terms.len() < count {
                 let off = if off.is_nan() { now.abs() } else { 4.0 * off + LEFT * now.abs() };
-                break (now, off, largest, terms.len());
+                break (now, off, largest, window(true));
             }
             (before, count) = (now, 2 * count);
         };
         // What the terms have lost in their sum.
-        let rounding = 1e-15 * (count as f64).sqrt() * largest;
+        let rounding = 1e-15 * (window.points as f64).sqrt() * largest;
         let level = libm::exp(contour.log - contour.theta * y) * contour.step / PI;
         let value = level * sum;
         let value = if quantity == Quantity::Density { value.max(0.0) } else { value.clamp(0.0, 1.0) };
-        Figure::new(value, level * (off + rounding) + RELATIVE * value)
+        (Figure::new(value, level * (off + rounding) + RELATIVE * value), window)
     }
+
+    /// The contour and the window of a tail, and whether it is computed as the complement of the other one.
+    pub(super) fn held(&self, y: f64, tail: Tail) -> Line {
+        let y = y - self.centre;
+        let outward = tail.sign() * (y - self.transform.mean) / self.sigma();
+        let own = if outward < -CENTRAL { tail.other() } else { tail };
+        let contour = self.side(own).contour(&self.transform, y);
+        let (_, window) = self.along(&contour, y, Quantity::Tail(own), None);
+        Line {
+            tail: own,
+            complement: own != tail,
+            theta: contour.theta,
+            step: contour.step,
+            bend: contour.bend,
+            window,
+        }
+    }
+
+    /// The tail of this law along the contour of another one; None where its transform does not exist there.
+    pub(super) fn tail_along(&self, y: f64, line: &Line) -> Option<Figure> {
+        let [low, high] = self.transform.domain;
+        if !(low < line.theta && line.theta < high) {
+            return None;
+        }
+        let y = y - self.centre;
+        let contour = Contour::fixed(&self.transform, line.theta, line.step, line.bend);
+        let (found, _) = self.along(&contour, y, Quantity::Tail(line.tail), Some(line.window));
+        Some(if line.complement { found.complement() } else { found })
+    }
+
+    /// The derivatives of a tail by something of which `changes` gives the derivatives of `K` at a point of the contour.
+    pub(super) fn derivatives(
+        &self,
+        y: f64,
+        tail: Tail,
+        changes: impl Fn(&Contour, usize) -> Vec<Vec<Complex>>,
+    ) -> Vec<Figure> {
+        let line = self.held(y, tail);
+        let y = y - self.centre;
+        let contour = self.side(line.tail).contour(&self.transform, y);
+        // A derivative decays more slowly than what it is of.
+        let count = 2 * line.window.points;
+        let terms = terms(&contour, &self.transform, y, Quantity::Tail(line.tail), count);
+        let sign = if line.complement { -1.0 } else { 1.0 };
+        let level = sign * libm::exp(contour.log - contour.theta * y) * contour.step / PI;
+        let of = |change: &Vec<Complex>| {
+            let product = |count: usize| -> Vec<Complex> {
+                terms.iter().zip(change).take(count).map(|(term, change)| *term * *change).collect()
+            };
+            let (whole, half) = (windowed(&product(count)), windowed(&product(count / 2)));
+            Figure::new(level * whole, level.abs() * ((whole - half).abs() + 1e-11 * whole.abs()))
+        };
+        changes(&contour, terms.len()).iter().map(of).collect()
+    }
+}
+
+/// How many points a sum has, and whether it ends with a window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Window {
+    points: usize,
+    smooth: bool,
+}
+
+/// A contour with the points on it that give a tail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Line {
+    tail: Tail,
+    complement: bool,
+    theta: f64,
+    step: f64,
+    bend: f64,
+    window: Window,
 }
 
 /// The terms of the sum at the first points, the first one halved.

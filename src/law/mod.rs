@@ -19,11 +19,14 @@
 
 mod complex;
 mod contour;
+mod derivative;
 mod direction;
 mod forms;
 mod hats;
+mod held;
 mod input;
 mod inversion;
+mod joint;
 mod panels;
 mod points;
 mod polynomial;
@@ -37,6 +40,9 @@ mod table;
 mod tilt;
 mod transform;
 mod tree;
+
+pub use held::HeldTail;
+pub use joint::joint_yield;
 
 use std::sync::Arc;
 
@@ -191,6 +197,8 @@ impl Default for LawOptions {
 /// ```
 #[derive(Debug)]
 pub struct SurfaceLaw {
+    surface: Arc<Surface>,
+    correlation: Option<Correlation>,
     kind: Kind,
     range: [f64; 2],
     mean: f64,
@@ -222,25 +230,30 @@ impl SurfaceLaw {
         options: &LawOptions,
     ) -> Result<Self, LawError> {
         let surface = Arc::new(Surface::of(surrogate, inputs, correlation)?);
+        let correlation = correlation.cloned();
         if surface.len() == 0 {
             let at = surface.centre;
-            return Ok(Self { kind: Kind::Point(at), range: [at; 2], mean: at, sigma: 0.0, step: true });
+            let (kind, range) = (Kind::Point(at), [at; 2]);
+            return Ok(Self { surface, correlation, kind, range, mean: at, sigma: 0.0, step: true });
         }
         let step = surface.inputs.iter().all(|input| input.is_discrete());
         if let Some(steps) = Steps::of(&surface) {
             let ([mean, sigma], range) = (steps.moments(), steps.range());
-            return Ok(Self { kind: Kind::Steps(steps), range, mean, sigma, step });
+            return Ok(Self { surface, correlation, kind: Kind::Steps(steps), range, mean, sigma, step });
         }
         let range = surface.range();
-        let with = |kind: Kind, [mean, sigma]: [f64; 2]| match sigma > 0.0 && sigma.is_finite() && mean.is_finite() {
-            true => Ok(Self { kind, range, mean, sigma, step }),
+        let own = Arc::clone(&surface);
+        let given = correlation.clone();
+        let with = move |kind: Kind, [mean, sigma]: [f64; 2]| match sigma > 0.0 && sigma.is_finite() && mean.is_finite()
+        {
+            true => Ok(Self { surface: own, correlation: given, kind, range, mean, sigma, step }),
             false => Err(LawError::NoVariance),
         };
         let parabolas = (0..surface.len()).all(|j| surface.is_normal_parabola(j));
         if surface.len() <= 2 && !(parabolas && surface.len() == 2) {
             let members: Vec<usize> = (0..surface.len()).collect();
             if let Some(single) = Direction::of(&surface, &members).and_then(Single::of) {
-                return with(Kind::Single(Box::new(single)), moments(surrogate, inputs, correlation)?);
+                return with(Kind::Single(Box::new(single)), moments(surrogate, inputs, correlation.as_ref())?);
             }
         }
         let (transform, left) = Transform::of(&surface, &surface.components());
@@ -249,7 +262,7 @@ impl SurfaceLaw {
             let moments = [inversion.mean(), inversion.sigma()];
             return with(Kind::Exact(Box::new(inversion)), moments);
         }
-        let [mean, sigma] = moments(surrogate, inputs, correlation)?;
+        let [mean, sigma] = moments(surrogate, inputs, correlation.as_ref())?;
         let sampled = Sampled::of(&surface, transform, &left, sigma, options).ok_or(LawError::NoEigenvalues)?;
         with(Kind::Sampled(Box::new(sampled)), [mean, sigma])
     }
@@ -284,7 +297,7 @@ impl SurfaceLaw {
             Kind::Steps(steps) => steps.tail(y, tail),
             Kind::Exact(inversion) => inversion.tail(y, tail),
             Kind::Single(single) => single.tail(y, tail),
-            Kind::Sampled(sampled) => sampled.tail(y, tail),
+            Kind::Sampled(sampled) => sampled.tail(y, tail, self.mean),
         }
     }
 
@@ -327,6 +340,26 @@ impl SurfaceLaw {
             true => quantile::quantile(self, tail, p),
             false => quantile::quantile(self, tail.other(), 1.0 - p),
         }
+    }
+
+    /// The derivatives of a tail's probability by the logarithm of every input's tolerance, at fixed shape: the slope of input
+    /// `j` follows its tolerance, a curvature its square, a product both; None where the law is a step function.
+    ///
+    /// ```text
+    /// exact             d sf/d log T_j = 1/pi int Re[ exp(K - s y)/s dK/d log T_j ] dt
+    /// single, sampled   d sf/d log T_j = E[ sum_roots f(w) z_j dy/dz_j / |dy/dw| ]
+    /// ```
+    ///
+    /// Shapes: as many as the surrogate has parts; 0 for an input that does not count. Cost: about that of one limit for each
+    /// input of the exact branch, one sample for all of them in the others.
+    pub fn tail_derivatives(&self, y: f64, tail: Tail) -> Option<Vec<Figure>> {
+        derivative::tail_derivatives(self, y, tail)
+    }
+
+    /// The contour, points and proposals with which this tail is computed, to compute those of other laws of the same
+    /// structure with them: their figures then are smooth in the coefficients.
+    pub fn hold(&self, y: f64, tail: Tail) -> HeldTail {
+        HeldTail::of(self, y, tail)
     }
 
     /// How the law is computed.

@@ -16,7 +16,7 @@ pub(super) struct Expectation {
     pub(super) error: f64,
 }
 
-/// `E f(z)` of a function that is not negative, smooth between these places and a few others.
+/// `E f(z)` of a function that is smooth between these places and a few others.
 pub(super) fn expectation(input: &Input, splits: &[f64], f: impl Fn(f64) -> f64) -> Expectation {
     let rule = |from: f64, to: f64, factor: f64| -> f64 {
         let width = to - from;
@@ -40,7 +40,7 @@ pub(super) fn expectation(input: &Input, splits: &[f64], f: impl Fn(f64) -> f64)
         }
     }
     let atoms: f64 = input.atoms.iter().map(|&(z, p)| p * f(z)).sum();
-    let mut total: f64 = atoms + open.iter().map(|panel| panel.3).sum::<f64>();
+    let mut total: f64 = atoms.abs() + open.iter().map(|panel| panel.3.abs()).sum::<f64>();
     let (mut value, mut error, mut taken) = (atoms, 0.0, 0);
     open.reverse();
     while let Some((from, to, factor, coarse, depth)) = open.pop() {
@@ -48,7 +48,7 @@ pub(super) fn expectation(input: &Input, splits: &[f64], f: impl Fn(f64) -> f64)
         let (left, right) = (rule(from, middle, factor), rule(middle, to, factor));
         let off = (left + right - coarse).abs();
         // A narrow spike that the first rule has missed makes the whole larger.
-        total += left + right - coarse;
+        total += left.abs() + right.abs() - coarse.abs();
         taken += 1;
         let fine = off <= TOLERANCE * total || !(from < middle && middle < to);
         if fine || depth >= DEEPEST || taken >= MOST {

@@ -1,11 +1,10 @@
 //! Surfaces of one or two inputs: Gauss panels in the one, roots and the distribution function of the other.
 
-use std::cell::RefCell;
-
-use super::direction::Direction;
+use super::direction::{Direction, Terms};
 use super::input::Input;
 use super::panels::expectation;
 use super::polynomial::{Quartic, range, roots, value};
+use super::sampled::pathwise;
 use super::{Figure, Tail};
 
 /// Relative accuracy of the distribution functions of the inputs.
@@ -34,35 +33,57 @@ impl Single {
         self.figure(y, |input, polynomial| input.beyond(polynomial, tail)).clamped()
     }
 
+    /// The derivatives of a tail by the logarithms of the tolerances of the inputs.
+    pub(super) fn derivatives(&self, y: f64, tail: Tail) -> Vec<Figure> {
+        let surface = self.direction.surface();
+        let n = surface.len();
+        let terms = self.direction.terms(surface);
+        let Some(inner) = self.direction.input() else { return Vec::new() };
+        let at = |z: Option<(usize, f64)>, j: usize| {
+            let (mut v, mut sums) = (vec![0.0; n], vec![0.0; n]);
+            if let Some((outer, z)) = z {
+                v[outer] = z;
+            }
+            self.direction.mix(&mut v, &mut Vec::new());
+            let polynomial = self.direction.along(&v, &terms);
+            let off = y - surface.centre;
+            pathwise(surface, &self.direction, inner, &v, polynomial, off, tail.sign(), &mut sums);
+            sums[j]
+        };
+        let of = |j: usize| match self.outer {
+            None => Figure::new(at(None, j), RELATIVE * at(None, j).abs()),
+            Some(outer) => {
+                let found = expectation(&surface.inputs[outer], &self.splits(y, outer), |z| at(Some((outer, z)), j));
+                Figure::new(found.value, found.error + RELATIVE * found.value.abs())
+            }
+        };
+        (0..n).map(of).collect()
+    }
+
     pub(super) fn density(&self, y: f64) -> Figure {
         self.figure(y, |input, polynomial| input.density_of(polynomial))
     }
 
-    /// The expectation over the outer input of something that the inner one does at the limit.
-    fn figure(&self, y: f64, f: impl Fn(&Input, &Quartic) -> f64) -> Figure {
-        let Some(inner) = self.direction.input() else { return Figure::new(f64::NAN, f64::INFINITY) };
+    /// The surface less a limit along the direction.
+    fn along(&self, terms: &Terms, outer: Option<(usize, f64)>, off: f64) -> Quartic {
+        let mut v = vec![0.0; self.direction.surface().len()];
+        if let Some((place, z)) = outer {
+            v[place] = z;
+        }
+        self.direction.mix(&mut v, &mut Vec::new());
+        let mut polynomial = self.direction.along(&v, terms);
+        polynomial[0] += off;
+        polynomial
+    }
+
+    /// Where an integrand over the outer input is not smooth.
+    fn splits(&self, y: f64, outer: usize) -> Vec<f64> {
+        let Some(inner) = self.direction.input() else { return Vec::new() };
         let surface = self.direction.surface();
-        let off = surface.centre - y;
+        let (off, law) = (surface.centre - y, &surface.inputs[outer]);
         let terms = self.direction.terms(surface);
-        let buffers = RefCell::new((vec![0.0; surface.len()], Vec::new()));
-        let along = |z: Option<(usize, f64)>| {
-            let (v, scratch) = &mut *buffers.borrow_mut();
-            v.fill(0.0);
-            if let Some((outer, z)) = z {
-                v[outer] = z;
-            }
-            self.direction.mix(v, scratch);
-            let mut polynomial = self.direction.along(v, &terms);
-            polynomial[0] += off;
-            polynomial
-        };
-        let Some(outer) = self.outer else {
-            let value = f(inner, &along(None));
-            return Figure::new(value, RELATIVE * value);
-        };
-        // Where the limit crosses an end or a corner of the inner law the integrand has a kink.
-        let law = &surface.inputs[outer];
         let mut splits = Vec::new();
+        // Where the limit crosses an end or a corner of the inner law.
         if let Some(own) = self.direction.own().filter(|_| !inner.is_normal()) {
             for at in inner.breaks() {
                 let mut part = surface.parts[outer];
@@ -72,14 +93,28 @@ impl Single {
             }
         }
         for tail in [Tail::Lower, Tail::Upper] {
-            // Where all or nothing of the inner law is beyond the limit, also in a small part of the outer one: the farthest value that the inner input reaches.
-            let reach = |z: f64| match (tail, range(&along(Some((outer, z))), inner.ends)) {
+            // Where all or nothing of the inner law is beyond the limit, also in a small part of the outer one: the farthest
+            // value that the inner input reaches.
+            let reach = |z: f64| match (tail, range(&self.along(&terms, Some((outer, z)), off), inner.ends)) {
                 (Tail::Lower, [least, _]) => -least,
                 (Tail::Upper, [_, most]) => most,
             };
             splits.extend(crossings(law, reach));
         }
-        let found = expectation(law, &splits, |z| f(inner, &along(Some((outer, z)))));
+        splits
+    }
+
+    /// The expectation over the outer input of something that the inner one does at the limit.
+    fn figure(&self, y: f64, f: impl Fn(&Input, &Quartic) -> f64) -> Figure {
+        let Some(inner) = self.direction.input() else { return Figure::new(f64::NAN, f64::INFINITY) };
+        let surface = self.direction.surface();
+        let (off, terms) = (surface.centre - y, self.direction.terms(surface));
+        let Some(outer) = self.outer else {
+            let value = f(inner, &self.along(&terms, None, off));
+            return Figure::new(value, RELATIVE * value);
+        };
+        let integrand = |z: f64| f(inner, &self.along(&terms, Some((outer, z)), off));
+        let found = expectation(&surface.inputs[outer], &self.splits(y, outer), integrand);
         Figure::new(found.value, found.error + RELATIVE * found.value)
     }
 }

@@ -174,6 +174,18 @@ impl Surface {
         Self { neighbours, ..self.clone() }
     }
 
+    /// The surface where one input varies by this factor more.
+    pub(super) fn scaled(&self, input: usize, by: f64) -> Self {
+        let mut scaled = self.clone();
+        scaled.parts[input].iter_mut().enumerate().for_each(|(k, c)| *c *= by.powi(k as i32));
+        for &(other, _) in &self.neighbours[input] {
+            for (j, k) in [(input, other), (other, input)] {
+                scaled.neighbours[j].iter_mut().filter(|(at, _)| *at == k).for_each(|(_, b)| *b *= by);
+            }
+        }
+        scaled
+    }
+
     /// The range of what other inputs than these add to the centre; products among them are not bounded.
     pub(super) fn range_without(&self, members: &[usize]) -> [f64; 2] {
         let others = (0..self.len()).filter(|j| members.binary_search(j).is_err());

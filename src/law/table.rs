@@ -2,7 +2,9 @@
 //! surface is sampled.
 
 use super::Tail;
+use super::derivative::exact_derivatives;
 use super::inversion::Inversion;
+use super::surface::Surface;
 
 /// Places per sigma.
 const PER_SIGMA: f64 = 24.0;
@@ -83,6 +85,43 @@ impl Table {
         let d = |at: usize| self.density[at.min(last)];
         let slope = |at: usize| 0.5 * (d(at + 1) - d(at.saturating_sub(1)));
         hermite(t, d(at), slope(at), d(at + 1), slope(at + 1)).max(0.0)
+    }
+}
+
+/// Derivatives of a tail by the tolerances of the inputs of an exact law.
+#[derive(Debug)]
+pub(super) struct Slopes {
+    from: f64,
+    step: f64,
+    /// By place: of every input of the surface.
+    values: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// The derivatives of a tail at every fourth place of the table.
+    pub(super) fn slopes(&self, law: &Inversion, surface: &Surface, tail: Tail) -> Slopes {
+        const EVERY: usize = 4;
+        let step = self.step * EVERY as f64;
+        let places = self.lower.len().div_ceil(EVERY);
+        let at = |place: usize| {
+            let found = exact_derivatives(law, surface, self.from + step * place as f64, tail);
+            found.into_iter().map(|figure| figure.value).collect()
+        };
+        Slopes { from: self.from, step, values: (0..=places).map(at).collect() }
+    }
+}
+
+impl Slopes {
+    /// At a limit, by a cubic through four places; 0 beyond the table.
+    pub(super) fn at(&self, input: usize, y: f64) -> f64 {
+        let place = (y - self.from) / self.step;
+        if place < 0.0 || place >= (self.values.len() - 1) as f64 {
+            return 0.0;
+        }
+        let at = place as usize;
+        let d = |at: usize| self.values[at.min(self.values.len() - 1)][input];
+        let slope = |at: usize| 0.5 * (d(at + 1) - d(at.saturating_sub(1)));
+        hermite(place - at as f64, d(at), slope(at), d(at + 1), slope(at + 1))
     }
 }
 
