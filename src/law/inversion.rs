@@ -19,7 +19,7 @@ use crate::distribution::standard_normal;
 
 /// Points of the first window.
 const FIRST: usize = 64;
-/// Points of the last one, where panels and trees are summed; forms are cheaper.
+/// Points of the last one, where panels and trees are summed; closed forms and atoms are cheaper.
 const LAST: [usize; 2] = [1 << 11, 1 << 14];
 /// A term that is below this part of the sum ends it.
 const ENDED: f64 = 1e-14;
@@ -118,10 +118,14 @@ impl Inversion {
     /// The sum along a contour, over as many points as it takes or as many as it is told; and how many these were.
     fn along(&self, contour: &Contour, y: f64, quantity: Quantity, fixed: Option<Window>) -> (Figure, Window) {
         let transform = &self.transform;
-        let most = LAST[usize::from(transform.is_closed())];
+        let most = LAST[usize::from(transform.is_cheap())];
         let (mut count, mut before) = (fixed.map_or(FIRST, |window| window.points), f64::NAN);
         let (sum, off, largest, window) = loop {
             let terms = terms(contour, transform, y, quantity, count);
+            if terms.is_empty() {
+                // The tables of a tree are too large: nothing is known.
+                return (Figure::new(f64::NAN, f64::INFINITY), Window { points: FIRST, smooth: true });
+            }
             let largest = terms.iter().map(|term| term.abs()).fold(0.0, f64::max);
             let last = terms[terms.len() - terms.len() / 4..].iter().map(|term| term.abs()).fold(0.0, f64::max);
             let plain: f64 = terms.iter().map(|term| term.re).sum();

@@ -34,7 +34,7 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: Tail, p: f64) -> Figure {
         width *= 1.5;
     }
     let scale = SAME * (sigma + mean.abs());
-    let (mut halve, mut best) = (false, 0.5 * (low + high));
+    let (mut halve, mut best) = (false, f64::NAN);
     for _ in 0..STEPS {
         if high - low <= scale {
             break;
@@ -58,6 +58,8 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: Tail, p: f64) -> Figure {
         }
         halve = high - low > 0.5 * before && !halve;
     }
+    // Where the bounds were one from the start there was no step.
+    let best = if best.is_nan() { 0.5 * (low + high) } else { best };
     let y = mean + sign * best;
     let (off, density) = (law.tail(y, tail).error, law.density(y).value);
     let error = if density > 0.0 { off / density } else { f64::INFINITY };

@@ -99,6 +99,11 @@ impl Single {
         })
     }
 
+    /// Whether the input consists of atoms.
+    pub(super) fn is_discrete(&self) -> bool {
+        self.law.is_discrete()
+    }
+
     /// Mean and variance of the part.
     pub(super) fn moments(&self) -> [f64; 2] {
         let nodes = self.law.nodes(&self.part, 0.0, 0.0);

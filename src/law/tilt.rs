@@ -29,7 +29,7 @@ const OWN: f64 = 0.02;
 const FIRST: f64 = 0.4;
 const STEP: f64 = 1.3;
 /// The largest tilt by the natural unit: beyond, the mean cannot be moved to the limit.
-const MOST: f64 = 300.0;
+const MOST: f64 = 3000.0;
 /// Sweeps of a mean field.
 const SWEEPS: usize = 8;
 /// Centres whose logarithm of the mass is this far below the best are left out.
@@ -64,6 +64,15 @@ impl Cells {
         let (low, high) = (quantile(OUTER), quantile(-OUTER));
         let mut edges: Vec<f64> = (0..=CELLS).map(|i| low + (high - low) * i as f64 / CELLS as f64).collect();
         let ends = law.as_ref().map_or([f64::NEG_INFINITY, f64::INFINITY], |law| law.ends);
+        // Next to an end of the support a tail lies in a small part of it.
+        for (end, sign) in [(ends[0], 1.0), (ends[1], -1.0)] {
+            let support = law.as_ref().map_or(f64::INFINITY, |law| law.support[usize::from(sign < 0.0)]);
+            if support.is_finite() {
+                edges.extend((7..24).map(|k| end + sign * (high - low) * 0.5f64.powi(k)));
+            }
+        }
+        edges.retain(|z| (ends[0]..=ends[1]).contains(z));
+        edges.sort_unstable_by(f64::total_cmp);
         edges.insert(0, ends[0]);
         edges.push(ends[1]);
         edges.dedup();
@@ -180,7 +189,7 @@ impl Tilts {
         &self.coordinates[..self.sampled]
     }
 
-    /// The first rung whose mean lies beyond a limit; None where the mean cannot be moved there.
+    /// The first rung whose mean lies beyond a limit; the last one where the mean cannot be moved there.
     ///
     /// `others` is the tilted mean of what is not sampled.
     pub(super) fn proposal(
@@ -195,7 +204,8 @@ impl Tilts {
         for place in 0.. {
             let size = FIRST * STEP.powi(place as i32);
             if size > MOST {
-                return None;
+                // As far as the mean can be moved.
+                return rungs.last().map(|last| (rungs.len() - 1, std::sync::Arc::clone(last)));
             }
             if place == rungs.len() {
                 let theta = ladder.tail.sign() * size * self.unit;

@@ -112,6 +112,11 @@ impl Transform {
         self.singles.is_empty() && self.trees.is_empty()
     }
 
+    /// Whether there are closed forms and atoms only, so that a contour may have many points.
+    pub(super) fn is_cheap(&self) -> bool {
+        self.trees.is_empty() && self.singles.iter().all(Single::is_discrete)
+    }
+
     /// Mean and sigma.
     fn measure(&mut self) {
         let (mut mean, mut variance) = (self.forms.mean(), self.forms.variance() + self.hats.variance());

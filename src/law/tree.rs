@@ -23,6 +23,10 @@ const LEAST: f64 = 50.0;
 /// Elements of a table of products at most: beyond, the contour ends where it is, with the error that this leaves.
 const MOST: usize = 1 << 22;
 
+/// Sigmas of its neighbours that an input's nodes resolve the products with; half of them may add to the weight of a node.
+const REACH: f64 = 8.0;
+/// Points of a contour that share their nodes.
+const SHARED: usize = 16;
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// A tree of products, from the leaves to the root.
@@ -42,7 +46,7 @@ struct Node {
     children: Vec<usize>,
     /// Coefficient of the product with the parent.
     product: f64,
-    /// By what other inputs may move the exponent, per sigma of this one and unit of `s`.
+    /// By what other inputs may move the exponent at most, per sigma of this one and unit of `s`.
     near: f64,
     /// Whether the branch consists of parabolas of normal inputs.
     closed: bool,
@@ -83,6 +87,7 @@ impl Tree {
             next += 1;
         }
         order.reverse();
+        let reach = |k: usize| surface.inputs[k].ends.iter().fold(0.0f64, |most, end| most.max(end.abs())).min(REACH);
         let place = |j: usize| order.iter().position(|&(k, _)| k == j);
         let mut nodes: Vec<Node> = Vec::with_capacity(order.len());
         for &(j, parent) in &order {
@@ -95,7 +100,7 @@ impl Tree {
                 part: surface.parts[j],
                 children,
                 product: if parent == usize::MAX { 0.0 } else { surface.product(j, parent) },
-                near: surface.neighbours[j].iter().map(|(_, b)| b.abs()).sum(),
+                near: surface.neighbours[j].iter().map(|&(k, b)| b.abs() * reach(k)).sum(),
                 closed,
             });
         }
@@ -123,23 +128,19 @@ impl Tree {
     }
 
     fn table(&self, place: usize, level: i32) -> Arc<Table> {
-        /// Sigmas of its neighbours that an input's nodes resolve the products with.
-        const REACH: f64 = 8.0;
         let node = &self.nodes[place];
         let mut tables = self.tables.lock().unwrap_or_else(PoisonError::into_inner);
         let table = tables
             .entry((place, level))
-            .or_insert_with(|| Arc::new(Table::of(&node.law, &node.part, level, REACH * node.near, EVERYWHERE)));
+            .or_insert_with(|| Arc::new(Table::of(&node.law, &node.part, level, node.near, EVERYWHERE)));
         Arc::clone(table)
     }
 
     /// The nodes of an input that can weigh under a tilt.
     fn live(&self, place: usize, theta: f64, top: f64) -> Tilted {
-        /// Sigmas of its neighbours that may add to the weight of a node.
-        const REACH: f64 = 4.0;
         let node = &self.nodes[place];
         let table = self.table(place, level(top));
-        let near = REACH * theta.abs() * node.near;
+        let near = 0.5 * theta.abs() * node.near;
         let logs: Vec<f64> = table.values.iter().zip(&table.logs).map(|(g, log)| theta * g + log).collect();
         let reach = |at: usize| logs[at] + near * table.z[at].abs();
         let most = (0..logs.len()).map(reach).fold(f64::NEG_INFINITY, f64::max);
@@ -151,13 +152,13 @@ impl Tree {
     /// Whether a tilt exists: closed branches do, and no end at which an unbounded input is cut weighs anything.
     pub(super) fn bears(&self, theta: f64, at_mean: f64) -> bool {
         /// Sigmas of the parent that may add to the weight of a node.
-        const REACH: f64 = 4.0;
+        const OWN_REACH: f64 = 4.0;
         if !self.closed_positive(theta) {
             return false;
         }
         let done = self.up(theta, at_mean);
         self.nodes.iter().zip(&done).filter(|(node, _)| !node.closed).all(|(node, (own, _))| {
-            let near = REACH * (node.product * theta).abs();
+            let near = OWN_REACH * (node.product * theta).abs();
             let weighed = || own.z.iter().zip(&own.logs).map(|(&z, log)| (z, log + near * z.abs()));
             own_ends_weigh_nothing(&node.law, weighed)
         })
@@ -229,6 +230,12 @@ impl Tree {
 
     /// Multiplies `M(s)/M(theta)` into the points of a block; false where the tables would be too large.
     pub(super) fn multiply(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> bool {
+        let blocks = out.chunks_mut(SHARED).enumerate();
+        blocks.fold(true, |all, (block, out)| all && self.few(theta, from + step * (block * SHARED) as f64, step, out))
+    }
+
+    /// The same for points that share their nodes.
+    fn few(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> bool {
         let top = libm::hypot(theta, from + step * out.len() as f64);
         let done = self.up(theta, top);
         let mut messages: Vec<Option<Message>> = Vec::with_capacity(self.nodes.len());
