@@ -18,6 +18,7 @@ const LAYERS: &[&[&str]] = &[
     &["evaluation"],
     &["problem"],
     &["plan"],
+    &["law"],
     &["surrogate", "verdict"],
     &["capability"],
     &["moments"],

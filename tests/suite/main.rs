@@ -25,6 +25,7 @@ mod implicit;
 mod init;
 mod intervals;
 mod journal;
+mod law;
 mod measured;
 mod methods;
 mod models;
