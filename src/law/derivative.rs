@@ -50,7 +50,7 @@ pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail
                 let last = count.min(first + BLOCK);
                 let top = contour.s(last).abs();
                 let tilted = single.tilted(contour.theta, top);
-                for at in first..last {
+                for (at, change) in changes[single.input].iter_mut().enumerate().take(last).skip(first) {
                     let s = contour.s(at);
                     let (mut mass, mut moved) = (Complex::ZERO, Complex::ZERO);
                     for ((z, g), w) in tilted.z.iter().zip(&tilted.values).zip(&tilted.weights) {
@@ -58,7 +58,7 @@ pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail
                         mass += weight;
                         moved += weight * (z * value(&slope, *z));
                     }
-                    changes[single.input][at] = s * moved / mass;
+                    *change = s * moved / mass;
                 }
             }
         }
@@ -84,6 +84,7 @@ fn x_coth_x_less_one(x: Complex) -> Complex {
 }
 
 /// `s (b_j mu_j + 2 (mu_j (H mu)_j + (Sigma H)_jj))` with the tilted mean `mu` and covariance `Sigma` of the form.
+#[expect(clippy::needless_range_loop, reason = "every input has its own list of points")]
 fn of_block(block: &Block, contour: &Contour, changes: &mut [Vec<Complex>]) {
     let m = block.members.len();
     let axis = |j: usize, i: usize| block.axes.as_ref().map_or(1.0, |axes| axes[(j, i)]);

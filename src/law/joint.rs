@@ -112,6 +112,7 @@ impl Inputs {
     }
 
     /// The mean of the broken limits beyond the first over the points of a replicate.
+    #[expect(clippy::needless_range_loop, reason = "a point is a row over all columns")]
     fn several(&self, characteristics: &[&(&SurfaceLaw, SpecLimits)], replicate: usize) -> f64 {
         let sobol = Sobol::new(self.laws.len().min(SOBOL_DIMENSIONS));
         let columns: Vec<Vec<f64>> = (0..self.laws.len())
