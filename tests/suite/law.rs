@@ -158,6 +158,7 @@ fn limits(oracle: &Value, law: &SurfaceLaw) -> Worst {
     list(&oracle["limits"]).iter().flat_map(of).fold(Worst::default(), Worst::with)
 }
 
+/// Of all oracles of a group; with SENSITOL_LAW_TABLE set the table of accuracies is printed.
 fn worst(group_of: Group, covered: f64) -> Worst {
     let mut all = Worst::default();
     for oracle in ORACLES.iter().filter(|oracle| group(oracle) == group_of) {
