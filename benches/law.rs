@@ -32,11 +32,14 @@ fn surface(n: usize, product: f64) -> Surrogate {
     Surrogate { centre: 0.0, parts: (0..n).map(part).collect(), interactions }
 }
 
+/// Name, numbers of inputs, coefficient of the products, and the inputs.
+type Case = (&'static str, &'static [usize], f64, fn(usize) -> Vec<Law>);
+
 fn law(c: &mut Criterion) {
     let made = |surrogate: &Surrogate, inputs: &[Law]| {
         SurfaceLaw::of(surrogate, inputs, None, &LawOptions::default()).expect("a law")
     };
-    let cases: [(&str, &[usize], f64, fn(usize) -> Vec<Law>); 3] = [
+    let cases: [Case; 3] = [
         ("sums", &[10, 100], 0.0, mixed),
         ("forms of normals", &[10, 100, 1000], 0.01, |n| vec![normal(); n]),
         ("all interactions", &[10, 100], 0.01, mixed),
