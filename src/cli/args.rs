@@ -228,7 +228,7 @@ pub(super) struct AnalyzeArgs {
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
 
     #[command(flatten)]
@@ -253,7 +253,7 @@ pub(super) struct SampledArgs {
     pub(super) work: WorkArgs,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
 }
 
@@ -354,7 +354,7 @@ pub(super) struct SweepArgs {
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
 
     /// Write the report as one HTML page
@@ -398,7 +398,7 @@ pub(super) struct AllocateArgs {
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
 
     /// Write the study with the tolerances found, otherwise as it is
