@@ -1,6 +1,6 @@
 //! Whether a model can be trusted, and how it is best asked: repeatability, order, errors, noise, speed.
 //!
-//! Evaluations: `2N + 31` for N varying dimensions, one where it gives no value. The points are always the same ones.
+//! Evaluations: `2N + 55` for N varying dimensions, one where it gives no value. The points are always the same ones.
 //!
 //! Source of the noise level: Moré and Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), algorithm
 //! ECnoise: the standard deviation of differences of order k of values at equal distances, where it no longer depends on k.
@@ -10,9 +10,14 @@ use std::time::{Duration, Instant};
 use crate::assembly::process::Adapter;
 use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
 use crate::problem::Problem;
+use crate::summary::RunSummary;
 
 /// Points in the two passes that must agree.
 const SCATTERED: usize = 8;
+/// The second pass goes to them in this order, each by itself: from the nominal point in steps of a third. The other way round it
+/// would cross the same edges, and a model that flips on a long way would flip at the same places.
+const SHUFFLED: [usize; SCATTERED] = [5, 2, 7, 0, 3, 6, 1, 4];
+const STEPS: usize = 4;
 /// Points of the noise estimate, and their distance as a part of the tolerances.
 const LINE: usize = 9;
 const CLOSE: f64 = 1e-5;
@@ -30,8 +35,8 @@ const MANY: usize = 5;
 pub struct Probe {
     /// What an external program says of itself.
     pub adapter: Option<Adapter>,
-    /// Points sent.
-    pub evaluations: usize,
+    /// What it came to in points and time.
+    pub run: RunSummary,
     /// From nothing to ready.
     pub start: Duration,
     /// For a point by itself, and for one of many.
@@ -50,12 +55,12 @@ pub struct Check {
     /// What.
     pub what: &'static str,
     /// Whether it does.
-    pub verdict: Verdict,
+    pub verdict: Finding,
 }
 
 /// What a check came to.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Finding {
     /// It is as it should be.
     Passed,
     /// An analysis gets along with it, and should not have to.
@@ -66,7 +71,7 @@ pub enum Verdict {
     NotChecked,
 }
 
-impl Verdict {
+impl Finding {
     /// What is wrong, where anything is.
     pub fn fault(&self) -> Option<&str> {
         match self {
@@ -100,7 +105,7 @@ pub struct Probed {
 impl Probe {
     /// Whether nothing is as it should not be, and everything could be checked.
     pub fn passed(&self) -> bool {
-        self.checks.iter().all(|check| matches!(check.verdict, Verdict::Passed | Verdict::Doubtful(_)))
+        self.checks.iter().all(|check| matches!(check.verdict, Finding::Passed | Finding::Doubtful(_)))
     }
 }
 
@@ -116,7 +121,7 @@ const REACTS: &str = "every characteristic reacts to some dimension";
 /// Most evaluations of a probe: fewer where the nominal dimensions have no values.
 pub fn evaluations(problem: &Problem) -> usize {
     let run = Run::to_the_end();
-    2 * Asked { problem, run: &run }.varying().len() + 2 * SCATTERED + LINE + 6
+    2 * Asked { problem, run: &run }.varying().len() + (1 + STEPS) * SCATTERED + LINE + 6
 }
 
 /// Probes the model of a problem. Without any value at the nominal dimensions nothing else is asked.
@@ -130,10 +135,17 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let asked = Asked { problem, run };
     let nominal: Vec<f64> = problem.dimensions().iter().map(|dimension| dimension.nominal()).collect();
     let names: Vec<String> = problem.characteristics().iter().map(|one| one.name().to_owned()).collect();
-    let mut evaluations = 0;
+    let since = begun;
+    let mut spent = RunSummary::default();
     let mut ask = |rows: &[Vec<f64>]| {
-        evaluations += rows.len();
-        asked.rows(rows)
+        let begun = Instant::now();
+        let out = asked.rows(rows);
+        spent.evaluations += rows.len() as u64;
+        spent.retried += out.count_retried() as u64;
+        spent.failed += out.failed_among(&(0..rows.len()).collect::<Vec<_>>()) as u64;
+        spent.stages += 1;
+        spent.in_model += begun.elapsed();
+        out
     };
     let mut checks = Vec::new();
     let mut check = |what, verdict| checks.push(Check { what, verdict });
@@ -144,9 +156,9 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let alone = begun.elapsed();
     let missing = (0..names.len()).find(|&c| first.value(0, c).is_none());
     let fault = missing.map(|c| format!("`{}`: {}", names[c], reason(&first, 0, c)));
-    check("the nominal dimensions have values", Verdict::of(fault));
+    check("the nominal dimensions have values", Finding::of(fault));
     if (0..names.len()).all(|c| first.value(0, c).is_none()) {
-        LATER.into_iter().for_each(|what| check(what, Verdict::NotChecked));
+        LATER.into_iter().for_each(|what| check(what, Finding::NotChecked));
         let unknown = |name: &String| Probed {
             name: name.clone(),
             nominal: None,
@@ -155,7 +167,8 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
             silent: Vec::new(),
         };
         let characteristics = names.iter().map(unknown).collect();
-        return Ok(Probe { adapter, evaluations, start, alone, together: alone, checks, characteristics });
+        let run = RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), ..spent };
+        return Ok(Probe { adapter, run, start, alone, together: alone, checks, characteristics });
     }
     let begun = Instant::now();
     let second = ask(std::slice::from_ref(&nominal));
@@ -167,8 +180,8 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let begun = Instant::now();
     let forward = ask(&scattered);
     let together = begun.elapsed() / SCATTERED as u32;
-    let back: Vec<Vec<f64>> = scattered.iter().rev().cloned().collect();
-    let backward = ask(&back);
+    let walks: Vec<Vec<f64>> = SHUFFLED.iter().flat_map(|&row| walk(&nominal, &scattered[row])).collect();
+    let walked = ask(&walks);
     let line: Vec<Vec<f64>> = (0..LINE).map(|index| asked.along(&nominal, CLOSE * (index as f64 - 4.0))).collect();
     let close = ask(&line);
     let noise: Vec<Option<f64>> = (0..names.len())
@@ -186,8 +199,9 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let stepped = ask(&steps);
 
     check(WITHIN, asked.within(&nominal, &[(&scattered, &forward), (&line, &close), (&steps, &stepped)]));
-    let turned: Vec<(usize, usize)> = (0..SCATTERED).map(|row| (row, SCATTERED - 1 - row)).collect();
-    check(ORDER, same(&turned, &forward, &backward, 10.0 * largest));
+    let ends: Vec<(usize, usize)> =
+        SHUFFLED.iter().enumerate().map(|(turn, &row)| (row, STEPS * turn + STEPS - 1)).collect();
+    check(ORDER, same(&ends, &forward, &walked, 10.0 * largest));
     check(AFTER, same(&[(0, 0)], &first, &after, 10.0 * largest));
     check(FAILING, same(&[(0, 0)], &first, &failing, 10.0 * largest));
 
@@ -220,12 +234,21 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     };
     let unknown = |c: usize| first.value(0, c).is_none() || (!steps.is_empty() && known(c).is_empty());
     let reacts = match (0..names.len()).find(mute) {
-        Some(c) => Verdict::Failed(format!("`{}` is the same at every point within one sigma", names[c])),
-        None if (0..names.len()).any(unknown) => Verdict::NotChecked,
-        None => Verdict::Passed,
+        Some(c) => Finding::Failed(format!("`{}` is the same at every point within one sigma", names[c])),
+        None if (0..names.len()).any(unknown) => Finding::NotChecked,
+        None => Finding::Passed,
     };
     check(REACTS, reacts);
-    Ok(Probe { adapter, evaluations, start, alone, together, checks, characteristics })
+    let run = RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), ..spent };
+    Ok(Probe { adapter, run, start, alone, together, checks, characteristics })
+}
+
+/// From one point to another one, both included.
+fn walk(from: &[f64], to: &[f64]) -> Vec<Vec<f64>> {
+    let last = STEPS - 1;
+    let part =
+        |step: usize, (&a, &b): (&f64, &f64)| if step == last { b } else { a + (b - a) * step as f64 / last as f64 };
+    (0..STEPS).map(|step| from.iter().zip(to).map(|pair| part(step, pair)).collect()).collect()
 }
 
 struct Asked<'a> {
@@ -262,7 +285,7 @@ impl Asked<'_> {
     }
 
     /// Whether all points within the tolerances have values, and which have none.
-    fn within(&self, nominal: &[f64], asked: &[(&Vec<Vec<f64>>, &Responses)]) -> Verdict {
+    fn within(&self, nominal: &[f64], asked: &[(&Vec<Vec<f64>>, &Responses)]) -> Finding {
         let outputs = self.problem.outputs().len();
         let mut failed: Vec<String> = Vec::new();
         let mut points = 0;
@@ -275,13 +298,13 @@ impl Asked<'_> {
             }
         }
         if failed.is_empty() {
-            return Verdict::Passed;
+            return Finding::Passed;
         }
         let shown = failed.iter().take(NAMED).cloned().collect::<Vec<_>>().join("; ");
         let more = failed.len().saturating_sub(NAMED);
         let more = if more > 0 { format!("; and {more} more") } else { String::new() };
         let fault = format!("{} of {points} points had no value: {shown}{more}", failed.len());
-        if failed.len() * MANY > points { Verdict::Failed(fault) } else { Verdict::Doubtful(fault) }
+        if failed.len() * MANY > points { Finding::Failed(fault) } else { Finding::Doubtful(fault) }
     }
 
     /// The dimensions of a point that are not nominal.
@@ -314,7 +337,7 @@ fn reason(out: &Responses, row: usize, c: usize) -> String {
 }
 
 /// Whether two answers to the same points are the same but for this much, by pairs of their rows.
-fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses, by: f64) -> Verdict {
+fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses, by: f64) -> Finding {
     let mut compared = false;
     for &(row, other) in rows {
         for (c, name) in names.iter().enumerate() {
@@ -328,10 +351,10 @@ fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses,
                 (Some(x), None) => format!("`{name}` was {x} and then had no value: {}", reason(b, other, c)),
                 (None, Some(y)) => format!("`{name}` had no value ({}) and then was {y}", reason(a, row, c)),
             };
-            return Verdict::Failed(fault);
+            return Finding::Failed(fault);
         }
     }
-    if compared { Verdict::Passed } else { Verdict::NotChecked }
+    if compared { Finding::Passed } else { Finding::NotChecked }
 }
 
 /// The noise in values at equal distances; None where their differences show none.

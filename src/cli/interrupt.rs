@@ -3,12 +3,12 @@
 //! SIGTERM and SIGHUP are heard as Ctrl-C is. Where no person watches a terminal, a scheduler kills after some 30 s whatever has not
 //! ended: the second and third step then follow by themselves.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::output::error;
+use crate::summary::StopReason;
 
 /// How long a run without a terminal waits for what is under way, and then for the report.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -35,6 +35,11 @@ fn hurry() {
     PRESSED.fetch_max(2, Ordering::SeqCst);
     std::thread::sleep(LAST);
     std::process::exit(130);
+}
+
+/// Why to stop, once the user said so.
+pub(super) fn reason() -> Option<StopReason> {
+    stopped().then_some(StopReason::Interrupted)
 }
 
 /// Whether to stop.

@@ -69,6 +69,10 @@ impl Warning {
                         "the interaction of {to} in `{characteristic}` could be evaluated at some of its corners only: \
                          it is less exact"
                     ),
+                    Loss::NotEvaluated { derivatives } => format!(
+                        "the run was stopped before {derivatives} derivatives of `{characteristic}` were evaluated: its results \
+                         leave them out, and no verdict follows; give it more time"
+                    ),
                 }
             }
             Self::DomainEdge { characteristic, dimension, failed, used } => format!(
@@ -114,8 +118,8 @@ impl Warning {
                 };
                 let times = if *times == 1 { "once".to_owned() } else { format!("{times} times") };
                 format!(
-                    "`{output}` at the nominal dimensions was {} at first and {} later ({times}): {cause}; {points} points were \
-                     evaluated again by a fresh process{}",
+                    "`{output}` is {} or {} at the same dimensions, depending on the points before ({times}): {cause}; {points} \
+                     points were evaluated again by a fresh process{}",
                     value(expected),
                     value(found),
                     if suspects.is_empty() { String::new() } else { format!(", among them {}", suspects.join("; ")) }

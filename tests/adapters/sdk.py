@@ -64,6 +64,19 @@ def a_slow_answer_does_not_wait_for_the_next():
         assert json.loads(model.process.stdout.readline()) == {"id": 2, "y": [2.0]}
 
 
+def imported_modules_are_part_of_the_version():
+    with tempfile.TemporaryDirectory() as folder:
+        path, helper = pathlib.Path(folder) / "model.py", pathlib.Path(folder) / "helper.py"
+        source = f"import sys\nsys.path[:0] = [{str(ROOT / 'adapters/python')!r}, '.']\nimport helper\n"
+        path.write_text(source + "from sensitol_adapter import adapter\n@adapter(version=3)\ndef y(a):\n    return helper.f(a)\ny.serve()\n")
+        versions = []
+        for content in ("f = abs\n", "f = abs \n", "f = abs\n"):
+            helper.write_text(content)
+            with client(["python3", path], folder, [None], {"a": 1.0}, ["y"]) as model:
+                versions.append(model.ready["version"])
+        assert versions[0] == versions[2] != versions[1] and versions[0].startswith("3; modules "), versions
+
+
 BEATING = f"""
 import sys, time
 sys.path.insert(0, {str(ROOT / "adapters/python")!r})
@@ -96,4 +109,4 @@ def a_heartbeat_beats_while_the_model_works():
 
 
 if __name__ == "__main__":
-    run([a_heartbeat_beats_while_the_model_works, setup_may_say_what_there_is, a_slow_answer_does_not_wait_for_the_next])
+    run([imported_modules_are_part_of_the_version, a_heartbeat_beats_while_the_model_works, setup_may_say_what_there_is, a_slow_answer_does_not_wait_for_the_next])

@@ -18,7 +18,7 @@ const LAYERS: &[&[&str]] = &[
     &["evaluation"],
     &["problem"],
     &["plan"],
-    &["surrogate"],
+    &["surrogate", "verdict"],
     &["capability"],
     &["moments"],
     &["sampling"],
@@ -27,9 +27,9 @@ const LAYERS: &[&[&str]] = &[
     &["warning"],
     &["correlation"],
     &["dimension", "characteristic"],
-    &["distribution", "fits"],
+    &["distribution", "fits", "requirement"],
     &["pearson"],
-    &["names", "elementary"],
+    &["names", "elementary", "summary"],
 ];
 
 fn layer(module: &str) -> usize {

@@ -2,6 +2,7 @@
 
 use sensitol::assembly::process::{Greeting, Process, Settings};
 use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run, Signature};
+use sensitol::probe::probe;
 use sensitol::{Dimension, Method, Problem, analyze};
 
 use super::support::child_in_c;
@@ -11,13 +12,19 @@ const SEEDS: usize = 40;
 const DIMENSIONS: usize = 4;
 
 fn process(mode: &str, seed: usize) -> Process {
+    with(mode, seed, true)
+}
+
+/// Without sentinels, which would hide what a probe looks for.
+fn probed(mode: &str, seed: usize) -> Process {
+    with(mode, seed, false)
+}
+
+fn with(mode: &str, seed: usize, sentinels: bool) -> Process {
     let names: Vec<String> = (0..DIMENSIONS).map(|d| format!("x{d}")).collect();
     let greeting = Greeting { nominal: vec![1.0; DIMENSIONS], ..Greeting::default() };
-    Process::new(
-        Signature::of_names(names, ["y"]),
-        greeting,
-        Settings::new([child_in_c(), mode.into(), seed.to_string()]),
-    )
+    let settings = Settings { sentinels, ..Settings::new([child_in_c(), mode.into(), seed.to_string()]) };
+    Process::new(Signature::of_names(names, ["y"]), greeting, settings)
 }
 
 /// What a method says of a model: sigma, and the codes of its warnings.
@@ -121,4 +128,18 @@ fn what_a_replay_costs() {
     assert_eq!(extra(20, None) - sentinels, 7 * 4);
     assert_eq!(extra(20, Some(3)) - sentinels, 3 * 4);
     assert_eq!(extra(400, None) - extra(400, Some(0)), (20 + 2) * 4);
+}
+
+/// `probe` fails what an analysis would have to mend, and nothing else.
+#[test]
+fn a_probe_fails_models_that_flip() {
+    for (mode, passes) in [("toggle", false), ("plain", true), ("smooth", true), ("jump", true)] {
+        for seed in 0..SEEDS {
+            let dimension = |d: usize| Dimension::normal(format!("x{d}"), 1.0, 0.3).unwrap();
+            let process = probed(mode, seed);
+            let problem = Problem::new((0..DIMENSIONS).map(dimension), process).unwrap();
+            let found = probe(&problem, &Run::to_the_end()).unwrap();
+            assert_eq!(found.passed(), passes, "{mode} {seed}: {:?}", found.checks);
+        }
+    }
 }

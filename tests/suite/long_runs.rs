@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use sensitol::StopReason;
 use sensitol::assembly::process::{Greeting, Process, ProcessFault, Settings};
 use sensitol::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Responses, Run, Signature};
 
@@ -112,7 +113,7 @@ fn a_stop_takes_points_back() {
     let finished = |rows: &[usize], _: &Responses| {
         answered.fetch_add(rows.len(), Ordering::Relaxed);
     };
-    let stop = || answered.load(Ordering::Relaxed) >= 10;
+    let stop = || (answered.load(Ordering::Relaxed) >= 10).then_some(StopReason::Requested);
     let out = at(&model, &a, &Run::to_the_end().telling(&finished).stopping_when(&stop));
     let expected = plain("3", &a);
     let known = (0..a.len()).filter(|&row| !out.is_open(row, 0)).count();

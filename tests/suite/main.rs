@@ -48,3 +48,4 @@ mod studies;
 mod support;
 mod sweep;
 mod tolerances;
+mod verdicts;

@@ -1,5 +1,6 @@
 """One function as a model: names from its signature, lines in, lines out."""
 
+import hashlib
 import inspect
 import json
 import logging
@@ -109,8 +110,12 @@ class Adapter:
             ready = {"ready": True, "name": self.name, "window": self.window}
             if self.gradients:
                 ready["gradients"] = True
-            if self.version is not None:
-                ready["version"] = str(self.version)
+            parts = [str(self.version)] if self.version is not None else []
+            modules = _own_modules()
+            if modules:
+                parts.append(f"modules {modules}")
+            if parts:
+                ready["version"] = "; ".join(parts)
             if self.isolated:
                 ready["isolated"] = True
             if self.heartbeat is not None:
@@ -124,6 +129,27 @@ class Adapter:
                     _write(answers, done)
         except (BrokenPipeError, KeyboardInterrupt):
             pass
+
+
+def _own_modules():
+    """A hash of the imported modules below the working folder, which is the study's: a changed one is another model. The script itself
+    is known to the engine. None where there are none."""
+    folder = os.path.realpath(os.getcwd()) + os.sep
+    own = os.path.dirname(os.path.realpath(__file__)) + os.sep
+    files = set()
+    for name, module in list(sys.modules.items()):
+        path = getattr(module, "__file__", None)
+        path = os.path.realpath(path) if path and name != "__main__" else ""
+        if path.startswith(folder) and not path.startswith(own) and "site-packages" not in path:
+            files.add(path)
+    digest = hashlib.sha256()
+    for path in sorted(files):
+        try:
+            with open(path, "rb") as file:
+                digest.update(os.path.relpath(path, folder).encode() + b"\0" + file.read() + b"\0")
+        except OSError:
+            digest.update(path.encode())
+    return digest.hexdigest()[:16] if files else None
 
 
 def _takes_one(function):

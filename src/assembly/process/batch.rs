@@ -24,9 +24,9 @@ pub(super) struct Batch<'a> {
     /// Rows that are not trusted any more and not yet told of as such.
     pub(super) withdrawn: Vec<usize>,
     pub(super) sent: usize,
-    /// Rows that were sent before, and how many sendings were not the first of their row.
-    tried: Vec<bool>,
-    pub(super) retried: u64,
+    /// Those of them that had been sent before.
+    pub(super) resent: usize,
+    ever: Vec<bool>,
 }
 
 impl<'a> Batch<'a> {
@@ -43,8 +43,8 @@ impl<'a> Batch<'a> {
             done: Vec::new(),
             withdrawn: Vec::new(),
             sent: 0,
-            tried: vec![false; points.rows()],
-            retried: 0,
+            resent: 0,
+            ever: vec![false; points.rows()],
         }
     }
 
@@ -53,16 +53,16 @@ impl<'a> Batch<'a> {
         self.waiting.len() + self.suspects.iter().map(Vec::len).sum::<usize>()
     }
 
-    /// Counts a sending of a row.
-    pub(super) fn sends(&mut self, row: usize) {
-        self.sent += 1;
-        self.retried += u64::from(std::mem::replace(&mut self.tried[row], true));
-    }
-
     /// Tries rows again of which one made a child crash, in two groups.
     pub(super) fn divide(&mut self, rows: &[usize]) {
         let (first, second) = rows.split_at(rows.len().div_ceil(2));
         self.suspects.extend([first, second].into_iter().filter(|half| !half.is_empty()).map(<[usize]>::to_vec));
+    }
+
+    /// Counts a row that is sent.
+    pub(super) fn sends(&mut self, row: usize) {
+        self.sent += 1;
+        self.resent += usize::from(std::mem::replace(&mut self.ever[row], true));
     }
 
     /// Whether a row is evaluated with nothing else under way in its child.

@@ -48,6 +48,8 @@ pub(super) struct Pool {
     pub(super) noise: Vec<f64>,
     /// Whether an answer was found to depend on the points before it.
     pub(super) flips: bool,
+    /// Whether it has another answer every time.
+    pub(super) hopeless: bool,
     /// Whether points go to one child, one by one in their order, without sentinels.
     pub(super) walking: bool,
 }
@@ -93,6 +95,7 @@ impl Pool {
             answers: Answers::default(),
             noise: Vec::new(),
             flips: false,
+            hopeless: false,
             walking: false,
         }
     }
@@ -146,7 +149,8 @@ impl Pool {
         }
         let work = batch.expect("a batch");
         work.out.spent(work.sent as i64 - (rows - work.left) as i64);
-        self.account.retried += work.retried;
+        self.account.retried += work.resent as u64;
+        work.out.retried(work.resent);
         // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
         for slot in &mut self.slots {
             if let State::Ready(worker) = &mut slot.state {

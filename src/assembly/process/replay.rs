@@ -101,34 +101,63 @@ impl Pool {
         if self.flips {
             chosen = (0..rows.len()).filter(|&row| all[row].iter().any(Option::is_some)).collect();
         }
+        if self.hopeless {
+            self.give_up(&chosen, &rows, &all, out);
+            return Some(chosen);
+        }
         if chosen.is_empty() {
             return Some(Vec::new());
         }
+        match self.replayed(&rows, &all, &chosen, out, run) {
+            // A stop came after a flip was found and before everything was confirmed.
+            None if self.flips => {
+                self.give_up(&(0..rows.len()).collect::<Vec<_>>(), &rows, &all, out);
+                Some((0..rows.len()).collect())
+            }
+            changed => changed,
+        }
+    }
+
+    /// Replays these rows, and where one differs all others.
+    fn replayed(
+        &mut self,
+        rows: &[Vec<f64>],
+        all: &[Values],
+        chosen: &[usize],
+        out: &mut Responses,
+        run: &Run<'_>,
+    ) -> Option<Vec<usize>> {
         let place = |rows_of: &[usize]| -> Vec<Vec<f64>> { rows_of.iter().map(|&row| rows[row].clone()).collect() };
-        let first = self.walk(&place(&chosen), Route::Straight, out, run)?;
-        let suspicious = self.differing(&chosen, &first, &all);
+        let first = self.walk(&place(chosen), Route::Straight, out, run)?;
+        let suspicious = self.differing(chosen, &first, all);
         // What a process does not get to in small steps is no sign of a flip.
         if !suspicious.iter().any(|(_, walked)| walked.is_some()) {
             return Some(Vec::new());
         }
         self.flips = true;
         let mut changed = Vec::new();
-        let unsettled = self.settle(&rows, &all, suspicious, out, run, &mut changed)?;
+        let unsettled = self.settle(rows, all, suspicious, out, run, &mut changed)?;
         let rest: Vec<usize> =
             (0..rows.len()).filter(|row| !chosen.contains(row) && all[*row].iter().any(Option::is_some)).collect();
         if unsettled >= HOPELESS && unsettled == changed.len() {
-            for &row in &rest {
-                let nothing = vec![None; all[row].len()];
-                self.replace(row, &rows[row], &all[row], &nothing, &nothing, out);
-                changed.push(row);
-            }
+            self.hopeless = true;
+            self.give_up(&rest, rows, all, out);
+            changed.extend(rest);
             return Some(changed);
         }
         // Every other point as well: an even number of flips hides.
         let more = self.walk(&place(&rest), Route::Straight, out, run)?;
-        let suspicious = self.differing(&rest, &more, &all);
-        self.settle(&rows, &all, suspicious, out, run, &mut changed)?;
+        let suspicious = self.differing(&rest, &more, all);
+        self.settle(rows, all, suspicious, out, run, &mut changed)?;
         Some(changed)
+    }
+
+    /// Takes away the answers to rows: the model has another one every time.
+    fn give_up(&mut self, of: &[usize], rows: &[Vec<f64>], all: &[Values], out: &mut Responses) {
+        for &row in of {
+            let nothing = vec![None; all[row].len()];
+            self.replace(row, &rows[row], &all[row], &nothing, &nothing, out);
+        }
     }
 
     /// The rows whose walk ended elsewhere than they were answered; None for a walk without an end.
@@ -283,7 +312,7 @@ impl Pool {
     /// Answers to points in this order, one at a time, by one child.
     fn one_by_one(&mut self, way: &[Vec<f64>], out: &mut Responses, run: &Run<'_>) -> Result<Vec<Values>, Walked> {
         let mut answers = Responses::open(way.len(), out.outputs());
-        let (stopped, abandoned) = (|| run.stopped(), || run.abandoned());
+        let (stopped, abandoned) = (|| run.stop_reason(), || run.abandoned());
         let quiet = Run::to_the_end().stopping_when(&stopped).abandoning_when(&abandoned);
         self.walking = true;
         self.evaluate(&Points::from_rows(way), &quiet, &mut answers);
