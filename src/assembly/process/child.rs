@@ -172,7 +172,7 @@ impl Guard {
         let mut command = std::process::Command::new("/bin/sh");
         // In a group of its own: Ctrl-C on a terminal reaches this process first.
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        command.args(["-c", "read -r line; kill -s KILL \"-$1\"", "sensitol-guard", &group.to_string()]);
+        command.args(["-c", "read -r line; kill -s KILL -- \"-$1\"", "sensitol-guard", &group.to_string()]);
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok().map(Self)
     }
 }
