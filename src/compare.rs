@@ -193,8 +193,7 @@ pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>
     let begun = Instant::now();
     let costly = problem.function().signature().costly;
     let samples = options.reference.unwrap_or(if costly { COSTLY_REFERENCE } else { REFERENCE });
-    let mut comparison =
-        Comparer { problem, options, run, ran: Vec::new(), not_run: Vec::new(), lost: RunSummary::default() };
+    let mut comparison = Comparer { problem, options, run, ran: Vec::new(), not_run: Vec::new(), lost: RunSummary::default() };
     // The cheap ones first: should time run out, the most is known.
     let adaptive = |procedure: &&&dyn Procedure| procedure.method() == Method::Auto;
     for procedure in method::ALL.iter().filter(|one| !adaptive(one)).chain(method::ALL.iter().filter(adaptive)) {

@@ -19,6 +19,7 @@ pub mod fits;
 #[cfg(feature = "journal")]
 pub mod journal;
 pub mod method;
+mod method_kind;
 pub mod models;
 pub mod moments;
 pub mod names;

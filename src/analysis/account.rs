@@ -1,7 +1,7 @@
 //! What `auto` found and bought, in words.
 
 use super::CharacteristicAnalysis;
-use crate::method::{Outcome, Rest};
+use crate::method::{ClimbEnd, Outcome};
 use crate::problem::Problem;
 
 /// Dimensions that are named.
@@ -64,7 +64,7 @@ pub(super) fn account(
     let possible = plan.possible_pairs();
     parts.push(match (climbed.probes, climbed.direct) {
         _ if possible == 0 => "no interactions possible".to_owned(),
-        (0, 0) if climbed.rest != Rest::Reached => format!("no interaction of {possible} examined"),
+        (0, 0) if climbed.rest != ClimbEnd::Reached => format!("no interaction of {possible} examined"),
         (0, 0) => format!("no interactions of {possible} needed"),
         (0, direct) => format!("{direct} of {possible} interactions examined one by one"),
         (probes, 0) => format!("interactions sought by {probes} probes of 2 points that move all dimensions"),
@@ -78,9 +78,9 @@ pub(super) fn account(
         None => parts.push(format!("{evaluations} evaluations where every second derivative takes {full}")),
     }
     match climbed.rest {
-        Rest::Budget => parts.push("the budget ended it".to_owned()),
-        Rest::Stopped => parts.push("interrupted".to_owned()),
-        Rest::Reached | Rest::Exhausted => {}
+        ClimbEnd::Budget => parts.push("the budget ended it".to_owned()),
+        ClimbEnd::Stopped => parts.push("interrupted".to_owned()),
+        ClimbEnd::Reached | ClimbEnd::Exhausted => {}
     }
     Some(parts.join("; "))
 }

@@ -177,14 +177,10 @@ impl CharacteristicAnalysis {
                 self.moments.map(|of| of.sigma()),
                 self.moments.and_then(|of| verdict::about(of.sigma(), sigma)).map(|[low, high]| [low.max(0.0), high]),
             ),
-            Requirement::Rss => {
-                part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
-            }
-            Requirement::WorstCase => part(
-                self.nominal
-                    .zip(self.worst_case)
-                    .and_then(|(nominal, [low, high])| taken(limits, nominal, [nominal - low, high - nominal])),
-            ),
+            Requirement::Rss => part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2]))),
+            Requirement::WorstCase => part(self.nominal.zip(self.worst_case).and_then(|(nominal, [low, high])| {
+                taken(limits, nominal, [nominal - low, high - nominal])
+            })),
         };
         Judged::of(requirement, value, interval).unless(self.unfinished)
     }

@@ -23,8 +23,8 @@ pub use tails::Tails;
 use std::time::Instant;
 
 use crate::assembly::Run;
-use crate::extremes::{Found, search};
-use crate::method::{Basis, DerivativeSource, Method, MethodError, Options, Outcome, Rest, climb_until};
+use crate::extremes::{SearchedExtremes, search};
+use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
 use crate::warning::Warning;
@@ -88,7 +88,7 @@ pub(crate) fn analyze_keeping(
     let begun = Instant::now();
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
-    let found = if options.extremes { search(problem, &outcome, left, run) } else { Found::default() };
+    let found = if options.extremes { search(problem, &outcome, left, run) } else { SearchedExtremes::default() };
     outcome.evaluated.doubts.extend(found.spent.doubts);
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
@@ -126,7 +126,7 @@ pub(crate) fn analyze_keeping(
 fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
     let spent = outcome.evaluated.summary();
     let rest = outcome.climbed.as_ref().map(|climbed| climbed.rest);
-    let budget = options.budget.filter(|_| rest == Some(Rest::Budget)).map(|_| StopReason::Budget);
+    let budget = options.budget.filter(|_| rest == Some(ClimbEnd::Budget)).map(|_| StopReason::Budget);
     RunSummary { stopped: spent.stopped.or(budget), ..spent }
 }
 

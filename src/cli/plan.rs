@@ -13,6 +13,7 @@ use crate::method::DerivativeSource;
 use crate::plan::{Known, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
+use crate::warning::Warning;
 
 /// What `plan --json` prints.
 #[derive(Debug, Serialize)]
@@ -89,10 +90,10 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     if let Some(file) = written {
         file.write(&points::table(&study.problem, &rows(&*plan, &first)))?;
         if stages > 1 {
-            look.warn("first-stage-only", "the points of later stages depend on the answers to those of the first: analyze --points ANSWERS.csv --write-missing NEXT.csv writes them");
+            look.warn(&Warning::FirstStageOnly);
         }
     }
-    study.warnings.iter().for_each(|warning| look.warn(warning.code(), &warning.message()));
+    study.warnings.iter().for_each(|warning| look.warn(warning));
     destination.write(&if asked.output.json { json(&report) } else { text(&report) })?;
     Ok(Exit::Done)
 }

@@ -11,10 +11,10 @@ use super::running::listener;
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
 use crate::method::MethodError;
-use crate::probe::{Finding, Probe, evaluations, probe};
+use crate::probe::{Probe, Finding, evaluations, probe};
 use crate::report::number::{plural, significant};
-use crate::study::{Externals, JournalPlace};
 use crate::summary::RunSummary;
+use crate::study::{Externals, JournalPlace};
 
 /// What `probe --json` prints.
 #[derive(Debug, Serialize)]

@@ -14,6 +14,7 @@ use super::interrupt;
 use super::output::{Destination, Look, error, json};
 use crate::report::{Report, Stack, stack_csv_of_studies};
 use crate::study::Study;
+use crate::warning::{Counted, StopCause, Warning};
 
 /// Tells what is wrong with one study, and how it ended. What ends all is that nothing can be printed any more.
 pub(super) fn outcome(study: &str, result: Result<Exit, Failure>) -> Result<Exit, Failure> {
@@ -67,7 +68,8 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
             }
         };
         if interrupt::stopped() {
-            look.of(name).warn("stopped", "interrupted before it was analysed");
+            let (cause, counted) = (StopCause::Interrupted, Counted::Evaluations);
+            look.of(name).warn(&Warning::Stopped { cause, done: 0, planned: None, counted });
             printer.failed(name, "interrupted before it was analysed".to_owned());
             exit = Exit::Interrupted;
             continue;

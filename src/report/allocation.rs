@@ -277,8 +277,10 @@ impl AllocationReport {
         let mut warnings: Vec<WarningReport> =
             about.warnings.iter().chain(&found.warnings).map(WarningReport::of).collect();
         let fits = table.iter().flat_map(|table| &table.replaced_fits);
-        warnings
-            .extend(fits.map(|dimension| WarningReport::of(&Warning::FitReplaced { dimension: dimension.clone() })));
+        let dimensions: Vec<String> = fits.cloned().collect();
+        if !dimensions.is_empty() {
+            warnings.push(WarningReport::of(&Warning::FitReplaced { dimensions }));
+        }
         warnings.extend(allocation.warnings.iter().map(WarningReport::of));
         Self {
             head: Head::of("allocate", &about),

@@ -80,7 +80,7 @@ use crate::method::{Basis, DerivativeSource};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
-use crate::warning::Warning;
+use crate::warning::{Advice, Warning};
 
 /// The version of the JSON report's shape.
 pub const SCHEMA: u32 = 2;
@@ -360,8 +360,15 @@ pub struct WarningReport {
     pub characteristic: Option<String>,
     /// The dimension concerned.
     pub dimension: Option<String>,
-    /// Cause, consequence, and what to try.
+    /// Cause and consequence.
     pub message: String,
+    /// The fields of the warning.
+    pub data: serde_json::Map<String, serde_json::Value>,
+    /// What to do, the most promising first.
+    pub advice: Vec<Advice>,
+    /// Of a sweep, the values of the parameter at which it is so.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<f64>,
 }
 
 /// What a report says of the study beside the analysis.
@@ -531,12 +538,15 @@ impl WorstCaseReport {
 }
 
 impl WarningReport {
-    fn of(warning: &Warning) -> Self {
+    pub(crate) fn of(warning: &Warning) -> Self {
         Self {
             code: warning.code(),
             characteristic: warning.characteristic().map(str::to_owned),
             dimension: warning.dimension().map(str::to_owned),
             message: warning.message(),
+            data: warning.data(),
+            advice: warning.advice(),
+            at: Vec::new(),
         }
     }
 }

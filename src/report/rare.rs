@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::{About, CorrelationReport, DimensionReport, Head, RequirementReport, WarningReport, correlation};
 use crate::problem::Problem;
-use crate::rare::{Beyond, RareCharacteristic, RareEvents};
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
+use crate::rare::{Beyond, RareCharacteristic, RareEvents};
 
 /// The report of rare events, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -5,10 +5,10 @@ use serde::Serialize;
 use super::distribution::{NAMES, OptionalQuantiles};
 use super::{About, CorrelationReport, DimensionReport, Head, RequirementReport, WarningReport, correlation};
 use crate::problem::Problem;
-use crate::sampling::{Estimate, Sampler};
-use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation};
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
+use crate::sampling::{Estimate, Sampler};
+use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation};
 
 /// The report of a simulation, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -141,8 +141,8 @@ fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport>
     let of_values = kinds.into_values().map(|(warning, at)| {
         let share = if at.len() == all { "every value".to_owned() } else { format!("{} of {all} values", at.len()) };
         let message =
-            format!("at {share}, first at {parameter} = {}: {}", super::number::plain(at[0]), warning.message);
-        WarningReport { message, ..warning }
+            format!("At {share}, first at {parameter} = {}: {}", super::number::plain(at[0]), warning.message);
+        WarningReport { message, at, ..warning }
     });
     about.warnings.iter().map(WarningReport::of).chain(of_values).collect()
 }
@@ -173,8 +173,9 @@ impl SweptPointReport {
             ppm_above: capability.and_then(|capability| capability.above).map(|share| 1e6 * share),
             met: analysis.and_then(CharacteristicAnalysis::met),
             verdict: analysis.and_then(CharacteristicAnalysis::verdict),
-            requirements: analysis
-                .map_or(Vec::new(), |one| one.requirements().iter().map(RequirementReport::of).collect()),
+            requirements: analysis.map_or(Vec::new(), |one| {
+                one.requirements().iter().map(RequirementReport::of).collect()
+            }),
         }
     }
 

@@ -44,7 +44,7 @@ impl Said {
     }
 
     fn warns(&self) -> bool {
-        ["branch-flip", "history"].iter().any(|code| self.codes.contains(code))
+        ["branch-flip", "not-repeatable"].iter().any(|code| self.codes.contains(code))
     }
 
     /// Whether sigma is that of the right assembly: the same arithmetic at the same points.

@@ -10,7 +10,7 @@ use sensitol::{Dimension, Method, Options, Problem, analyze};
 use super::support::{data, relative};
 
 fn model(name: &str) -> &'static Model {
-    models::by_name(name).unwrap()
+    name.parse().unwrap()
 }
 
 fn nominal(model: &Model) -> Vec<f64> {

@@ -109,11 +109,7 @@ fn a_stop_leaves_what_is_done() {
     let stop = || (asked.fetch_add(1, Ordering::Relaxed) > 0).then_some(StopReason::TimeLimit);
     let run = Run::to_the_end().stopping_when(&stop);
     let swept = sweep_within(&problem, "a", &[1.0, 2.0], &Method::SecondOrder.into(), &run).unwrap();
-    assert!(
-        swept.run.stopped == Some(StopReason::TimeLimit)
-            && swept.analyses.iter().all(Option::is_none)
-            && swept.run.evaluations == 0
-    );
+    assert!(swept.run.stopped == Some(StopReason::TimeLimit) && swept.analyses.iter().all(Option::is_none) && swept.run.evaluations == 0);
 }
 
 #[test]

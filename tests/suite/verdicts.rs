@@ -92,11 +92,11 @@ fn what_was_not_evaluated_is_no_failure() {
     assert!(one.requirements().len() == 2 && one.requirements().iter().all(|of| of.verdict == Verdict::Inconclusive));
     let lost = |warning: &&Warning| matches!(warning, Warning::LostDerivative { .. });
     let lost: Vec<&Warning> = cut.warnings.iter().filter(lost).collect();
-    let unevaluated =
-        |warning: &&Warning| matches!(warning, Warning::LostDerivative { loss: Loss::NotEvaluated { .. }, .. });
+    let unevaluated = |warning: &&Warning| {
+        matches!(warning, Warning::LostDerivative { loss: Loss::NotEvaluated { .. }, .. })
+    };
     assert!(!lost.is_empty() && lost.iter().all(unevaluated), "{lost:?}");
-    let missing =
-        |pair: &sensitol::analysis::Interaction| pair.missing == Some(sensitol::analysis::Missing::NotEvaluated);
+    let missing = |pair: &sensitol::analysis::Interaction| pair.missing == Some(sensitol::analysis::Missing::NotEvaluated);
     assert!(one.interactions.iter().all(missing), "{:?}", one.interactions);
 
     // A sample that was stopped has estimates, and no verdict.

@@ -97,41 +97,52 @@ impl Answers {
     /// How suspicious every row is; 0 where nothing can be told.
     fn scores(&self, points: &[Vec<f64>], values: &[Vec<Option<f64>>]) -> Vec<f64> {
         let mut scores = vec![0.0f64; points.len()];
-        let Some(centre) = &self.centre else { return scores };
-        let outputs = values.first().map_or(0, Vec::len);
-        for output in 0..outputs {
-            let Some(f0) = self.value(centre, output) else { continue };
-            let axes = self.axes(centre, output, f0);
-            let mut effects: Vec<f64> = axes.values().map(|axis| axis.slope.max(axis.curvature)).collect();
-            effects.sort_by(f64::total_cmp);
-            let Some(&median) = effects.get(effects.len() / 2) else { continue };
-            for (row, point) in points.iter().enumerate() {
-                let Some(value) = values[row][output] else { continue };
-                let score = match moved(centre, point)[..] {
-                    [d] => axes.get(&d).map_or(0.0, |axis| {
-                        let curved = axis.curvature / (axis.slope + FLOOR * median);
-                        curved.max(axis.slope.max(axis.curvature) / (5.0 * median))
-                    }),
-                    [i, j] => {
-                        let alone = |d: usize| {
-                            let mut at = centre.clone();
-                            at[d] = point[d];
-                            self.value(&at, output)
-                        };
-                        let slope = |d: usize| axes.get(&d).map_or(0.0, |axis| axis.slope);
-                        alone(i).zip(alone(j)).map_or(0.0, |(fi, fj)| {
-                            (value - fi - fj + f0).abs() / (0.5 * (slope(i) + slope(j)) + FLOOR * median)
-                        })
-                    }
-                    _ => 0.0,
-                };
-                // Where nothing varies there is 0/0.
-                if score > scores[row] {
-                    scores[row] = score;
-                }
-            }
+        if let Some(centre) = &self.centre {
+            (0..values.first().map_or(0, Vec::len))
+                .for_each(|output| self.score(centre, output, points, values, &mut scores));
         }
         scores
+    }
+
+    /// Raises the scores to what one output says.
+    fn score(
+        &self,
+        centre: &[f64],
+        output: usize,
+        points: &[Vec<f64>],
+        values: &[Vec<Option<f64>>],
+        scores: &mut [f64],
+    ) {
+        let Some(f0) = self.value(centre, output) else { return };
+        let axes = self.axes(centre, output, f0);
+        let mut effects: Vec<f64> = axes.values().map(|axis| axis.slope.max(axis.curvature)).collect();
+        effects.sort_by(f64::total_cmp);
+        let Some(&median) = effects.get(effects.len() / 2) else { return };
+        let slope = |d: usize| axes.get(&d).map_or(0.0, |axis| axis.slope);
+        for (row, point) in points.iter().enumerate() {
+            let Some(value) = values[row][output] else { continue };
+            let score = match moved(centre, point)[..] {
+                [d] => axes.get(&d).map_or(0.0, |axis| {
+                    let curved = axis.curvature / (axis.slope + FLOOR * median);
+                    curved.max(axis.slope.max(axis.curvature) / (5.0 * median))
+                }),
+                [i, j] => {
+                    let alone = |d: usize| {
+                        let mut at = centre.to_vec();
+                        at[d] = point[d];
+                        self.value(&at, output)
+                    };
+                    alone(i).zip(alone(j)).map_or(0.0, |(fi, fj)| {
+                        (value - fi - fj + f0).abs() / (0.5 * (slope(i) + slope(j)) + FLOOR * median)
+                    })
+                }
+                _ => 0.0,
+            };
+            // Where nothing varies there is 0/0.
+            if score > scores[row] {
+                scores[row] = score;
+            }
+        }
     }
 
     /// Slope and curvature along every axis that has answers on both sides: of the pair of points nearest to the centre.

@@ -7,6 +7,7 @@ use super::super::number::{UNKNOWN, beside, percent, plain, significant, unsigne
 use super::super::text::{band, derivative, rounded};
 use super::super::{CharacteristicReport, Report, Stack, StackNote, WarningReport};
 use super::chart::{Bins, Scale, Span, Spread, quantiles};
+use super::warned::Warned;
 use super::what_if::WhatIf;
 use super::{Fact, fact, json, provenance, render};
 use crate::capability::Law;
@@ -60,7 +61,7 @@ struct One<'r> {
     stack: Option<Stacked>,
     error: Vec<[String; 2]>,
     basis: Option<&'r str>,
-    warnings: Vec<&'r WarningReport>,
+    warnings: Vec<Warned<'r>>,
 }
 
 /// A contribution.
@@ -238,7 +239,7 @@ fn characteristic<'r>(report: &'r Report, one: &'r CharacteristicReport, stack: 
         stack: stacked(stack),
         error: errors(one),
         basis: one.error_estimate.as_ref().map(|estimate| estimate.basis.as_str()),
-        warnings: report.warnings.iter().filter(|warning| warning.characteristic.as_ref() == Some(&one.name)).collect(),
+        warnings: Warned::about(&report.warnings, &one.name),
     }
 }
 
