@@ -38,10 +38,10 @@ mod station;
 mod steps;
 mod task;
 
+pub use crate::requirement::{Requirement, RequirementError};
 pub use cost::{CostError, Curve, CurveKind, Offer, Priced};
 pub use front::FrontPoint;
 pub use joint::JointYield;
-pub use crate::requirement::{Requirement, RequirementError};
 pub use result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, ShadowPrice, Status};
 pub use run::{allocate, allocate_within};
 pub use task::{AllocateError, AllocationOptions, AllocationTask};

@@ -122,6 +122,7 @@ pub struct Interaction {
 
 /// Why a derivative is missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Missing {
@@ -177,10 +178,14 @@ impl CharacteristicAnalysis {
                 self.moments.map(|of| of.sigma()),
                 self.moments.and_then(|of| verdict::about(of.sigma(), sigma)).map(|[low, high]| [low.max(0.0), high]),
             ),
-            Requirement::Rss => part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2]))),
-            Requirement::WorstCase => part(self.nominal.zip(self.worst_case).and_then(|(nominal, [low, high])| {
-                taken(limits, nominal, [nominal - low, high - nominal])
-            })),
+            Requirement::Rss => {
+                part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
+            }
+            Requirement::WorstCase => part(
+                self.nominal
+                    .zip(self.worst_case)
+                    .and_then(|(nominal, [low, high])| taken(limits, nominal, [nominal - low, high - nominal])),
+            ),
         };
         Judged::of(requirement, value, interval).unless(self.unfinished)
     }

@@ -14,6 +14,7 @@ mod tails;
 mod trust;
 mod warnings;
 
+pub use account::Account;
 pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
 pub use fallback::SampledModel;
@@ -40,8 +41,8 @@ pub struct Analysis {
     pub run: RunSummary,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<CharacteristicAnalysis>,
-    /// What `auto` found and bought, in words; None for any other method.
-    pub account: Option<String>,
+    /// What `auto` found, and what its points went to; None for any other method.
+    pub account: Option<Account>,
     /// What the moments rest on.
     pub basis: Basis,
     /// What the moments follow from.
@@ -102,7 +103,7 @@ pub(crate) fn analyze_keeping(
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics);
-    let account = account::account(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
+    let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
     let seed = options.seed.unwrap_or(Options::SEED);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
     let analysis = Analysis {

@@ -48,7 +48,11 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         });
     let about = clock.about(&study);
     let report = AllocationReport::of(&study.problem, &allocation, table.as_ref(), about);
-    let printed = if asked.output.json { json(&report) } else { allocation_text(&report, look.style(&asked.output)) };
+    let printed = match asked.output.json {
+        true if look.verbose => json(&report),
+        true => json(&report.clone().shortened()),
+        false => allocation_text(&report, look.style(&asked.output)),
+    };
     let mut result = destination.write(&printed);
     result = result.and(folder.map_or(Ok(()), |folder| folder.write(&allocation_csv(&report))));
     result = result.and(chart.map_or(Ok(()), |chart| chart.write(&allocation_svg(&report))));

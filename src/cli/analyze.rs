@@ -74,7 +74,8 @@ impl Beside {
 
 pub(super) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> String {
     match asked.stack {
-        None if asked.output.json => json(report),
+        None if asked.output.json && look.verbose => json(report),
+        None if asked.output.json => json(&report.clone().shortened()),
         None => text(report, look.style(&asked.output)),
         Some(StackArg::Text) => stack_text(&report.stacks(), look.style(&asked.output)),
         Some(StackArg::Csv) => stack_csv(&report.stacks()),

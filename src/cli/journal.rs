@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::io::IsTerminal;
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::args::{JournalArgs, JournalCommand, OutputArgs};
@@ -13,8 +14,9 @@ use super::output::{Destination, Look, json};
 use crate::journal::{KnownModel, Store, StoredAnswer};
 
 /// What `journal show --json` prints of one model.
-#[derive(Debug, Serialize)]
-struct ModelReport {
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "JournalReport")]
+pub(super) struct ModelReport {
     id: i64,
     since: String,
     points: usize,

@@ -1,5 +1,6 @@
 //! `sensitol models`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::args::ModelsArgs;
@@ -9,8 +10,8 @@ use crate::models::{ALL, Model};
 use crate::report::number::plain;
 
 /// What `models --json` prints of one model.
-#[derive(Debug, Serialize)]
-struct ModelReport {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct ModelReport {
     name: &'static str,
     title: &'static str,
     source: &'static str,
@@ -18,7 +19,7 @@ struct ModelReport {
     outputs: Vec<OutputReport>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct InputReport {
     name: &'static str,
     unit: &'static str,
@@ -26,7 +27,7 @@ struct InputReport {
     about: &'static str,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct OutputReport {
     name: &'static str,
     unit: &'static str,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::args::PlanArgs;
@@ -16,8 +17,8 @@ use crate::study::Externals;
 use crate::warning::Warning;
 
 /// What `plan --json` prints.
-#[derive(Debug, Serialize)]
-struct PlanReport {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct PlanReport {
     schema: u32,
     command: &'static str,
     method: &'static str,
@@ -34,21 +35,21 @@ struct PlanReport {
 }
 
 /// One batch; what a later one asks depends on the answers to those before.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct StageReport {
     evaluations: usize,
     known_beforehand: bool,
     purposes: Vec<PurposeReport>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct PurposeReport {
     points: usize,
     purpose: &'static str,
 }
 
 /// Where one dimension is evaluated.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct AxisReport {
     name: String,
     unit: Option<String>,

@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::analyze::{Beside, analyzed, printed, read};
@@ -151,16 +152,16 @@ fn folder_of_pages(path: &Path) -> Result<(), Failure> {
 }
 
 /// A study in the array of reports.
-#[derive(Serialize)]
-struct Entry {
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Entry {
     study: String,
     #[serde(flatten)]
     outcome: Outcome,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 #[serde(untagged)]
-enum Outcome {
+pub(super) enum Outcome {
     Report(Box<Report>),
     Failed { error: String },
 }
@@ -189,7 +190,8 @@ impl<'a> Printer<'a> {
         let first = self.shown == 0;
         self.shown += 1;
         if self.asked.output.json {
-            let outcome = Outcome::Report(Box::new(report.clone()));
+            let report = if self.look.verbose { report.clone() } else { report.clone().shortened() };
+            let outcome = Outcome::Report(Box::new(report));
             self.entries.push(Entry { study: name.to_owned(), outcome });
             return Ok(());
         }

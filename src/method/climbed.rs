@@ -4,7 +4,9 @@ use super::Accuracies;
 use super::check::SurrogateCheck;
 
 /// How a climb ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum ClimbEnd {
     /// Every characteristic is known as well as it was wanted, by the estimate.
     Reached,

@@ -3,6 +3,8 @@
 //! Every source changes the surrogate as what it stands for might, and the change of the moments is its part in the estimate; parts
 //! of different sources add. What nothing is known of makes the estimate None.
 
+use serde::Serialize;
+
 use super::hidden::{hidden, ratio};
 use super::{Basis, Climbed, Order, Outcome, SurrogateCheck};
 use crate::assembly::Directions;
@@ -36,7 +38,9 @@ pub struct ErrorEstimate {
 }
 
 /// What an estimate rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ErrorSource {
     /// Model against surrogate at points of the dimensions' distribution.

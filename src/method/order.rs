@@ -10,7 +10,9 @@ pub enum Order {
 }
 
 /// What the moments rest on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum Basis {
     /// A surrogate of exact derivatives.
     Exact,

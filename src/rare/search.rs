@@ -6,8 +6,8 @@ use super::model::{Answers, Model};
 use super::place::{Place, dot, unit};
 use super::space::Columns;
 use super::target::Target;
-use super::{Beyond, DesignPoint, RareCharacteristic, correct};
 use super::within::within;
+use super::{Beyond, DesignPoint, RareCharacteristic, correct};
 use crate::characteristic::Characteristic;
 use crate::sampling::Estimate;
 

@@ -73,9 +73,10 @@ fn significant_percent(p: &str) -> String {
 }
 
 fn limits(page: &mut Page, one: &CharacteristicReport) {
-    let target = one.target_yield.zip(one.verdict).map_or(String::new(), |(target, verdict)| {
-        format!(", target {}: {}", share(1.0 - target), loud(verdict))
-    });
+    let target = one
+        .target_yield
+        .zip(one.verdict)
+        .map_or(String::new(), |(target, verdict)| format!(", target {}: {}", share(1.0 - target), loud(verdict)));
     let (below, above) = (one.ppm_below, one.ppm_above);
     page.line(&format!("  yield {}{}{target}", rejected(below, above), outside(below, above)));
     let index = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {value:.3}"));

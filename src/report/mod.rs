@@ -8,6 +8,8 @@ mod compare;
 mod compare_csv;
 mod compare_svg;
 mod compare_text;
+#[cfg(test)]
+mod complete;
 mod csv;
 mod distribution;
 mod estimate;
@@ -22,8 +24,11 @@ mod page;
 mod rare;
 mod rare_csv;
 mod rare_text;
+mod remainder;
 mod requirement;
 mod sampling;
+#[cfg(feature = "cli")]
+mod schema;
 mod simulation;
 mod simulation_csv;
 mod simulation_text;
@@ -58,6 +63,7 @@ pub use page::{Detail, Style};
 pub use rare::{BeyondReport, DesignPointReport, RareCharacteristicReport, RareReport};
 pub use rare_csv::rare_csv;
 pub use rare_text::rare_text;
+pub use remainder::RemainderReport;
 pub use requirement::RequirementReport;
 pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
@@ -72,7 +78,7 @@ pub use text::text;
 
 use serde::Serialize;
 
-use crate::analysis::{Analysis, CharacteristicAnalysis, Missing};
+use crate::analysis::{Account, Analysis, CharacteristicAnalysis, Missing, Tails};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
 use crate::extremes::{Extreme, Extremes};
@@ -87,6 +93,7 @@ pub const SCHEMA: u32 = 2;
 
 /// The report of an analysis, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Report {
     /// What every report begins with.
     #[serde(flatten)]
@@ -95,12 +102,11 @@ pub struct Report {
     pub method: &'static str,
     /// Dimensions that vary and matter, N.
     pub varying: usize,
-    /// What `auto` found and bought, in words; null for any other method.
-    pub account: Option<String>,
+    /// What `auto` found, and what its points went to; null for any other method.
+    pub account: Option<Account>,
     /// Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on none.
     pub derivatives: Option<&'static str>,
-    /// What the moments rest on, to be printed.
-    #[serde(skip)]
+    /// What the moments rest on.
     pub basis: Basis,
     /// What it came to in points and time, and why it ended early.
     #[serde(flatten)]
@@ -117,6 +123,7 @@ pub struct Report {
 
 /// One dimension as the analysis took it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct DimensionReport {
     /// Its name.
     pub name: String,
@@ -138,6 +145,7 @@ pub struct DimensionReport {
 
 /// Two dimensions that vary together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CorrelationReport {
     /// The two.
     pub between: [String; 2],
@@ -147,6 +155,7 @@ pub struct CorrelationReport {
 
 /// Standard errors of moments that were sampled from the surrogate of correlated inputs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SurrogateSamplingReport {
     /// Points, none of them evaluated by the model.
     pub samples: usize,
@@ -160,6 +169,7 @@ pub struct SurrogateSamplingReport {
 
 /// How well a surface of least squares fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct LeastSquaresReport {
     /// What it misses of the values, in the characteristic's unit; null without degrees of freedom.
     pub residual_standard_error: Option<f64>,
@@ -175,6 +185,7 @@ pub struct LeastSquaresReport {
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CharacteristicReport {
     /// Its name.
     pub name: String,
@@ -200,6 +211,14 @@ pub struct CharacteristicReport {
     pub model_sampling: Option<ModelSamplingReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
+    /// What law and surface reject; null without limits, or where the surface is plainly normal.
+    pub tails: Option<Tails>,
+    /// Whether planned points of it were not evaluated because the run was stopped.
+    pub unfinished: bool,
+    /// Evaluated points at which it has no value.
+    pub without_value: usize,
+    /// Whether it can depend on nothing that varies.
+    pub constant: bool,
     /// Intervals that no assembly leaves.
     pub worst_case: WorstCaseReport,
     /// The value of a linear model with every dimension in the middle of its band.
@@ -214,6 +233,8 @@ pub struct CharacteristicReport {
     pub sensitivities: Vec<SensitivityReport>,
     /// The interactions examined, strongest first.
     pub interactions: Vec<InteractionReport>,
+    /// What the interactions make that are not listed one by one; null where all are.
+    pub interactions_remainder: Option<RemainderReport>,
     /// How many interactions there can be.
     pub possible_interactions: usize,
     /// Share of the variance that nothing above accounts for.
@@ -260,6 +281,7 @@ pub struct CharacteristicReport {
 
 /// Intervals that no assembly leaves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WorstCaseReport {
     /// Of the linear model.
     pub linear: Option<[f64; 2]>,
@@ -280,6 +302,7 @@ pub struct WorstCaseReport {
 
 /// Where the extremes are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ExtremesAtReport {
     /// The dimensions at the least value.
     pub lower: PointReport,
@@ -299,6 +322,7 @@ impl Serialize for PointReport {
 
 /// What a normal distribution with the same mean and sigma would make of the limits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NormalFitReport {
     /// The share of assemblies within them.
     #[serde(rename = "yield")]
@@ -311,6 +335,7 @@ pub struct NormalFitReport {
 
 /// What one dimension does.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SensitivityReport {
     /// The dimension.
     pub dimension: String,
@@ -334,6 +359,7 @@ pub struct SensitivityReport {
 
 /// What two dimensions do together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct InteractionReport {
     /// The two.
     pub dimensions: [String; 2],
@@ -353,6 +379,7 @@ pub struct InteractionReport {
 
 /// A warning.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WarningReport {
     /// What kind.
     pub code: &'static str,
@@ -464,6 +491,10 @@ impl CharacteristicReport {
             error_estimate: analysis.error_estimate.as_ref().map(ErrorEstimateReport::of),
             model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
+            tails: analysis.tails,
+            unfinished: analysis.unfinished,
+            without_value: analysis.without_value,
+            constant: analysis.constant,
             worst_case: WorstCaseReport::of(analysis),
             middle: analysis.middle,
             rss: analysis.rss,
@@ -493,6 +524,7 @@ impl CharacteristicReport {
                     mean_shift: interaction.mean_shift,
                 })
                 .collect(),
+            interactions_remainder: None,
             possible_interactions: analysis.possible_interactions,
             left_out_share: analysis.left_out_share,
             distribution: law.as_ref().map(DistributionReport::of),

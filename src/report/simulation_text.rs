@@ -18,7 +18,13 @@ pub fn simulation_text(report: &SimulationReport, style: Style) -> String {
     if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
-    page.line(&format!("{}: {} points{}{}", report.method, report.samples, seed(&report.run), head::beside(&report.run)));
+    page.line(&format!(
+        "{}: {} points{}{}",
+        report.method,
+        report.samples,
+        seed(&report.run),
+        head::beside(&report.run)
+    ));
     for one in &report.characteristics {
         page.line("");
         characteristic(&mut page, one);

@@ -15,6 +15,7 @@ use crate::verdict::Verdict;
 
 /// The report of a sweep, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SweepReport {
     /// What every report begins with.
     #[serde(flatten)]
@@ -34,6 +35,7 @@ pub struct SweepReport {
 
 /// The parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ParameterReport {
     /// Its name.
     pub name: String,
@@ -47,6 +49,7 @@ pub struct ParameterReport {
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SweptReport {
     /// Its name.
     pub name: String,
@@ -62,6 +65,7 @@ pub struct SweptReport {
 
 /// One characteristic at one value of the parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SweptPointReport {
     /// The parameter.
     pub at: f64,
@@ -173,9 +177,8 @@ impl SweptPointReport {
             ppm_above: capability.and_then(|capability| capability.above).map(|share| 1e6 * share),
             met: analysis.and_then(CharacteristicAnalysis::met),
             verdict: analysis.and_then(CharacteristicAnalysis::verdict),
-            requirements: analysis.map_or(Vec::new(), |one| {
-                one.requirements().iter().map(RequirementReport::of).collect()
-            }),
+            requirements: analysis
+                .map_or(Vec::new(), |one| one.requirements().iter().map(RequirementReport::of).collect()),
         }
     }
 

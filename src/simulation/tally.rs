@@ -263,7 +263,8 @@ impl<'a> Tally<'a> {
         stopped: Option<StopReason>,
         reached: Option<bool>,
     ) -> Simulation {
-        let of = |(c, count)| SimulatedCharacteristic { unfinished: stopped.is_some(), ..self.characteristic(c, count) };
+        let of =
+            |(c, count)| SimulatedCharacteristic { unfinished: stopped.is_some(), ..self.characteristic(c, count) };
         let characteristics: Vec<SimulatedCharacteristic> = self.counts.iter().enumerate().map(of).collect();
         let surrogate = self.control.map(|control| &control.outcome.evaluated);
         let spent = surrogate.map(|evaluated| evaluated.summary()).unwrap_or_default();

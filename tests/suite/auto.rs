@@ -419,10 +419,13 @@ fn the_account_says_what_ended_it() {
     let account = |options: &Options, stop: bool| {
         let stop = || stop.then_some(StopReason::Requested);
         let run = Run::to_the_end().stopping_when(&stop);
-        analyze_within(&problem(), options, &run).unwrap().account.unwrap()
+        analyze_within(&problem(), options, &run).unwrap().account.unwrap().to_string()
     };
     let stopped = account(&Method::Auto.into(), true);
-    assert!(stopped.ends_with("; interrupted") && stopped.contains("no interaction of 6 examined"), "{stopped}");
+    assert!(
+        stopped.ends_with("; stopped before it was done") && stopped.contains("no interaction of 6 examined"),
+        "{stopped}"
+    );
     assert!(stopped.contains("0 points check") && !stopped.contains("budget"), "{stopped}");
     let short = account(&Options { budget: Some(26), accuracy: Some(1e-6), ..Method::Auto.into() }, false);
     assert!(short.ends_with("the budget ended it") && !short.contains("needed"), "{short}");

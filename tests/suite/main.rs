@@ -39,6 +39,7 @@ mod published;
 mod quadratures;
 mod rare;
 mod reference;
+mod reports;
 mod response_surface;
 mod sampled_cli;
 mod sampling;

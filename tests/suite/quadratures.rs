@@ -398,7 +398,7 @@ fn counts_are_stated() {
         let found = analyze(&problem, options).unwrap();
         assert_eq!(found.run.evaluations, asked.distinct() as u64);
         assert_eq!((found.run.evaluations, found.run.stages), (fits.evaluations as u64, fits.stages as u64));
-        found.run.evaluations
+        found.run.evaluations as usize
     };
     let skewed = |n: usize| -> Vec<Dimension> {
         (0..n).map(|j| of(&format!("x{j}"), Exponential::new(0.0, 1.0).unwrap())).collect()

@@ -132,7 +132,10 @@ fn the_number_of_threads_changes_nothing() {
 fn every_point_is_counted() {
     let (problem, _) = lognormal();
     let odd = run(&problem, 12_345, Sampler::Random, 1);
-    assert_eq!((odd.samples, odd.run.evaluations, odd.run.failed, odd.run.stopped, odd.reached), (12_345, 12_345, 0, None, None));
+    assert_eq!(
+        (odd.samples, odd.run.evaluations, odd.run.failed, odd.run.stopped, odd.reached),
+        (12_345, 12_345, 0, None, None)
+    );
     let histogram = odd.characteristics[0].histogram.as_ref().unwrap();
     assert_eq!(histogram.counts.iter().sum::<u64>(), 12_345);
     // 16 replicates of a power of two, at least as many as asked.

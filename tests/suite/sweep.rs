@@ -76,11 +76,14 @@ fn a_sweep_is_its_analyses() {
             alone += expected.run.evaluations;
         }
         assert!(swept.run.stopped.is_none() && swept.run.failed == 0);
-        assert_eq!((swept.run.evaluations, swept.run.stages), (gathered.iter().sum(), gathered.len()));
+        assert_eq!(
+            (swept.run.evaluations, swept.run.stages),
+            (gathered.iter().sum::<usize>() as u64, gathered.len() as u64)
+        );
         // Points of two values that coincide are evaluated once.
         assert!(swept.run.evaluations <= alone, "{method:?}");
         if method != Method::Auto {
-            assert_eq!(gathered.len(), stages, "{method:?}: {gathered:?}");
+            assert_eq!(gathered.len() as u64, stages, "{method:?}: {gathered:?}");
         }
     }
 }
@@ -109,7 +112,11 @@ fn a_stop_leaves_what_is_done() {
     let stop = || (asked.fetch_add(1, Ordering::Relaxed) > 0).then_some(StopReason::TimeLimit);
     let run = Run::to_the_end().stopping_when(&stop);
     let swept = sweep_within(&problem, "a", &[1.0, 2.0], &Method::SecondOrder.into(), &run).unwrap();
-    assert!(swept.run.stopped == Some(StopReason::TimeLimit) && swept.analyses.iter().all(Option::is_none) && swept.run.evaluations == 0);
+    assert!(
+        swept.run.stopped == Some(StopReason::TimeLimit)
+            && swept.analyses.iter().all(Option::is_none)
+            && swept.run.evaluations == 0
+    );
 }
 
 #[test]

@@ -125,7 +125,8 @@ fn requirement(one: &KeptReport) -> [String; 6] {
         text(one.before),
         text(one.after),
         // Where nothing was found there is only what was.
-        one.verdict.map_or_else(|| format!("{} before", one.verdict_before.name()), |verdict| verdict.name().to_owned()),
+        one.verdict
+            .map_or_else(|| format!("{} before", one.verdict_before.name()), |verdict| verdict.name().to_owned()),
     ]
 }
 

@@ -60,7 +60,7 @@ struct One<'r> {
     notes: Vec<String>,
     stack: Option<Stacked>,
     error: Vec<[String; 2]>,
-    basis: Option<&'r str>,
+    basis: Option<String>,
     warnings: Vec<Warned<'r>>,
 }
 
@@ -131,7 +131,7 @@ fn facts(report: &Report) -> Vec<Fact> {
         None => report.method.to_owned(),
     };
     let mut facts = vec![fact("method", method)];
-    facts.extend(report.account.as_ref().map(|account| fact("what was bought", account.clone())));
+    facts.extend(report.account.as_ref().map(|account| fact("what its points went to", account.to_string())));
     facts.push(fact("varying dimensions", report.varying.to_string()));
     facts.push(fact("evaluations", format!("{}, {} of them failed", report.run.evaluations, report.run.failed)));
     let derivatives = match report.derivatives {
@@ -238,7 +238,7 @@ fn characteristic<'r>(report: &'r Report, one: &'r CharacteristicReport, stack: 
         notes: notes(one),
         stack: stacked(stack),
         error: errors(one),
-        basis: one.error_estimate.as_ref().map(|estimate| estimate.basis.as_str()),
+        basis: one.error_estimate.as_ref().map(|estimate| estimate.basis()),
         warnings: Warned::about(&report.warnings, &one.name),
     }
 }
