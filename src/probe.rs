@@ -1,6 +1,6 @@
 //! Whether a model can be trusted, and how it is best asked: repeatability, order, errors, noise, speed.
 //!
-//! Evaluations: `2N + 31` for N varying dimensions, one where it gives no value. The points are always the same ones.
+//! Evaluations: `2N + 55` for N varying dimensions, one where it gives no value. The points are always the same ones.
 //!
 //! Source of the noise level: Moré and Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), algorithm
 //! ECnoise: the standard deviation of differences of order k of values at equal distances, where it no longer depends on k.
@@ -14,6 +14,10 @@ use crate::summary::RunSummary;
 
 /// Points in the two passes that must agree.
 const SCATTERED: usize = 8;
+/// The second pass goes to them in this order, each by itself: from the nominal point in steps of a third. The other way round it
+/// would cross the same edges, and a model that flips on a long way would flip at the same places.
+const SHUFFLED: [usize; SCATTERED] = [5, 2, 7, 0, 3, 6, 1, 4];
+const STEPS: usize = 4;
 /// Points of the noise estimate, and their distance as a part of the tolerances.
 const LINE: usize = 9;
 const CLOSE: f64 = 1e-5;
@@ -117,7 +121,7 @@ const REACTS: &str = "every characteristic reacts to some dimension";
 /// Most evaluations of a probe: fewer where the nominal dimensions have no values.
 pub fn evaluations(problem: &Problem) -> usize {
     let run = Run::to_the_end();
-    2 * Asked { problem, run: &run }.varying().len() + 2 * SCATTERED + LINE + 6
+    2 * Asked { problem, run: &run }.varying().len() + (1 + STEPS) * SCATTERED + LINE + 6
 }
 
 /// Probes the model of a problem. Without any value at the nominal dimensions nothing else is asked.
@@ -176,8 +180,8 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let begun = Instant::now();
     let forward = ask(&scattered);
     let together = begun.elapsed() / SCATTERED as u32;
-    let back: Vec<Vec<f64>> = scattered.iter().rev().cloned().collect();
-    let backward = ask(&back);
+    let walks: Vec<Vec<f64>> = SHUFFLED.iter().flat_map(|&row| walk(&nominal, &scattered[row])).collect();
+    let walked = ask(&walks);
     let line: Vec<Vec<f64>> = (0..LINE).map(|index| asked.along(&nominal, CLOSE * (index as f64 - 4.0))).collect();
     let close = ask(&line);
     let noise: Vec<Option<f64>> = (0..names.len())
@@ -195,8 +199,9 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let stepped = ask(&steps);
 
     check(WITHIN, asked.within(&nominal, &[(&scattered, &forward), (&line, &close), (&steps, &stepped)]));
-    let turned: Vec<(usize, usize)> = (0..SCATTERED).map(|row| (row, SCATTERED - 1 - row)).collect();
-    check(ORDER, same(&turned, &forward, &backward, 10.0 * largest));
+    let ends: Vec<(usize, usize)> =
+        SHUFFLED.iter().enumerate().map(|(turn, &row)| (row, STEPS * turn + STEPS - 1)).collect();
+    check(ORDER, same(&ends, &forward, &walked, 10.0 * largest));
     check(AFTER, same(&[(0, 0)], &first, &after, 10.0 * largest));
     check(FAILING, same(&[(0, 0)], &first, &failing, 10.0 * largest));
 
@@ -236,6 +241,14 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     check(REACTS, reacts);
     let run = RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), ..spent };
     Ok(Probe { adapter, run, start, alone, together, checks, characteristics })
+}
+
+/// From one point to another one, both included.
+fn walk(from: &[f64], to: &[f64]) -> Vec<Vec<f64>> {
+    let last = STEPS - 1;
+    let part =
+        |step: usize, (&a, &b): (&f64, &f64)| if step == last { b } else { a + (b - a) * step as f64 / last as f64 };
+    (0..STEPS).map(|step| from.iter().zip(to).map(|pair| part(step, pair)).collect()).collect()
 }
 
 struct Asked<'a> {

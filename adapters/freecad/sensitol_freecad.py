@@ -1,16 +1,19 @@
 """A FreeCAD document as a model: `python3 sensitol_freecad.py DECLARATION.toml`, see README.md.
+`python3 sensitol_freecad.py --list FILE.FCStd` prints a declaration of what a document holds.
 
 Sketches go back to the geometry of the file before every point and all their constraints are set at once: a solver that
 starts from the last point, or passes through half of a new one, may settle in a mirrored assembly and call it solved.
 """
 
 import math
+import os
 import pathlib
 import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 
+from freecad_document import add_workbenches, constraint_words, follows, list_document, open_document, valued
 from sensitol_adapter import Adapter, Declaration, NoValue, load
 
 VERSION = "1"
@@ -23,6 +26,7 @@ GUARD = (*MEASURE, "above", "below")
 KEYS = ("document", "name", "version", "dimensions", "characteristics", "guards", "restore", "reset")
 ENDS = {"start": 1, "end": 2, "center": 3, "centre": 3}
 ON_SKETCH = re.compile(r"(?P<sketch>[^.]+)\.Geometry\[(?P<index>\d+)\]\.(?P<end>\w+)")
+NUMBERED = re.compile(r"Constraints\[(\d+)\]")
 # What a solver may leave of a driving constraint, in mm or radians.
 SOLVED = 1e-6
 
@@ -52,11 +56,8 @@ class Model:
         """Opens the document, remembers its start, and finds everything that is named."""
         if self.document is not None:
             FreeCAD.closeDocument(self.document.Name)
-        path = str(self.declared.document)
-        try:
-            self.document = FreeCAD.openDocument(path, True)
-        except Exception as error:
-            raise ValueError(f"{path} does not open in FreeCAD: {error}") from None
+            self.document = None
+        self.document = open_document(FreeCAD, self.declared.document)
         self.sketches = {
             sketch.Name: (sketch.Geometry, sketch.Constraints)
             for sketch in self.document.findObjects("Sketcher::SketchObject")
@@ -95,7 +96,7 @@ class Model:
             self.units[entry] = table.get("unit", "deg" if angle else "mm")
             if not sketch.Constraints[index].Driving:
                 raise self.declared.fault(entry, f"{table['constraint']} is a reference: it follows and cannot be set")
-            if any(path == f"Constraints.{sketch.Constraints[index].Name}" for path, _ in sketch.ExpressionEngine):
+            if follows(sketch, f"Constraints.{sketch.Constraints[index].Name}", f"Constraints[{index}]"):
                 raise self.declared.fault(entry, f"{table['constraint']} follows an expression; name what that reads")
             if factor is None:
                 factor = math.radians(1) if angle else 1.0
@@ -107,6 +108,8 @@ class Model:
         name, names = self._path(table["property"])
         owner = self.object(name)
         self._value(entry, owner, names)
+        if follows(owner, ".".join(names)):
+            raise self.declared.fault(entry, f"{table['property']} follows an expression; name what that reads")
         return ("property", owner, names, 1.0 if factor is None else factor)
 
     def _getter(self, entry, table):
@@ -146,10 +149,18 @@ class Model:
         if not sketch.isDerivedFrom("Sketcher::SketchObject"):
             raise self.declared.fault(entry, f"`{name}` is no sketch")
         names = [one.Name for one in sketch.Constraints]
-        if constraint not in names:
-            known = ", ".join(filter(None, names)) or "none with a name"
-            raise self.declared.fault(entry, f"sketch `{name}` has no constraint `{constraint}`; there are {known}")
-        return sketch, names.index(constraint)
+        numbered = NUMBERED.fullmatch(constraint)
+        index = int(numbered[1]) if numbered else None
+        if constraint in names:
+            index = names.index(constraint)
+        if index in valued(sketch):
+            return sketch, index
+        known = [f"{names[one] or f'Constraints[{one}]'} ({constraint_words(sketch, one)})" for one in valued(sketch)]
+        what = "has no constraint"
+        if index is not None and index < len(names):
+            what = f"has a constraint of type {sketch.Constraints[index].Type}, which has no value, at"
+        shown = ", ".join(known) or "none with a value"
+        raise self.declared.fault(entry, f"sketch `{name}` {what} `{constraint}`; there are {shown}")
 
     def _cell(self, entry, text):
         name, _, cell = text.partition(".")
@@ -295,6 +306,11 @@ def _set(owner, names, value):
         part = getattr(owner, name)
         _set(part, rest, value)
         value = part
+    elif isinstance(value, float) and type(getattr(owner, name)) is int:
+        # A count, such as the occurrences of a pattern.
+        if not value.is_integer():
+            raise NoValue(f"{owner.Name}.{name} is a count: {value!r} is not possible")
+        value = int(value)
     setattr(owner, name, value)
 
 
@@ -333,6 +349,7 @@ def main():
         if len(sys.argv) != 2:
             raise ValueError("sensitol_freecad.py takes one argument, the declaration: a .toml or .json file")
         FreeCAD = load("FreeCAD", places=PLACES, install=INSTALL)
+        add_workbenches(FreeCAD)
         Sketcher = load("Sketcher", places=PLACES, install=INSTALL)
         declaration = Declaration(sys.argv[1], KEYS)
         model = Model(declaration)
@@ -363,5 +380,25 @@ def main():
     served.serve()
 
 
+def show(arguments):
+    """Prints the declaration of a document; what FreeCAD prints meanwhile goes to stderr."""
+    try:
+        if len(arguments) != 1:
+            raise ValueError("--list takes one argument, the document: a .FCStd file")
+        freecad = load("FreeCAD", places=PLACES, install=INSTALL)
+        sys.stdout.flush()
+        answers = os.dup(1)
+        os.dup2(2, 1)
+        add_workbenches(freecad)
+        text = list_document(freecad, arguments[0])
+        with os.fdopen(answers, "w", encoding="utf-8") as out:
+            out.write(text)
+    except ValueError as error:
+        sys.exit(f"error: {error}")
+
+
 if __name__ == "__main__":
-    main()
+    if sys.argv[1:2] == ["--list"]:
+        show(sys.argv[2:])
+    else:
+        main()

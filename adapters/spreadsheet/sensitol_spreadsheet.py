@@ -3,8 +3,10 @@
 The workbook is calculated by a LibreOffice of its own, with a private profile, on a private copy of the file.
 """
 
+import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -28,6 +30,11 @@ OFFICES = ("/usr/lib/libreoffice/program/soffice", "/opt/libreoffice/program/sof
 KEYS = ("document", "name", "version", "dimensions", "characteristics")
 START_S = 45
 ERROR_RESULT, TEXT_RESULT = 4, 2
+VALUES, FORMULAS = 1, 16
+# Cells of each kind that an error lists.
+LISTED = 20
+# B3, Sheet.B3, 'My sheet'.B3
+ADDRESS = re.compile(r"(?:(?:'(?P<quoted>[^']+)'|(?P<sheet>[^'.]+))\.)?(?P<cell>[A-Z]{1,3}[1-9][0-9]*)")
 
 
 class Declared:
@@ -132,10 +139,76 @@ class Model:
         else:
             self.dimensions = {name: self._cell(where) for name, where in self.declared.dimensions.items()}
             self.characteristics = {name: self._cell(where) for name, where in self.declared.characteristics.items()}
-        if not self.dimensions or not self.characteristics:
-            raise ValueError(f"{self.declared.document} names no cell with a number, or none with a formula")
 
-    def check(self, asked):
+    def take(self, hello):
+        """Finds what the study names, where nothing is declared also by the address of a cell; says what there is if it is not there."""
+        optional = set(hello.get("optional", ()))
+        dimensions = [*hello["dimensions"], *hello.get("constants", ())]
+        if self.declared.dimensions is None:
+            # A constant of the study's formulas must not land in the cell that happens to be called so.
+            for name in dimensions:
+                if name not in self.cells and name not in optional and (cell := self._addressed(name)) is not None:
+                    self.dimensions[name] = cell
+            for name in hello["characteristics"]:
+                if name not in self.cells and (cell := self._addressed(name)) is not None:
+                    self.characteristics[name] = cell
+            missing = [name for name in dimensions if name not in self.dimensions and name not in optional]
+            missing += [name for name in hello["characteristics"] if name not in self.characteristics]
+            if missing and not self.cells:
+                raise ValueError(self._undeclared(missing[0]))
+        self._check(dimensions)
+
+    def _addressed(self, name):
+        """The cell with this address, on the first sheet where none is named; None where it is no address."""
+        matched = ADDRESS.fullmatch(name)
+        if matched is None:
+            return None
+        sheets = self.book.Sheets
+        sheet = matched["quoted"] or matched["sheet"]
+        if sheet is not None and not sheets.hasByName(sheet):
+            return None
+        try:
+            return (sheets.getByName(sheet) if sheet else sheets.getByIndex(0)).getCellRangeByName(matched["cell"]).getCellByPosition(0, 0)
+        except Exception:
+            return None
+
+    def _undeclared(self, missing):
+        """What to do about a workbook without names, with a declaration that is ready to use."""
+        numbers, formulas = self._contents()
+        path = self.declared.document
+        if not formulas or not numbers:
+            return f"{path} has no cell with a formula that reads a number: nothing in it can be calculated"
+        taken = set()
+
+        def lines(cells):
+            for cell in cells[:LISTED]:
+                name = label(cell)
+                while name in taken:
+                    name += "_"
+                taken.add(name)
+                yield f"{name} = {json.dumps(address(cell))}  # {cell.String}"
+            if len(cells) > LISTED:
+                yield f"# and {len(cells) - LISTED} more"
+
+        declared = [f"document = {json.dumps(path.name)}", "[dimensions]", *lines(numbers), "[characteristics]", *lines(formulas)]
+        return (
+            f"no cell of {path} has the name `{missing}`: the workbook has no names. Name its cells, or use addresses such as"
+            f" `{address(numbers[0])}` as names in the study, or write this to {path.stem}.toml, with the names that the study"
+            " uses, and put that file into `command` and `files`:\n" + "\n".join(declared) + "\n"
+        )
+
+    def _contents(self):
+        """Cells with numbers that formulas read, and cells with formulas whose results are numbers."""
+        numbers, formulas = [], []
+        for sheet in (self.book.Sheets.getByIndex(i) for i in range(self.book.Sheets.Count)):
+            for cell in iterate(sheet.queryContentCells(VALUES | FORMULAS).Cells.createEnumeration()):
+                if cell.Type.value == "FORMULA" and cell.FormulaResultType2 != TEXT_RESULT:
+                    formulas.append(cell)
+                elif cell.Type.value == "VALUE" and cell.queryDependents(False).queryContentCells(FORMULAS).Count:
+                    numbers.append(cell)
+        return numbers, formulas
+
+    def _check(self, asked):
         """Cells that will be written must hold numbers and be writable."""
         for name in asked:
             cell = self.dimensions.get(name)
@@ -143,6 +216,9 @@ class Model:
                 continue
             if cell.Type.value == "FORMULA":
                 raise ValueError(f"`{name}` ({address(cell)}) is a formula, which a dimension would overwrite")
+            if cell.Type.value != "VALUE":
+                held = repr(cell.String) if cell.String else "nothing"
+                raise ValueError(f"`{name}` ({address(cell)}) holds {held}, where a dimension needs a number")
             if cell.Spreadsheet.isProtected() and cell.CellProtection.IsLocked:
                 sheet = cell.Spreadsheet.Name
                 raise ValueError(f"`{name}` ({address(cell)}) is locked: take the protection off sheet {sheet}, or unlock the cell")
@@ -207,6 +283,18 @@ def address(cell):
     return cell.AbsoluteName.replace("$", "")
 
 
+def label(cell):
+    """A name for a cell: the text to its left or above it, or else its address."""
+    sheet, where = cell.Spreadsheet, cell.CellAddress
+    for column, row in ((where.Column - 1, where.Row), (where.Column, where.Row - 1)):
+        beside = sheet.getCellByPosition(column, row) if column >= 0 and row >= 0 else None
+        if beside is not None and beside.Type.value == "TEXT":
+            found = re.sub(r"\W+", "_", beside.String, flags=re.ASCII).strip("_")
+            if re.match(r"[A-Za-z]", found):
+                return found
+    return re.sub(r"\W+", "_", address(cell), flags=re.ASCII).strip("_")
+
+
 def words(cell):
     return {522: "circular (Err:522)", 523: "an iteration without end (Err:523)"}.get(cell.getError(), cell.String)
 
@@ -227,7 +315,7 @@ def main():
         if faults:
             raise faults[0]
         model.open()
-        model.check(hello["dimensions"] + list(hello.get("constants", ())))
+        model.take(hello)
         asked.extend(hello["characteristics"])
         served.inputs, served.outputs = list(model.dimensions), list(model.characteristics)
         table = model.declared.table

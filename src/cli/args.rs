@@ -230,7 +230,7 @@ pub(super) struct AnalyzeArgs {
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
 
     #[command(flatten)]
@@ -255,7 +255,7 @@ pub(super) struct SampledArgs {
     pub(super) work: WorkArgs,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
 }
 
@@ -356,7 +356,7 @@ pub(super) struct SweepArgs {
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
 
     /// Write the report as one HTML page
@@ -400,7 +400,7 @@ pub(super) struct AllocateArgs {
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,
 
     /// Write the study with the tolerances found, otherwise as it is

@@ -267,6 +267,9 @@ pub(super) struct ModelEntry {
     /// How often a point that failed is tried again.
     #[cfg_attr(feature = "cli", schemars(extend("default" = schema::program().retries)))]
     pub(super) retries: Option<Spanned<u64>>,
+    /// How many answers are replayed in a fresh process, to see whether they depend on the points before; 0 for none. By default 5 %, at
+    /// least 5, and 2 more.
+    pub(super) verify: Option<Spanned<u64>>,
     /// Files that the model depends on, relative to the study's folder: with other contents nothing kept in the journal is used.
     pub(super) files: Option<Vec<Spanned<String>>>,
 }

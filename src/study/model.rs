@@ -51,11 +51,12 @@ pub(super) fn model(entry: &Spanned<ModelEntry>, source: &Source) -> Result<Mode
             Err(fault(command.span(), "model.command", StudyFault::Conflict { a: "builtin", b: "command", why }))
         }
         (Some(name), None) => {
-            let of_programs: [(&'static str, Option<std::ops::Range<usize>>); 5] = [
+            let of_programs: [(&'static str, Option<std::ops::Range<usize>>); 6] = [
                 ("workers", entry.workers.as_ref().map(Spanned::span)),
                 ("timeout_s", entry.timeout_s.as_ref().map(Spanned::span)),
                 ("start_timeout_s", entry.start_timeout_s.as_ref().map(Spanned::span)),
                 ("retries", entry.retries.as_ref().map(Spanned::span)),
+                ("verify", entry.verify.as_ref().map(Spanned::span)),
                 ("files", entry.files.as_ref().and_then(|files| files.first()).map(Spanned::span)),
             ];
             for (key, span) in of_programs {
@@ -109,6 +110,10 @@ fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) 
         folder: source.folder.clone(),
         workers: count(&entry.workers, "workers", 1, 1, WORKERS, "between 1 and 1024")? as usize,
         retries: count(&entry.retries, "retries", u64::from(defaults.retries), 0, 1000, "between 0 and 1000")? as u32,
+        verify: match &entry.verify {
+            None => None,
+            given => Some(count(given, "verify", 0, 0, 1_000_000, "between 0 and 1000000")? as usize),
+        },
         timeout: seconds(&entry.timeout_s, "timeout_s", defaults.timeout)?,
         start_timeout: seconds(&entry.start_timeout_s, "start_timeout_s", defaults.start_timeout)?,
         sentinels: source.externals.sentinels,

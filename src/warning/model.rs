@@ -60,7 +60,7 @@ fn nominal(
     let among = if suspects.is_empty() { String::new() } else { format!(", among them {}", suspects.join("; ")) };
     let points = if points == 1 { "1 point".to_owned() } else { format!("{points} points") };
     say(format!(
-        "`{output}` at the nominal dimensions was {} at first and {} later ({times}). {cause} A fresh process evaluated {points} again{among}.",
+        "`{output}` is {} or {} at the same dimensions, depending on the points before ({times}). {cause} A fresh process evaluated {points} again{among}.",
         value(expected),
         value(found)
     ))

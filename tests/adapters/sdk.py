@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import socket
 import tempfile
 
 from harness import ROOT, client, refused, run
@@ -63,5 +64,49 @@ def a_slow_answer_does_not_wait_for_the_next():
         assert json.loads(model.process.stdout.readline()) == {"id": 2, "y": [2.0]}
 
 
+def imported_modules_are_part_of_the_version():
+    with tempfile.TemporaryDirectory() as folder:
+        path, helper = pathlib.Path(folder) / "model.py", pathlib.Path(folder) / "helper.py"
+        source = f"import sys\nsys.path[:0] = [{str(ROOT / 'adapters/python')!r}, '.']\nimport helper\n"
+        path.write_text(source + "from sensitol_adapter import adapter\n@adapter(version=3)\ndef y(a):\n    return helper.f(a)\ny.serve()\n")
+        versions = []
+        for content in ("f = abs\n", "f = abs \n", "f = abs\n"):
+            helper.write_text(content)
+            with client(["python3", path], folder, [None], {"a": 1.0}, ["y"]) as model:
+                versions.append(model.ready["version"])
+        assert versions[0] == versions[2] != versions[1] and versions[0].startswith("3; modules "), versions
+
+
+BEATING = f"""
+import sys, time
+sys.path.insert(0, {str(ROOT / "adapters/python")!r})
+from sensitol_adapter import adapter
+
+@adapter(heartbeat=0.02, isolated=True)
+def sum(a, b):
+    time.sleep(0.3)
+    return a + b
+
+sum.serve()
+"""
+
+
+def a_heartbeat_beats_while_the_model_works():
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "model.py"
+        path.write_text(BEATING)
+        with client(["python3", path], folder, [None, None], {"a": 1.0, "b": 2.0}, ["sum"]) as model:
+            assert model.ready["heartbeat"] and model.ready["isolated"], model.ready
+            model.process.stdin.write('{"id":4,"x":[1.0,2.5]}\n{"cancel":[9]}\n')
+            model.process.stdin.flush()
+            lines = []
+            while not lines or "y" not in lines[-1]:
+                lines.append(json.loads(model.process.stdout.readline()))
+            host = socket.gethostname()
+            started = lines.index({"id": 4, "started": host})
+            assert {"alive": True} in lines[started:], lines
+            assert lines[-1]["y"] == [3.5] and lines[-1]["where"] == host and lines[-1]["cost_s"] >= 0.3, lines[-1]
+
+
 if __name__ == "__main__":
-    run([setup_may_say_what_there_is, a_slow_answer_does_not_wait_for_the_next])
+    run([imported_modules_are_part_of_the_version, a_heartbeat_beats_while_the_model_works, setup_may_say_what_there_is, a_slow_answer_does_not_wait_for_the_next])

@@ -175,6 +175,53 @@ def a_declaration_names_cells_without_names():
             refused(model, "Stock.E9", "housing_depth")
 
 
+UNNAMED = """
+put("A1", "width"); put("B1", 2.0)
+put("A2", "height"); put("B2", 3.0)
+put("A4", "area"); put("B4", "=B1*B2")
+put("B5", "=B4*2")
+put("D9", 7.0)
+"""
+
+
+def a_workbook_without_names_works_by_addresses():
+    with tempfile.TemporaryDirectory() as folder:
+        made({f"{folder}/plain.ods": UNNAMED})
+        nominal = {"B1": 2.0, "Calc.B2": 3.0}
+        with workbook("plain.ods", nominal, ("Calc.B4", "B5"), folder) as model:
+            assert model.point(**{"B1": 2.0, "Calc.B2": 3.0})["y"] == [6.0, 12.0]
+            assert model.point(**{"B1": 2.5, "Calc.B2": 4.0})["y"] == [10.0, 20.0]
+        for name, words in [("B4", ["`B4`", "is a formula"]), ("C7", ["Calc.C7", "nothing"]), ("A1", ["Calc.A1", "width"])]:
+            with workbook("plain.ods", {name: 2.0}, ("B5",), folder) as model:
+                refused(model, *words)
+        # The whole way, with a study.
+        path = pathlib.Path(folder) / "study.toml"
+        path.write_text(
+            f'[model]\ncommand = ["python3", {json.dumps(str(ADAPTER))}, "plain.ods"]\nfiles = ["plain.ods"]\n'
+            '[dimensions]\nB1 = { nominal = 2.0, tolerance = 0.1 }\nB2 = { nominal = 3.0, tolerance = 0.1 }\n'
+            "[characteristics]\nB4 = {}\n"
+        )
+        found = report("analyze", path, "--method", "full", "--journal", "none")[0]["characteristics"][0]
+        # A product's mean is the product of the means; differences of numbers of 6 over steps of 0.1.
+        assert abs(found["mean"] - 6.0) < 1e-9, found
+
+
+def a_workbook_without_names_shows_a_declaration():
+    with tempfile.TemporaryDirectory() as folder:
+        made({f"{folder}/plain.ods": UNNAMED, f"{folder}/words.ods": 'put("A1", "no number at all")'})
+        with workbook("plain.ods", {"w": 2.0, "h": 3.0}, ("area",), folder) as model:
+            refused(model, "plain.ods", "`w`", "Calc.B1", "no names")
+            error = model.ready["error"]
+        declared = error[error.index("document = ") :]
+        # What no formula reads is no dimension.
+        assert "D9" not in declared, declared
+        pathlib.Path(folder, "plain.toml").write_text(declared)
+        with workbook("plain.toml", {"width": 2.0, "height": 3.0}, ("area", "Calc_B5"), folder) as model:
+            assert model.point(width=4.0, height=2.5)["y"] == [10.0, 20.0]
+        with workbook("words.ods", {"w": 2.0}, ("area",), folder) as model:
+            refused(model, "words.ods", "no cell with a formula")
+
+
 def what_cannot_be_opened_is_said_once():
     with tempfile.TemporaryDirectory() as folder:
         with workbook("missing.xlsx", folder=folder) as model:
@@ -222,6 +269,8 @@ if __name__ == "__main__":
         the_stack_of_the_workbook_is_that_of_the_report,
         a_cell_with_an_error_is_named,
         a_declaration_names_cells_without_names,
+        a_workbook_without_names_works_by_addresses,
+        a_workbook_without_names_shows_a_declaration,
         what_cannot_be_opened_is_said_once,
         the_office_ends_with_the_adapter,
         the_readme_shows_it,

@@ -116,7 +116,8 @@ for line in sys.stdin:
             out.write("x" * (100 << 20))
             out.flush()
         elif mode == "nan-text":
-            say('{"id": %d, "y": [NaN, 1.0]}' % id)
+            say('{"id": %d, "note": "a \\"NaN", "y": [-Infinity, 1.0]}' % id)
+            continue
         elif mode == "wrong-length":
             answer["y"] = [1.0, 2.0, 3.0]
         elif mode == "wrong-gradients":

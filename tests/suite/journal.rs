@@ -27,7 +27,7 @@ impl Slow {
         let script = repository("tests/children/counting.py").display().to_string();
         let dimensions: String = (0..n).map(|d| format!("x{d} = {{ nominal = {d}.5, tolerance = 0.1 }}\n")).collect();
         let study = format!(
-            "[model]\ncommand = [\"python3\", {script:?}, {counter:?}, \"{seconds}\", \"{window}\"]\nworkers = {workers}\n\
+            "[model]\ncommand = [\"python3\", {script:?}, {counter:?}, \"{seconds}\", \"{window}\"]\nworkers = {workers}\nverify = 0\n\
              [dimensions]\n{dimensions}[characteristics]\ny = {{ lower = 0.0 }}\n[analysis]\nmethod = \"full\"\n"
         );
         std::fs::write(folder.path().join("study.toml"), study).unwrap();

@@ -107,3 +107,16 @@ pub fn refusing(
         Ok([function(x)])
     })
 }
+
+/// The child of `tests/children` in C, compiled: a linker for C is there wherever this was built.
+pub fn child_in_c() -> String {
+    static BUILT: std::sync::OnceLock<PathBuf> = std::sync::OnceLock::new();
+    let built = BUILT.get_or_init(|| {
+        let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("flips-{}", std::process::id()));
+        let source = repository("tests/children/flips.c");
+        let done = std::process::Command::new("cc").arg("-O1").arg("-o").arg(&program).arg(source).arg("-lm").status();
+        assert!(done.is_ok_and(|status| status.success()), "cc compiles tests/children/flips.c");
+        program
+    });
+    built.display().to_string()
+}

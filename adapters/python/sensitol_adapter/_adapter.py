@@ -1,16 +1,20 @@
 """One function as a model: names from its signature, lines in, lines out."""
 
+import hashlib
 import inspect
 import json
 import logging
 import math
 import os
+import socket
 import sys
+import threading
 import time
 
 VERSION = 1
 # Answers that come within this time share a write.
 TOGETHER_S = 0.01
+_WRITING = threading.Lock()
 log = logging.getLogger("sensitol")
 
 _POSITIONAL = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
@@ -48,13 +52,16 @@ class Adapter:
     batch           the function takes a list for every parameter and returns a list (or a dict of lists)
     inputs          what a function with `**values` takes; without it that takes every name. The study may leave these out
     units           a dict from dimension to unit; a study that states another one is refused
+    isolated        points do not share the process's fate, as on a cluster: after a crash all of them go out again together
+    heartbeat       seconds between signs of life. Points that wait in the window are then not late, and each evaluation says when
+                    it starts, on which host, and what it took. Without it the model must be silent between answers
     setup           called once, before the model is ready; with a parameter it is given the engine's first line. It may
                     still change name, version, inputs, outputs and units: a model often knows them once it is loaded
     """
 
     def __init__(
         self, function, *, name=None, version=None, outputs=None, window=64, batch=False, gradients=False, names=None,
-        inputs=None, units=None, setup=None,
+        inputs=None, units=None, setup=None, isolated=False, heartbeat=None,
     ):  # fmt: skip
         self.function = function
         self.name = name or function.__name__
@@ -65,6 +72,10 @@ class Adapter:
         self.gradients = gradients
         if batch and gradients:
             raise ValueError("gradients are given point by point: not in a batch")
+        self.isolated = isolated
+        if heartbeat is not None and not heartbeat > 0:
+            raise ValueError("heartbeat is a time in seconds, above 0")
+        self.heartbeat = heartbeat
         self.inputs = list(inputs) if inputs is not None else None
         self.units = dict(units or {})
         self.setup = setup
@@ -99,14 +110,46 @@ class Adapter:
             ready = {"ready": True, "name": self.name, "window": self.window}
             if self.gradients:
                 ready["gradients"] = True
-            if self.version is not None:
-                ready["version"] = str(self.version)
+            parts = [str(self.version)] if self.version is not None else []
+            modules = _own_modules()
+            if modules:
+                parts.append(f"modules {modules}")
+            if parts:
+                ready["version"] = "; ".join(parts)
+            if self.isolated:
+                ready["isolated"] = True
+            if self.heartbeat is not None:
+                ready["heartbeat"] = True
+                session.started = lambda id: _write(answers, [{"id": id, "started": session.host}])
             _write(answers, [ready])
+            if self.heartbeat is not None:
+                threading.Thread(target=_beat, args=(answers, self.heartbeat), daemon=True).start()
             for requests in lines.batches():
                 for done in session.answers(requests):
                     _write(answers, done)
         except (BrokenPipeError, KeyboardInterrupt):
             pass
+
+
+def _own_modules():
+    """A hash of the imported modules below the working folder, which is the study's: a changed one is another model. The script itself
+    is known to the engine. None where there are none."""
+    folder = os.path.realpath(os.getcwd()) + os.sep
+    own = os.path.dirname(os.path.realpath(__file__)) + os.sep
+    files = set()
+    for name, module in list(sys.modules.items()):
+        path = getattr(module, "__file__", None)
+        path = os.path.realpath(path) if path and name != "__main__" else ""
+        if path.startswith(folder) and not path.startswith(own) and "site-packages" not in path:
+            files.add(path)
+    digest = hashlib.sha256()
+    for path in sorted(files):
+        try:
+            with open(path, "rb") as file:
+                digest.update(os.path.relpath(path, folder).encode() + b"\0" + file.read() + b"\0")
+        except OSError:
+            digest.update(path.encode())
+    return digest.hexdigest()[:16] if files else None
 
 
 def _takes_one(function):
@@ -136,6 +179,8 @@ class _Session:
             if None not in (unit, expected) and unit != expected:
                 raise ValueError(f"`{name}` is in `{unit}` in the study and in `{expected}` here; state one of them otherwise")
         self.dimensions = dimensions
+        # Set where the program says when it starts a point.
+        self.started, self.host = None, socket.gethostname()
         given = {*dimensions, *constants}
         missing = [
             name for name, parameter in known.items() if name not in given and parameter.default is inspect.Parameter.empty
@@ -157,7 +202,15 @@ class _Session:
             return
         done, since = [], time.monotonic()
         for request in requests:
-            done.append(self._one(request))
+            if "x" not in request:
+                continue
+            if self.started is None:
+                done.append(self._one(request))
+            else:
+                self.started(request["id"])
+                begun = time.monotonic()
+                answer = self._one(request)
+                done.append({**answer, "where": self.host, "cost_s": round(time.monotonic() - begun, 6)})
             if time.monotonic() - since > TOGETHER_S:
                 yield done
                 done, since = [], time.monotonic()
@@ -193,6 +246,9 @@ class _Session:
         return rows
 
     def _together(self, requests):
+        requests = [request for request in requests if "x" in request]
+        if not requests:
+            return []
         columns = {name: [request["x"][index] for request in requests] for name, index in self.columns}
         try:
             result = self.adapter.function(**columns, **self.constants)
@@ -292,8 +348,20 @@ def _own_pipes():
     return _Lines(requests), answers
 
 
+def _beat(descriptor, seconds):
+    """Signs of life, until the engine is gone."""
+    try:
+        while True:
+            time.sleep(seconds)
+            _write(descriptor, [{"alive": True}])
+    except OSError:
+        pass
+
+
 def _write(descriptor, answers):
     dump = json.JSONEncoder(separators=(",", ":"), ensure_ascii=True, allow_nan=False).encode
     data = "".join(dump(answer) + "\n" for answer in answers).encode()
-    while data:
-        data = data[os.write(descriptor, data):]
+    # Lines of the heartbeat must not come between parts of an answer.
+    with _WRITING:
+        while data:
+            data = data[os.write(descriptor, data):]

@@ -11,8 +11,9 @@ pub(super) struct Batch<'a> {
     pub(super) points: &'a Points,
     pub(super) out: &'a mut Responses,
     pub(super) waiting: VecDeque<usize>,
-    /// Rows under way in a child that crashed with several: each is tried again alone, to see which one it was.
-    pub(super) suspects: VecDeque<usize>,
+    /// Groups of rows among which one made a child crash: each is tried again with nothing else under way, and divided when it
+    /// crashes once more.
+    pub(super) suspects: VecDeque<Vec<usize>>,
     /// Failures of every row that had one.
     pub(super) failures: HashMap<usize, u32>,
     pub(super) left: usize,
@@ -47,6 +48,17 @@ impl<'a> Batch<'a> {
         }
     }
 
+    /// Rows that are still to be sent.
+    pub(super) fn unsent(&self) -> usize {
+        self.waiting.len() + self.suspects.iter().map(Vec::len).sum::<usize>()
+    }
+
+    /// Tries rows again of which one made a child crash, in two groups.
+    pub(super) fn divide(&mut self, rows: &[usize]) {
+        let (first, second) = rows.split_at(rows.len().div_ceil(2));
+        self.suspects.extend([first, second].into_iter().filter(|half| !half.is_empty()).map(<[usize]>::to_vec));
+    }
+
     /// Counts a row that is sent.
     pub(super) fn sends(&mut self, row: usize) {
         self.sent += 1;
@@ -73,7 +85,7 @@ impl<'a> Batch<'a> {
     /// Tries a row again, or gives it up when it has failed too often.
     pub(super) fn charge(&mut self, row: usize, error: &ProcessError, retries: u32) {
         if self.charged(row) <= retries {
-            self.suspects.push_back(row);
+            self.suspects.push_back(vec![row]);
         } else {
             self.fail(row, error);
         }
@@ -116,7 +128,12 @@ impl<'a> Batch<'a> {
                 (_, Some(message)) => self.out.fail(row, output, no_value(message.clone())),
                 (None, None) => {
                     let message = line.errors.get(name).cloned();
-                    self.out.fail(row, output, no_value(message.unwrap_or_else(|| "the model returned null".into())));
+                    let silent = if line.not_finite { "NaN or an infinity" } else { "null" };
+                    self.out.fail(
+                        row,
+                        output,
+                        no_value(message.unwrap_or_else(|| format!("the model returned {silent}"))),
+                    );
                 }
             }
         }

@@ -42,6 +42,9 @@ pub type Listener = Arc<dyn Fn(&str) + Send + Sync>;
 
 pub(super) struct Child {
     pub(super) number: u64,
+    /// Ends the child's group when this process is gone, however; None where it cannot be had.
+    #[cfg(unix)]
+    guard: Option<Guard>,
     process: Box<dyn ChildWrapper>,
     /// To the thread that writes; None once its stdin is closed.
     requests: Option<Sender<Vec<u8>>>,
@@ -92,7 +95,18 @@ impl Child {
         let stderr = Arc::new(Mutex::new(VecDeque::new()));
         let (pipe, tail) = (process.stderr().take().expect("stderr is a pipe"), Arc::clone(&stderr));
         let err = std::thread::spawn(move || listen(pipe, &tail, listener.as_ref()));
-        Ok(Self { number, process, requests: Some(requests), closed: None, stderr, readers: vec![out, err] })
+        #[cfg(unix)]
+        let guard = Guard::of(process.id());
+        Ok(Self {
+            number,
+            #[cfg(unix)]
+            guard,
+            process,
+            requests: Some(requests),
+            closed: None,
+            stderr,
+            readers: vec![out, err],
+        })
     }
 
     /// Sends lines; those that cannot be written come back as the child's end.
@@ -123,6 +137,9 @@ impl Child {
             status = self.process.try_wait().ok().flatten();
         }
         let by_itself = status.is_some();
+        // Before the group's number is free for others.
+        #[cfg(unix)]
+        drop(self.guard.take());
         let _ = self.process.start_kill();
         let status = status.or_else(|| self.process.wait().ok());
         // The pipes are closed now, unless somebody left the group: their last lines are worth a moment.
@@ -141,6 +158,31 @@ impl Child {
     /// Waits a moment for a child that closed its stdout to end by itself.
     pub(super) fn ended(&mut self) -> (Exit, StderrTail) {
         self.end(Duration::from_millis(500))
+    }
+}
+
+/// A shell that waits for the end of a pipe whose other end only this process holds. The pipe closes even when this process is killed;
+/// the shell then ends the child's process group, busy or not. A child that waits for requests would have seen its own pipe close.
+#[cfg(unix)]
+struct Guard(std::process::Child);
+
+#[cfg(unix)]
+impl Guard {
+    fn of(group: u32) -> Option<Self> {
+        let mut command = std::process::Command::new("/bin/sh");
+        // In a group of its own: Ctrl-C on a terminal reaches this process first.
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        command.args(["-c", "read -r line; kill -s KILL -- \"-$1\"", "sensitol-guard", &group.to_string()]);
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok().map(Self)
+    }
+}
+
+#[cfg(unix)]
+impl Drop for Guard {
+    /// Its work is done: it must not see its pipe close.
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
 }
 

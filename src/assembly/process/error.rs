@@ -113,6 +113,21 @@ pub enum ProcessFault {
         /// The point's number.
         id: u64,
     },
+    /// It has other values when the point is reached on other ways.
+    #[error(
+        "the answer depends on the points before it: {} at first, {} by small steps, {} along one dimension after the other",
+        value(first),
+        value(second),
+        value(third)
+    )]
+    TwoAnswers {
+        /// As it was first answered.
+        first: Option<f64>,
+        /// By small steps from the nominal point.
+        second: Option<f64>,
+        /// Along one dimension after the other.
+        third: Option<f64>,
+    },
     /// It has no value for one characteristic.
     #[error("{message}")]
     NoValue {
@@ -183,6 +198,10 @@ fn hint(line: &Quoted) -> &'static str {
         true => "",
         false => "; stdout belongs to the protocol: print to stderr",
     }
+}
+
+fn value(value: &Option<f64>) -> String {
+    value.map_or("no value".to_owned(), |value| value.to_string())
 }
 
 fn place(program: &str, folder: &str) -> String {

@@ -11,13 +11,18 @@
 //! A point that fails is tried again `retries` times, in a fresh child and alone, so that a point that crashes children is
 //! found out and takes no other with it. A child that fails is started again, after a pause that doubles every time.
 
+mod account;
 mod batch;
 mod child;
 mod error;
 mod pool;
 mod protocol;
+mod replay;
 mod sentinel;
+mod suspicion;
+mod worker;
 
+pub use account::EvaluatorAccount;
 pub use child::Listener;
 pub use error::{Exit, ProcessError, ProcessFault, Quoted, StderrTail};
 pub use protocol::Adapter;
@@ -48,6 +53,9 @@ pub struct Settings {
     pub retries: u32,
     /// Whether the nominal point is evaluated again every so often, to see whether the model still answers as it did.
     pub sentinels: bool,
+    /// How many answers are replayed in a fresh process, reached from the nominal point in small steps, to see whether they depend on
+    /// the points before them: by default 5 %, 5 at the least, and 2 more. 0 for none; only with `sentinels`.
+    pub verify: Option<usize>,
     /// Hears every line that a child writes to stderr.
     pub listener: Option<Listener>,
 }
@@ -63,6 +71,7 @@ impl Settings {
             start_timeout: Duration::from_secs(60),
             retries: 1,
             sentinels: true,
+            verify: None,
             listener: None,
         }
     }
@@ -110,6 +119,12 @@ impl Process {
         self.with_pool(outputs, |pool| pool.prepare().cloned())
     }
 
+    /// What became of its processes so far: nothing where none was started.
+    pub fn account(&self) -> EvaluatorAccount {
+        let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.as_ref().map(|pool| pool.account.clone()).unwrap_or_default()
+    }
+
     /// How it is run.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -125,8 +140,10 @@ impl Process {
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         // Children are told once what they are asked for; another question takes others.
         if pool.as_ref().is_none_or(|pool| !pool.asks(&names)) {
-            *pool = None;
-            *pool = Some(Pool::new(self.settings.clone(), self.hello(names)));
+            let account = pool.take().map(|pool| pool.account.clone()).unwrap_or_default();
+            let mut fresh = Pool::new(self.settings.clone(), self.hello(names));
+            fresh.account = account;
+            *pool = Some(fresh);
         }
         act(pool.as_mut().expect("it was just made"))
     }
@@ -155,6 +172,17 @@ impl AssemblyFunction for Process {
     }
 
     fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
-        self.with_pool(ask.outputs, |pool| pool.evaluate(ask.points, run, out));
+        self.with_pool(ask.outputs, |pool| {
+            pool.evaluate(ask.points, run, out);
+            if run.stopped() || run.abandoned() {
+                return;
+            }
+            if let Some(changed) = pool.confirm(ask.points, out, run)
+                && !changed.is_empty()
+            {
+                run.withdraw(&changed);
+                run.finished(&changed, out);
+            }
+        });
     }
 }

@@ -1,15 +1,17 @@
 //! Children side by side, and the points under way in each.
 
-use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use super::Settings;
+use super::account::EvaluatorAccount;
 use super::batch::Batch;
 use super::child::{Child, Event, What};
 use super::error::{ProcessError, ProcessFault, Quoted, StderrTail};
 use super::protocol::{Adapter, Hello, Line, VERSION, request};
 use super::sentinel::{Reference, SENTINEL, interval, values};
+use super::suspicion::Answers;
+use super::worker::{Sent, Worker};
 use crate::assembly::{Points, Responses, Run};
 
 /// How often a stop is looked for.
@@ -21,11 +23,15 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(5);
 const FOREVER: Duration = Duration::from_secs(1_000_000_000);
 /// Starts in a row that may fail before no more are tried.
 const STARTS: u32 = 4;
+/// Crashes in a row, without an answer between them, after which points of an isolated program are suspected after all.
+const ISOLATED: u32 = 3;
+/// How long a stop waits for points that were taken back: an answer that comes all the same is kept.
+const TAKEN_BACK: Duration = Duration::from_secs(1);
 
 /// The children of one model, asked for one choice of outputs.
 pub(super) struct Pool {
-    settings: Settings,
-    hello: Hello,
+    pub(super) settings: Settings,
+    pub(super) hello: Hello,
     slots: Vec<Slot>,
     events: (Sender<Event>, Receiver<Event>),
     /// Number of the next child, and of the next point.
@@ -34,7 +40,18 @@ pub(super) struct Pool {
     /// Starts in a row that failed.
     failed_starts: u32,
     adapter: Option<Adapter>,
-    reference: Reference,
+    pub(super) reference: Reference,
+    pub(super) account: EvaluatorAccount,
+    /// Answers so far, of which some are replayed.
+    pub(super) answers: Answers,
+    /// What every output differs by when the nominal point is evaluated again.
+    pub(super) noise: Vec<f64>,
+    /// Whether an answer was found to depend on the points before it.
+    pub(super) flips: bool,
+    /// Whether it has another answer every time.
+    pub(super) hopeless: bool,
+    /// Whether points go to one child, one by one in their order, without sentinels.
+    pub(super) walking: bool,
 }
 
 /// A place for one child.
@@ -43,6 +60,8 @@ struct Slot {
     state: State,
     /// Failures since the last answer.
     failures: u32,
+    /// Since when it has been without a child that answers, after a failure.
+    lost: Option<Instant>,
 }
 
 #[derive(Default)]
@@ -54,22 +73,7 @@ enum State {
     Pausing(Instant),
     /// A child that has not said that it is ready.
     Starting(Child, Instant),
-    Ready(Worker),
-}
-
-struct Worker {
-    child: Child,
-    window: usize,
-    /// Points under way, in the order in which they were sent: number and row.
-    under_way: VecDeque<(u64, usize)>,
-    /// Since when the oldest of them is being waited for.
-    since: Instant,
-    /// The number of the first point that it was sent.
-    first: u64,
-    /// Rows that it has answered since it was last known to be right.
-    unchecked: Vec<usize>,
-    /// Whether it had no value somewhere: a failed request may poison later ones.
-    troubled: bool,
+    Ready(Box<Worker>),
 }
 
 impl Pool {
@@ -87,6 +91,12 @@ impl Pool {
             failed_starts: 0,
             adapter: None,
             reference: Reference::default(),
+            account: EvaluatorAccount::default(),
+            answers: Answers::default(),
+            noise: Vec::new(),
+            flips: false,
+            hopeless: false,
+            walking: false,
         }
     }
 
@@ -109,14 +119,21 @@ impl Pool {
     pub(super) fn evaluate(&mut self, points: &Points, run: &Run<'_>, out: &mut Responses) {
         let rows = points.rows();
         let mut batch = Some(Batch::new(points, out));
+        let mut stopped_at = None;
         loop {
             let stopping = run.stopped();
             if run.abandoned() {
                 break;
             }
+            if stopping && stopped_at.is_none() {
+                stopped_at = Some(Instant::now());
+                self.workers().for_each(Worker::take_back);
+            }
             let work = batch.as_mut().expect("a batch");
             let checked = work.left == 0 && self.slots.iter().all(Slot::is_checked);
-            if checked || (stopping && !self.busy()) {
+            let waits = stopped_at.is_some_and(|at| at.elapsed() < TAKEN_BACK)
+                && self.workers().any(|worker| worker.cancelled.values().any(Option::is_some));
+            if checked || (stopping && !self.busy() && !waits) {
                 break;
             }
             let dispatched = if stopping { Ok(()) } else { self.dispatch(work) };
@@ -132,17 +149,31 @@ impl Pool {
         }
         let work = batch.expect("a batch");
         work.out.spent(work.sent as i64 - (rows - work.left) as i64);
+        self.account.retried += work.resent as u64;
         work.out.retried(work.resent);
         // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
         for slot in &mut self.slots {
             if let State::Ready(worker) = &mut slot.state {
                 worker.unchecked.clear();
+                worker.cancelled.values_mut().for_each(|row| *row = None);
                 if !worker.under_way.is_empty() {
                     worker.child.kill();
                     slot.state = State::Empty;
                 }
             }
         }
+    }
+
+    /// Ends the first child, so that the next point goes to a fresh one.
+    pub(super) fn renew(&mut self) {
+        self.slots[0].state = State::Empty;
+    }
+
+    fn workers(&mut self) -> impl Iterator<Item = &mut Worker> {
+        self.slots.iter_mut().filter_map(|slot| match &mut slot.state {
+            State::Ready(worker) => Some(&mut **worker),
+            _ => None,
+        })
     }
 
     fn busy(&self) -> bool {
@@ -152,15 +183,16 @@ impl Pool {
     /// Starts children where there is work for them, and gives every ready one as much as it may have.
     fn dispatch(&mut self, batch: &mut Batch<'_>) -> Result<(), ProcessError> {
         let now = Instant::now();
-        let mut wanted = batch.waiting.len() + batch.suspects.len();
-        for index in 0..self.slots.len() {
+        let mut wanted = batch.unsent();
+        let usable = if self.walking { 1 } else { self.slots.len() };
+        for index in 0..usable {
             let start = match &self.slots[index].state {
                 State::Empty => wanted > 0,
                 State::Pausing(until) => wanted > 0 && *until <= now,
                 State::Starting(..) => false,
                 State::Ready(_) => {
                     self.give(index, batch);
-                    wanted = batch.waiting.len() + batch.suspects.len();
+                    wanted = batch.unsent();
                     continue;
                 }
             };
@@ -181,37 +213,48 @@ impl Pool {
         // After every point that is evaluated again: the one that led the model astray will do so once more.
         let again = worker.unchecked.last().is_some_and(|row| batch.again.contains(row));
         let due = worker.troubled || again || worker.unchecked.len() >= interval(worker.window) || idle;
-        if self.settings.sentinels && due && !worker.unchecked.is_empty() {
+        if self.settings.sentinels && !self.walking && due && !worker.unchecked.is_empty() {
             if worker.under_way.is_empty() {
-                request(&mut lines, self.next_point, self.hello.nominal.iter().copied());
-                worker.under_way.push_back((self.next_point, SENTINEL));
-                worker.since = Instant::now();
-                self.next_point += 1;
-                batch.sent += 1;
+                // One for each place that is known, where the program has several.
+                let places: Vec<Option<String>> = worker.places.iter().cloned().map(Some).collect();
+                for place in if places.is_empty() { vec![None] } else { places } {
+                    request(&mut lines, self.next_point, self.hello.nominal.iter().copied(), place.as_deref());
+                    worker.sent(self.next_point, SENTINEL);
+                    self.next_point += 1;
+                    batch.sent += 1;
+                }
                 worker.child.send(lines);
             }
             return;
         }
-        let alone = worker.under_way.front().is_some_and(|&(_, row)| batch.goes_alone(row));
-        while worker.under_way.len() < worker.window && !alone {
-            let row = if worker.under_way.is_empty() && !batch.suspects.is_empty() {
-                batch.suspects.pop_front()
-            } else {
-                batch.waiting.pop_front()
-            };
-            let Some(row) = row else { break };
-            let id = self.next_point;
-            self.next_point += 1;
-            if worker.under_way.is_empty() {
-                worker.since = Instant::now();
-            }
-            worker.under_way.push_back((id, row));
+        if worker.under_way.is_empty() {
+            worker.exclusive = false;
+        }
+        let mut send = |row: usize, worker: &mut Worker, batch: &mut Batch<'_>| {
+            worker.sent(self.next_point, row);
             batch.sends(row);
             let columns = batch.points.dimensions();
-            request(&mut lines, id, (0..columns).map(|column| batch.points.column(column)[row]));
+            let point = (0..columns).map(|column| batch.points.column(column)[row]);
+            request(&mut lines, self.next_point, point, None);
+            self.next_point += 1;
+        };
+        if worker.under_way.is_empty()
+            && let Some(group) = batch.suspects.pop_front()
+        {
+            worker.exclusive = true;
+            group.into_iter().for_each(|row| send(row, worker, batch));
+        }
+        let window = if self.walking { 1 } else { worker.window };
+        while worker.under_way.len() < window && !worker.exclusive {
+            let Some(&row) = batch.waiting.front() else { break };
             if batch.goes_alone(row) {
-                break;
+                if !worker.under_way.is_empty() {
+                    break;
+                }
+                worker.exclusive = true;
             }
+            batch.waiting.pop_front();
+            send(row, worker, batch);
         }
         if !lines.is_empty() {
             worker.child.send(lines);
@@ -225,6 +268,7 @@ impl Pool {
         let child = Child::start(argv, folder, number, &self.events.0, listener.clone())
             .map_err(|fault| ProcessError { fault, stderr: StderrTail::default() })?;
         child.send(self.hello.line());
+        self.account.starts += 1;
         self.slots[index].state = State::Starting(child, Instant::now() + self.settings.start_timeout);
         Ok(())
     }
@@ -252,8 +296,7 @@ impl Pool {
             State::Empty => None,
             State::Pausing(until) => Some(*until),
             State::Starting(_, until) => Some(*until),
-            State::Ready(worker) if worker.under_way.is_empty() => None,
-            State::Ready(worker) => Some(worker.since + self.settings.timeout),
+            State::Ready(worker) => worker.deadline(self.settings.timeout),
         })
     }
 
@@ -267,9 +310,20 @@ impl Pool {
                     let fault = ProcessFault::SilentAtStart { after: self.settings.start_timeout };
                     self.lost_start(index, ProcessError { fault, stderr })?;
                 }
-                State::Ready(worker) if !worker.under_way.is_empty() && worker.since + self.settings.timeout <= now => {
+                State::Ready(worker) => {
+                    let Some(position) = worker.overdue(self.settings.timeout, now) else { continue };
                     let fault = ProcessFault::TimedOut { after: self.settings.timeout };
-                    self.fail(index, fault, batch);
+                    let Some(late) = worker.under_way.remove(position) else { continue };
+                    if worker.abilities.cancel && late.started.is_some() && late.row != SENTINEL {
+                        // The program goes on without this point.
+                        worker.cancel([late]);
+                        let error = ProcessError { fault, stderr: worker.child.tail() };
+                        self.account.failed(&error);
+                        batch.iter_mut().for_each(|batch| batch.charge(late.row, &error, self.settings.retries));
+                    } else {
+                        worker.under_way.push_front(late);
+                        self.fail(index, fault, batch);
+                    }
                 }
                 _ => {}
             }
@@ -312,24 +366,21 @@ impl Pool {
                 Line { sensitol: Some(version), .. } if version != VERSION => ProcessFault::RefusedStudy {
                     message: format!("it speaks version {version} of the protocol, and this is version {VERSION}"),
                 },
-                Line { ready: Some(true), name, version, window, .. } => {
+                line @ Line { ready: Some(true), .. } => {
+                    let (name, version) = (line.name.clone(), line.version.clone());
                     let version = version.map(|version| match version {
                         serde_json::Value::String(text) => text,
                         other => other.to_string(),
                     });
-                    let window = window.unwrap_or(1).max(1);
+                    let window = line.window.unwrap_or(1).max(1);
                     self.adapter = Some(Adapter { name, version, window });
                     self.failed_starts = 0;
-                    let State::Starting(child, _) = std::mem::take(&mut self.slots[index].state) else { return Ok(()) };
-                    self.slots[index].state = State::Ready(Worker {
-                        child,
-                        window,
-                        under_way: VecDeque::new(),
-                        since: Instant::now(),
-                        first: self.next_point,
-                        unchecked: Vec::new(),
-                        troubled: false,
-                    });
+                    let slot = &mut self.slots[index];
+                    if let Some(lost) = slot.lost.take() {
+                        self.account.lost_s += lost.elapsed().as_secs_f64();
+                    }
+                    let State::Starting(child, _) = std::mem::take(&mut slot.state) else { return Ok(()) };
+                    slot.state = State::Ready(Box::new(Worker::new(child, &line, self.next_point)));
                     return Ok(());
                 }
                 other => ProcessFault::NotReady { line: other.quoted.unwrap_or_else(|| Quoted(String::new())) },
@@ -342,6 +393,7 @@ impl Pool {
     /// A child that could not be started after others could is tried again, a few times.
     fn lost_start(&mut self, index: usize, error: ProcessError) -> Result<(), ProcessError> {
         self.failed_starts += 1;
+        self.account.failed(&error);
         self.pause(index);
         if self.is_hopeless() { Err(error) } else { Ok(()) }
     }
@@ -368,21 +420,46 @@ impl Pool {
             Ok(line) => line,
             Err(fault) => return self.fail(index, fault, batch),
         };
+        if let Some(note) = &line.note
+            && let Some(listener) = &self.settings.listener
+        {
+            listener(note);
+        }
+        if line.id.is_none() && (line.alive || line.window.is_some()) {
+            worker.window = line.window.unwrap_or(worker.window).max(1);
+            if line.alive {
+                worker.since = Instant::now();
+            }
+            return;
+        }
         let Some(id) = line.id else {
             return self.fail(index, line.garbage("it has no id"), batch);
         };
-        let Some(position) = worker.under_way.iter().position(|&(known, _)| known == id) else {
+        let is_start = line.started.is_some() && line.y.is_none() && line.error.is_none();
+        if let Some(row) = worker.cancelled.get(&id).copied() {
+            if !is_start {
+                worker.cancelled.remove(&id);
+                self.late_answer(row, line, batch);
+            }
+            return;
+        }
+        let Some(position) = worker.under_way.iter().position(|sent| sent.id == id) else {
             let twice = id >= worker.first && id < self.next_point;
             let fault = if twice { ProcessFault::AnsweredTwice { id } } else { ProcessFault::UnknownPoint { id } };
             return self.fail(index, fault, batch);
         };
+        if is_start {
+            worker.note_place(line.started.as_ref());
+            worker.under_way[position].started = Some(Instant::now());
+            return;
+        }
         let expected = self.hello.characteristics.len();
         if let Some(fault) = line.misshapen(expected, self.hello.dimensions.len()) {
             // Only this point: the line was whole, and the others may be right.
-            if worker.under_way[position].1 == SENTINEL {
+            if worker.under_way[position].row == SENTINEL {
                 return self.fail(index, fault, batch);
             }
-            if let Some((_, row)) = worker.under_way.remove(position) {
+            if let Some(Sent { row, .. }) = worker.under_way.remove(position) {
                 worker.since = Instant::now();
                 let error = ProcessError { fault, stderr: worker.child.tail() };
                 batch.iter_mut().for_each(|batch| batch.fail(row, &error));
@@ -392,7 +469,9 @@ impl Pool {
         if line.y.is_none() && line.error.is_none() {
             return self.fail(index, line.garbage("it has neither y nor error"), batch);
         }
-        let (_, row) = worker.under_way.remove(position).expect("it was found there");
+        let Some(Sent { row, .. }) = worker.under_way.remove(position) else { return };
+        worker.note_place(line.place.as_ref());
+        self.account.answered(line.place.as_ref(), line.cost_s);
         worker.since = Instant::now();
         slot.failures = 0;
         self.failed_starts = 0;
@@ -405,33 +484,50 @@ impl Pool {
             let nominal = |(column, x): (usize, &f64)| batch.points.column(column)[row] == *x;
             let is_nominal = self.hello.nominal.iter().enumerate().all(nominal);
             let troubled = values.contains(&None);
-            if is_nominal {
+            if is_nominal && !self.walking {
                 // The study's own evaluation of the nominal point is the first sentinel.
                 let doubts =
                     self.reference.check(values, &self.hello.characteristics, &batch.coordinates(&worker.unchecked));
                 batch.out.doubt(doubts);
             }
             let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
-            if self.settings.sentinels && !is_nominal && !again {
+            if self.settings.sentinels && !self.walking && !is_nominal && !again {
                 worker.unchecked.push(row);
                 worker.troubled |= troubled;
             }
             if again {
-                batch.suspects.push_back(row);
+                batch.suspects.push_back(vec![row]);
             } else {
                 batch.settle(row, line, &self.hello.characteristics);
             }
         }
     }
 
+    /// An answer to a point that was taken back: it is kept where its row is still open.
+    fn late_answer(&mut self, row: Option<usize>, line: Line, batch: &mut Option<Batch<'_>>) {
+        let shaped =
+            line.y.is_some() && line.misshapen(self.hello.characteristics.len(), self.hello.dimensions.len()).is_none();
+        if let (Some(row), Some(batch), true) = (row, batch, shaped)
+            && (0..batch.out.outputs()).all(|output| batch.out.is_open(row, output))
+        {
+            self.account.answered(line.place.as_ref(), line.cost_s);
+            batch.settle(row, line, &self.hello.characteristics);
+        }
+    }
+
     /// The nominal point, evaluated again: a child that answers otherwise than before is not trusted any more.
     fn checked(&mut self, index: usize, found: Vec<Option<f64>>, batch: &mut Option<Batch<'_>>) {
         let State::Ready(worker) = &mut self.slots[index].state else { return };
-        worker.troubled = false;
-        let rows = std::mem::take(&mut worker.unchecked);
+        // Of several places each has a sentinel: the last one settles what is checked, and the first that differs does.
+        let last = !worker.under_way.iter().any(|sent| sent.row == SENTINEL);
+        let rows = worker.unchecked.clone();
         let suspects = batch.as_ref().map(|batch| batch.coordinates(&rows)).unwrap_or_default();
         let doubts = self.reference.check(found, &self.hello.characteristics, &suspects);
         if doubts.is_empty() {
+            if last {
+                worker.troubled = false;
+                worker.unchecked.clear();
+            }
             return;
         }
         worker.child.kill();
@@ -467,26 +563,27 @@ impl Pool {
         let (exit, stderr) = if fault.is_some() { worker.child.kill() } else { worker.child.ended() };
         let known = fault.is_some();
         let error = ProcessError { fault: fault.unwrap_or(ProcessFault::Crashed { exit }), stderr };
+        self.account.failed(&error);
+        self.slots[index].lost.get_or_insert(worker.since);
+        let crashes = self.slots[index].failures;
         if let Some(batch) = batch {
-            if worker.under_way.iter().any(|&(_, row)| row == SENTINEL) {
+            if worker.under_way.iter().any(|sent| sent.row == SENTINEL) {
                 // It did not survive the nominal point, which it had answered before.
                 batch.distrust(&worker.unchecked);
                 return self.pause(index);
             }
-            let mut rows = worker.under_way.iter().map(|&(_, row)| row);
-            // Of several points under way in a child that crashed nobody knows which one it was.
-            if known || worker.under_way.len() == 1 {
-                if let Some(row) = rows.next() {
+            // Points that were taken back stay open.
+            let rows: Vec<usize> = worker.under_way.iter().map(|sent| sent.row).collect();
+            if known || rows.len() == 1 {
+                if let Some(&row) = rows.first() {
                     batch.charge(row, &error, self.settings.retries);
                 }
-                for row in rows.rev() {
-                    batch.waiting.push_front(row);
-                }
+                rows.iter().skip(1).rev().for_each(|&row| batch.waiting.push_front(row));
+            } else if worker.abilities.isolated && crashes < ISOLATED {
+                rows.iter().rev().for_each(|&row| batch.waiting.push_front(row));
             } else {
-                for row in rows {
-                    batch.failures.entry(row).or_insert(0);
-                    batch.suspects.push_back(row);
-                }
+                // Of several points under way in a child that crashed it is not known which one it was.
+                batch.divide(&rows);
             }
         }
         self.pause(index);

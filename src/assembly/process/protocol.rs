@@ -40,17 +40,62 @@ pub(super) struct Line {
     pub(super) error: Option<String>,
     #[serde(default)]
     pub(super) retry: bool,
+    /// A sign of life, which restarts the clock of what has not started.
+    #[serde(default)]
+    pub(super) alive: bool,
+    /// Where the evaluation of point `id` has just begun.
+    pub(super) started: Option<String>,
+    /// Where the answer was evaluated, and what it took.
+    #[serde(rename = "where")]
+    pub(super) place: Option<String>,
+    pub(super) cost_s: Option<f64>,
+    /// What the program can do; with `ready`.
+    #[serde(default)]
+    pub(super) isolated: bool,
+    #[serde(default)]
+    pub(super) cancel: bool,
+    pub(super) places: Option<usize>,
+    /// For `-v`.
+    pub(super) note: Option<String>,
+    /// Whether it holds NaN or infinities, as Python's json writes them: no value, for that reason.
+    #[serde(skip)]
+    pub(super) not_finite: bool,
     /// How it began, where it is odd.
     #[serde(skip)]
     pub(super) quoted: Option<Quoted>,
 }
 
+/// A line with null in place of NaN and infinities; None where there are none outside its strings.
+fn finite(text: &[u8]) -> Option<Vec<u8>> {
+    let (mut clean, mut inside, mut changed) = (Vec::with_capacity(text.len()), false, false);
+    let mut rest = text;
+    while let Some(&byte) = rest.first() {
+        let word = [&b"NaN"[..], b"-Infinity", b"Infinity"].into_iter().find(|word| !inside && rest.starts_with(word));
+        let taken = word.map_or(if inside && byte == b'\\' { 2 } else { 1 }, <[u8]>::len).min(rest.len());
+        match word {
+            Some(_) => clean.extend_from_slice(b"null"),
+            None => clean.extend_from_slice(&rest[..taken]),
+        }
+        inside ^= byte == b'"';
+        changed |= word.is_some();
+        rest = &rest[taken..];
+    }
+    changed.then_some(clean)
+}
+
 impl Line {
     /// Reads a line; what may have to be shown is kept.
     pub(super) fn parse(text: &[u8]) -> Result<Self, ProcessFault> {
-        let mut line: Self = serde_json::from_slice(text)
-            .map_err(|error| ProcessFault::Garbage { reason: error.to_string(), line: Quoted::of(text) })?;
-        if line.id.is_none() || (line.y.is_none() && line.error.is_none()) {
+        let garbage =
+            |error: serde_json::Error| ProcessFault::Garbage { reason: error.to_string(), line: Quoted::of(text) };
+        let mut line: Self = match serde_json::from_slice(text) {
+            Ok(line) => line,
+            Err(error) => {
+                let Some(text) = finite(text) else { return Err(garbage(error)) };
+                Self { not_finite: true, ..serde_json::from_slice(&text).map_err(|_| garbage(error))? }
+            }
+        };
+        if !line.alive && (line.id.is_none() || (line.y.is_none() && line.error.is_none())) {
             line.quoted = Some(Quoted::of(text));
         }
         Ok(line)
@@ -93,8 +138,9 @@ impl Hello {
     }
 }
 
-/// A request for one point. Numbers are the shortest that read back as the same double.
-pub(super) fn request(line: &mut Vec<u8>, id: u64, point: impl Iterator<Item = f64>) {
+/// A request for one point, at a place of the program where one is named. Numbers are the shortest that read back as the same
+/// double.
+pub(super) fn request(line: &mut Vec<u8>, id: u64, point: impl Iterator<Item = f64>, place: Option<&str>) {
     line.extend_from_slice(b"{\"id\":");
     line.extend_from_slice(id.to_string().as_bytes());
     line.extend_from_slice(b",\"x\":[");
@@ -104,5 +150,10 @@ pub(super) fn request(line: &mut Vec<u8>, id: u64, point: impl Iterator<Item = f
         }
         serde_json::to_writer(&mut *line, &value).expect("a point is finite, and memory does not fail");
     }
-    line.extend_from_slice(b"]}\n");
+    line.push(b']');
+    if let Some(place) = place {
+        line.extend_from_slice(b",\"place\":");
+        serde_json::to_writer(&mut *line, place).expect("text is JSON, and memory does not fail");
+    }
+    line.extend_from_slice(b"}\n");
 }

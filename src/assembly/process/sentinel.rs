@@ -47,7 +47,26 @@ pub(super) fn values(line: &Line, outputs: usize) -> Vec<Option<f64>> {
     }
 }
 
+/// Whether two answers are the same, for an output that varies by `spread` and repeats within `noise`.
+pub(super) fn agree(a: Option<f64>, b: Option<f64>, spread: f64, noise: f64) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() <= noise.max(NOISE * spread + ROUNDING * a.abs()),
+        (None, None) => true,
+        _ => false,
+    }
+}
+
 impl Reference {
+    /// How far an output has been seen to vary.
+    pub(super) fn spread(&self, output: usize) -> f64 {
+        self.range.get(output).map_or(0.0, |range| (range[1] - range[0]).max(0.0))
+    }
+
+    /// What later answers to the nominal point are held against from now on.
+    pub(super) fn trust(&mut self, nominal: &[Option<f64>]) {
+        self.nominal = Some(nominal.to_vec());
+    }
+
     /// Learns from an answer how far the model varies.
     pub(super) fn learn(&mut self, values: &[Option<f64>]) {
         self.range.resize(values.len(), [f64::INFINITY, f64::NEG_INFINITY]);
@@ -65,13 +84,8 @@ impl Reference {
             return Vec::new();
         };
         let doubt = |(output, (&expected, found)): (usize, (&Option<f64>, Option<f64>))| {
-            let spread = self.range.get(output).map_or(0.0, |range| (range[1] - range[0]).max(0.0));
-            let same = match (expected, found) {
-                (Some(a), Some(b)) => (a - b).abs() <= NOISE * spread + ROUNDING * a.abs(),
-                (None, None) => true,
-                _ => false,
-            };
-            (!same).then(|| Doubt {
+            let spread = self.spread(output);
+            (!agree(expected, found, spread, 0.0)).then(|| Doubt {
                 output: names[output].clone(),
                 expected,
                 found,

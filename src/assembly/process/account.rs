@@ -1,0 +1,57 @@
+//! What became of the children of a model, beside its answers.
+
+use std::collections::BTreeMap;
+
+use super::error::{ProcessError, ProcessFault};
+
+/// Starts, failures and what they cost, since the model was made.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct EvaluatorAccount {
+    /// Processes that were started, the first one of every worker included.
+    pub starts: u64,
+    /// Processes that ended while points were under way, or before they were ready.
+    pub crashes: u64,
+    /// Deadlines that passed.
+    pub timeouts: u64,
+    /// Lines that were no answers.
+    pub garbage: u64,
+    /// Points that were sent again.
+    pub retried: u64,
+    /// Seconds from the last answer of a process that failed until another one was ready in its place.
+    pub lost_s: f64,
+    /// The last failure, with the last lines of stderr.
+    pub last: Option<ProcessError>,
+    /// For every place that answers named: how many points, and the seconds that the program says they took.
+    pub places: BTreeMap<String, (u64, f64)>,
+}
+
+impl EvaluatorAccount {
+    /// Whether any process failed.
+    pub fn has_failures(&self) -> bool {
+        self.crashes + self.timeouts + self.garbage > 0
+    }
+
+    /// Counts a failure of a process.
+    pub(super) fn failed(&mut self, error: &ProcessError) {
+        match error.fault {
+            ProcessFault::TimedOut { .. } | ProcessFault::SilentAtStart { .. } => self.timeouts += 1,
+            ProcessFault::Crashed { .. } | ProcessFault::EndedAtStart { .. } => self.crashes += 1,
+            _ => self.garbage += 1,
+        }
+        self.last = Some(error.clone());
+    }
+
+    /// Counts an answer of a place.
+    pub(super) fn answered(&mut self, place: Option<&String>, cost_s: Option<f64>) {
+        if place.is_some() || cost_s.is_some() {
+            let name = place.map_or("", String::as_str);
+            if !self.places.contains_key(name) {
+                self.places.insert(name.to_owned(), (0, 0.0));
+            }
+            if let Some((points, seconds)) = self.places.get_mut(name) {
+                *points += 1;
+                *seconds += cost_s.filter(|cost| cost.is_finite() && *cost >= 0.0).unwrap_or(0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Which answers a model that remembers may have spoilt: those that fit worst into a surface of slopes and curvatures.
+//!
+//! Along an axis with answers `f+`, `f-` on either side of the centre's `f0`: slope `g = |f+ - f-|/2`, curvature
+//! `c = |f+ + f- - 2 f0|/2`, effect `e = max(g, c)`, and `m` its median over the axes. A point is as suspicious as
+//! `max(c/(g + 0.02 m), e/(5 m))` says, a pair as `|f_ij - f_i - f_j + f0| / (0.5 (g_i + g_j) + 0.02 m)` does. This is a ranking and
+//! no test, for points of axes and others in turns: smooth and strongly curved models come out on top as well, and their answers repeat.
+
+use std::collections::HashMap;
+
+/// The answers so far, by the exact point; enough for the axes of any plan that a process can pay for.
+const KEPT: usize = 20_000;
+/// Answers are replayed up to this part of them all, and this many at the least, beside two taken at random.
+const PART: f64 = 0.05;
+const LEAST: usize = 5;
+const RANDOM: usize = 2;
+/// What keeps a quotient finite, as a part of the median effect.
+const FLOOR: f64 = 0.02;
+
+/// A point by its bits; 0 has one sign only.
+type Key = Vec<u64>;
+
+fn key(point: &[f64]) -> Key {
+    point.iter().map(|&x| (x + 0.0).to_bits()).collect()
+}
+
+/// Answers by point, across batches: a stage of pairs is judged by the axes of an earlier one.
+#[derive(Debug, Default)]
+pub(super) struct Answers {
+    known: HashMap<Key, Vec<Option<f64>>>,
+    centre: Option<Vec<f64>>,
+    answered: usize,
+    replayed: usize,
+}
+
+impl Answers {
+    /// Takes in answers that were just given. The first point of all is the centre, unless more points stand one step off another one.
+    pub(super) fn learn(&mut self, points: &[Vec<f64>], values: &[Vec<Option<f64>>], nominal: &[f64]) {
+        self.answered += points.len();
+        if let Some(first) = points.first()
+            && self.centre.is_none()
+        {
+            let steps = |centre: &[f64]| points.iter().filter(|point| moved(centre, point).len() == 1).count();
+            let centre = if steps(first) >= steps(nominal) { first.as_slice() } else { nominal };
+            self.centre = Some(centre.to_vec());
+        }
+        for (point, values) in points.iter().zip(values) {
+            if self.known.len() < KEPT || self.known.contains_key(&key(point)) {
+                self.known.insert(key(point), values.clone());
+            }
+        }
+    }
+
+    /// How many more answers are to be replayed by now.
+    fn owed(&self) -> usize {
+        let part = (PART * self.answered as f64).ceil() as usize;
+        (part.max(LEAST) + RANDOM).saturating_sub(self.replayed)
+    }
+
+    /// The rows to replay, as many as are owed of `most` or of the usual part: the most suspicious ones, and two others.
+    pub(super) fn choose(
+        &mut self,
+        points: &[Vec<f64>],
+        values: &[Vec<Option<f64>>],
+        nominal: &[f64],
+        most: Option<usize>,
+    ) -> Vec<usize> {
+        let owed = most.map_or_else(|| self.owed(), |most| most.saturating_sub(self.replayed));
+        let scores = self.scores(points, values);
+        let usable = |&row: &usize| values[row].iter().any(Option::is_some) && !moved(nominal, &points[row]).is_empty();
+        let mut rows: Vec<usize> = (0..points.len()).filter(usable).collect();
+        rows.sort_by(|&a, &b| scores[b].total_cmp(&scores[a]).then(a.cmp(&b)));
+        // Points of an axis and others in turns: a wrong one on an axis makes all pairs that use it look wrong as well.
+        let on_axis = |&row: &usize| self.centre.as_ref().is_some_and(|centre| moved(centre, &points[row]).len() == 1);
+        let (axes, others): (Vec<usize>, Vec<usize>) = rows.into_iter().partition(on_axis);
+        let ranked = |of: Vec<usize>| of.into_iter().enumerate();
+        let mut turns: Vec<(usize, usize)> = ranked(axes).map(|(turn, row)| (2 * turn, row)).collect();
+        turns.extend(ranked(others).map(|(turn, row)| (2 * turn + 1, row)));
+        turns.sort_unstable();
+        let mut rows: Vec<usize> = turns.into_iter().map(|(_, row)| row).collect();
+        let random = RANDOM.min(owed);
+        let mut others = rows.split_off((owed - random).min(rows.len()));
+        // Fractions of the golden ratio: the same choice in every run, and no pattern of a plan follows it.
+        for turn in 1..=random {
+            if !others.is_empty() {
+                let place = (turn as f64 * 0.618_033_988_749_894_9).fract() * others.len() as f64;
+                rows.push(others.swap_remove(place as usize));
+            }
+        }
+        self.replayed += rows.len();
+        rows
+    }
+
+    fn value(&self, point: &[f64], output: usize) -> Option<f64> {
+        *self.known.get(&key(point))?.get(output)?
+    }
+
+    /// How suspicious every row is; 0 where nothing can be told.
+    fn scores(&self, points: &[Vec<f64>], values: &[Vec<Option<f64>>]) -> Vec<f64> {
+        let mut scores = vec![0.0f64; points.len()];
+        if let Some(centre) = &self.centre {
+            (0..values.first().map_or(0, Vec::len))
+                .for_each(|output| self.score(centre, output, points, values, &mut scores));
+        }
+        scores
+    }
+
+    /// Raises the scores to what one output says.
+    fn score(
+        &self,
+        centre: &[f64],
+        output: usize,
+        points: &[Vec<f64>],
+        values: &[Vec<Option<f64>>],
+        scores: &mut [f64],
+    ) {
+        let Some(f0) = self.value(centre, output) else { return };
+        let axes = self.axes(centre, output, f0);
+        let mut effects: Vec<f64> = axes.values().map(|axis| axis.slope.max(axis.curvature)).collect();
+        effects.sort_by(f64::total_cmp);
+        let Some(&median) = effects.get(effects.len() / 2) else { return };
+        let slope = |d: usize| axes.get(&d).map_or(0.0, |axis| axis.slope);
+        for (row, point) in points.iter().enumerate() {
+            let Some(value) = values[row][output] else { continue };
+            let score = match moved(centre, point)[..] {
+                [d] => axes.get(&d).map_or(0.0, |axis| {
+                    let curved = axis.curvature / (axis.slope + FLOOR * median);
+                    curved.max(axis.slope.max(axis.curvature) / (5.0 * median))
+                }),
+                [i, j] => {
+                    let alone = |d: usize| {
+                        let mut at = centre.to_vec();
+                        at[d] = point[d];
+                        self.value(&at, output)
+                    };
+                    alone(i).zip(alone(j)).map_or(0.0, |(fi, fj)| {
+                        (value - fi - fj + f0).abs() / (0.5 * (slope(i) + slope(j)) + FLOOR * median)
+                    })
+                }
+                _ => 0.0,
+            };
+            // Where nothing varies there is 0/0.
+            if score > scores[row] {
+                scores[row] = score;
+            }
+        }
+    }
+
+    /// Slope and curvature along every axis that has answers on both sides: of the pair of points nearest to the centre.
+    fn axes(&self, centre: &[f64], output: usize, f0: f64) -> HashMap<usize, Axis> {
+        let mut sides: HashMap<usize, [Option<(f64, f64)>; 2]> = HashMap::new();
+        for (key, values) in &self.known {
+            let point: Vec<f64> = key.iter().map(|&bits| f64::from_bits(bits)).collect();
+            if let ([d], Some(value)) = (&moved(centre, &point)[..], values.get(output).copied().flatten()) {
+                let step = point[*d] - centre[*d];
+                let side = &mut sides.entry(*d).or_default()[usize::from(step > 0.0)];
+                if side.is_none_or(|(nearest, _)| step.abs() < nearest) {
+                    *side = Some((step.abs(), value));
+                }
+            }
+        }
+        let axis = |(d, [left, right]): (usize, [Option<(f64, f64)>; 2])| {
+            let ((_, left), (_, right)) = (left?, right?);
+            Some((d, Axis { slope: (right - left).abs() / 2.0, curvature: (right + left - 2.0 * f0).abs() / 2.0 }))
+        };
+        sides.into_iter().filter_map(axis).collect()
+    }
+}
+
+struct Axis {
+    slope: f64,
+    curvature: f64,
+}
+
+/// The coordinates in which a point differs from another.
+pub(super) fn moved(from: &[f64], to: &[f64]) -> Vec<usize> {
+    (0..from.len()).filter(|&d| from[d] != to[d]).collect()
+}
