@@ -33,6 +33,7 @@ pub mod simulation;
 pub mod study;
 pub mod surrogate;
 pub mod sweep;
+pub mod verification;
 pub mod warning;
 
 pub use analysis::{Analysis, CharacteristicAnalysis, analyze, analyze_within};

@@ -46,3 +46,4 @@ mod studies;
 mod support;
 mod sweep;
 mod tolerances;
+mod trust;
