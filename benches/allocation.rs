@@ -76,7 +76,7 @@ fn allocation(c: &mut Criterion) {
         assert_eq!(found.status, Status::Optimal, "{name}: {:?}", found.proof);
         println!(
             "{name}: {} rounds, {} evaluations, residual {:?}, {} nodes",
-            found.rounds, found.evaluations, found.proof.residual, found.proof.nodes
+            found.rounds, found.run.evaluations, found.proof.residual, found.proof.nodes
         );
         group.bench_function(name, |b| b.iter(|| allocate(&problem, &task, &options).unwrap()));
     };

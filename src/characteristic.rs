@@ -1,5 +1,7 @@
 //! A key characteristic (KC): one output of the assembly function that somebody asked for.
 
+use crate::requirement::{Requirement, RequirementError};
+
 /// A key characteristic: its name, its unit, and the limits it should keep.
 ///
 /// ```
@@ -14,12 +16,13 @@ pub struct Characteristic {
     unit: Option<String>,
     limits: SpecLimits,
     target_yield: Option<f64>,
+    requirement: Option<Requirement>,
 }
 
 impl Characteristic {
     /// Without unit, limits or target.
     pub fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), unit: None, limits: SpecLimits::default(), target_yield: None }
+        Self { name: name.into(), unit: None, limits: SpecLimits::default(), target_yield: None, requirement: None }
     }
 
     /// With a unit, which is shown and never converted.
@@ -43,6 +46,23 @@ impl Characteristic {
         Ok(self)
     }
 
+    /// With something that it must keep, beside a target yield.
+    ///
+    /// # Errors
+    /// When the number is impossible, or limits are missing that it speaks of.
+    ///
+    /// ```
+    /// use sensitol::{Characteristic, SpecLimits, requirement::Requirement};
+    /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(5.0), Some(7.0))?);
+    /// let gap = gap.with_target_yield(0.99)?.with_requirement(Requirement::Cpk(1.33))?;
+    /// assert_eq!(gap.requirements(), [Requirement::Yield(0.99), Requirement::Cpk(1.33)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_requirement(mut self, requirement: Requirement) -> Result<Self, RequirementError> {
+        self.requirement = Some(requirement.checked(self.limits.exist())?);
+        Ok(self)
+    }
+
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
@@ -56,6 +76,12 @@ impl Characteristic {
     /// Its specification limits.
     pub fn limits(&self) -> SpecLimits {
         self.limits
+    }
+
+    /// Everything that it must keep: its target yield, and what else is required of it.
+    pub fn requirements(&self) -> Vec<Requirement> {
+        let target = self.target_yield.map(Requirement::Yield);
+        target.into_iter().chain(self.requirement.filter(|other| Some(*other) != target)).collect()
     }
 
     /// The share of assemblies that must lie within the limits, where one was given.

@@ -2,12 +2,14 @@
 
 use std::time::{Duration, Instant};
 
-use crate::analysis::{Analysis, analyze_within};
+use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_within};
 use crate::assembly::Run;
 use crate::method::{self, Method, Options, Procedure};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_within};
+use crate::summary::RunSummary;
+use crate::verdict::Verdict;
 
 /// What may be spent.
 ///
@@ -111,10 +113,10 @@ impl Errors {
 pub struct Ran {
     /// Which.
     pub contender: Contender,
-    /// Points that it takes.
+    /// What it came to in points and time.
+    pub run: RunSummary,
+    /// Points that it takes, those included that were known already, from another method or an earlier run.
     pub evaluations: u64,
-    /// Those of them that were known already, from another method or an earlier run.
-    pub reused: u64,
     /// Time within the model; of points that were known, what others took on average.
     pub evaluation: Duration,
     /// Seconds besides.
@@ -123,6 +125,8 @@ pub struct Ran {
     pub figures: Vec<Figures>,
     /// How far that is off.
     pub errors: Vec<Errors>,
+    /// For every characteristic with a target yield, what the method says of it.
+    pub verdicts: Vec<Option<Verdict>>,
     /// For every characteristic, whether no other method has a smaller error for as many evaluations or fewer.
     pub pareto: Vec<bool>,
 }
@@ -149,8 +153,8 @@ pub struct Comparison {
     pub ran: Vec<Ran>,
     /// Those that did not.
     pub not_run: Vec<NotRun>,
-    /// Whether it was stopped.
-    pub stopped: bool,
+    /// What all of it came to in points and time, the reference included, and why it ended early.
+    pub run: RunSummary,
 }
 
 /// Why a problem cannot be compared.
@@ -186,9 +190,11 @@ pub fn compare(problem: &Problem, options: &CompareOptions) -> Result<Comparison
 
 /// [`compare`], stopping when told to.
 pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Result<Comparison, CompareError> {
+    let begun = Instant::now();
     let costly = problem.function().signature().costly;
     let samples = options.reference.unwrap_or(if costly { COSTLY_REFERENCE } else { REFERENCE });
-    let mut comparison = Comparer { problem, options, run, ran: Vec::new(), not_run: Vec::new() };
+    let mut comparison =
+        Comparer { problem, options, run, ran: Vec::new(), not_run: Vec::new(), lost: RunSummary::default() };
     // The cheap ones first: should time run out, the most is known.
     let adaptive = |procedure: &&&dyn Procedure| procedure.method() == Method::Auto;
     for procedure in method::ALL.iter().filter(|one| !adaptive(one)).chain(method::ALL.iter().filter(adaptive)) {
@@ -210,7 +216,8 @@ pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>
         run,
         &|_| {},
     )?;
-    Ok(comparison.judged(reference))
+    let comparison = comparison.judged(reference);
+    Ok(Comparison { run: RunSummary { wall: begun.elapsed(), ..comparison.run }, ..comparison })
 }
 
 /// Quasi-random points where there are any, and none has been paid for already.
@@ -225,6 +232,8 @@ struct Comparer<'a> {
     run: &'a Run<'a>,
     ran: Vec<Ran>,
     not_run: Vec<NotRun>,
+    /// What methods came to that were stopped before they were done.
+    lost: RunSummary,
 }
 
 impl Comparer<'_> {
@@ -250,7 +259,10 @@ impl Comparer<'_> {
         }
         let begun = Instant::now();
         match analyze_within(self.problem, &options, self.run) {
-            Ok(analysis) if analysis.stopped => self.refuse(contender, cost, "stopped before it was done"),
+            Ok(analysis) if analysis.run.unfinished() => {
+                self.lost = self.lost.and(&analysis.run);
+                self.refuse(contender, cost, "stopped before it was done");
+            }
             Ok(analysis) => self.ran.push(of_analysis(contender, &analysis, begun.elapsed())),
             Err(error) => self.refuse(contender, cost, error.to_string()),
         }
@@ -275,7 +287,10 @@ impl Comparer<'_> {
         let options = SimulationOptions { samples, sampler, seed: self.options.seed, ..SimulationOptions::default() };
         let begun = Instant::now();
         match simulate_within(self.problem, &options, self.run, &|_| {}) {
-            Ok(found) if found.stopped => self.refuse(contender, Some(samples), "stopped before it was done"),
+            Ok(found) if found.run.unfinished() => {
+                self.lost = self.lost.and(&found.run);
+                self.refuse(contender, Some(samples), "stopped before it was done");
+            }
             Ok(found) => self.ran.push(of_simulation(contender, &found, begun.elapsed())),
             Err(error) => self.refuse(contender, Some(samples), error.to_string()),
         }
@@ -291,23 +306,25 @@ impl Comparer<'_> {
         for (index, ran) in self.ran.iter_mut().enumerate() {
             ran.pareto = fronts.iter().map(|front| front[index]).collect();
         }
-        let own = |ran: &Ran| (ran.evaluation, ran.evaluations - ran.reused);
+        let own = |ran: &Ran| (ran.evaluation, ran.evaluations - ran.run.cached);
         let (spent, points) = self
             .ran
             .iter()
             .map(own)
-            .fold((reference.in_model, reference.evaluations), |(time, points), (more, count)| {
+            .fold((reference.run.in_model, reference.run.evaluations), |(time, points), (more, count)| {
                 (time + more, points + count)
             });
         let each = spent.as_secs_f64() / points.max(1) as f64;
-        for ran in self.ran.iter_mut().filter(|ran| ran.reused > 0) {
-            ran.evaluation += Duration::try_from_secs_f64(each * ran.reused as f64).unwrap_or_default();
+        for ran in self.ran.iter_mut().filter(|ran| ran.run.cached > 0) {
+            ran.evaluation += Duration::try_from_secs_f64(each * ran.run.cached as f64).unwrap_or_default();
         }
         for one in &mut self.not_run {
             one.projected_s = one.evaluations.map(|count| each * count as f64);
         }
-        let stopped = reference.stopped || self.run.stopped();
-        Comparison { reference, ran: self.ran, not_run: self.not_run, stopped }
+        let all = self.ran.iter().fold(reference.run.and(&self.lost), |all, ran| all.and(&ran.run));
+        let stopped = reference.run.stopped.or(self.lost.stopped).or_else(|| self.run.stop_reason());
+        let run = RunSummary { seed: Some(self.options.seed), stopped, ..all };
+        Comparison { reference, ran: self.ran, not_run: self.not_run, run }
     }
 }
 
@@ -321,10 +338,11 @@ fn of_analysis(contender: Contender, analysis: &Analysis, took: Duration) -> Ran
     });
     Ran {
         contender,
-        evaluations: (analysis.evaluations + analysis.reused) as u64,
-        reused: analysis.reused as u64,
-        evaluation: analysis.in_model,
-        engine: took.saturating_sub(analysis.in_model),
+        run: analysis.run,
+        evaluations: analysis.run.evaluations + analysis.run.cached,
+        evaluation: analysis.run.in_model,
+        engine: took.saturating_sub(analysis.run.in_model),
+        verdicts: analysis.characteristics.iter().map(CharacteristicAnalysis::verdict).collect(),
         figures: figures.collect(),
         errors: Vec::new(),
         pareto: Vec::new(),
@@ -334,10 +352,11 @@ fn of_analysis(contender: Contender, analysis: &Analysis, took: Duration) -> Ran
 fn of_simulation(contender: Contender, found: &Simulation, took: Duration) -> Ran {
     Ran {
         contender,
-        evaluations: found.evaluations + found.reused,
-        reused: found.reused,
-        evaluation: found.in_model,
-        engine: took.saturating_sub(found.in_model),
+        run: found.run,
+        evaluations: found.run.evaluations + found.run.cached,
+        verdicts: found.characteristics.iter().map(SimulatedCharacteristic::verdict).collect(),
+        evaluation: found.run.in_model,
+        engine: took.saturating_sub(found.run.in_model),
         figures: found.characteristics.iter().map(figures).collect(),
         errors: Vec::new(),
         pareto: Vec::new(),

@@ -1,11 +1,16 @@
 //! Evaluates what a plan asks for, and keeps count.
 
+mod history;
+
+pub(crate) use history::history;
+
 use std::time::{Duration, Instant};
 
 use crate::assembly::process::Doubt;
 use crate::assembly::{Ask, Points, Responses, Run};
 use crate::plan::{Known, Plan, Stage};
 use crate::problem::Problem;
+use crate::summary::{RunSummary, StopReason};
 
 /// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
 pub(crate) const BATCH: usize = 1 << 23;
@@ -23,8 +28,10 @@ pub struct Evaluated {
     pub doubts: Vec<Doubt>,
     /// In how many stages.
     pub stages: usize,
-    /// Whether it was stopped before the plan was done.
-    pub stopped: bool,
+    /// Points sent again.
+    pub retried: usize,
+    /// Why it was stopped before the plan was done; None where it was not.
+    pub stopped: Option<StopReason>,
     /// Time within the model.
     pub in_model: Duration,
 }
@@ -36,7 +43,7 @@ pub fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated 
     let mut evaluated = Evaluated::nothing(problem);
     while let Some(stage) = plan.next(&evaluated.known) {
         evaluated.add(problem, plan, &stage, run);
-        if evaluated.stopped {
+        if evaluated.stopped.is_some() {
             break;
         }
     }
@@ -52,8 +59,23 @@ impl Evaluated {
             reused: 0,
             doubts: Vec::new(),
             stages: 0,
-            stopped: false,
+            retried: 0,
+            stopped: None,
             in_model: Duration::ZERO,
+        }
+    }
+
+    /// In numbers.
+    pub fn summary(&self) -> RunSummary {
+        RunSummary {
+            evaluations: self.evaluations as u64,
+            cached: self.reused as u64,
+            retried: self.retried as u64,
+            failed: self.known.failed_points() as u64,
+            stages: self.stages as u64,
+            in_model: self.in_model,
+            stopped: self.stopped,
+            ..RunSummary::default()
         }
     }
 
@@ -75,26 +97,27 @@ impl Evaluated {
             problem.function().evaluate(&Ask::values(&points, problem.outputs()), run, &mut out);
             self.in_model += begun.elapsed();
             for (row, (point, _)) in batch.iter().enumerate() {
-                self.learn(point, row, &out);
+                self.learn(point, row, &out, run);
             }
             self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
             self.reused += out.count_reused();
+            self.retried += out.count_retried();
             self.doubts.extend(out.doubts().iter().cloned());
-            if self.stopped {
+            if self.stopped.is_some() {
                 return;
             }
         }
     }
 
     /// A row that is still open was not finished: it was sent only if some of it was answered.
-    fn learn(&mut self, point: &crate::plan::Point, row: usize, out: &Responses) {
+    fn learn(&mut self, point: &crate::plan::Point, row: usize, out: &Responses, run: &Run<'_>) {
         let mut answered = false;
         for characteristic in 0..out.outputs() {
             let answer = match (out.value(row, characteristic), out.error(row, characteristic)) {
                 (Some(value), _) => Ok(value),
                 (None, Some(error)) => Err(error.clone()),
                 (None, None) => {
-                    self.stopped = true;
+                    self.stopped.get_or_insert_with(|| run.why_open());
                     continue;
                 }
             };

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use crate::assembly::process::Adapter;
 use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
 use crate::problem::Problem;
+use crate::summary::RunSummary;
 
 /// Points in the two passes that must agree.
 const SCATTERED: usize = 8;
@@ -30,8 +31,8 @@ const MANY: usize = 5;
 pub struct Probe {
     /// What an external program says of itself.
     pub adapter: Option<Adapter>,
-    /// Points sent.
-    pub evaluations: usize,
+    /// What it came to in points and time.
+    pub run: RunSummary,
     /// From nothing to ready.
     pub start: Duration,
     /// For a point by itself, and for one of many.
@@ -50,12 +51,12 @@ pub struct Check {
     /// What.
     pub what: &'static str,
     /// Whether it does.
-    pub verdict: Verdict,
+    pub verdict: Finding,
 }
 
 /// What a check came to.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Finding {
     /// It is as it should be.
     Passed,
     /// An analysis gets along with it, and should not have to.
@@ -66,7 +67,7 @@ pub enum Verdict {
     NotChecked,
 }
 
-impl Verdict {
+impl Finding {
     /// What is wrong, where anything is.
     pub fn fault(&self) -> Option<&str> {
         match self {
@@ -100,7 +101,7 @@ pub struct Probed {
 impl Probe {
     /// Whether nothing is as it should not be, and everything could be checked.
     pub fn passed(&self) -> bool {
-        self.checks.iter().all(|check| matches!(check.verdict, Verdict::Passed | Verdict::Doubtful(_)))
+        self.checks.iter().all(|check| matches!(check.verdict, Finding::Passed | Finding::Doubtful(_)))
     }
 }
 
@@ -130,10 +131,17 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let asked = Asked { problem, run };
     let nominal: Vec<f64> = problem.dimensions().iter().map(|dimension| dimension.nominal()).collect();
     let names: Vec<String> = problem.characteristics().iter().map(|one| one.name().to_owned()).collect();
-    let mut evaluations = 0;
+    let since = begun;
+    let mut spent = RunSummary::default();
     let mut ask = |rows: &[Vec<f64>]| {
-        evaluations += rows.len();
-        asked.rows(rows)
+        let begun = Instant::now();
+        let out = asked.rows(rows);
+        spent.evaluations += rows.len() as u64;
+        spent.retried += out.count_retried() as u64;
+        spent.failed += out.failed_among(&(0..rows.len()).collect::<Vec<_>>()) as u64;
+        spent.stages += 1;
+        spent.in_model += begun.elapsed();
+        out
     };
     let mut checks = Vec::new();
     let mut check = |what, verdict| checks.push(Check { what, verdict });
@@ -144,9 +152,9 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let alone = begun.elapsed();
     let missing = (0..names.len()).find(|&c| first.value(0, c).is_none());
     let fault = missing.map(|c| format!("`{}`: {}", names[c], reason(&first, 0, c)));
-    check("the nominal dimensions have values", Verdict::of(fault));
+    check("the nominal dimensions have values", Finding::of(fault));
     if (0..names.len()).all(|c| first.value(0, c).is_none()) {
-        LATER.into_iter().for_each(|what| check(what, Verdict::NotChecked));
+        LATER.into_iter().for_each(|what| check(what, Finding::NotChecked));
         let unknown = |name: &String| Probed {
             name: name.clone(),
             nominal: None,
@@ -155,7 +163,8 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
             silent: Vec::new(),
         };
         let characteristics = names.iter().map(unknown).collect();
-        return Ok(Probe { adapter, evaluations, start, alone, together: alone, checks, characteristics });
+        let run = RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), ..spent };
+        return Ok(Probe { adapter, run, start, alone, together: alone, checks, characteristics });
     }
     let begun = Instant::now();
     let second = ask(std::slice::from_ref(&nominal));
@@ -220,12 +229,13 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     };
     let unknown = |c: usize| first.value(0, c).is_none() || (!steps.is_empty() && known(c).is_empty());
     let reacts = match (0..names.len()).find(mute) {
-        Some(c) => Verdict::Failed(format!("`{}` is the same at every point within one sigma", names[c])),
-        None if (0..names.len()).any(unknown) => Verdict::NotChecked,
-        None => Verdict::Passed,
+        Some(c) => Finding::Failed(format!("`{}` is the same at every point within one sigma", names[c])),
+        None if (0..names.len()).any(unknown) => Finding::NotChecked,
+        None => Finding::Passed,
     };
     check(REACTS, reacts);
-    Ok(Probe { adapter, evaluations, start, alone, together, checks, characteristics })
+    let run = RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), ..spent };
+    Ok(Probe { adapter, run, start, alone, together, checks, characteristics })
 }
 
 struct Asked<'a> {
@@ -262,7 +272,7 @@ impl Asked<'_> {
     }
 
     /// Whether all points within the tolerances have values, and which have none.
-    fn within(&self, nominal: &[f64], asked: &[(&Vec<Vec<f64>>, &Responses)]) -> Verdict {
+    fn within(&self, nominal: &[f64], asked: &[(&Vec<Vec<f64>>, &Responses)]) -> Finding {
         let outputs = self.problem.outputs().len();
         let mut failed: Vec<String> = Vec::new();
         let mut points = 0;
@@ -275,13 +285,13 @@ impl Asked<'_> {
             }
         }
         if failed.is_empty() {
-            return Verdict::Passed;
+            return Finding::Passed;
         }
         let shown = failed.iter().take(NAMED).cloned().collect::<Vec<_>>().join("; ");
         let more = failed.len().saturating_sub(NAMED);
         let more = if more > 0 { format!("; and {more} more") } else { String::new() };
         let fault = format!("{} of {points} points had no value: {shown}{more}", failed.len());
-        if failed.len() * MANY > points { Verdict::Failed(fault) } else { Verdict::Doubtful(fault) }
+        if failed.len() * MANY > points { Finding::Failed(fault) } else { Finding::Doubtful(fault) }
     }
 
     /// The dimensions of a point that are not nominal.
@@ -314,7 +324,7 @@ fn reason(out: &Responses, row: usize, c: usize) -> String {
 }
 
 /// Whether two answers to the same points are the same but for this much, by pairs of their rows.
-fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses, by: f64) -> Verdict {
+fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses, by: f64) -> Finding {
     let mut compared = false;
     for &(row, other) in rows {
         for (c, name) in names.iter().enumerate() {
@@ -328,10 +338,10 @@ fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses,
                 (Some(x), None) => format!("`{name}` was {x} and then had no value: {}", reason(b, other, c)),
                 (None, Some(y)) => format!("`{name}` had no value ({}) and then was {y}", reason(a, row, c)),
             };
-            return Verdict::Failed(fault);
+            return Finding::Failed(fault);
         }
     }
-    if compared { Verdict::Passed } else { Verdict::NotChecked }
+    if compared { Finding::Passed } else { Finding::NotChecked }
 }
 
 /// The noise in values at equal distances; None where their differences show none.

@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::process::Adapter;
@@ -17,6 +18,7 @@ use crate::evaluation::BATCH;
 use crate::method::{MethodError, Options};
 use crate::names::nearest;
 use crate::problem::Problem;
+use crate::summary::RunSummary;
 use crate::warning::Warning;
 
 /// A problem along one of its dimensions.
@@ -28,16 +30,8 @@ pub struct Sweep {
     pub values: Vec<f64>,
     /// The analysis at every value; None where the sweep was stopped before it was done.
     pub analyses: Vec<Option<Analysis>>,
-    /// Points sent to the model, each once for all values.
-    pub evaluations: usize,
-    /// Points whose answers were known from an earlier run.
-    pub reused: usize,
-    /// Points that lost at least one characteristic.
-    pub failed: usize,
-    /// Batches in which they were sent.
-    pub batches: usize,
-    /// Whether it was stopped before all was done.
-    pub stopped: bool,
+    /// What it came to in points, each once for all values, and time; why it ended before all was done.
+    pub run: RunSummary,
 }
 
 /// Why a problem cannot be swept so.
@@ -99,7 +93,7 @@ pub enum SweepError {
 /// let swept = sweep(&area, "height", &[5.0, 10.0], &Method::SecondOrder.into())?;
 /// let sigma = |at: usize| swept.analyses[at].as_ref().unwrap().characteristics[0].moments.unwrap().sigma();
 /// assert!((sigma(0) - 0.5).abs() < 1e-12 && (sigma(1) - 1.0).abs() < 1e-12);
-/// assert_eq!((swept.evaluations, swept.batches), (6, 1));
+/// assert_eq!((swept.run.evaluations, swept.run.stages), (6, 1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(problem: &Problem, dimension: &str, values: &[f64], options: &Options) -> Result<Sweep, SweepError> {
@@ -114,6 +108,7 @@ pub fn sweep_within(
     options: &Options,
     run: &Run<'_>,
 ) -> Result<Sweep, SweepError> {
+    let begun = Instant::now();
     let place = place(problem, dimension)?;
     if values.is_empty() {
         return Err(SweepError::NoValue);
@@ -148,8 +143,8 @@ pub fn sweep_within(
             gatherer.memory().lacks = false;
             let found = analyze_within(problem, options, run)?;
             let complete = !gatherer.memory().lacks;
-            stopped |= complete && found.stopped;
-            *analysis = (complete && !found.stopped).then_some(found);
+            stopped |= complete && found.run.unfinished();
+            *analysis = (complete && !found.run.unfinished()).then_some(found);
         }
         stopped |= run.stopped();
         if stopped || !gatherer.evaluate_lacking(run) {
@@ -159,15 +154,14 @@ pub fn sweep_within(
     }
     let memory = gatherer.memory();
     stopped |= memory.stopped;
+    let budget = || analyses.iter().flatten().find_map(|found| found.run.stopped);
+    let stopped = if stopped { Some(run.why_open()) } else { budget() };
+    let seed = analyses.iter().flatten().find_map(|found| found.run.seed);
     Ok(Sweep {
         dimension: place,
         values: values.to_vec(),
         analyses,
-        evaluations: memory.evaluations,
-        reused: memory.reused,
-        failed: memory.failed,
-        batches: memory.batches,
-        stopped,
+        run: RunSummary { wall: begun.elapsed(), seed, stopped, ..memory.run },
     })
 }
 
@@ -202,10 +196,7 @@ struct Memory {
     lacks: bool,
     /// Whether everything is evaluated when it is asked.
     at_once: bool,
-    evaluations: usize,
-    reused: usize,
-    failed: usize,
-    batches: usize,
+    run: RunSummary,
     stopped: bool,
 }
 
@@ -214,10 +205,11 @@ impl Memory {
         let answered = |row: usize| (0..out.outputs()).any(|output| !out.is_open(row, output));
         let failed = |row: usize| (0..out.outputs()).any(|output| out.error(row, output).is_some());
         let rows = (0..out.rows()).filter(|&row| answered(row)).count();
-        self.evaluations = (self.evaluations + rows).saturating_add_signed(out.extra() as isize);
-        self.reused += out.count_reused();
-        self.failed += (0..out.rows()).filter(|&row| failed(row)).count();
-        self.batches += 1;
+        self.run.evaluations = (self.run.evaluations + rows as u64).saturating_add_signed(out.extra());
+        self.run.cached += out.count_reused() as u64;
+        self.run.retried += out.count_retried() as u64;
+        self.run.failed += (0..out.rows()).filter(|&row| failed(row)).count() as u64;
+        self.run.stages += 1;
     }
 }
 
@@ -249,8 +241,10 @@ impl Gatherer {
         let outputs = self.problem.outputs();
         for batch in wanted.chunks((BATCH / self.problem.dimensions().len()).max(1)) {
             let mut out = Responses::open(batch.len(), outputs.len());
+            let begun = Instant::now();
             self.function().evaluate(&Ask::values(&Points::from_rows(batch), outputs), run, &mut out);
             let mut memory = self.memory();
+            memory.run.in_model += begun.elapsed();
             memory.count(&out);
             for (row, point) in batch.iter().enumerate() {
                 let answer = |output: usize| {
@@ -293,8 +287,11 @@ impl AssemblyFunction for Gatherer {
             foreign || ((memory.at_once || rows >= MANY) && !(0..rows).all(known))
         };
         if at_once {
+            let begun = Instant::now();
             self.function().evaluate(ask, run, out);
-            self.memory().count(out);
+            let mut memory = self.memory();
+            memory.run.in_model += begun.elapsed();
+            memory.count(out);
             return;
         }
         let mut memory = self.memory();

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! worst case       (reach beyond the nominal)/(U - nominal), linear in T
-//! rss, Cpk, sigma  (R/s)^2 with R the rss or sigma and s the room that the mean leaves
+//! rss              (R/s)^2 with R the rss and s the room that the middle of the linear model leaves
+//! Cpk, sigma       (R/s)^2 with R sigma and s the room that the mean leaves
 //! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield
 //! ```
 //!
@@ -10,12 +11,12 @@
 //! second-order moments at the trial tolerances.
 
 use super::cost::Priced;
-use super::requirement::Requirement;
 use super::response::Responses;
 use super::separable::{Row, Term};
 use crate::capability::{self, Capability, Law};
 use crate::characteristic::SpecLimits;
 use crate::moments::Moments;
+use crate::requirement::Requirement;
 
 /// What sums in another order may add: limits that are met to the last digit are kept.
 pub(super) const KEPT: f64 = 1e-12;
@@ -94,36 +95,27 @@ impl Constraint {
         let slopes = match self.requirement {
             Requirement::Rss => {
                 let (square, slopes) = responses.rss_squared(k, priced, &factors)?;
-                let own: Vec<f64> = slopes.iter().map(|slope| 0.5 * slope / square).collect();
-                if plain { own } else { self.with_room(responses, priced, &factors, Some(own))? }
+                // The middle of the linear model stays where it is.
+                slopes.iter().map(|slope| 0.5 * slope / square).collect()
             }
             _ if plain => {
                 // Sigma squared is the sum of the groups' squares.
                 let (variance, squares) = responses.plain_squares(k, priced, &factors)?;
                 squares.iter().map(|square| square / variance).collect()
             }
-            _ => self.with_room(responses, priced, &factors, None)?,
+            _ => self.with_room(responses, priced, &factors)?,
         };
         let slopes = slopes.into_iter().map(|slope| 2.0 * value * slope).collect::<Vec<f64>>();
         slopes.iter().all(|slope| slope.is_finite()).then_some(Linearised { value, slopes, linear: false })
     }
 
-    /// Slopes of `ln(R/s)`, where `own` are those of `ln R`, or those of `ln sigma` stand for them.
-    fn with_room(
-        &self,
-        responses: &Responses,
-        priced: &[Priced],
-        factors: &[f64],
-        own: Option<Vec<f64>>,
-    ) -> Option<Vec<f64>> {
+    /// Slopes of `ln(sigma/s)`.
+    fn with_room(&self, responses: &Responses, priced: &[Priced], factors: &[f64]) -> Option<Vec<f64>> {
         let moments = responses.moments(self.characteristic, factors)?;
         let by = responses.moment_slopes(self.characteristic, priced, factors)?;
         let partial = self.room_slopes(&moments)?;
-        let of = |(g, by): (usize, &[f64; 4])| {
-            let own = own.as_ref().map_or(by[1], |own| own[g]);
-            own - partial[0] * by[0] - partial[1] * by[2] - partial[2] * by[3]
-        };
-        Some(by.iter().enumerate().map(of).collect())
+        let of = |by: &[f64; 4]| by[1] - partial[0] * by[0] - partial[1] * by[2] - partial[2] * by[3];
+        Some(by.iter().map(of).collect())
     }
 
     /// The reach beyond the nominal by the room that the limit leaves, and its coefficients by `T`.
@@ -156,11 +148,13 @@ impl Constraint {
         shifts: Option<&[f64]>,
     ) -> Option<f64> {
         let moments = responses.moments_shifted(self.characteristic, factors, shifts)?;
-        let own = match self.requirement {
-            Requirement::Rss => responses.rss_squared(self.characteristic, priced, factors)?.0.sqrt(),
-            _ => moments.sigma(),
+        let (own, room) = match self.requirement {
+            Requirement::Rss => {
+                let rss = responses.rss_squared(self.characteristic, priced, factors)?.0.sqrt();
+                (rss, self.room_about(responses.middle(self.characteristic, shifts)?)?)
+            }
+            _ => (moments.sigma(), self.room(&moments)?),
         };
-        let room = self.room(&moments)?;
         if own == 0.0 { Some(if room > 0.0 { 0.0 } else { f64::INFINITY }) } else { Some(own / room) }
     }
 
@@ -181,7 +175,17 @@ impl Constraint {
         self.worst_case(responses, &all, &at).map(|(value, _)| value)
     }
 
-    /// The largest rss or sigma that keeps it, with this mean and shape; None where none does.
+    /// The room that is left beside a value on this side; None where there is none.
+    fn room_about(&self, value: f64) -> Option<f64> {
+        let room = match self.side {
+            Side::Below => value - self.limits.lower()?,
+            Side::Above => self.limits.upper()? - value,
+            Side::Both => return None,
+        };
+        (room > 0.0).then_some(room)
+    }
+
+    /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it is no matter of the mean.
     pub(super) fn room(&self, moments: &Moments) -> Option<f64> {
         let (below, above) =
             (self.limits.lower().map(|l| moments.mean() - l), self.limits.upper().map(|u| u - moments.mean()));
@@ -194,7 +198,7 @@ impl Constraint {
         match self.requirement {
             Requirement::Sigma(most) => Some(most),
             Requirement::Cpk(least) => positive(side? / (3.0 * least)),
-            Requirement::Rss | Requirement::WorstCase => positive(side?),
+            Requirement::Rss | Requirement::WorstCase => None,
             Requirement::Yield(least) => room_for_yield(moments, [below, above], 1.0 - least),
         }
     }
@@ -208,11 +212,7 @@ impl Constraint {
                 let sign = if self.side == Side::Above { -1.0 } else { 1.0 };
                 return Some([sign / (3.0 * least * room), 0.0, 0.0]);
             }
-            Requirement::Rss | Requirement::WorstCase => {
-                let sign = if self.side == Side::Above { -1.0 } else { 1.0 };
-                return Some([sign / room, 0.0, 0.0]);
-            }
-            Requirement::Yield(_) => {}
+            Requirement::Rss | Requirement::WorstCase | Requirement::Yield(_) => {}
         }
         let (mean, sigma) = (moments.mean(), moments.sigma());
         let (skewness, excess) = (moments.skewness()?, moments.excess()?);
@@ -417,6 +417,13 @@ impl Constraint {
         let doubled = 2.0 * multiplier * self.value(responses, priced, at);
         if let Requirement::Sigma(most) = self.requirement {
             return Some([None, None, Some(doubled / most)]);
+        }
+        if self.requirement == Requirement::Rss {
+            let price = doubled / self.room_about(responses.middle(self.characteristic, None)?)?;
+            return Some(match self.side {
+                Side::Below => [Some(price), None, None],
+                _ => [None, Some(price), None],
+            });
         }
         let [lower, upper] = self.room_by_limits(&moments)?;
         let of = |exists: bool, by: f64| (exists && by != 0.0).then_some(doubled * by);

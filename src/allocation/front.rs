@@ -2,10 +2,10 @@
 
 use super::choose::{Choice, choose};
 use super::constraint::Constraint;
-use super::requirement::Requirement;
 use super::solve::Setting;
 use crate::distribution::standard_normal;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 
 /// One point of the front: the cheapest tolerances for a requirement.
 #[derive(Debug, Clone, PartialEq)]

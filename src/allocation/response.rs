@@ -221,6 +221,15 @@ impl Responses {
         Some((constant, coefficients))
     }
 
+    /// The value of a linear model with every dimension in the middle of its band, which no tolerance moves: about it lies the
+    /// rss, as an analysis has it. With nominals moved by `shifts`, in sigmas.
+    pub(super) fn middle(&self, characteristic: usize, shifts: Option<&[f64]>) -> Option<f64> {
+        let of = &self.of[characteristic];
+        let moved = |d: usize| self.reach[d].middle + shifts.map_or(0.0, |by| by[d] * self.dimensions[d].sigma());
+        let slopes = of.slopes.as_ref()?.iter().enumerate();
+        Some(of.nominal? + slopes.map(|(d, slope)| slope * moved(d)).sum::<f64>())
+    }
+
     /// The squared root of the sum of squares, and its derivatives by `ln T` of every group.
     pub(super) fn rss_squared(
         &self,

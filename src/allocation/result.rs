@@ -2,10 +2,13 @@
 
 use super::front::FrontPoint;
 use super::joint::JointYield;
-use super::requirement::Requirement;
 use crate::analysis::Analysis;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 use crate::simulation::Simulation;
+use crate::summary::RunSummary;
+use crate::verdict::Judged;
+use crate::warning::Warning;
 
 /// How it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,14 +81,10 @@ pub struct Kept {
     pub characteristic: usize,
     /// What is required.
     pub requirement: Requirement,
-    /// What there was, in the requirement's own measure: yield, Cpk, sigma, or the greatest part of a limit's room that rss or worst case takes.
-    pub before: Option<f64>,
-    /// What there is.
-    pub after: Option<f64>,
-    /// Whether it was kept before.
-    pub met_before: bool,
-    /// Whether it is kept.
-    pub met_after: bool,
+    /// What there was, by the analysis at the tolerances before.
+    pub before: Judged,
+    /// What there is, by the analysis at those found; None where none were.
+    pub after: Option<Judged>,
 }
 
 /// What a requirement costs: by how much the cost falls per unit by which something gives way.
@@ -175,12 +174,10 @@ pub struct Allocation {
     pub front: Vec<FrontPoint>,
     /// The model itself at the tolerances after, where it was asked for.
     pub confirmation: Option<Simulation>,
-    /// Points sent to the model, those of a confirmation by Monte Carlo included.
-    pub evaluations: u64,
-    /// Answers taken from an earlier run.
-    pub reused: u64,
+    /// What it came to in points and time, those of a confirmation by Monte Carlo included, and why it ended early.
+    pub run: RunSummary,
     /// How often derivatives were taken.
     pub rounds: usize,
-    /// Whether it was stopped before its end.
-    pub stopped: bool,
+    /// Where what was found is in doubt: tolerances that the model was not asked at, requirements that a sample refutes.
+    pub warnings: Vec<Warning>,
 }

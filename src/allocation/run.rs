@@ -1,17 +1,18 @@
 //! From a problem with costs to tolerances that the model confirms.
 
+use std::time::Instant;
+
 use super::choose::{Choice, choose, within_bounds};
 use super::constraint::{Constraint, kept};
 use super::cost::Priced;
 use super::front::front;
 use super::joint::joint;
 use super::recentre::shifts;
-use super::requirement::Requirement;
 use super::response::Responses;
-use super::result::{Allocated, Allocation, Attainable, Bound, Moved, Proof, Status};
+use super::result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, Status};
 use super::scaling::loosest;
 use super::solve::{Setting, Solved, tightened};
-use super::station::{Station, judged, measure, prices, required};
+use super::station::{Station, prices, required};
 use super::steps::Steps;
 use super::task::{AllocateError, AllocationOptions, AllocationTask};
 use crate::analysis::analyze_keeping;
@@ -19,8 +20,11 @@ use crate::assembly::Run;
 use crate::dimension::Dimension;
 use crate::method::{MethodError, Options};
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 use crate::sampling::{Draws, Sampler};
 use crate::simulation::{SimulationError, SimulationOptions, simulate_within};
+use crate::summary::{RunSummary, StopReason};
+use crate::warning::Warning;
 
 /// Rounds of derivatives, at most.
 const ROUNDS: usize = 20;
@@ -86,8 +90,7 @@ pub fn allocate_within(
 /// What was evaluated so far.
 #[derive(Default)]
 struct Spent {
-    evaluations: u64,
-    reused: u64,
+    run: RunSummary,
     rounds: usize,
     stopped: bool,
 }
@@ -122,6 +125,7 @@ impl Near {
 
 impl Driver<'_> {
     fn run(mut self, problem: &Problem) -> Result<Allocation, AllocateError> {
+        let begun = Instant::now();
         let first = self.analysed(problem.clone())?;
         let constraints = self.constraints(problem, &self.task.requirements);
         for constraint in &constraints {
@@ -154,18 +158,19 @@ impl Driver<'_> {
             joint: [joint_before, None],
             front: Vec::new(),
             confirmation: None,
-            evaluations: 0,
-            reused: 0,
+            run: RunSummary::default(),
             rounds: 0,
-            stopped: false,
+            warnings: Vec::new(),
         };
         if !self.spent.stopped {
             self.search(&mut allocation, first, &constraints, &before)?;
         }
-        (allocation.evaluations, allocation.reused) =
-            (allocation.evaluations + self.spent.evaluations, allocation.reused + self.spent.reused);
+        let stopped = (self.spent.stopped || self.run.stopped()).then(|| self.run.why_open());
+        let (wall, seed) = (begun.elapsed(), Some(self.options.seed));
+        let budget = self.spent.run.stopped;
+        allocation.run = RunSummary { wall, seed, stopped: stopped.or(budget), ..self.spent.run };
         allocation.rounds = self.spent.rounds;
-        allocation.stopped = self.spent.stopped || self.run.stopped();
+        allocation.warnings = doubts(problem, &allocation);
         Ok(allocation)
     }
 
@@ -340,14 +345,14 @@ impl Driver<'_> {
                 Attainable {
                     characteristic: one.characteristic,
                     requirement: one.requirement,
-                    best: measure(&station, one.characteristic, one.requirement),
+                    best: station.analysis.characteristics[one.characteristic].judge(one.requirement).value,
                     because: Vec::new(),
                     together: false,
                 }
             });
         }
         for one in &mut allocation.requirements {
-            (one.after, one.met_after) = judged(&station, one.characteristic, one.requirement);
+            one.after = Some(station.analysis.characteristics[one.characteristic].judge(one.requirement));
         }
         allocation.loosest_after = loosest(&station.responses, constraints);
         allocation.joint[1] = joint(&station.problem, &station.responses, self.options.seed);
@@ -366,8 +371,7 @@ impl Driver<'_> {
         if let (Some(samples), false) = (self.options.confirm, self.spent.stopped) {
             let options = SimulationOptions { samples, seed: self.options.seed, ..SimulationOptions::default() };
             let simulation = simulate_within(&station.problem, &options, self.run, &|_| {})?;
-            allocation.evaluations += simulation.evaluations;
-            allocation.reused += simulation.reused;
+            self.spent.run = self.spent.run.and(&simulation.run);
             allocation.confirmation = Some(simulation);
         }
         allocation.after = Some(station.analysis);
@@ -388,13 +392,12 @@ impl Driver<'_> {
             .options
             .analysis
             .budget
-            .map(|budget| budget.saturating_sub(usize::try_from(self.spent.evaluations).unwrap_or(usize::MAX)));
+            .map(|budget| budget.saturating_sub(usize::try_from(self.spent.run.evaluations).unwrap_or(usize::MAX)));
         let options = Options { budget, ..self.options.derivatives(&problem) };
         let (analysis, outcome) = analyze_keeping(&problem, &options, self.run)?;
-        self.spent.evaluations += analysis.evaluations as u64;
-        self.spent.reused += analysis.reused as u64;
+        self.spent.run = self.spent.run.and(&analysis.run);
         self.spent.rounds += 1;
-        self.spent.stopped |= analysis.stopped;
+        self.spent.stopped |= analysis.run.unfinished();
         let responses = Responses::of(&problem, &outcome);
         Ok(Station { problem, analysis, responses })
     }
@@ -403,7 +406,10 @@ impl Driver<'_> {
     fn station(&mut self, problem: Problem) -> Result<Option<Station>, AllocateError> {
         match self.analysed(problem) {
             Ok(station) => Ok(Some(station)),
-            Err(AllocateError::Method(MethodError::OverBudget { .. })) => Ok(None),
+            Err(AllocateError::Method(MethodError::OverBudget { .. })) => {
+                self.spent.run.stopped.get_or_insert(StopReason::Budget);
+                Ok(None)
+            }
             Err(error) => Err(error),
         }
     }
@@ -478,6 +484,22 @@ impl Driver<'_> {
         all.sort_by_key(|one| one.dimension);
         all
     }
+}
+
+/// Where what was found is in doubt.
+fn doubts(problem: &Problem, allocation: &Allocation) -> Vec<Warning> {
+    let found = matches!(allocation.status, Status::Optimal | Status::AlmostOptimal);
+    let not_confirmed = (!allocation.confirmed && found).then_some(Warning::NotConfirmed);
+    let refuted = |kept: &Kept| {
+        let Requirement::Yield(required) = kept.requirement else { return None };
+        let [low, high] = allocation.confirmation.as_ref()?.characteristics[kept.characteristic].yield_?.interval;
+        let value = allocation.confirmation.as_ref()?.characteristics[kept.characteristic].yield_?.value;
+        // Half as far again as the interval reaches: three standard errors.
+        let most = high + 0.5 * (high - value);
+        let characteristic = problem.characteristics()[kept.characteristic].name().to_owned();
+        (most < required).then_some(Warning::ConfirmationMisses { characteristic, required, interval: [low, high] })
+    };
+    not_confirmed.into_iter().chain(allocation.requirements.iter().filter_map(refuted)).collect()
 }
 
 /// How the rounds ended.

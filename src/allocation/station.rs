@@ -1,13 +1,13 @@
 //! The model's answer at some tolerances, held against what is required.
 
-use super::constraint::{Constraint, kept};
+use super::constraint::Constraint;
 use super::cost::Priced;
-use super::requirement::Requirement;
 use super::response::Responses;
 use super::result::{Kept, ShadowPrice};
 use super::solve::Solved;
 use crate::analysis::Analysis;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 
 /// A constraint that is so near its bound is at it.
 const BINDING: f64 = 1e-6;
@@ -26,48 +26,14 @@ impl Station {
     }
 }
 
-/// What there is of a requirement, in its own measure.
-pub(super) fn measure(station: &Station, characteristic: usize, requirement: Requirement) -> Option<f64> {
-    let analysis = &station.analysis.characteristics[characteristic];
-    let limits = analysis.characteristic.limits();
-    let ones = vec![1.0; station.problem.dimensions().len()];
-    match requirement {
-        Requirement::Yield(_) => analysis.capability?.yield_(),
-        Requirement::Cpk(_) => analysis.capability?.cpk,
-        Requirement::Sigma(_) => Some(analysis.moments?.sigma()),
-        Requirement::Rss => {
-            let mean = analysis.moments?.mean();
-            let rss = station.responses.rss_squared(characteristic, &[], &ones)?.0.sqrt();
-            let below = limits.lower().map(|lower| rss / (mean - lower));
-            let above = limits.upper().map(|upper| rss / (upper - mean));
-            below.into_iter().chain(above).reduce(f64::max)
-        }
-        Requirement::WorstCase => {
-            let ([low, high], nominal) = (analysis.worst_case?, analysis.nominal?);
-            let below = limits.lower().map(|lower| (nominal - low) / (nominal - lower));
-            let above = limits.upper().map(|upper| (high - nominal) / (upper - nominal));
-            below.into_iter().chain(above).reduce(f64::max)
-        }
-    }
-}
-
 /// Every requirement, with nothing known of it after.
 pub(super) fn required(requirements: &[Option<Requirement>], station: &Station) -> Vec<Kept> {
     let of = |(characteristic, one): (usize, &Option<Requirement>)| {
         let requirement = (*one)?;
-        let (before, met_before) = judged(station, characteristic, requirement);
-        Some(Kept { characteristic, requirement, before, after: None, met_before, met_after: false })
+        let before = station.analysis.characteristics[characteristic].judge(requirement);
+        Some(Kept { characteristic, requirement, before, after: None })
     };
     requirements.iter().enumerate().filter_map(of).collect()
-}
-
-/// What there is of a requirement, and whether that is enough.
-pub(super) fn judged(station: &Station, characteristic: usize, requirement: Requirement) -> (Option<f64>, bool) {
-    let limits = station.problem.characteristics()[characteristic].limits();
-    let ones = vec![1.0; station.problem.dimensions().len()];
-    let constraints = Constraint::of(characteristic, requirement, limits);
-    let met = constraints.iter().all(|constraint| kept(constraint.value_at(&station.responses, &ones)));
-    (measure(station, characteristic, requirement), met)
 }
 
 /// What every limit costs.

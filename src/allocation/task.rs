@@ -1,11 +1,11 @@
 //! What is to be allocated, and why it cannot be.
 
 use super::cost::Priced;
-use super::requirement::Requirement;
 use crate::dimension::Dimension;
 use crate::method::{MethodError, Options};
 use crate::names::nearest;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 use crate::simulation::{SimulationError, chosen};
 
 /// Costs and requirements beside a problem.

@@ -1,16 +1,21 @@
 //! What is known of one characteristic.
 
+use serde::Serialize;
+
 use super::errors::of_yield;
 use super::linear::Linear;
 use super::shares::Shares;
 use super::{SampledModel, SamplingInterval, Tails};
 use crate::capability::{Capability, Law};
-use crate::characteristic::Characteristic;
+use crate::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::Extremes;
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
 use crate::moments::{Moments, Sampled};
 use crate::pearson::PearsonError;
+use crate::plan::Point;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
+use crate::verdict::{self, Judged, Verdict};
 
 /// Moments, sensitivities and contributions of one characteristic. What is unknown is None.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +32,8 @@ pub struct CharacteristicAnalysis {
     pub model_sampled: Option<SampledModel>,
     /// What law and surface reject; None without limits, or where the surface is plainly normal.
     pub tails: Option<Tails>,
+    /// Whether planned points were not evaluated because the run was stopped: no verdict follows from the others.
+    pub unfinished: bool,
     /// Evaluated points at which it has no value.
     pub without_value: usize,
     /// How far these results may be off; None without moments.
@@ -65,6 +72,8 @@ pub struct CharacteristicAnalysis {
     pub possible_interactions: usize,
     /// The share of the variance that no contribution accounts for; None where it is unknown.
     pub left_out_share: Option<f64>,
+    /// Whether it can depend on nothing that varies, so that its one value is all that there is.
+    pub constant: bool,
 }
 
 /// What one dimension does to a characteristic.
@@ -97,8 +106,10 @@ pub struct Sensitivity {
 pub struct Interaction {
     /// The two dimensions.
     pub dimensions: [String; 2],
-    /// Mixed second derivative at the means; None where it was lost.
+    /// Mixed second derivative at the means; None where it is missing.
     pub mixed: Option<f64>,
+    /// Why it is missing; None where it is not.
+    pub missing: Option<Missing>,
     /// Whether it is exact rather than a difference.
     pub exact: bool,
     /// What rounding errors of the characteristic's own size may make of it.
@@ -109,6 +120,17 @@ pub struct Interaction {
     pub mean_shift: Option<f64>,
 }
 
+/// Why a derivative is missing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Missing {
+    /// A point that it takes has no value.
+    Failed,
+    /// A point that it takes was not evaluated before the run was stopped.
+    NotEvaluated,
+}
+
 impl CharacteristicAnalysis {
     /// All shares of its dimension: straight line and curvature.
     pub fn share(&self, dimension: usize) -> Option<f64> {
@@ -116,25 +138,70 @@ impl CharacteristicAnalysis {
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
     }
 
-    /// Whether its target yield is met; None where it has none, where its yield is unknown, and where what else is known speaks
-    /// against the law of four moments: the tails of the surface, or points at which there is no value at all.
-    pub fn met(&self) -> Option<bool> {
-        let target = self.characteristic.target_yield()?;
-        let capability = self.capability?;
-        let met = capability.meets(Some(target))?;
-        if self.tails.and_then(|tails| tails.verdict(target)).is_some_and(|other| other != met) {
-            return None;
-        }
-        // Assemblies without a value may all be rejected ones; how many there are, only samples tell.
-        let assembled = match &self.model_sampled {
-            _ if self.without_value == 0 => true,
-            Some(sampled) => {
-                let failed = sampled.failed as f64 / (sampled.failed + sampled.samples) as f64;
-                capability.yield_().is_some_and(|yield_| yield_ * (1.0 - failed) >= target)
-            }
-            None => false,
+    /// Within which the yield is known: the estimate and two of its errors, wider where the surface contradicts the law of four
+    /// moments, and down to 0 where there are assemblies without a value and nobody counted them. None where an error is unknown.
+    pub fn yield_interval(&self) -> Option<[f64; 2]> {
+        let value = self.capability?.yield_()?;
+        let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
+        let around = verdict::about(value, error)?;
+        let tails = self.tails.filter(Tails::misses);
+        let around = tails.map_or(around, |tails| verdict::including(around, 1.0 - tails.surface));
+        // How many assemblies have no value, only samples tell.
+        let lost = match &self.model_sampled {
+            _ if self.without_value == 0 => Some(0.0),
+            Some(sampled) => Some(sampled.failed as f64 / (sampled.failed + sampled.samples) as f64),
+            None => None,
         };
-        (!met || assembled).then_some(met)
+        Some(verdict::share(verdict::losing(around, lost)))
+    }
+
+    /// How a requirement is kept, whether or not it is the characteristic's own.
+    ///
+    /// The interval of a yield is [`yield_interval`](Self::yield_interval); that of a Cpk and of sigma follows from the estimated
+    /// errors of mean and sigma; rss and worst case are what they are by the slopes, without an error.
+    pub fn judge(&self, requirement: Requirement) -> Judged {
+        let limits = self.characteristic.limits();
+        let error = |of: fn(&ErrorEstimate) -> Option<f64>| match self.constant {
+            true => Some(0.0),
+            false => self.error_estimate.as_ref().and_then(of),
+        };
+        let (mean, sigma) = (error(|of| of.mean), error(|of| of.sigma));
+        let part = |value: Option<f64>| (value, value.map(|value| [value; 2]));
+        let (value, interval) = match requirement {
+            Requirement::Yield(_) => (self.capability.and_then(|of| of.yield_()), self.yield_interval()),
+            Requirement::Cpk(_) => (
+                self.capability.and_then(|of| of.cpk),
+                self.moments.and_then(|of| verdict::of_cpk((of.mean(), mean), (of.sigma(), sigma), limits)),
+            ),
+            Requirement::Sigma(_) => (
+                self.moments.map(|of| of.sigma()),
+                self.moments.and_then(|of| verdict::about(of.sigma(), sigma)).map(|[low, high]| [low.max(0.0), high]),
+            ),
+            Requirement::Rss => {
+                part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
+            }
+            Requirement::WorstCase => part(
+                self.nominal
+                    .zip(self.worst_case)
+                    .and_then(|(nominal, [low, high])| taken(limits, nominal, [nominal - low, high - nominal])),
+            ),
+        };
+        Judged::of(requirement, value, interval).unless(self.unfinished)
+    }
+
+    /// How everything is kept that is required of it: its target yield, and what else there is.
+    pub fn requirements(&self) -> Vec<Judged> {
+        verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
+    }
+
+    /// What is to be said of its target yield; None without one.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
+    }
+
+    /// Whether its target yield is met; None where it has none, and where that is not known.
+    pub fn met(&self) -> Option<bool> {
+        self.verdict()?.met()
     }
 
     pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize) -> Self {
@@ -204,9 +271,19 @@ impl CharacteristicAnalysis {
             error_estimate,
             model_sampled: None,
             tails: None,
+            unfinished: false,
+            constant: plan.varying().iter().all(|&d| !plan.depends(c, d)),
             without_value: outcome.evaluated.known.errors().filter(|&(_, of, _)| of == c).count(),
         }
     }
+}
+
+/// The greatest part of the room between a value and the limits that is taken below and above it; infinite where there is no room.
+fn taken(limits: SpecLimits, from: f64, [below, above]: [f64; 2]) -> Option<f64> {
+    let part = |reach: f64, room: f64| if room > 0.0 { reach / room } else { f64::INFINITY };
+    let below = limits.lower().map(|lower| part(below, from - lower));
+    let above = limits.upper().map(|upper| part(above, upper - from));
+    below.into_iter().chain(above).reduce(f64::max)
 }
 
 fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares: Option<&Shares>) -> Sensitivity {
@@ -277,8 +354,10 @@ fn interactions(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&
                 None => coefficient.map(|value| value * together),
             };
             let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
+            let missing = (exact.is_none() && mixed.is_none()).then(|| missing(outcome, c, &[j, k]));
             Interaction {
                 dimensions: [j, k].map(|d| problem.dimensions()[d].name().to_owned()),
+                missing,
                 mixed: exact.or(mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale)),
                 exact: exact.is_some(),
                 rounding: fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k)),
@@ -290,6 +369,13 @@ fn interactions(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&
     let strength = |interaction: &Interaction| interaction.share.unwrap_or(-1.0);
     interactions.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
     interactions
+}
+
+/// Why a derivative by these dimensions is missing: what was stopped before any of its points failed was not evaluated.
+pub(super) fn missing(outcome: &Outcome, c: usize, dimensions: &[usize]) -> Missing {
+    let within = |point: &Point| point.at().iter().all(|at| dimensions.contains(&(at.dimension as usize)));
+    let failed = || outcome.evaluated.known.errors().any(|(point, of, _)| of == c && within(point));
+    if outcome.evaluated.stopped.is_some() && !failed() { Missing::NotEvaluated } else { Missing::Failed }
 }
 
 /// What slopes and bands say; None where a slope is missing.

@@ -10,6 +10,7 @@ use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler};
 use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
+use crate::summary::RunSummary;
 use crate::warning::Figure;
 
 /// Points of a cheap model, at most;
@@ -45,12 +46,7 @@ pub struct SampledModel {
 /// What the fallback cost.
 #[derive(Debug, Default)]
 pub(super) struct Spent {
-    pub(super) evaluations: usize,
-    pub(super) reused: usize,
-    pub(super) failed: usize,
-    pub(super) stages: usize,
-    pub(super) stopped: bool,
-    pub(super) in_model: std::time::Duration,
+    pub(super) run: RunSummary,
     pub(super) doubts: Vec<Doubt>,
 }
 
@@ -64,7 +60,7 @@ pub(super) fn fall_back(
     run: &Run<'_>,
 ) -> Spent {
     let mut spent = Spent::default();
-    let Some(climbed) = outcome.climbed.as_ref().filter(|_| !outcome.evaluated.stopped) else { return spent };
+    let Some(climbed) = outcome.climbed.as_ref().filter(|_| outcome.evaluated.stopped.is_none()) else { return spent };
     let short: Vec<usize> =
         (0..characteristics.len()).filter(|&c| shortfall(&characteristics[c], climbed, c).is_some()).collect();
     if short.is_empty() {
@@ -86,18 +82,18 @@ pub(super) fn fall_back(
     let few = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count() <= SOBOL_DIMENSIONS;
     let sampler = if costly || !few { Sampler::Random } else { Sampler::Sobol };
     let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
-    while spent.evaluations as u64 + samples <= most {
+    while spent.run.evaluations + samples <= most {
         // Sobol's points come in powers of two: not more of them than may be.
         let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
         let seed = Options::SEED;
         let wish = SimulationOptions { samples: points.max(2), sampler, seed, ..SimulationOptions::default() };
         let Ok(found) = simulate_beside(problem, &wish, outcome, run) else { return spent };
         spent.add(&found);
-        if found.stopped {
+        if found.run.unfinished() {
             return spent;
         }
         let enough = short.iter().all(|&c| known(&found.characteristics[c], climbed));
-        let last = enough || spent.evaluations as u64 + MORE * samples > most;
+        let last = enough || spent.run.evaluations + MORE * samples > most;
         if last {
             for &c in &short {
                 replace(&mut characteristics[c], climbed, c, &found.characteristics[c]);
@@ -181,12 +177,7 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
 
 impl Spent {
     fn add(&mut self, found: &Simulation) {
-        self.evaluations += found.evaluations as usize;
-        self.reused += found.reused as usize;
-        self.failed += found.failed as usize;
-        self.stages += 1;
-        self.stopped |= found.stopped;
-        self.in_model += found.in_model;
+        self.run = self.run.and(&found.run);
         self.doubts.extend(found.doubts.iter().cloned());
     }
 }

@@ -15,18 +15,18 @@ mod trust;
 mod warnings;
 
 pub use bootstrap::SamplingInterval;
-pub use characteristic::{CharacteristicAnalysis, Interaction, Sensitivity};
+pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
 pub use fallback::SampledModel;
 pub use surface::{Fit, NoFit, Surface};
 pub use tails::Tails;
-pub(crate) use warnings::history;
 
-use std::time::Duration;
+use std::time::Instant;
 
 use crate::assembly::Run;
 use crate::extremes::{Found, search};
-use crate::method::{Basis, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
+use crate::method::{Basis, DerivativeSource, Method, MethodError, Options, Outcome, Rest, climb_until};
 use crate::problem::Problem;
+use crate::summary::{RunSummary, StopReason};
 use crate::warning::Warning;
 
 /// What an analysis found out.
@@ -36,20 +36,8 @@ pub struct Analysis {
     pub method: Method,
     /// Dimensions that vary and on which some characteristic can depend, N.
     pub varying: usize,
-    /// Points sent to the model.
-    pub evaluations: usize,
-    /// Points whose answers were known from an earlier run.
-    pub reused: usize,
-    /// Points that lost at least one characteristic.
-    pub failed: usize,
-    /// Batches in which they were sent.
-    pub stages: usize,
-    /// Whether it was stopped before everything planned was evaluated.
-    pub stopped: bool,
-    /// Time within the model.
-    pub in_model: Duration,
-    /// The seed, where random numbers were drawn.
-    pub seed: Option<u64>,
+    /// What it came to in points and time, and why it ended early; the seed, where one was given or random numbers were drawn.
+    pub run: RunSummary,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<CharacteristicAnalysis>,
     /// What `auto` found and bought, in words; None for any other method.
@@ -76,7 +64,7 @@ pub struct Analysis {
 /// let dimensions = [Dimension::normal("width", 20.0, 0.3)?, Dimension::normal("height", 10.0, 0.3)?];
 /// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
 /// let analysis = analyze(&area, &Method::Full.into())?;
-/// assert_eq!(analysis.evaluations, 7); // N^2 + N + 1
+/// assert_eq!(analysis.run.evaluations, 7); // N^2 + N + 1
 /// let moments = analysis.characteristics[0].moments.unwrap();
 /// let exact = (2.0f64.powi(2) + 1.0 + 0.01f64.powi(2)).sqrt(); // (20 x 0.1)^2 + (10 x 0.1)^2 + (0.1 x 0.1)^2
 /// assert!((moments.sigma() - exact).abs() < 1e-12);
@@ -97,33 +85,34 @@ pub(crate) fn analyze_keeping(
     options: &Options,
     run: &Run<'_>,
 ) -> Result<(Analysis, Outcome), MethodError> {
+    let begun = Instant::now();
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
     let found = if options.extremes { search(problem, &outcome, left, run) } else { Found::default() };
     outcome.evaluated.doubts.extend(found.spent.doubts);
     let mut characteristics = of_all(problem, &outcome);
-    let left = left.map(|left| left.saturating_sub(found.spent.evaluations));
+    let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
     let fallback = fallback::fall_back(problem, &outcome, left, &mut characteristics, run);
     tails::look(problem, &outcome, &mut characteristics);
     outcome.evaluated.doubts.extend(fallback.doubts);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
+    let spent = spent(&outcome, options).and(&fallback.run);
+    // The extremes say nothing of a share.
+    characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics);
-    let spent = outcome.evaluated.evaluations;
-    let account = account::account(problem, &outcome, &characteristics, spent);
+    let account = account::account(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
     let seed = options.seed.unwrap_or(Options::SEED);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
     let analysis = Analysis {
         method: outcome.method,
         varying: outcome.plan.varying().len(),
-        evaluations: outcome.evaluated.evaluations + fallback.evaluations + found.spent.evaluations,
-        reused: outcome.evaluated.reused + fallback.reused + found.spent.reused,
-        failed: outcome.evaluated.known.failed_points() + fallback.failed + found.spent.failed,
-        stages: outcome.evaluated.stages + fallback.stages + found.spent.stages,
-        stopped: outcome.evaluated.stopped || fallback.stopped || found.spent.stopped,
-        in_model: outcome.evaluated.in_model + fallback.in_model + found.spent.in_model,
-        seed: drawn.then_some(seed),
+        run: RunSummary {
+            wall: begun.elapsed(),
+            seed: options.seed.or(drawn.then_some(seed)),
+            ..spent.and(&found.spent.run)
+        },
         account,
         basis: outcome.basis,
         surface: Surface::of(&outcome, &characteristics),
@@ -131,6 +120,14 @@ pub(crate) fn analyze_keeping(
         warnings,
     };
     Ok((analysis, outcome))
+}
+
+/// What the method came to; its budget ended it where that is why it asked for no more.
+fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
+    let spent = outcome.evaluated.summary();
+    let rest = outcome.climbed.as_ref().map(|climbed| climbed.rest);
+    let budget = options.budget.filter(|_| rest == Some(Rest::Budget)).map(|_| StopReason::Budget);
+    RunSummary { stopped: spent.stopped.or(budget), ..spent }
 }
 
 /// Runs the method, `auto` until the errors of other results than sigma are what is wanted too.

@@ -56,11 +56,6 @@ impl Tails {
         self.difference().unwrap_or(open).max(1.0 / n)
     }
 
-    /// What the sample says of a target, where it speaks against the law.
-    pub(super) fn verdict(&self, target: f64) -> Option<bool> {
-        self.misses().then_some(self.surface <= 1.0 - target)
-    }
-
     /// Whether the law is not to be trusted with the yield.
     pub(super) fn misses(&self) -> bool {
         self.difference().is_some_and(|apart| apart > APART * self.law.max(self.surface))

@@ -1,8 +1,9 @@
 //! Where the results of an analysis rest on something that does not hold.
 
-use super::{CharacteristicAnalysis, trust};
-use crate::assembly::process::Doubt;
+use super::characteristic::missing;
+use super::{CharacteristicAnalysis, Missing, trust};
 use crate::capability::Law;
+use crate::evaluation::history;
 use crate::method::{Basis, Lacking, Order, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
@@ -16,16 +17,12 @@ const SHIFT: f64 = 0.1;
 /// and so does curvature that adds more than this part of the linear variance.
 const CURVED: f64 = 0.05;
 
-/// A change of the nominal value by more than this part of what a characteristic varies by is another solution of the model.
-const FLIP: f64 = 0.01;
 /// Rules of so many nodes are exact to the fifth degree, and the fourth power of a parabola is of the eighth: curvature that adds
 /// more than this part of the variance shows in the kurtosis.
 const SHALLOW: usize = 3;
 const SHALLOW_CURVED: f64 = 1e-2;
 /// A fitted surface that misses its values by more than this part of sigma is not to be trusted.
 const POOR: f64 = 0.05;
-/// Points in doubt that are named.
-const SUSPECTS: usize = 3;
 /// Points at which a characteristic that is not 0 at the means may be exactly 0 by chance.
 const ATOM: usize = 2;
 /// Along a dimension with a long tail, curvature of this share of the variance is worth one.
@@ -84,36 +81,6 @@ fn not_resampled<'a>(problem: &'a Problem, outcome: &'a Outcome) -> impl Iterato
     outcome.plan.varying().iter().filter(measured).map(warning)
 }
 
-/// External models that do not answer as they did: one warning for each output.
-pub(crate) fn history(problem: &Problem, doubts: &[Doubt]) -> Vec<Warning> {
-    let first = |index: &usize| !doubts[..*index].iter().any(|earlier| earlier.output == doubts[*index].output);
-    let warning = |index: usize| {
-        let doubt = &doubts[index];
-        let same = || doubts.iter().filter(|other| other.output == doubt.output);
-        let far = |a: f64, b: f64| (a - b).abs() > FLIP * doubt.spread;
-        Warning::History {
-            output: doubt.output.clone(),
-            expected: doubt.expected,
-            found: doubt.found,
-            flip: doubt.expected.zip(doubt.found).is_some_and(|(a, b)| far(a, b)),
-            times: same().count(),
-            points: same().map(|doubt| doubt.suspects.len()).sum(),
-            suspects: same()
-                .flat_map(|doubt| &doubt.suspects)
-                .take(SUSPECTS)
-                .map(|point| words(problem, point))
-                .collect(),
-        }
-    };
-    (0..doubts.len()).filter(first).map(warning).collect()
-}
-
-/// A point by the dimensions that are not at their nominal value.
-fn words(problem: &Problem, point: &[f64]) -> String {
-    let moved = problem.dimensions().iter().zip(point).filter(|(dimension, x)| dimension.nominal() != **x);
-    moved.map(|(dimension, x)| format!("{} = {x}", dimension.name())).collect::<Vec<_>>().join(", ")
-}
-
 /// Dimensions that vary and on which no characteristic can depend.
 fn unused(problem: &Problem) -> Vec<Warning> {
     let dependence = problem.dependence();
@@ -157,6 +124,9 @@ fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
 /// Moments that could not be had by a method that is no difference plan.
 fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let because = match outcome.fitted[c].lacking? {
+        Lacking::Points { lost, of } if outcome.evaluated.stopped.is_some() => {
+            format!("the run was stopped before {lost} of the {of} values of its quadrature were known")
+        }
         Lacking::Points { lost, of } => format!(
             "{lost} of the {of} values of its quadrature {} missing, and none is made up",
             if lost == 1 { "is" } else { "are" }
@@ -177,8 +147,17 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
     let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
     let lost =
         |dimensions: Vec<String>, loss| Warning::LostDerivative { characteristic: name(problem, c), dimensions, loss };
+    let mut unevaluated = 0;
+    let mut gone = |dimensions: &[usize], loss: Loss| match missing(outcome, c, dimensions) {
+        Missing::Failed => Some(lost(dimensions.iter().map(|&d| dimension(d)).collect(), loss)),
+        Missing::NotEvaluated => {
+            unevaluated += 1;
+            None
+        }
+    };
     if fitted.centre.is_none() {
-        return vec![lost(Vec::new(), Loss::Centre)];
+        let centre = gone(&[], Loss::Centre);
+        return vec![centre.unwrap_or_else(|| lost(Vec::new(), Loss::NotEvaluated { derivatives: 1 }))];
     }
     for &d in plan.varying().iter().filter(|&&d| plan.depends(c, d)) {
         let axis = plan.axis(d);
@@ -198,18 +177,21 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
             }
         }
         match fitted.parts[d] {
-            None => warnings.push(lost(vec![dimension(d)], Loss::Slope)),
-            Some(part) if part.degree() < 2 => warnings.push(lost(vec![dimension(d)], Loss::Curvature)),
+            None => warnings.extend(gone(&[d], Loss::Slope)),
+            Some(part) if part.degree() < 2 => warnings.extend(gone(&[d], Loss::Curvature)),
             Some(_) => {}
         }
     }
     for (&(j, k), mixed) in outcome.pairs.iter().zip(&fitted.mixed) {
-        let pair = || [j, k].map(|position| dimension(plan.varying()[position])).to_vec();
+        let pair = [j, k].map(|position| plan.varying()[position]);
         match mixed {
-            None => warnings.push(lost(pair(), Loss::Mixed)),
-            Some(mixed) if !mixed.complete => warnings.push(lost(pair(), Loss::OneSidedMixed)),
+            None => warnings.extend(gone(&pair, Loss::Mixed)),
+            Some(mixed) if !mixed.complete => warnings.extend(gone(&pair, Loss::OneSidedMixed)),
             Some(_) => {}
         }
+    }
+    if unevaluated > 0 {
+        warnings.push(lost(Vec::new(), Loss::NotEvaluated { derivatives: unevaluated }));
     }
     warnings
 }

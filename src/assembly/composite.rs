@@ -451,6 +451,7 @@ impl AssemblyFunction for Composite {
         });
         out.spent(spent + answers.extra() + answers.count_reused() as i64);
         out.reused(answers.count_reused());
+        out.retried(answers.count_retried());
         out.doubt(answers.doubts().iter().cloned());
     }
 

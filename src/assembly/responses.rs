@@ -30,6 +30,8 @@ pub struct Responses {
     extra: i64,
     /// Rows whose answers were known already.
     reused: usize,
+    /// Points that were sent again.
+    retried: usize,
     /// What the model is not trusted in.
     doubts: Vec<Doubt>,
 }
@@ -44,6 +46,7 @@ impl Responses {
             errors: BTreeMap::new(),
             extra: 0,
             reused: 0,
+            retried: 0,
             doubts: Vec::new(),
         }
     }
@@ -114,6 +117,16 @@ impl Responses {
         self.extra -= rows as i64;
     }
 
+    /// Notes points that were sent again, which [`spent`](Self::spent) counts too.
+    pub fn retried(&mut self, points: usize) {
+        self.retried += points;
+    }
+
+    /// Points that were sent again.
+    pub fn count_retried(&self) -> usize {
+        self.retried
+    }
+
     /// Notes that the model answered the nominal point otherwise than before.
     pub fn doubt(&mut self, doubts: impl IntoIterator<Item = Doubt>) {
         self.doubts.extend(doubts);
@@ -166,6 +179,7 @@ impl Responses {
         }
         self.extra += block.extra;
         self.reused += block.reused;
+        self.retried += block.retried;
         self.doubts.extend(block.doubts.iter().cloned());
         self.errors.extend(block.errors.into_iter().map(|((row, output), error)| ((first + row, output), error)));
     }

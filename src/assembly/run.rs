@@ -1,12 +1,16 @@
 //! The conditions under which a batch is evaluated.
 
 use super::Responses;
+use crate::summary::StopReason;
 
 /// Called with rows that are final, and the responses that hold them.
 type Finished<'a> = dyn Fn(&[usize], &Responses) + Sync + 'a;
 
 /// Called with rows whose answers are not trusted any more.
 type Withdrawn<'a> = dyn Fn(&[usize]) + Sync + 'a;
+
+/// Says why to stop, and None as long as there is no reason.
+type Stop<'a> = dyn Fn() -> Option<StopReason> + Sync + 'a;
 
 /// Points that a costly model has done with, as they come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -28,7 +32,7 @@ pub struct Progress {
 #[derive(Clone, Copy, Default)]
 pub struct Run<'a> {
     finished: Option<&'a Finished<'a>>,
-    stop: Option<&'a (dyn Fn() -> bool + Sync)>,
+    stop: Option<&'a Stop<'a>>,
     abandon: Option<&'a (dyn Fn() -> bool + Sync)>,
     progress: Option<&'a (dyn Fn(Progress) + Sync)>,
     withdrawn: Option<&'a Withdrawn<'a>>,
@@ -45,8 +49,14 @@ impl<'a> Run<'a> {
         Self { finished: Some(finished), ..self }
     }
 
-    /// Stops as soon as `stop` says so.
-    pub fn stopping_when(self, stop: &'a (dyn Fn() -> bool + Sync)) -> Self {
+    /// Stops as soon as `stop` says why; from then on it must go on saying so.
+    ///
+    /// ```
+    /// use sensitol::{StopReason, assembly::Run};
+    /// let stop = || Some(StopReason::TimeLimit);
+    /// assert_eq!(Run::to_the_end().stopping_when(&stop).stop_reason(), Some(StopReason::TimeLimit));
+    /// ```
+    pub fn stopping_when(self, stop: &'a Stop<'a>) -> Self {
         Self { stop: Some(stop), ..self }
     }
 
@@ -107,12 +117,22 @@ impl<'a> Run<'a> {
     }
 
     /// The conditions of a part of the work: told to `finished` rather than to whom this one tells, and stopped by `stop`.
-    pub fn within<'b>(&'b self, finished: &'b Finished<'b>, stop: &'b (dyn Fn() -> bool + Sync)) -> Run<'b> {
+    pub fn within<'b>(&'b self, finished: &'b Finished<'b>, stop: &'b Stop<'b>) -> Run<'b> {
         Run { finished: Some(finished), stop: Some(stop), withdrawn: None, ..*self }
     }
 
     /// Whether to return now, with what is answered so far.
     pub fn stopped(&self) -> bool {
-        self.stop.is_some_and(|stop| stop())
+        self.stop_reason().is_some()
+    }
+
+    /// Why to return now; None as long as there is no reason.
+    pub fn stop_reason(&self) -> Option<StopReason> {
+        self.stop.and_then(|stop| stop())
+    }
+
+    /// Why what is open was not evaluated: whoever stopped a run without a reason asked for its end.
+    pub(crate) fn why_open(&self) -> StopReason {
+        self.stop_reason().unwrap_or(if self.abandoned() { StopReason::Interrupted } else { StopReason::Requested })
     }
 }

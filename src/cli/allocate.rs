@@ -7,7 +7,7 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::progress::Bar;
-use super::running::{Clock, externals, on_threads};
+use super::running::{Clock, externals, on_threads, stopped};
 use super::{interrupt, study};
 use crate::allocation::{Allocation, AllocationOptions, Status, allocate_within};
 use crate::assembly::{Progress, Run};
@@ -45,7 +45,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
             entries: entries.clone(),
             replaced_fits: replaced_fits.clone(),
         });
-    let about = clock.about(&study, Some(options.seed));
+    let about = clock.about(&study);
     let report = AllocationReport::of(&study.problem, &allocation, table.as_ref(), about);
     let printed = if asked.output.json { json(&report) } else { allocation_text(&report, look.style(&asked.output)) };
     let mut result = destination.write(&printed);
@@ -64,21 +64,16 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }
-    let after = format!("after {} evaluations", allocation.evaluations);
+    stopped(&allocation.run, &format!("after {} evaluations", allocation.run.evaluations), look);
+    result?;
     if interrupt::stopped() {
-        look.warn("stopped", &format!("interrupted {after}"));
-        result?;
         return Ok(Exit::Interrupted);
     }
-    if let (true, Some(limit)) = (allocation.stopped, asked.work.time) {
-        look.warn("stopped", &format!("stopped after {limit} s, {after}"));
-    }
-    result?;
     let incomplete = allocation.before.characteristics.iter().any(|one| one.moments.is_none());
     // Who asks for a confirmation wants to know that there is none.
     let refuted = report.warnings.iter().any(|warning| warning.code == "confirmation-misses");
     Ok(match allocation.status {
-        _ if incomplete && !allocation.stopped => Exit::NoResult,
+        _ if incomplete && !allocation.run.unfinished() => Exit::NoResult,
         Status::Optimal | Status::AlmostOptimal if refuted => Exit::Missed,
         Status::Optimal | Status::AlmostOptimal => Exit::Done,
         Status::Infeasible | Status::OutOfTime => Exit::NotAllocated,

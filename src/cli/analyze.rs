@@ -11,9 +11,9 @@ use super::interrupt;
 use super::output::{Destination, Look, json};
 use super::points;
 use super::progress::Bar;
-use super::running::{Clock, externals, on_threads};
+use super::running::{Clock, checked, externals, on_threads, stopped};
 use super::{several, study};
-use crate::analysis::{Analysis, analyze_within};
+use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_within};
 use crate::assembly::{Progress, Run, Table};
 use crate::characteristic::Characteristic;
 use crate::report::html::{WhatIf, analyze_html};
@@ -45,7 +45,7 @@ pub(super) fn read(path: &Path, asked: &AnalyzeArgs, given: Option<Arc<Table>>, 
     let mut study = study::read_file(path, &asked.how, externals)?;
     study.options.seed = asked.seed.or(study.options.seed);
     study.options.extremes |= asked.extremes;
-    if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
+    if asked.check && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
         return Err(Failure::NothingToCheck);
     }
     Ok(study)
@@ -92,7 +92,7 @@ pub(super) fn analyzed(
 ) -> Result<Exit, Failure> {
     let clock = Clock::start(asked.work.time);
     let analysis = analyze(study, asked.threads, &clock, look)?;
-    let about = clock.about(study, study.options.seed);
+    let about = clock.about(study);
     let report = Report::of(&study.problem, &analysis, about);
     let written = show(&report);
     let written = written.and(files.folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));
@@ -109,24 +109,18 @@ pub(super) fn analyzed(
     if let Some(given) = given {
         unmatched(given, asked.write_missing.as_deref(), look);
     }
+    stopped(&analysis.run, &format!("after {} evaluations", analysis.run.evaluations), look);
+    written?;
     if interrupt::stopped() {
-        look.warn("stopped", &format!("interrupted after {} evaluations", analysis.evaluations));
-        written?;
         return Ok(Exit::Interrupted);
     }
-    if let (true, Some(limit)) = (analysis.stopped, asked.work.time) {
-        look.warn("stopped", &format!("stopped after {limit} s with {} evaluations", analysis.evaluations));
-    }
-    written?;
     let complete = analysis.characteristics.iter().all(|characteristic| characteristic.moments.is_some());
     if !complete {
         return Ok(Exit::NoResult);
     }
-    let missed = analysis
-        .characteristics
-        .iter()
-        .any(|one| one.characteristic.target_yield().is_some() && one.met() != Some(true));
-    Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
+    let unfinished = analysis.characteristics.iter().any(|one| one.unfinished);
+    let judged = analysis.characteristics.iter().flat_map(CharacteristicAnalysis::requirements);
+    Ok(if asked.check { checked(unfinished, judged) } else { Exit::Done })
 }
 
 /// Tells of points without an answer, and of answers to points that nobody asked for.

@@ -4,7 +4,7 @@ use super::args::CompareArgs;
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
-use super::running::{Clock, on_threads};
+use super::running::{Clock, on_threads, stopped};
 use super::{interrupt, study};
 use crate::assembly::Run;
 use crate::compare::{CompareOptions, compare_within};
@@ -29,7 +29,7 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
     let comparison = on_threads(asked.of.threads, || compare_within(&study.problem, &options, &run))??;
-    let about = clock.about(&study, Some(options.seed));
+    let about = clock.about(&study);
     let report = CompareReport::of(&comparison, about);
     let written = destination.write(&if asked.output.json {
         json(&report)
@@ -46,15 +46,15 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
         let name = one.characteristic.name();
         look.warn("failed-points", &format!("`{name}` has no value at {} points of the reference", one.failed));
     }
+    stopped(
+        &comparison.run,
+        &format!("after {} evaluations; what was not run is named", comparison.run.evaluations),
+        look,
+    );
+    written?;
     if interrupt::stopped() {
-        look.warn("stopped", "interrupted");
-        written?;
         return Ok(Exit::Interrupted);
     }
-    if comparison.stopped {
-        look.warn("stopped", "stopped by --time; what was not run is named");
-    }
-    written?;
     let nothing = comparison.reference.characteristics.iter().any(|one| one.samples == 0);
     Ok(if nothing { Exit::NoResult } else { Exit::Done })
 }

@@ -34,7 +34,7 @@ pub(super) enum Exit {
 }
 
 impl Exit {
-    /// Of several studies the one that is to be heard: what nobody knows is worse than a target that is known to be missed.
+    /// Of several studies the one that is to be heard: what is unknown is worse than a target that is known to be missed.
     pub(super) fn worse(self, other: Self) -> Self {
         let rank = |exit: Self| match exit {
             Self::Done => 0,
@@ -54,11 +54,15 @@ impl Exit {
         (Self::Done, "done, with warnings perhaps; a pipe that was closed"),
         (
             Self::Missed,
-            "`--check`: a target is missed, or nobody knows; `allocate --confirm`: the sample refutes what was found; `probe`: a \
-             check failed",
+            "`--check`: a requirement is missed or inconclusive; `allocate --confirm`: the sample refutes what was found; `probe`: \
+             a check failed",
         ),
         (Self::Usage, "the command line or the study is wrong, or an output cannot be written"),
-        (Self::NoResult, "the model gave a characteristic that was asked for no result"),
+        (
+            Self::NoResult,
+            "the model gave a characteristic that was asked for no result; `--check`: the run was stopped before its planned \
+             points were evaluated",
+        ),
         (Self::NotAllocated, "`allocate`: no tolerances keep what is required, or they were not found in time"),
         (
             Self::Interrupted,
@@ -108,7 +112,7 @@ pub(super) enum Failure {
     Points { path: PathBuf, reason: String },
     #[error("the table cannot be written: {reason}")]
     Table { reason: String },
-    #[error("--check has nothing to check: no characteristic asked for has a target_yield")]
+    #[error("--check has nothing to check: no characteristic asked for has a target_yield or a require")]
     NothingToCheck,
     #[error("--pairs {text}: {fault}")]
     Pairs { text: String, fault: &'static str },

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::output::error;
+use crate::summary::StopReason;
 
 static PRESSED: AtomicUsize = AtomicUsize::new(0);
 
@@ -13,6 +14,11 @@ pub(super) fn listen() {
         1 => error("interrupted again: giving up what is under way"),
         _ => std::process::exit(130),
     });
+}
+
+/// Why to stop, once the user said so.
+pub(super) fn reason() -> Option<StopReason> {
+    stopped().then_some(StopReason::Interrupted)
 }
 
 /// Whether to stop.

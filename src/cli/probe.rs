@@ -11,9 +11,10 @@ use super::running::listener;
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
 use crate::method::MethodError;
-use crate::probe::{Probe, Verdict, evaluations, probe};
+use crate::probe::{Finding, Probe, evaluations, probe};
 use crate::report::number::{plural, significant};
 use crate::study::{Externals, JournalPlace};
+use crate::summary::RunSummary;
 
 /// What `probe --json` prints.
 #[derive(Debug, Serialize)]
@@ -21,7 +22,8 @@ struct ProbeReport {
     schema: u32,
     command: &'static str,
     adapter: Option<AdapterReport>,
-    evaluations: usize,
+    #[serde(flatten)]
+    run: RunSummary,
     start_s: f64,
     evaluation_alone_s: f64,
     evaluation_together_s: f64,
@@ -74,7 +76,7 @@ pub(super) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
     let bar = costly.then(|| Bar::new(evaluations(&study.problem), look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let within =
-        Run::to_the_end().stopping_when(&interrupt::stopped).abandoning_when(&interrupt::abandoned).showing(&show);
+        Run::to_the_end().stopping_when(&interrupt::reason).abandoning_when(&interrupt::abandoned).showing(&show);
     let found = probe(&study.problem, &within);
     bar.iter().for_each(Bar::clear);
     let found = found.map_err(|error| MethodError::Model { error })?;
@@ -97,15 +99,15 @@ impl ProbeReport {
         let check = |check: &crate::probe::Check| CheckReport {
             check: check.what,
             passed: match check.verdict {
-                Verdict::Passed | Verdict::Doubtful(_) => Some(true),
-                Verdict::Failed(_) => Some(false),
-                Verdict::NotChecked => None,
+                Finding::Passed | Finding::Doubtful(_) => Some(true),
+                Finding::Failed(_) => Some(false),
+                Finding::NotChecked => None,
             },
             verdict: match check.verdict {
-                Verdict::Passed => "ok",
-                Verdict::Doubtful(_) => "warn",
-                Verdict::Failed(_) => "fail",
-                Verdict::NotChecked => "not-checked",
+                Finding::Passed => "ok",
+                Finding::Doubtful(_) => "warn",
+                Finding::Failed(_) => "fail",
+                Finding::NotChecked => "not-checked",
             },
             fault: check.verdict.fault().map(str::to_owned),
         };
@@ -125,7 +127,7 @@ impl ProbeReport {
             schema: crate::report::SCHEMA,
             command: "probe",
             adapter,
-            evaluations: found.evaluations,
+            run: found.run,
             start_s: found.start.as_secs_f64(),
             evaluation_alone_s: found.alone.as_secs_f64(),
             evaluation_together_s: found.together.as_secs_f64(),
@@ -147,7 +149,7 @@ impl ProbeReport {
             seconds(self.start_s),
             seconds(self.evaluation_alone_s),
             seconds(self.evaluation_together_s),
-            plural(self.evaluations, "evaluation", "evaluations"),
+            plural(self.run.evaluations as usize, "evaluation", "evaluations"),
         );
         for check in &self.checks {
             let fault = check.fault.as_ref().map(|fault| format!(": {fault}")).unwrap_or_default();

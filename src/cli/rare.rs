@@ -5,10 +5,10 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::interrupt;
 use super::output::{Look, json};
-use super::running::Clock;
+use super::running::{Clock, checked, stopped};
 use super::simulate::{sampling, surrogate};
 use crate::method::Options;
-use crate::rare::{RareOptions, rare_within};
+use crate::rare::{RareCharacteristic, RareOptions, rare_within};
 use crate::report::{CsvFile, RareCharacteristicReport, RareReport, rare_csv, rare_text};
 use crate::study::Study;
 
@@ -30,7 +30,7 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     let clock = Clock::start(asked.of.work.time);
     let threads = asked.of.threads;
     let found = sampling(threads, &clock, look, |run, pace| rare_within(&study.problem, &options, run, pace))??;
-    let about = clock.about(study, Some(options.seed));
+    let about = clock.about(study);
     let report = RareReport::of(&study.problem, &found, about);
     let written = destination.write(&if asked.output.json {
         json(&report)
@@ -45,15 +45,13 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
         look.warn(warning.code, &warning.message);
     }
     let after = format!("after {} points", found.samples);
+    stopped(&found.run, &after, look);
     if interrupt::stopped() {
-        look.warn("stopped", &format!("interrupted {after}"));
         written?;
         return Ok(Exit::Interrupted);
     }
     if found.reached == Some(false) {
         look.warn("under-resolved", &format!("{after} the standard errors are larger than wanted"));
-    } else if found.stopped {
-        look.warn("stopped", &format!("stopped by --time {after}"));
     }
     written?;
     let nothing = |one: &RareCharacteristicReport| {
@@ -62,6 +60,6 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     if report.characteristics.iter().any(nothing) {
         return Ok(Exit::NoResult);
     }
-    let missed = report.characteristics.iter().any(|one| one.target_yield.is_some() && one.met != Some(true));
-    Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
+    let judged = found.characteristics.iter().flat_map(RareCharacteristic::requirements);
+    Ok(if asked.check { checked(found.run.unfinished(), judged) } else { Exit::Done })
 }

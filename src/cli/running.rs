@@ -4,13 +4,15 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::failure::Failure;
+use super::failure::{Exit, Failure};
 use super::interrupt;
 use super::output::Look;
 use crate::assembly::Table;
 use crate::assembly::process::Listener;
 use crate::report::About;
 use crate::study::{Externals, JournalPlace, Study};
+use crate::summary::{RunSummary, StopReason};
+use crate::verdict::{self, Judged, Verdict};
 
 /// Since when a command runs, and for how long it may.
 pub(super) struct Clock {
@@ -31,20 +33,15 @@ impl Clock {
         self.limit.is_some()
     }
 
-    /// Whether to stop: the time is up, or the user said so.
-    pub(super) fn stop(&self) -> bool {
-        interrupt::stopped() || self.limit.is_some_and(|limit| self.begun.elapsed() >= limit)
+    /// Why to stop: the user said so, or the time is up.
+    pub(super) fn stop(&self) -> Option<StopReason> {
+        let over = || self.limit.is_some_and(|limit| self.begun.elapsed() >= limit);
+        interrupt::reason().or_else(|| over().then_some(StopReason::TimeLimit))
     }
 
     /// What a report says of the study beside the results.
-    pub(super) fn about(&self, study: &Study, seed: Option<u64>) -> About {
-        About {
-            title: study.title.clone(),
-            sha256: study.sha256.clone(),
-            seed,
-            wall_s: self.begun.elapsed().as_secs_f64(),
-            warnings: study.warnings.clone(),
-        }
+    pub(super) fn about(&self, study: &Study) -> About {
+        About { title: study.title.clone(), sha256: study.sha256.clone(), warnings: study.warnings.clone() }
     }
 }
 
@@ -63,4 +60,22 @@ pub(super) fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T
     let Some(threads) = threads else { return Ok(work()) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
     Ok(pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(work))
+}
+
+/// Tells why a run ended early, and how far it came.
+pub(super) fn stopped(run: &RunSummary, after: &str, look: Look) {
+    // What was interrupted when all was done is told of as interrupted too.
+    let reason = interrupt::reason().or(run.stopped);
+    if let Some(reason) = reason {
+        look.warn("stopped", &format!("stopped by {reason} {after}"));
+    }
+}
+
+/// How `--check` ends: a run that left planned points open says nothing, and everything that is required must be met.
+pub(super) fn checked(unfinished: bool, judged: impl IntoIterator<Item = Judged>) -> Exit {
+    match verdict::worst(judged.into_iter().map(|one| one.verdict)) {
+        _ if unfinished => Exit::NoResult,
+        None | Some(Verdict::Met) => Exit::Done,
+        Some(_) => Exit::Missed,
+    }
 }

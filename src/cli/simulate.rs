@@ -8,14 +8,14 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::progress::Samples;
-use super::running::{Clock, on_threads};
+use super::running::{Clock, checked, on_threads, stopped};
 use super::{interrupt, rare, study};
 use crate::assembly::Run;
 use crate::method::{Method, Options};
 use crate::report::html::simulate_html;
 use crate::report::{SimulationReport, simulation_csv, simulation_text};
 use crate::sampling::Sampler;
-use crate::simulation::{Pace, Simulation, SimulationOptions, simulate_within};
+use crate::simulation::{Pace, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_within};
 use crate::study::Study;
 
 /// Points unless the user says otherwise; where accuracy is wanted, as many as that takes.
@@ -26,7 +26,7 @@ const LONG: Duration = Duration::from_secs(60);
 
 pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
-    if asked.check && study.problem.characteristics().iter().all(|one| one.target_yield().is_none()) {
+    if asked.check && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
         return Err(Failure::NothingToCheck);
     }
     if asked.rare {
@@ -51,7 +51,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     };
     let clock = Clock::start(asked.of.work.time);
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look)?;
-    let about = clock.about(&study, Some(options.seed));
+    let about = clock.about(&study);
     let report = SimulationReport::of(&study.problem, &simulation, about);
     let written = destination.write(&if asked.output.json {
         json(&report)
@@ -64,13 +64,10 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         look.warn(warning.code, &warning.message);
     }
     let after = format!("after {} points", simulation.samples);
+    stopped(&simulation.run, &after, look);
     if interrupt::stopped() {
-        look.warn("stopped", &format!("interrupted {after}"));
         written?;
         return Ok(Exit::Interrupted);
-    }
-    if simulation.stopped {
-        look.warn("stopped", &format!("stopped by --time {after}"));
     }
     if simulation.reached == Some(false) {
         look.warn("under-resolved", &format!("{after} the standard errors are larger than wanted"));
@@ -79,8 +76,8 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     if simulation.characteristics.iter().any(|one| one.samples == 0) {
         return Ok(Exit::NoResult);
     }
-    let missed = report.characteristics.iter().any(|one| one.target_yield.is_some() && one.met != Some(true));
-    Ok(if asked.check && missed { Exit::Missed } else { Exit::Done })
+    let judged = simulation.characteristics.iter().flat_map(SimulatedCharacteristic::requirements);
+    Ok(if asked.check { checked(simulation.run.unfinished(), judged) } else { Exit::Done })
 }
 
 /// How the surrogate is analysed: as the study says, but for the method that is asked for.

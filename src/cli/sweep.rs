@@ -5,7 +5,7 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::progress::Bar;
-use super::running::{Clock, externals, on_threads};
+use super::running::{Clock, externals, on_threads, stopped};
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
 use crate::report::html::sweep_html;
@@ -25,7 +25,7 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let page = files.file(asked.html.as_deref())?;
     let clock = Clock::start(asked.work.time);
     let sweep = swept(&study, asked, &clock, look)?;
-    let report = SweepReport::of(&study.problem, &sweep, clock.about(&study, study.options.seed));
+    let report = SweepReport::of(&study.problem, &sweep, clock.about(&study));
     let written = destination.write(&if asked.output.json {
         json(&report)
     } else {
@@ -37,11 +37,8 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     for warning in &report.warnings {
         look.warn(warning.code, &warning.message);
     }
-    if sweep.stopped {
-        let by = if interrupt::stopped() { "interrupted" } else { "stopped by --time" };
-        let done = sweep.analyses.iter().flatten().count();
-        look.warn("stopped", &format!("{by} with {done} of {} values done", sweep.values.len()));
-    }
+    let done = sweep.analyses.iter().flatten().count();
+    stopped(&sweep.run, &format!("with {done} of {} values done", sweep.values.len()), look);
     written?;
     if interrupt::stopped() {
         return Ok(Exit::Interrupted);

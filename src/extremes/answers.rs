@@ -2,12 +2,13 @@
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::assembly::process::Doubt;
 use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
 use crate::evaluation::BATCH;
 use crate::problem::Problem;
+use crate::summary::{RunSummary, StopReason};
 
 /// Every point known so far, with what asking came to.
 pub(super) struct Answers<'a> {
@@ -33,22 +34,12 @@ pub(super) struct Failures {
 /// What asking came to.
 #[derive(Debug, Clone, Default)]
 pub struct Spent {
-    /// Points sent to the model.
-    pub evaluations: usize,
-    /// Points whose answers were known from an earlier run.
-    pub reused: usize,
-    /// Points that lost at least one characteristic.
-    pub failed: usize,
-    /// Batches in which they were sent.
-    pub stages: usize,
-    /// Whether the run was stopped.
-    pub stopped: bool,
+    /// In numbers.
+    pub run: RunSummary,
     /// Whether points were not evaluated because the budget was spent.
     pub over_budget: bool,
     /// Where the model answered the nominal point otherwise than before.
     pub doubts: Vec<Doubt>,
-    /// Time within the model.
-    pub in_model: Duration,
 }
 
 impl<'a> Answers<'a> {
@@ -69,7 +60,7 @@ impl<'a> Answers<'a> {
 
     /// Whether nothing more can be asked.
     pub(super) fn ended(&self) -> bool {
-        self.spent.stopped || self.spent.over_budget
+        self.spent.run.unfinished() || self.spent.over_budget
     }
 
     /// The value of a characteristic at a point, where it is known.
@@ -96,15 +87,16 @@ impl<'a> Answers<'a> {
     /// Asks for these points, each once, in batches, as far as the budget goes.
     pub(super) fn ask(&mut self, points: Vec<Vec<f64>>) {
         let mut new = self.unknown(points.into_iter());
-        if let Some(left) = self.left.map(|left| left.saturating_sub(self.spent.evaluations))
+        if let Some(left) = self.left.map(|left| left.saturating_sub(self.spent.run.evaluations as usize))
             && new.len() > left
         {
             new.truncate(left);
             self.spent.over_budget = true;
+            self.spent.run.stopped.get_or_insert(StopReason::Budget);
         }
         let rows = (BATCH / self.problem.dimensions().len()).max(1);
         for batch in new.chunks(rows) {
-            if !self.spent.stopped {
+            if !self.spent.run.unfinished() {
                 self.send(batch);
             }
         }
@@ -115,25 +107,29 @@ impl<'a> Answers<'a> {
         let begun = Instant::now();
         let points = Points::from_rows(batch);
         self.problem.function().evaluate(&Ask::values(&points, self.problem.outputs()), self.run, &mut out);
-        self.spent.in_model += begun.elapsed();
-        self.spent.stages += 1;
+        self.spent.run.in_model += begun.elapsed();
+        self.spent.run.stages += 1;
         for (row, point) in batch.iter().enumerate() {
             self.keep(point, row, &out);
         }
-        self.spent.evaluations = self.spent.evaluations.saturating_add_signed(out.extra() as isize);
-        self.spent.reused += out.count_reused();
+        let spent = &mut self.spent.run;
+        spent.evaluations = spent.evaluations.saturating_add_signed(out.extra());
+        spent.cached += out.count_reused() as u64;
+        spent.retried += out.count_retried() as u64;
         self.spent.doubts.extend(out.doubts().iter().cloned());
     }
 
     /// A row that is still open was not finished: it was sent only if some of it was answered.
     fn keep(&mut self, point: &[f64], row: usize, out: &Responses) {
         let columns = 0..out.outputs();
-        self.spent.stopped |= columns.clone().any(|c| out.is_open(row, c));
+        if columns.clone().any(|c| out.is_open(row, c)) {
+            self.spent.run.stopped = Some(self.run.why_open());
+        }
         if columns.clone().all(|c| out.is_open(row, c)) {
             return;
         }
-        self.spent.evaluations += 1;
-        self.spent.failed += usize::from(columns.clone().any(|c| out.error(row, c).is_some()));
+        self.spent.run.evaluations += 1;
+        self.spent.run.failed += u64::from(columns.clone().any(|c| out.error(row, c).is_some()));
         for c in columns.clone() {
             if let Some(error) = out.error(row, c) {
                 self.failures[c].count += 1;

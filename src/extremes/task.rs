@@ -206,7 +206,7 @@ impl Task {
         let values = self.known(answers).map(|(_, value)| value);
         let [least, greatest] =
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], y| [least.min(y), greatest.max(y)]);
-        if answers.spent.stopped || least > greatest || everywhere(&region).is_none() {
+        if answers.spent.run.unfinished() || least > greatest || everywhere(&region).is_none() {
             return (None, Vec::new());
         }
         let allowed = PROVEN * (greatest - least) + ROUNDING * least.abs().max(greatest.abs());
@@ -249,7 +249,7 @@ impl Task {
             failed: failures.count,
             failure: failures.first.as_ref().map(ToString::to_string),
             ended: match &answers.spent {
-                spent if spent.stopped => Ended::Stopped,
+                spent if spent.run.unfinished() => Ended::Stopped,
                 spent if spent.over_budget => Ended::Budget,
                 _ => Ended::Converged,
             },

@@ -17,6 +17,7 @@ use sha2::{Digest, Sha256};
 
 use crate::assembly::process::{Adapter, Process, ProcessFault, Settings};
 use crate::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Progress, Responses, Run, Signature};
+use crate::summary::StopReason;
 
 /// A program whose answers are kept.
 ///
@@ -161,11 +162,15 @@ impl AssemblyFunction for Journaled {
             }
         };
         // What cannot be kept is not paid for: no more is asked, and what is known already stays.
-        let stop = || run.stopped() || failure.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+        let stop = || {
+            let failed = || failure.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+            run.stop_reason().or_else(|| failed().then_some(StopReason::Requested))
+        };
         let within = run.within(&finished, &stop).withdrawing(&withdraw);
         self.process.evaluate(&Ask { points: &points, ..*ask }, &within, &mut answers);
         let out = told.into_inner().unwrap_or_else(PoisonError::into_inner);
         out.spent(answers.extra());
+        out.retried(answers.count_retried());
         out.doubt(answers.doubts().iter().cloned());
         if let Some(error) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
             refuse(out, &not_kept(&error));

@@ -21,16 +21,21 @@ mod place;
 mod search;
 mod space;
 mod target;
+mod warnings;
+mod within;
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::assembly::process::Doubt;
 use crate::assembly::{EvaluationError, Run};
 use crate::characteristic::Characteristic;
+use crate::evaluation::history;
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, SamplingError};
 use crate::simulation::{Pace, SimulationError, Surrogates};
+use crate::summary::RunSummary;
+use crate::warning::Warning;
 use model::Model;
 use place::{Place, places};
 use search::Search;
@@ -61,28 +66,21 @@ impl Default for RareOptions {
 pub struct RareEvents {
     /// The method of the surrogate.
     pub method: Method,
-    /// The seed.
-    pub seed: u64,
+    /// What it came to in points and time, those of the surrogate included; why it ended before all points were drawn or what was
+    /// wanted was reached.
+    pub run: RunSummary,
     /// Points that were drawn and answered.
     pub samples: u64,
-    /// Every point sent to the model, those tried again and those of the surrogate included.
-    pub evaluations: u64,
-    /// Those of the surrogate.
+    /// Evaluations of the surrogate.
     pub surrogate_evaluations: u64,
-    /// Points whose answers were known from an earlier run.
-    pub reused: u64,
-    /// Points that lost at least one characteristic.
-    pub failed: u64,
-    /// Whether it was stopped before all points were drawn or what was wanted was reached.
-    pub stopped: bool,
     /// Whether what was wanted was reached; None where nothing was.
     pub reached: Option<bool>,
-    /// Time within the model.
-    pub in_model: Duration,
     /// Where the model answered the nominal point otherwise than before.
     pub doubts: Vec<Doubt>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<RareCharacteristic>,
+    /// Where the estimates rest on little, and where points have no value.
+    pub warnings: Vec<Warning>,
 }
 
 /// What is known of one characteristic.
@@ -98,6 +96,12 @@ pub struct RareCharacteristic {
     pub below: Option<Beyond>,
     /// Above its upper limit; None without one.
     pub above: Option<Beyond>,
+    /// The share of assemblies within the limits; None where that beyond one of them is unknown.
+    pub yield_: Option<f64>,
+    /// 95 % interval of that.
+    pub yield_interval: Option<[f64; 2]>,
+    /// Whether the search was stopped before all points were drawn: no verdict follows from the others.
+    pub unfinished: bool,
 }
 
 /// What is known of what lies beyond one limit.
@@ -225,7 +229,7 @@ pub fn rare_within(
     let places: Vec<Place> = targets.iter().enumerate().flat_map(|(index, target)| places(index, target)).collect();
     let places = correct(places, &targets, (options.samples / 4) as usize, &mut model);
     let mut search = Search::new(&targets, places);
-    let (mut done, mut reached) = (surrogates.outcome.evaluated.stopped || targets.is_empty(), None);
+    let (mut done, mut reached) = (surrogates.outcome.evaluated.stopped.is_some() || targets.is_empty(), None);
     while !done {
         let left = options.samples.saturating_sub(model.answered);
         let stage = match options.until {
@@ -246,20 +250,34 @@ pub fn rare_within(
         }
     }
     let surrogate = &surrogates.outcome.evaluated;
-    let spent = surrogate.evaluations as u64;
+    let spent = surrogate.summary();
+    let drawn = RunSummary {
+        evaluations: model.answered.saturating_add_signed(model.extra),
+        cached: model.reused,
+        retried: model.retried,
+        failed: model.failed,
+        stages: model.stages,
+        wall: begun.elapsed(),
+        in_model: model.in_model,
+        seed: Some(options.seed),
+        ..RunSummary::default()
+    };
+    let open = || reached != Some(true) && model.answered < options.samples && !targets.is_empty();
+    let stopped = surrogate.stopped.or_else(|| open().then(|| run.why_open()));
+    let doubts: Vec<Doubt> = surrogate.doubts.iter().chain(&model.doubts).cloned().collect();
+    let samples = search.points;
+    let characteristics = search.characteristics(&model, stopped.is_some());
+    let run = RunSummary { stopped, ..drawn.and(&spent) };
+    let warnings = warnings::of(&characteristics, samples, run.evaluations);
     Ok(RareEvents {
         method: surrogates.outcome.method,
-        seed: options.seed,
-        samples: search.points,
-        evaluations: model.answered.saturating_add_signed(model.extra) + spent,
-        surrogate_evaluations: spent,
-        reused: model.reused + surrogate.reused as u64,
-        failed: model.failed + surrogate.known.failed_points() as u64,
-        stopped: surrogate.stopped || reached != Some(true) && model.answered < options.samples,
+        run,
+        samples,
+        surrogate_evaluations: spent.evaluations,
         reached,
-        in_model: model.in_model + surrogate.in_model,
-        doubts: surrogate.doubts.iter().chain(&model.doubts).cloned().collect(),
-        characteristics: search.characteristics(&model),
+        warnings: warnings.into_iter().chain(history(problem, &doubts)).collect(),
+        doubts,
+        characteristics,
     })
 }
 

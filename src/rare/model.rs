@@ -19,6 +19,10 @@ pub(super) struct Model<'a> {
     /// Points beside these: those that were tried again, less those that were known.
     pub(super) extra: i64,
     pub(super) reused: u64,
+    /// Points sent again.
+    pub(super) retried: u64,
+    /// Batches.
+    pub(super) stages: u64,
     /// Points that lost at least one characteristic.
     pub(super) failed: u64,
     /// For every characteristic how many points lost it, and why the first did.
@@ -57,6 +61,8 @@ impl<'a> Model<'a> {
             answered,
             extra,
             reused,
+            retried: 0,
+            stages: 0,
             failed,
             lost,
             in_model: Duration::ZERO,
@@ -89,6 +95,8 @@ impl<'a> Model<'a> {
             self.extra += out.extra();
             self.doubts.extend(out.doubts().iter().cloned());
             self.reused += out.count_reused() as u64;
+            self.retried += out.count_retried() as u64;
+            self.stages += 1;
             (0..batch).for_each(|row| self.learn(&out, row, first + row, &mut answers));
             first += batch;
         }

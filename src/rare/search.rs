@@ -6,6 +6,7 @@ use super::model::{Answers, Model};
 use super::place::{Place, dot, unit};
 use super::space::Columns;
 use super::target::Target;
+use super::within::within;
 use super::{Beyond, DesignPoint, RareCharacteristic, correct};
 use crate::characteristic::Characteristic;
 use crate::sampling::Estimate;
@@ -143,7 +144,7 @@ impl<'a> Search<'a> {
     }
 
     /// What is known of every characteristic.
-    pub(super) fn characteristics(self, model: &Model<'_>) -> Vec<RareCharacteristic> {
+    pub(super) fn characteristics(self, model: &Model<'_>, unfinished: bool) -> Vec<RareCharacteristic> {
         let space = model.space;
         let beyond = |c: usize, sign: f64| {
             let same = |target: &Target<'_>| target.characteristic == c && target.sign * sign > 0.0;
@@ -172,12 +173,19 @@ impl<'a> Search<'a> {
                 design_point,
             })
         };
-        let characteristic = |(c, characteristic): (usize, &Characteristic)| RareCharacteristic {
-            characteristic: characteristic.clone(),
-            failed: model.lost[c].0,
-            error: model.lost[c].1.clone(),
-            below: beyond(c, -1.0),
-            above: beyond(c, 1.0),
+        let characteristic = |(c, characteristic): (usize, &Characteristic)| {
+            let (below, above) = (beyond(c, -1.0), beyond(c, 1.0));
+            let within = within(characteristic.limits(), [&below, &above]);
+            RareCharacteristic {
+                characteristic: characteristic.clone(),
+                failed: model.lost[c].0,
+                error: model.lost[c].1.clone(),
+                below,
+                above,
+                yield_: within.and_then(|within| within.value),
+                yield_interval: within.map(|within| within.interval),
+                unfinished,
+            }
         };
         model.problem.characteristics().iter().enumerate().map(characteristic).collect()
     }

@@ -2,10 +2,13 @@
 
 use serde::Serialize;
 
+use super::requirement::{amount, word};
 use super::simulation::SimulatedReport;
 use super::{About, CharacteristicReport, Head, WarningReport};
-use crate::allocation::{Allocated, Allocation, Attainable, Bound, JointYield, Requirement, Status};
+use crate::allocation::{Allocated, Allocation, Attainable, Bound, JointYield};
 use crate::problem::Problem;
+use crate::summary::RunSummary;
+use crate::verdict::Verdict;
 use crate::warning::Warning;
 
 /// What an allocation found out. What is unknown is null, never 0.
@@ -20,16 +23,11 @@ pub struct AllocationReport {
     pub status: &'static str,
     /// Whether the model was evaluated at the tolerances found.
     pub confirmed: bool,
-    /// Every point sent to the model.
-    pub evaluations: u64,
-    /// Answers taken from an earlier run.
-    pub reused: u64,
+    /// What it came to in points and time, and why it ended early.
+    #[serde(flatten)]
+    pub run: RunSummary,
     /// How often derivatives were taken.
     pub rounds: usize,
-    /// Seconds that all of it took.
-    pub wall_s: f64,
-    /// The seed of what is drawn.
-    pub seed: Option<u64>,
     /// All costs before; null where no process holds some tolerance, and without costs.
     pub cost_before: Option<f64>,
     /// All costs after.
@@ -142,10 +140,16 @@ pub struct KeptReport {
     pub before: Option<f64>,
     /// What there is.
     pub after: Option<f64>,
-    /// Whether it was kept.
-    pub met_before: bool,
-    /// Whether it is.
-    pub met: bool,
+    /// Within which that is known; null where that is not known.
+    pub interval: Option<[f64; 2]>,
+    /// Whether it was kept; null where that is not known.
+    pub met_before: Option<bool>,
+    /// Whether it is; null where that is not known, and where nothing was found.
+    pub met: Option<bool>,
+    /// Whether it was kept, in a word.
+    pub verdict_before: Verdict,
+    /// Whether it is, in a word; null where nothing was found.
+    pub verdict: Option<Verdict>,
 }
 
 /// What gives way, and what that saves, per unit.
@@ -257,18 +261,6 @@ pub struct ConfirmationReport {
     pub characteristics: Vec<SimulatedReport>,
 }
 
-pub(super) fn word(requirement: Requirement) -> &'static str {
-    match requirement {
-        Requirement::Cpk(_) => "cpk",
-        other => other.name(),
-    }
-}
-
-/// How much is required; of limits, all of the room that they leave.
-pub(super) fn amount(requirement: Requirement) -> f64 {
-    requirement.value().unwrap_or(1.0)
-}
-
 impl AllocationReport {
     /// The report of an allocation; `table` is the study written anew, where it can be.
     pub fn of(problem: &Problem, allocation: &Allocation, table: Option<&WrittenAnew>, about: About) -> Self {
@@ -287,20 +279,14 @@ impl AllocationReport {
         let fits = table.iter().flat_map(|table| &table.replaced_fits);
         warnings
             .extend(fits.map(|dimension| WarningReport::of(&Warning::FitReplaced { dimension: dimension.clone() })));
-        if !allocation.confirmed && matches!(allocation.status, Status::Optimal | Status::AlmostOptimal) {
-            warnings.push(WarningReport::of(&Warning::NotConfirmed));
-        }
-        warnings.extend(missed(problem, allocation).iter().map(WarningReport::of));
+        warnings.extend(allocation.warnings.iter().map(WarningReport::of));
         Self {
             head: Head::of("allocate", &about),
             method: found.method.name(),
             status: allocation.status.name(),
             confirmed: allocation.confirmed,
-            evaluations: allocation.evaluations,
-            reused: allocation.reused,
+            run: allocation.run,
             rounds: allocation.rounds,
-            wall_s: about.wall_s,
-            seed: about.seed,
             cost_before: allocation.cost_before.filter(|_| !allocation.tolerances.is_empty()),
             cost_after: allocation.cost_after,
             tolerances: allocation.tolerances.iter().map(|one| allocated(problem, allocation, one, changed)).collect(),
@@ -317,10 +303,13 @@ impl AllocationReport {
                     characteristic: name(one.characteristic),
                     requirement: word(one.requirement),
                     required: amount(one.requirement),
-                    before: one.before,
-                    after: one.after,
-                    met_before: one.met_before,
-                    met: one.met_after,
+                    before: one.before.value,
+                    after: one.after.and_then(|after| after.value),
+                    interval: one.after.and_then(|after| after.interval),
+                    met_before: one.before.verdict.met(),
+                    met: one.after.and_then(|after| after.verdict.met()),
+                    verdict_before: one.before.verdict,
+                    verdict: one.after.map(|after| after.verdict),
                 })
                 .collect(),
             shadow_prices: (allocation.prices.iter())
@@ -364,21 +353,6 @@ impl AllocationReport {
             warnings,
         }
     }
-}
-
-/// Required yields that a confirmation by Monte Carlo contradicts.
-fn missed(problem: &Problem, allocation: &Allocation) -> Vec<Warning> {
-    let of = |kept: &crate::allocation::Kept| {
-        let Requirement::Yield(required) = kept.requirement else { return None };
-        let simulated = &allocation.confirmation.as_ref()?.characteristics[kept.characteristic];
-        let found = simulated.yield_?;
-        let interval = found.interval;
-        // Half as far again as the interval reaches: three standard errors.
-        let most = found.interval[1] + 0.5 * (found.interval[1] - found.value);
-        let characteristic = problem.characteristics()[kept.characteristic].name().to_owned();
-        (most < required).then_some(Warning::ConfirmationMisses { characteristic, required, interval })
-    };
-    allocation.requirements.iter().filter_map(of).collect()
 }
 
 impl JointReport {

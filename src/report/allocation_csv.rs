@@ -3,6 +3,7 @@
 use super::allocation::AllocationReport;
 use super::csv::CsvFile;
 use super::table::{Table, number, optional, text, truth};
+use crate::verdict::Verdict;
 
 /// The names of the files of [`allocation_csv`].
 pub fn allocation_csv_names() -> [String; 3] {
@@ -42,7 +43,7 @@ fn tolerances(report: &AllocationReport) -> Table {
 
 fn requirements(report: &AllocationReport) -> Table {
     let mut table = Table::new(
-        "characteristic,requirement,required,before,after,met_before,met,price_both,price_lower,price_upper,price_sigma",
+        "characteristic,requirement,required,before,after,met_before,met,verdict,price_both,price_lower,price_upper,price_sigma",
     );
     for one in &report.requirements {
         let price = report.shadow_prices.iter().find(|price| price.characteristic == one.characteristic);
@@ -52,8 +53,9 @@ fn requirements(report: &AllocationReport) -> Table {
             number(one.required),
             number(one.before),
             number(one.after),
-            truth(Some(one.met_before)),
-            truth(Some(one.met)),
+            truth(one.met_before),
+            truth(one.met),
+            optional(one.verdict.map(Verdict::name)),
             number(price.and_then(|price| price.both)),
             number(price.and_then(|price| price.lower)),
             number(price.and_then(|price| price.upper)),

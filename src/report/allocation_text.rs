@@ -2,9 +2,11 @@
 
 use super::CharacteristicReport;
 use super::allocation::{AllocatedReport, AllocationReport, AttainableReport, KeptReport, PriceReport};
+use super::head;
 use super::limits::share;
 use super::number::{UNKNOWN, beside, plain, significant};
 use super::page::{Grid, Page, Style, clean, short};
+use super::requirement::loud;
 
 /// An allocation as text: what it came to, tolerances, requirements, characteristics, and what to paste into the study.
 pub fn allocation_text(report: &AllocationReport, style: Style) -> String {
@@ -56,9 +58,10 @@ fn money(cost: Option<f64>) -> String {
 
 fn heading(page: &mut Page, report: &AllocationReport) {
     let spent = format!(
-        "{} evaluations in {} rounds{}",
-        report.evaluations,
+        "{} evaluations in {} rounds{}{}",
+        report.run.evaluations,
         report.rounds,
+        head::beside(&report.run),
         if report.confirmed && report.cost_after.is_some() { ", confirmed by the model" } else { "" }
     );
     let cost = match (report.cost_before, report.cost_after) {
@@ -198,7 +201,7 @@ fn requirements(page: &mut Page, report: &AllocationReport) {
     let mut table = Grid::new(["required", "", "before", "after", ""], "<<>><");
     for one in &report.requirements {
         let of = |value: Option<f64>| value.map_or(UNKNOWN.to_owned(), |value| measure(one.requirement, value));
-        table.row([short(&one.characteristic), wanted(one), of(one.before), of(one.after), verdict(report, one)]);
+        table.row([short(&one.characteristic), wanted(one), of(one.before), of(one.after), verdict(one)]);
     }
     page.print(&table);
     for price in &report.shadow_prices {
@@ -215,12 +218,12 @@ fn wanted(one: &KeptReport) -> String {
     }
 }
 
-fn verdict(report: &AllocationReport, one: &KeptReport) -> String {
-    let words = |met: bool| if met { "met" } else { "MISSED" };
-    let found = report.cost_after.is_some() || !report.recentred.is_empty() || one.after.is_some();
-    match found {
-        true => format!("{}, {} before", words(one.met), words(one.met_before)),
-        false => format!("{} before", words(one.met_before)),
+fn verdict(one: &KeptReport) -> String {
+    let before = loud(one.verdict_before);
+    // Where nothing was found there is only what was.
+    match one.verdict {
+        Some(verdict) => format!("{}, {before} before", loud(verdict)),
+        None => format!("{before} before"),
     }
 }
 

@@ -5,6 +5,8 @@ use serde::Serialize;
 use super::simulation::SimulatedReport;
 use super::{About, Head};
 use crate::compare::{Comparison, Contender, Errors, Figures, Ran};
+use crate::summary::RunSummary;
+use crate::verdict::Verdict;
 
 /// The report of a comparison, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -12,10 +14,9 @@ pub struct CompareReport {
     /// What every report begins with.
     #[serde(flatten)]
     pub head: Head,
-    /// Seconds in all.
-    pub wall_s: f64,
-    /// The seed.
-    pub seed: Option<u64>,
+    /// What all of it came to in points and time, the reference included, and why it ended early.
+    #[serde(flatten)]
+    pub run: RunSummary,
     /// Points of the reference.
     pub reference_samples: u64,
     /// How they were drawn.
@@ -24,8 +25,6 @@ pub struct CompareReport {
     pub characteristics: Vec<ComparedReport>,
     /// Methods that were not run, and why.
     pub not_run: Vec<NotRunReport>,
-    /// Whether it ended before all was done.
-    pub stopped: bool,
 }
 
 /// One characteristic.
@@ -47,7 +46,9 @@ pub struct MethodReport {
     /// Points that it takes.
     pub evaluations: u64,
     /// Those of them that were known already.
-    pub reused: u64,
+    pub cached: u64,
+    /// What its run came to by itself.
+    pub run: RunSummary,
     /// Seconds within the model.
     pub evaluation_s: f64,
     /// Seconds besides.
@@ -59,6 +60,8 @@ pub struct MethodReport {
     pub error_vs_reference: ErrorReport,
     /// Whether no other method has a smaller error for as many evaluations or fewer.
     pub pareto: bool,
+    /// What it says of the target yield; null without one.
+    pub verdict: Option<Verdict>,
 }
 
 /// Moments and yield.
@@ -118,8 +121,7 @@ impl CompareReport {
         });
         Self {
             head: Head::of("compare", &about),
-            wall_s: about.wall_s,
-            seed: about.seed,
+            run: comparison.run,
             reference_samples: reference.samples,
             reference_method: super::simulation::names(reference.sampler).0,
             characteristics: characteristics.collect(),
@@ -131,7 +133,6 @@ impl CompareReport {
                     reason: one.reason.clone(),
                 })
                 .collect(),
-            stopped: comparison.stopped,
         }
     }
 }
@@ -142,7 +143,8 @@ impl MethodReport {
         Self {
             method: Contender::name(ran.contender),
             evaluations: ran.evaluations,
-            reused: ran.reused,
+            cached: ran.run.cached,
+            run: ran.run,
             evaluation_s: ran.evaluation.as_secs_f64(),
             engine_s: ran.engine.as_secs_f64(),
             figures: FiguresReport::of(&ran.figures[c]),
@@ -154,6 +156,7 @@ impl MethodReport {
                 floor: ran.errors[c].floor(),
             },
             pareto: ran.pareto[c],
+            verdict: ran.verdicts[c],
         }
     }
 }

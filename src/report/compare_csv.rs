@@ -7,7 +7,7 @@ use super::table::{Table, number, text};
 /// `comparison.csv`: a row for every characteristic and method, fewest evaluations first.
 pub fn compare_csv(report: &CompareReport) -> CsvFile {
     let mut table = Table::new(
-        "characteristic,method,evaluations,reused,evaluation_s,engine_s,mean,sigma,skewness,kurtosis,yield,\
+        "characteristic,method,evaluations,cached,evaluation_s,engine_s,mean,sigma,skewness,kurtosis,yield,\
          mean_off_sigmas,sigma_off_relative,skewness_off,kurtosis_off,yield_off,overall,resolved,pareto",
     );
     for one in &report.characteristics {
@@ -17,7 +17,7 @@ pub fn compare_csv(report: &CompareReport) -> CsvFile {
                 text(&one.name),
                 text(&method.method),
                 method.evaluations.to_string(),
-                method.reused.to_string(),
+                method.cached.to_string(),
                 number(method.evaluation_s),
                 number(method.engine_s),
                 number(found.mean),

@@ -1,6 +1,7 @@
 //! The report of a comparison for people.
 
 use super::compare::{CompareReport, ComparedReport};
+use super::head;
 use super::number::{UNKNOWN, significant};
 use super::page::{Grid, Page, Style, clean, short};
 use crate::compare::RESOLVED;
@@ -11,7 +12,8 @@ pub fn compare_text(report: &CompareReport, style: Style) -> String {
     if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
-    page.line(&format!("reference: {} with {} points", report.reference_method, report.reference_samples));
+    let stopped = head::beside(&report.run);
+    page.line(&format!("reference: {} with {} points{stopped}", report.reference_method, report.reference_samples));
     for one in &report.characteristics {
         page.line("");
         compared(&mut page, one);

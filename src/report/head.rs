@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
+use super::number::plural;
 use super::{About, SCHEMA};
+use crate::summary::RunSummary;
 
 /// Versions, the study, and the command.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,4 +26,15 @@ impl Head {
         let (title, study_sha256) = (about.title.clone(), about.sha256.clone());
         Self { schema: SCHEMA, sensitol: env!("CARGO_PKG_VERSION"), title, study_sha256, command }
     }
+}
+
+/// What there is to say of a run beside its evaluations, as the end of a line: what was known, sent again and lost, and why it ended
+/// early.
+pub(super) fn beside(run: &RunSummary) -> String {
+    let some = |count: u64, text: String| if count > 0 { text } else { String::new() };
+    let stopped = run.stopped.map_or(String::new(), |reason| format!(", stopped by {reason}"));
+    some(run.cached, format!(", {} known already", run.cached))
+        + &some(run.retried, format!(", {} sent again", run.retried))
+        + &some(run.failed, format!(", {} failed", plural(run.failed as usize, "point", "points")))
+        + &stopped
 }

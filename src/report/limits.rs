@@ -3,6 +3,7 @@
 use super::distribution::{DistributionReport, Quantiles};
 use super::number::{beside, plain, significant};
 use super::page::{Grid, Page, Style};
+use super::requirement::{RequirementReport, loud};
 use super::sketch::sketch;
 use super::{CharacteristicReport, NormalFitReport};
 use crate::capability::Law;
@@ -72,17 +73,10 @@ fn significant_percent(p: &str) -> String {
 }
 
 fn limits(page: &mut Page, one: &CharacteristicReport) {
-    let target = match (one.target_yield, one.met) {
-        (Some(target), met) => {
-            let met = match met {
-                Some(true) => "met",
-                Some(false) => "MISSED",
-                None => "not known",
-            };
-            format!(", target {}: {met}", share(1.0 - target))
-        }
-        (None, _) => String::new(),
-    };
+    let target = one
+        .target_yield
+        .zip(one.verdict)
+        .map_or(String::new(), |(target, verdict)| format!(", target {}: {}", share(1.0 - target), loud(verdict)));
     let (below, above) = (one.ppm_below, one.ppm_above);
     page.line(&format!("  yield {}{}{target}", rejected(below, above), outside(below, above)));
     let index = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {value:.3}"));
@@ -97,6 +91,7 @@ fn limits(page: &mut Page, one: &CharacteristicReport) {
     if !indices.is_empty() {
         page.line(&format!("  {}", indices.join("  ")));
     }
+    one.requirements.iter().filter_map(RequirementReport::line).for_each(|line| page.line(&format!("  {line}")));
     if let Some(normal) = one.normal_fit.as_ref().filter(|normal| differs(one, normal)) {
         let (below, above) = (normal.ppm_below, normal.ppm_above);
         page.line(&format!("  a normal fit would say: yield {}{}", rejected(below, above), outside(below, above)));
@@ -149,11 +144,6 @@ pub(super) fn verdict(one: &CharacteristicReport) -> String {
     if one.lower.is_none() && one.upper.is_none() || one.mean.is_none() {
         return String::new();
     }
-    let met = match one.met {
-        Some(true) => ", target met",
-        Some(false) => ", target MISSED",
-        None if one.target_yield.is_some() => ", target not known",
-        None => "",
-    };
+    let met = one.verdict.map_or(String::new(), |verdict| format!(", target {}", loud(verdict)));
     format!("yield {}{met}", rejected(one.ppm_below, one.ppm_above))
 }

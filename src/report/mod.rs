@@ -22,6 +22,7 @@ mod page;
 mod rare;
 mod rare_csv;
 mod rare_text;
+mod requirement;
 mod sampling;
 mod simulation;
 mod simulation_csv;
@@ -57,6 +58,7 @@ pub use page::{Detail, Style};
 pub use rare::{BeyondReport, DesignPointReport, RareCharacteristicReport, RareReport};
 pub use rare_csv::rare_csv;
 pub use rare_text::rare_text;
+pub use requirement::RequirementReport;
 pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
 pub use simulation_csv::simulation_csv;
@@ -70,16 +72,18 @@ pub use text::text;
 
 use serde::Serialize;
 
-use crate::analysis::{Analysis, CharacteristicAnalysis};
+use crate::analysis::{Analysis, CharacteristicAnalysis, Missing};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
 use crate::extremes::{Extreme, Extremes};
 use crate::method::{Basis, DerivativeSource};
 use crate::problem::Problem;
+use crate::summary::RunSummary;
+use crate::verdict::Verdict;
 use crate::warning::Warning;
 
 /// The version of the JSON report's shape.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// The report of an analysis, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -98,16 +102,9 @@ pub struct Report {
     /// What the moments rest on, to be printed.
     #[serde(skip)]
     pub basis: Basis,
-    /// Every point sent to the model.
-    pub evaluations: usize,
-    /// Answers taken from an earlier run.
-    pub reused: usize,
-    /// Points that lost at least one asked characteristic.
-    pub failed: usize,
-    /// Seconds from the first evaluation to the finished result.
-    pub wall_s: f64,
-    /// The seed of what draws random numbers, where one was given or used.
-    pub seed: Option<u64>,
+    /// What it came to in points and time, and why it ended early.
+    #[serde(flatten)]
+    pub run: RunSummary,
     /// The dimensions, in the study's order.
     pub dimensions: Vec<DimensionReport>,
     /// The dimensions that vary together.
@@ -232,8 +229,14 @@ pub struct CharacteristicReport {
     pub upper: Option<f64>,
     /// The share of assemblies that must keep the limits.
     pub target_yield: Option<f64>,
-    /// Whether they do.
+    /// Whether they do; null where that is not known.
     pub met: Option<bool>,
+    /// The same in a word; null without a target.
+    pub verdict: Option<Verdict>,
+    /// Everything that is required of it, the target yield included.
+    pub requirements: Vec<RequirementReport>,
+    /// Within which the share is known that does; null where that is not known.
+    pub yield_interval: Option<[f64; 2]>,
     /// The share that does.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
@@ -336,6 +339,8 @@ pub struct InteractionReport {
     pub dimensions: [String; 2],
     /// Mixed second derivative at the means.
     pub mixed: Option<f64>,
+    /// Why it is missing; null where it is not.
+    pub missing: Option<Missing>,
     /// Whether it is exact rather than a difference.
     pub exact: bool,
     /// What rounding in the model may make of it.
@@ -366,10 +371,6 @@ pub struct About {
     pub title: Option<String>,
     /// SHA-256 of the study file.
     pub sha256: String,
-    /// The seed.
-    pub seed: Option<u64>,
-    /// Seconds that the analysis took.
-    pub wall_s: f64,
     /// Warnings of the study itself.
     pub warnings: Vec<Warning>,
 }
@@ -388,11 +389,7 @@ impl Report {
                 Basis::LeastSquares | Basis::Quadrature => None,
             },
             basis: analysis.basis,
-            evaluations: analysis.evaluations,
-            reused: analysis.reused,
-            failed: analysis.failed,
-            wall_s: about.wall_s,
-            seed: about.seed.or(analysis.seed),
+            run: analysis.run,
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             correlation: correlation(problem),
             characteristics: analysis.characteristics.iter().map(CharacteristicReport::of).collect(),
@@ -482,6 +479,7 @@ impl CharacteristicReport {
                 .map(|interaction| InteractionReport {
                     dimensions: interaction.dimensions.clone(),
                     mixed: interaction.mixed,
+                    missing: interaction.missing,
                     exact: interaction.exact,
                     rounding: interaction.rounding,
                     share: interaction.share,
@@ -496,6 +494,9 @@ impl CharacteristicReport {
             upper: characteristic.limits().upper(),
             target_yield: characteristic.target_yield(),
             met: analysis.met(),
+            verdict: analysis.verdict(),
+            requirements: analysis.requirements().iter().map(RequirementReport::of).collect(),
+            yield_interval: analysis.yield_interval(),
             yield_: of(|capability| capability.yield_()),
             ppm_below: of(|capability| capability.below.map(ppm)),
             ppm_above: of(|capability| capability.above.map(ppm)),

@@ -35,13 +35,12 @@ const YELLOW: &str = "\u{1b}[33m";
 const RED: &str = "\u{1b}[1;31m";
 const PLAIN: &str = "\u{1b}[0m";
 /// Words that tell whether what was wanted is so, anywhere in a report.
-const VERDICTS: [(&str, &str); 6] = [
+const VERDICTS: [(&str, &str); 5] = [
     ("met", GREEN),
     ("within the limits", GREEN),
     ("MISSED", RED),
     ("EXCEEDS the limits", RED),
-    ("the sample does not tell", YELLOW),
-    ("not known", YELLOW),
+    ("inconclusive", YELLOW),
 ];
 /// How an allocation ended, before a colon at the beginning of its line.
 const STATUSES: [(&str, &str); 4] =

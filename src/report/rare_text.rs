@@ -1,10 +1,12 @@
 //! The report of rare events for people.
 
+use super::head;
 use super::limits::share;
 use super::number::{UNKNOWN, plain, significant};
 use super::page::{Grid, Page, Style, clean, short};
 use super::rare::{BeyondReport, RareCharacteristicReport, RareReport};
-use super::simulation_text::judged;
+use super::requirement::RequirementReport;
+use super::simulation_text::{judged, seed};
 
 /// Dimensions of a design point that are shown: those that move farthest.
 const SHOWN: usize = 6;
@@ -15,10 +17,13 @@ pub fn rare_text(report: &RareReport, style: Style) -> String {
     if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
-    let failed = if report.failed > 0 { format!(", {} failed", report.failed) } else { String::new() };
     page.line(&format!(
-        "importance sampling: {} points, {} evaluations with the {} surrogate, seed {}{failed}",
-        report.samples, report.evaluations, report.surrogate, report.seed
+        "importance sampling: {} points, {} evaluations with the {} surrogate{}{}",
+        report.samples,
+        report.run.evaluations,
+        report.surrogate,
+        seed(&report.run),
+        head::beside(&report.run)
     ));
     for one in &report.characteristics {
         page.line("");
@@ -65,10 +70,11 @@ fn characteristic(page: &mut Page, one: &RareCharacteristicReport, report: &Rare
         }
     }
     if let Some([low, high]) = one.yield_interval {
-        let target = judged(one.target_yield, one.met);
+        let target = judged(one.target_yield, one.verdict);
         let value = one.yield_.map_or(UNKNOWN.to_owned(), |value| share(1.0 - value));
         page.line(&format!("  yield {value}, 95 % interval {} to {}{target}", share(1.0 - low), share(1.0 - high)));
     }
+    one.requirements.iter().filter_map(RequirementReport::line).for_each(|line| page.line(&format!("  {line}")));
     for (side, of) in sides {
         design_point(page, side, of, report);
     }

@@ -3,12 +3,12 @@
 use serde::Serialize;
 
 use super::distribution::{NAMES, OptionalQuantiles};
-use super::{About, CorrelationReport, DimensionReport, Head, WarningReport, correlation};
-use crate::analysis::history;
+use super::{About, CorrelationReport, DimensionReport, Head, RequirementReport, WarningReport, correlation};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation};
-use crate::warning::Warning;
+use crate::summary::RunSummary;
+use crate::verdict::Verdict;
 
 /// The report of a simulation, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,22 +22,13 @@ pub struct SimulationReport {
     pub sampler: &'static str,
     /// Points that were answered.
     pub samples: u64,
-    /// Every point sent to the model.
-    pub evaluations: u64,
+    /// What it came to in points and time, and why it ended early.
+    #[serde(flatten)]
+    pub run: RunSummary,
     /// Those of the surrogate that stands beside the model; null where there is none.
     pub surrogate_evaluations: Option<u64>,
-    /// Answers taken from an earlier run.
-    pub reused: u64,
-    /// Points that lost at least one asked characteristic.
-    pub failed: u64,
-    /// Whether it ended before all points were drawn, or what was wanted was reached.
-    pub stopped: bool,
     /// Whether the wanted standard errors were reached; null where none were wanted.
     pub reached: Option<bool>,
-    /// Seconds from the first evaluation to the finished result.
-    pub wall_s: f64,
-    /// The seed.
-    pub seed: u64,
     /// The dimensions, in the study's order.
     pub dimensions: Vec<DimensionReport>,
     /// The dimensions that vary together.
@@ -81,6 +72,10 @@ pub struct SimulatedReport {
     pub target_yield: Option<f64>,
     /// Whether the interval of the yield lies above that (true), below (false), or around it (null).
     pub met: Option<bool>,
+    /// The same in a word; null without a target.
+    pub verdict: Option<Verdict>,
+    /// Everything that is required of it, the target yield included.
+    pub requirements: Vec<RequirementReport>,
     /// The share that does, among the points that have a value.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
@@ -166,25 +161,18 @@ impl SimulationReport {
     /// The report of a simulation.
     pub fn of(problem: &Problem, simulation: &Simulation, about: About) -> Self {
         let (method, sampler) = names(simulation.sampler);
-        let failures = simulation.characteristics.iter().filter_map(failed);
-        let found: Vec<Warning> = failures.chain(history(problem, &simulation.doubts)).collect();
         Self {
             head: Head::of("simulate", &about),
             method,
             sampler,
             samples: simulation.samples,
-            evaluations: simulation.evaluations,
+            run: simulation.run,
             surrogate_evaluations: simulation.surrogate_evaluations,
-            reused: simulation.reused,
-            failed: simulation.failed,
-            stopped: simulation.stopped,
             reached: simulation.reached,
-            wall_s: about.wall_s,
-            seed: simulation.seed,
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             correlation: correlation(problem),
             characteristics: simulation.characteristics.iter().map(SimulatedReport::of).collect(),
-            warnings: about.warnings.iter().chain(&found).map(WarningReport::of).collect(),
+            warnings: about.warnings.iter().chain(&simulation.warnings).map(WarningReport::of).collect(),
         }
     }
 }
@@ -197,15 +185,6 @@ pub(super) fn names(sampler: Sampler) -> (&'static str, &'static str) {
     }
 }
 
-fn failed(one: &SimulatedCharacteristic) -> Option<Warning> {
-    Some(Warning::FailedSamples {
-        characteristic: one.characteristic.name().to_owned(),
-        failed: one.failed,
-        samples: one.samples + one.failed,
-        error: one.error.as_ref()?.to_string(),
-    })
-}
-
 impl SimulatedReport {
     pub(super) fn of(one: &SimulatedCharacteristic) -> Self {
         let value = |estimate: Option<Estimate>| estimate.map(|estimate| estimate.value);
@@ -215,17 +194,13 @@ impl SimulatedReport {
         };
         let limits = one.characteristic.limits();
         let (lower, upper) = (limits.lower(), limits.upper());
-        let (mean, sigma) = (value(one.mean), value(one.sigma).filter(|&sigma| sigma > 0.0));
         let target_yield = one.characteristic.target_yield();
-        let index = |distance: Option<f64>| Some(distance? / 3.0 / sigma?);
-        let sides =
-            [lower.zip(mean).map(|(lower, mean)| mean - lower), upper.zip(mean).map(|(upper, mean)| upper - mean)];
         Self {
             name: one.characteristic.name().to_owned(),
             unit: one.characteristic.unit().map(str::to_owned),
             samples: one.samples,
             failed: one.failed,
-            mean,
+            mean: value(one.mean),
             sigma: value(one.sigma),
             skewness: value(one.skewness),
             kurtosis: value(one.kurtosis),
@@ -242,18 +217,15 @@ impl SimulatedReport {
             lower,
             upper,
             target_yield,
-            met: target_yield.zip(one.yield_).and_then(|(target, share)| {
-                let [low, high] = share.interval;
-                // What has no value may be rejected.
-                let least = low.min(share.bounds[0]);
-                if least >= target { Some(true) } else { (high < target).then_some(false) }
-            }),
+            met: one.verdict().and_then(Verdict::met),
+            verdict: one.verdict(),
+            requirements: one.requirements().iter().map(RequirementReport::of).collect(),
             yield_: one.yield_.map(|share| share.value),
             yield_bounds: one.yield_.filter(|_| one.failed > 0).map(|share| share.bounds),
             ppm_below: one.below.map(|share| 1e6 * share),
             ppm_above: one.above.map(|share| 1e6 * share),
-            cp: index(lower.zip(upper).map(|(lower, upper)| 0.5 * (upper - lower))),
-            cpk: index(sides.into_iter().flatten().reduce(f64::min)),
+            cp: one.cp,
+            cpk: one.cpk,
             histogram: one.histogram.as_ref().map(HistogramReport::of),
             control: one.control.map(|control| ControlReport {
                 method: control.method.name(),

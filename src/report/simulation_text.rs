@@ -1,9 +1,13 @@
 //! The report of a simulation for people.
 
+use super::head;
 use super::limits::share;
 use super::number::{UNKNOWN, beside, plain, significant};
 use super::page::{Grid, Page, Style, clean, short};
+use super::requirement::{RequirementReport, loud};
 use super::simulation::{SimulatedReport, SimulationReport};
+use crate::summary::RunSummary;
+use crate::verdict::Verdict;
 
 /// Characters of the longest bar of a histogram.
 const BAR: usize = 50;
@@ -14,8 +18,13 @@ pub fn simulation_text(report: &SimulationReport, style: Style) -> String {
     if let Some(title) = &report.head.title {
         page.line(&clean(title));
     }
-    let failed = if report.failed > 0 { format!(", {} failed", report.failed) } else { String::new() };
-    page.line(&format!("{}: {} points, seed {}{failed}", report.method, report.samples, report.seed));
+    page.line(&format!(
+        "{}: {} points{}{}",
+        report.method,
+        report.samples,
+        seed(&report.run),
+        head::beside(&report.run)
+    ));
     for one in &report.characteristics {
         page.line("");
         characteristic(&mut page, one);
@@ -59,6 +68,7 @@ fn characteristic(page: &mut Page, one: &SimulatedReport) {
     if let Some(yield_) = one.yield_ {
         limits(page, one, yield_);
     }
+    one.requirements.iter().filter_map(RequirementReport::line).for_each(|line| page.line(&format!("  {line}")));
     histogram(page, one);
 }
 
@@ -67,7 +77,7 @@ fn limits(page: &mut Page, one: &SimulatedReport, yield_: f64) {
         .standard_error
         .yield_
         .map_or(String::new(), |[low, high]| format!(", 95 % interval {} to {}", share(1.0 - low), share(1.0 - high)));
-    let target = judged(one.target_yield, one.met);
+    let target = judged(one.target_yield, one.verdict);
     page.line(&format!("  yield {}{interval}{target}", share(1.0 - yield_)));
     if let Some([low, high]) = one.yield_bounds {
         let points = one.failed;
@@ -82,14 +92,14 @@ fn limits(page: &mut Page, one: &SimulatedReport, yield_: f64) {
 }
 
 /// Whether a sample shows that a target is met.
-pub(super) fn judged(target: Option<f64>, met: Option<bool>) -> String {
-    let Some(target) = target else { return String::new() };
-    let verdict = match met {
-        Some(true) => "met",
-        Some(false) => "MISSED",
-        None => "the sample does not tell",
-    };
-    format!(", target {}: {verdict}", share(1.0 - target))
+pub(super) fn judged(target: Option<f64>, verdict: Option<Verdict>) -> String {
+    let Some((target, verdict)) = target.zip(verdict) else { return String::new() };
+    format!(", target {}: {}", share(1.0 - target), loud(verdict))
+}
+
+/// The seed, where there is one.
+pub(super) fn seed(run: &RunSummary) -> String {
+    run.seed.map_or(String::new(), |seed| format!(", seed {seed}"))
 }
 
 /// As many digits as the standard error leaves: two of its own.

@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::distribution::NAMES;
-use super::{About, Head, OptionalQuantiles, Quantiles, WarningReport};
+use super::{About, Head, OptionalQuantiles, Quantiles, RequirementReport, WarningReport};
 use crate::analysis::CharacteristicAnalysis;
 use crate::capability::Law;
 use crate::problem::Problem;
+use crate::summary::RunSummary;
 use crate::sweep::Sweep;
+use crate::verdict::Verdict;
 
 /// The report of a sweep, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -21,20 +23,9 @@ pub struct SweepReport {
     pub parameter: ParameterReport,
     /// The method that was run; null where nothing was done.
     pub method: Option<&'static str>,
-    /// Every point sent to the model.
-    pub evaluations: usize,
-    /// Answers taken from an earlier run.
-    pub reused: usize,
-    /// Points that lost at least one asked characteristic.
-    pub failed: usize,
-    /// Batches in which they were sent.
-    pub batches: usize,
-    /// Seconds in all.
-    pub wall_s: f64,
-    /// The seed.
-    pub seed: Option<u64>,
-    /// Whether it ended before all was done.
-    pub stopped: bool,
+    /// What it came to in points and time, and why it ended early.
+    #[serde(flatten)]
+    pub run: RunSummary,
     /// What was asked.
     pub characteristics: Vec<SweptReport>,
     /// Where an assumption fails, each once, with the values at which it does.
@@ -95,6 +86,12 @@ pub struct SweptPointReport {
     pub ppm_below: Option<f64>,
     /// Rejected above the upper limit.
     pub ppm_above: Option<f64>,
+    /// Whether the target yield is met; null where that is not known, and without one.
+    pub met: Option<bool>,
+    /// The same in a word.
+    pub verdict: Option<Verdict>,
+    /// Everything that is required of it, the target yield included.
+    pub requirements: Vec<RequirementReport>,
 }
 
 impl SweepReport {
@@ -119,13 +116,7 @@ impl SweepReport {
                 values: sweep.values.clone(),
             },
             method: sweep.analyses.iter().flatten().next().map(|analysis| analysis.method.name()),
-            evaluations: sweep.evaluations,
-            reused: sweep.reused,
-            failed: sweep.failed,
-            batches: sweep.batches,
-            wall_s: about.wall_s,
-            seed: sweep.analyses.iter().flatten().find_map(|analysis| analysis.seed),
-            stopped: sweep.stopped,
+            run: sweep.run,
             characteristics: characteristics.collect(),
             warnings: warnings(sweep, dimension.name(), &about),
         }
@@ -180,6 +171,10 @@ impl SweptPointReport {
             yield_: capability.and_then(|capability| capability.yield_()),
             ppm_below: capability.and_then(|capability| capability.below).map(|share| 1e6 * share),
             ppm_above: capability.and_then(|capability| capability.above).map(|share| 1e6 * share),
+            met: analysis.and_then(CharacteristicAnalysis::met),
+            verdict: analysis.and_then(CharacteristicAnalysis::verdict),
+            requirements: analysis
+                .map_or(Vec::new(), |one| one.requirements().iter().map(RequirementReport::of).collect()),
         }
     }
 

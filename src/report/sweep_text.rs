@@ -1,5 +1,6 @@
 //! The report of a sweep for people.
 
+use super::head;
 use super::limits::rejected;
 use super::number::{UNKNOWN, beside, plain, plural, significant};
 use super::page::{Grid, Page, Style, clean, short};
@@ -14,11 +15,11 @@ pub fn sweep_text(report: &SweepReport, style: Style) -> String {
     page.line(&format!(
         "{}: {} in {} for {} of {}{}",
         report.method.unwrap_or("nothing was done"),
-        plural(report.evaluations, "evaluation", "evaluations"),
-        plural(report.batches, "batch", "batches"),
+        plural(report.run.evaluations as usize, "evaluation", "evaluations"),
+        plural(report.run.stages as usize, "batch", "batches"),
         plural(report.parameter.values.len(), "value", "values"),
         short(&report.parameter.name),
-        if report.failed > 0 { format!(", {} failed", report.failed) } else { String::new() },
+        head::beside(&report.run),
     ));
     for one in &report.characteristics {
         page.line("");

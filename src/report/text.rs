@@ -1,6 +1,7 @@
 //! The report for a terminal: the verdict first, then a table per characteristic; at most 100 columns.
 
 use super::extremes::extremes;
+use super::head;
 use super::limits::{distribution, verdict};
 use super::number::{UNKNOWN, beside, percent, plain, plural, significant, unsigned_zero};
 use super::page::{Detail, Grid, Page, Style, clean, short};
@@ -35,17 +36,9 @@ pub fn text(report: &Report, style: Style) -> String {
 
 /// What was done for it, in one line.
 fn summary(report: &Report) -> String {
-    let failed = match report.failed {
-        0 => String::new(),
-        failed => format!(", {} failed", plural(failed, "point", "points")),
-    };
-    let evaluations = plural(report.evaluations, "evaluation", "evaluations");
+    let evaluations = plural(report.run.evaluations as usize, "evaluation", "evaluations");
     let varying = plural(report.varying, "varying dimension", "varying dimensions");
-    let reused = match report.reused {
-        0 => String::new(),
-        reused => format!(", {reused} known already"),
-    };
-    format!("{}: {evaluations}{reused}, {varying}{failed}", report.method)
+    format!("{}: {evaluations}, {varying}{}", report.method, head::beside(&report.run))
 }
 
 /// A line per characteristic: where it lies, and its limits.

@@ -4,10 +4,13 @@ use super::control::Twin;
 use super::difference::{Difference, Shares, moments as controlled, shares};
 use super::tally::{Count, Replicate};
 use crate::assembly::EvaluationError;
-use crate::capability::TAIL;
+use crate::capability::{self, TAIL};
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::method::Method;
+use crate::requirement::Requirement;
 use crate::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
+use crate::verdict::{self, Judged, Verdict};
+use crate::warning::Warning;
 
 /// Estimates for one characteristic, each with its standard error. What is unknown is None.
 #[derive(Debug, Clone)]
@@ -37,6 +40,12 @@ pub struct SimulatedCharacteristic {
     pub below: Option<f64>,
     /// Share above the upper limit.
     pub above: Option<f64>,
+    /// Width of the limits by six sigma; None unless there are two, and where nothing varies.
+    pub cp: Option<f64>,
+    /// Distance of the nearer limit by three sigma.
+    pub cpk: Option<f64>,
+    /// Whether the sample was stopped before all its points were drawn: no verdict follows from the others.
+    pub unfinished: bool,
     /// The least and the greatest value seen.
     pub range: Option<[f64; 2]>,
     /// The sample, counted in some tens of intervals.
@@ -115,7 +124,13 @@ impl SimulatedCharacteristic {
             quantiles[index].map(|quantile| quantile.value).or(range.map(|range: [f64; 2]| range[end]))
         };
         let (low, high) = (outer(0, 0), outer(6, 1));
+        let value = |estimate: Option<Estimate>| estimate.map(|estimate| estimate.value);
+        let spread = value(sigma).filter(|&sigma| sigma > 0.0);
+        let width = limits.lower().zip(limits.upper()).map(|(lower, upper)| upper - lower);
         Self {
+            cp: width.zip(spread).map(|(width, sigma)| width / (6.0 * sigma)),
+            cpk: value(mean).zip(spread).and_then(|(mean, sigma)| capability::cpk(mean, sigma, limits)),
+            unfinished: false,
             characteristic: characteristic.clone(),
             samples: known,
             failed: count.failed,
@@ -140,6 +155,51 @@ impl SimulatedCharacteristic {
                 sigma: reduction(plain[1], sigma),
             }),
         }
+    }
+}
+
+impl SimulatedCharacteristic {
+    /// How a requirement is kept, whether or not it is the characteristic's own: by the interval of the yield, where points without
+    /// a value may all be rejected ones, or by two standard errors of mean and sigma. Of rss and worst case a sample knows nothing.
+    pub fn judge(&self, requirement: Requirement) -> Judged {
+        let limits = self.characteristic.limits();
+        let known = |estimate: Option<Estimate>| estimate.map(|of| (of.value, of.standard_error));
+        let (value, interval) = match requirement {
+            Requirement::Yield(_) => (
+                self.yield_.map(|share| share.value),
+                self.yield_.map(|share| [share.interval[0].min(share.bounds[0]), share.interval[1]]),
+            ),
+            Requirement::Cpk(_) => {
+                let both = known(self.mean).zip(known(self.sigma).filter(|&(sigma, _)| sigma > 0.0));
+                (self.cpk, both.and_then(|(mean, sigma)| verdict::of_cpk(mean, sigma, limits)))
+            }
+            Requirement::Sigma(_) => (
+                self.sigma.map(|sigma| sigma.value),
+                known(self.sigma).and_then(|(sigma, error)| verdict::about(sigma, error)),
+            ),
+            Requirement::Rss | Requirement::WorstCase => (None, None),
+        };
+        Judged::of(requirement, value, interval).unless(self.unfinished)
+    }
+
+    /// How everything is kept that is required of it: its target yield, and what else there is.
+    pub fn requirements(&self) -> Vec<Judged> {
+        verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
+    }
+
+    /// What is to be said of its target yield; None without one.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
+    }
+
+    /// Points without a value, where there are any.
+    pub(super) fn failures(&self) -> Option<Warning> {
+        Some(Warning::FailedSamples {
+            characteristic: self.characteristic.name().to_owned(),
+            failed: self.failed,
+            samples: self.samples + self.failed,
+            error: self.error.as_ref()?.to_string(),
+        })
     }
 }
 

@@ -20,6 +20,7 @@ use crate::method::{Method, Options, Outcome};
 use crate::moments::Sampled;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler};
+use crate::summary::StopReason;
 use crate::surrogate::Surrogate;
 
 /// Points of the surrogate for every point of the model, by which its own share within the limits is known,
@@ -90,8 +91,8 @@ impl<'p> Control<'p> {
         Ok(control)
     }
 
-    /// Whether it was stopped before the surrogates were known.
-    pub(super) fn stopped(&self) -> bool {
+    /// Why it was stopped before the surrogates were known.
+    pub(super) fn stopped(&self) -> Option<StopReason> {
         self.outcome.evaluated.stopped
     }
 

@@ -17,6 +17,8 @@ use crate::assembly::{Ask, EvaluationError, Responses, Run};
 use crate::method::{MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
+use crate::summary::RunSummary;
+use crate::warning::Warning;
 use control::Control;
 pub(crate) use surrogates::{Surrogates, chosen};
 use tally::{Block, Lens, Tally};
@@ -70,28 +72,21 @@ const COSTLY: usize = 4096;
 pub struct Simulation {
     /// How points were drawn.
     pub sampler: Sampler,
-    /// The seed.
-    pub seed: u64,
+    /// What it came to in points and time, those of the surrogate included; why it ended before all points were drawn or what was
+    /// wanted was reached.
+    pub run: RunSummary,
     /// Points that were answered.
     pub samples: u64,
-    /// Points sent to the model, those tried again and those of the surrogate included.
-    pub evaluations: u64,
-    /// Those of the surrogate; None where none was asked for.
+    /// Evaluations of the surrogate; None where none was asked for.
     pub surrogate_evaluations: Option<u64>,
-    /// Points whose answers were known from an earlier run.
-    pub reused: u64,
-    /// Points that lost at least one characteristic.
-    pub failed: u64,
-    /// Whether it was stopped before all points were drawn or what was wanted was reached.
-    pub stopped: bool,
     /// Whether what was wanted was reached; None where nothing was.
     pub reached: Option<bool>,
-    /// Time within the model, of all threads together.
-    pub in_model: Duration,
     /// Where the model answered the nominal point otherwise than before.
     pub doubts: Vec<Doubt>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<SimulatedCharacteristic>,
+    /// Where points have no value, and where the model contradicted itself.
+    pub warnings: Vec<Warning>,
 }
 
 /// How far a simulation is.
@@ -200,10 +195,11 @@ pub fn simulate_within(
     if options.until_yield.is_some() && !problem.characteristics().iter().any(|one| one.limits().exist()) {
         return Err(SimulationError::NoLimits);
     }
+    let begun = Instant::now();
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
     let control = options.control.as_ref().map(|asked| Control::of(problem, asked, options, run)).transpose()?;
-    Ok(drawn(problem, options, (&draws, control.as_ref()), run, pace))
+    Ok(drawn(problem, options, (&draws, control.as_ref()), run, (begun, pace)))
 }
 
 /// Samples the model beside the surrogates of an analysis that has been made; those that it has not stand beside nothing.
@@ -214,9 +210,10 @@ pub(crate) fn simulate_beside(
     outcome: &Outcome,
     run: &Run<'_>,
 ) -> Result<Simulation, SimulationError> {
+    let begun = Instant::now();
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     let control = Control::beside_of(problem, outcome, options)?;
-    Ok(drawn(problem, options, (&draws, Some(&control)), run, &|_| {}))
+    Ok(drawn(problem, options, (&draws, Some(&control)), run, (begun, &|_| {})))
 }
 
 fn drawn(
@@ -224,9 +221,8 @@ fn drawn(
     options: &SimulationOptions,
     (draws, control): (&Draws<'_>, Option<&Control<'_>>),
     run: &Run<'_>,
-    pace: &dyn Fn(Pace),
+    (begun, pace): (Instant, &dyn Fn(Pace)),
 ) -> Simulation {
-    let begun = Instant::now();
     let mut tally = Tally::new(problem, control, options.sampler);
     let mut portions = Portions::new(options, problem.function().signature().costly);
     let (mut reached, mut expected) = (None, portions.total as f64);
@@ -251,8 +247,10 @@ fn drawn(
             break;
         }
     }
-    let stopped = tally.stopped || control.is_some_and(Control::stopped) || reached != Some(true) && !portions.done();
-    tally.finish(options, stopped, reached)
+    let open = tally.stopped || reached != Some(true) && !portions.done();
+    let stopped = control.and_then(Control::stopped).or_else(|| open.then(|| run.why_open()));
+    let simulation = tally.finish(options, stopped, reached);
+    Simulation { run: RunSummary { wall: begun.elapsed(), ..simulation.run }, ..simulation }
 }
 
 /// Evaluates one portion.

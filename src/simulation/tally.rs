@@ -10,8 +10,10 @@ use super::{REPLICATES, Simulation, SimulationOptions};
 use crate::assembly::process::Doubt;
 use crate::assembly::{EvaluationError, Responses};
 use crate::characteristic::SpecLimits;
+use crate::evaluation::history;
 use crate::problem::Problem;
 use crate::sampling::{Fine, Portion, Sampler, Scale, Summary};
+use crate::summary::{RunSummary, StopReason};
 
 /// What a portion is looked at with.
 #[derive(Clone, Copy)]
@@ -27,6 +29,7 @@ pub(super) struct Block {
     answered: u64,
     extra: i64,
     reused: u64,
+    retried: u64,
     failed: u64,
     complete: bool,
     doubts: Vec<Doubt>,
@@ -67,6 +70,7 @@ impl Block {
             answered: answered as u64,
             extra: out.extra(),
             reused: out.count_reused() as u64,
+            retried: out.count_retried() as u64,
             failed: lost.len() as u64,
             complete: answered == out.rows(),
             doubts: out.doubts().to_vec(),
@@ -136,9 +140,8 @@ pub(super) struct Tally<'a> {
     counts: Vec<Count>,
     answered: u64,
     extra: i64,
-    reused: u64,
-    failed: u64,
-    in_model: Duration,
+    /// Of the points drawn.
+    run: RunSummary,
     doubts: Vec<Doubt>,
     pub(super) stopped: bool,
 }
@@ -160,9 +163,7 @@ impl<'a> Tally<'a> {
             counts: characteristics.iter().map(|_| count()).collect(),
             answered: 0,
             extra: 0,
-            reused: 0,
-            failed: 0,
-            in_model: Duration::ZERO,
+            run: RunSummary::default(),
             doubts: Vec::new(),
             stopped: false,
         }
@@ -178,15 +179,17 @@ impl<'a> Tally<'a> {
 
     /// Takes in the blocks of these portions, in their order.
     pub(super) fn add(&mut self, portions: &[Portion], blocks: Vec<Block>) {
+        self.run.stages += 1;
         if self.lenses.iter().any(|lens| lens.scale.is_none()) {
             self.look(&blocks);
         }
         for (portion, block) in portions.iter().zip(blocks) {
             self.answered += block.answered;
             self.extra += block.extra;
-            self.reused += block.reused;
-            self.failed += block.failed;
-            self.in_model += block.took;
+            self.run.cached += block.reused;
+            self.run.retried += block.retried;
+            self.run.failed += block.failed;
+            self.run.in_model += block.took;
             self.stopped |= !block.complete;
             self.doubts.extend(block.doubts);
             for ((count, lens), column) in self.counts.iter_mut().zip(&self.lenses).zip(block.columns) {
@@ -254,22 +257,33 @@ impl<'a> Tally<'a> {
         self.control?.twins.get(c)?.as_ref()
     }
 
-    pub(super) fn finish(self, options: &SimulationOptions, stopped: bool, reached: Option<bool>) -> Simulation {
-        let characteristics = self.counts.iter().enumerate().map(|(c, count)| self.characteristic(c, count)).collect();
+    pub(super) fn finish(
+        self,
+        options: &SimulationOptions,
+        stopped: Option<StopReason>,
+        reached: Option<bool>,
+    ) -> Simulation {
+        let of =
+            |(c, count)| SimulatedCharacteristic { unfinished: stopped.is_some(), ..self.characteristic(c, count) };
+        let characteristics: Vec<SimulatedCharacteristic> = self.counts.iter().enumerate().map(of).collect();
         let surrogate = self.control.map(|control| &control.outcome.evaluated);
-        let spent = surrogate.map_or(0, |evaluated| evaluated.evaluations as u64);
+        let spent = surrogate.map(|evaluated| evaluated.summary()).unwrap_or_default();
+        let drawn = RunSummary {
+            evaluations: self.answered.saturating_add_signed(self.extra),
+            seed: Some(options.seed),
+            ..self.run
+        };
+        let before = surrogate.iter().flat_map(|evaluated| &evaluated.doubts).cloned();
+        let doubts: Vec<Doubt> = before.chain(self.doubts).collect();
+        let failures = characteristics.iter().filter_map(SimulatedCharacteristic::failures);
         Simulation {
             sampler: options.sampler,
-            seed: options.seed,
+            run: RunSummary { stopped, ..drawn.and(&spent) },
             samples: self.answered,
-            evaluations: self.answered.saturating_add_signed(self.extra) + spent,
-            surrogate_evaluations: surrogate.map(|_| spent),
-            reused: self.reused + surrogate.map_or(0, |evaluated| evaluated.reused as u64),
-            failed: self.failed + surrogate.map_or(0, |evaluated| evaluated.known.failed_points() as u64),
-            stopped,
+            surrogate_evaluations: surrogate.map(|_| spent.evaluations),
             reached,
-            in_model: self.in_model + surrogate.map_or(Duration::ZERO, |evaluated| evaluated.in_model),
-            doubts: surrogate.iter().flat_map(|evaluated| &evaluated.doubts).cloned().chain(self.doubts).collect(),
+            warnings: failures.chain(history(self.problem, &doubts)).collect(),
+            doubts,
             characteristics,
         }
     }

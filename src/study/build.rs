@@ -15,7 +15,7 @@ use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
 use super::source::Source;
 use super::spanned::Spanned;
-use crate::allocation::{Priced, Requirement};
+use crate::allocation::Priced;
 use crate::assembly::formula::{Formula, FormulaError, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
@@ -25,6 +25,7 @@ use crate::method::Options;
 use crate::models::{self, Model};
 use crate::names::nearest;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 use crate::warning::Warning;
 
 /// What a study file comes to.
@@ -68,6 +69,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     let options = super::options::options(&file.analysis, &problem)?;
     let costs = costs(file, &problem)?;
     let requirements = requirements(file, &problem)?;
+    let problem = requiring(problem, &requirements)?;
     let mut files = data.files();
     files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), &source.folder)));
     Ok(Built { problem, options, costs, requirements, warnings, data: data.bytes(), files })
@@ -82,6 +84,18 @@ fn requirements(file: &StudyFile, problem: &Problem) -> Result<Vec<(String, Requ
         requirements.extend(required.map(|requirement| (name.get_ref().clone(), requirement)));
     }
     Ok(requirements)
+}
+
+/// The problem with what its characteristics must keep.
+fn requiring(problem: Problem, requirements: &[(String, Requirement)]) -> Result<Problem, Fault> {
+    let of = |one: &Characteristic| {
+        let required = requirements.iter().find(|(name, _)| name == one.name());
+        required.map_or(Ok(one.clone()), |(_, requirement)| one.clone().with_requirement(*requirement))
+    };
+    let fault = |error: Box<StudyFault>| Fault { span: None, key: String::new(), fault: error };
+    let characteristics: Result<Vec<Characteristic>, _> = problem.characteristics().iter().map(of).collect();
+    let characteristics = characteristics.map_err(|error| fault(Box::new(error.into())))?;
+    problem.asking(characteristics).map_err(|error| fault(Box::new(error.into())))
 }
 
 /// Every name means one thing.

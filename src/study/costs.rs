@@ -165,7 +165,7 @@ pub(super) fn requirement(
             (value.span(), make(*value.get_ref()))
         }
     };
-    requirement.checked(characteristic).map(Some).map_err(|error| at(span, error.into()))
+    requirement.checked(characteristic.limits().exist()).map(Some).map_err(|error| at(span, error.into()))
 }
 
 /// A cost and the dimensions that share it.

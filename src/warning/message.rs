@@ -69,6 +69,10 @@ impl Warning {
                         "the interaction of {to} in `{characteristic}` could be evaluated at some of its corners only: \
                          it is less exact"
                     ),
+                    Loss::NotEvaluated { derivatives } => format!(
+                        "the run was stopped before {derivatives} derivatives of `{characteristic}` were evaluated: its results \
+                         leave them out, and no verdict follows; give it more time"
+                    ),
                 }
             }
             Self::DomainEdge { characteristic, dimension, failed, used } => format!(

@@ -432,6 +432,11 @@ pub enum Loss {
     Mixed,
     /// One side of the mixed derivative.
     OneSidedMixed,
+    /// Nothing failed: the run was stopped before the points of these derivatives were evaluated.
+    NotEvaluated {
+        /// How many derivatives are missing.
+        derivatives: usize,
+    },
 }
 
 /// What an accuracy can be wanted of.

@@ -75,7 +75,7 @@ fn rows() -> &'static [Row] {
                 let one = &found.characteristics[0];
                 let sigma = truth["sigma"].as_f64().unwrap();
                 Ran {
-                    evaluations: found.evaluations,
+                    evaluations: found.run.evaluations as usize,
                     error: (one.moments.unwrap().sigma() / sigma - 1.0).abs(),
                     estimate: one.error_estimate.as_ref().and_then(|estimate| Some(estimate.sigma? / sigma)),
                     sampled: one.model_sampled.is_some(),

@@ -93,7 +93,7 @@ fn extremes_of_scale_and_size() {
     let n = 1000;
     let thousand = Problem::new(standard(n), Closure::scalar("y", |x| x.iter().sum::<f64>() + x[3] * x[997])).unwrap();
     let analysis = analyze(&thousand, &Method::SixN.into()).unwrap();
-    assert_eq!(analysis.evaluations, 6001);
+    assert_eq!(analysis.run.evaluations, 6001);
     relative(analysis.characteristics[0].moments.unwrap().sigma(), 1000f64.sqrt(), 1e-3);
 }
 

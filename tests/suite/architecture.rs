@@ -19,7 +19,7 @@ const LAYERS: &[&[&str]] = &[
     &["verification"],
     &["problem"],
     &["plan"],
-    &["surrogate"],
+    &["surrogate", "verdict"],
     &["capability"],
     &["moments"],
     &["sampling"],
@@ -28,9 +28,9 @@ const LAYERS: &[&[&str]] = &[
     &["warning"],
     &["correlation"],
     &["dimension", "characteristic"],
-    &["distribution", "fits"],
+    &["distribution", "fits", "requirement"],
     &["pearson"],
-    &["names", "elementary"],
+    &["names", "elementary", "summary"],
 ];
 
 fn layer(module: &str) -> usize {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use sensitol::StopReason;
 use sensitol::analysis::analyze_within;
 use sensitol::assembly::{EvaluationError, Run};
 use sensitol::distribution::Exponential;
@@ -43,8 +44,8 @@ fn what_is_linear_is_soon_known() {
         dimensions.push(Dimension::fixed("still", 3.0).unwrap());
         let problem = Problem::new(dimensions, asked.watching(|x| x.iter().sum())).unwrap();
         let analysis = analyze(&problem, &auto(0.001)).unwrap();
-        assert_eq!(analysis.evaluations, asked.distinct());
-        assert_eq!(analysis.evaluations, 2 * n + 1 + 16);
+        assert_eq!(analysis.run.evaluations, asked.distinct() as u64);
+        assert_eq!(analysis.run.evaluations, 2 * n as u64 + 1 + 16);
         relative(sigma(&analysis), (n as f64).sqrt(), 1e-13);
         assert_eq!(analysis.characteristics[0].left_out_share, Some(0.0));
         assert!(codes(&analysis).is_empty(), "{:?}", codes(&analysis));
@@ -59,7 +60,7 @@ fn the_same_study_gives_the_same_numbers() {
     let one = of(standard(5), f, &auto(0.001));
     let other = of(standard(5), f, &Options { seed: Some(99), ..auto(0.001) });
     assert_eq!(one.characteristics, other.characteristics);
-    assert_eq!(one.evaluations, other.evaluations);
+    assert_eq!(one.run.evaluations, other.run.evaluations);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let alone = pool.install(|| of(standard(5), f, &auto(0.001)));
     assert_eq!(one.characteristics, alone.characteristics);
@@ -83,13 +84,13 @@ fn other_accuracies_are_reached_too() {
     ] {
         let options = Options { accuracies, ..auto(0.05) };
         let analysis = of(standard(4), f, &options);
-        assert!(analysis.evaluations > of_sigma.evaluations);
+        assert!(analysis.run.evaluations > of_sigma.run.evaluations);
         // A quadratic is exact once its interaction is known.
         relative(found(&analysis).skewness().unwrap(), skewness, 1e-9);
         relative(found(&analysis).kurtosis().unwrap(), kurtosis, 1e-9);
         assert!(codes(&analysis).is_empty(), "{:?}", analysis.warnings);
         // Too few evaluations for it: that is said, by the figure's name.
-        let short = of(standard(4), f, &Options { budget: Some(of_sigma.evaluations), ..options });
+        let short = of(standard(4), f, &Options { budget: Some(of_sigma.run.evaluations as usize), ..options });
         let said = short.warnings.iter().find(|warning| warning.code() == "under-resolved").unwrap().message();
         let name = if accuracies.skewness.is_some() { "skewness" } else { "kurtosis" };
         assert!(said.starts_with(&format!("{name} of `y` is known to")) && said.contains("the budget ended"), "{said}");
@@ -120,7 +121,7 @@ fn a_yield_is_known_as_well_as_wanted() {
         .sum();
     assert!((one.capability.unwrap().yield_().unwrap() - share).abs() < 1e-3);
     let without = of(standard(4), f, &options);
-    assert_eq!(without.evaluations, of(standard(4), f, &auto(0.05)).evaluations);
+    assert_eq!(without.run.evaluations, of(standard(4), f, &auto(0.05)).run.evaluations);
 }
 
 /// A uniform dimension beside a normal one: four moments are right, and the Pearson law's tail is not. The share is the mean of
@@ -156,7 +157,7 @@ fn tails_that_the_law_misses_are_told_of() {
     assert!(codes(&of(-0.05)).is_empty(), "{:?}", codes(&of(-0.05)));
 }
 
-/// A target is met, missed, or not known: where the surface's tails speak against the law, and where points have no value.
+/// A target is met, missed, or inconclusive: where the surface's tails speak against the law, and where points have no value.
 #[test]
 fn verdicts_that_are_in_doubt_are_not_given() {
     let verdict = |f: fn(&[f64]) -> f64, lower: f64, target: f64, method: Method| {
@@ -212,8 +213,8 @@ fn a_budget_is_kept() {
         let asked = Asked::default();
         let problem = Problem::new(standard(10), asked.watching(f)).unwrap();
         let analysis = analyze(&problem, &Options { budget: Some(budget), ..auto(0.001) }).unwrap();
-        assert_eq!(analysis.evaluations, asked.distinct());
-        assert!(analysis.evaluations <= budget, "{} of {budget}", analysis.evaluations);
+        assert_eq!(analysis.run.evaluations, asked.distinct() as u64);
+        assert!(analysis.run.evaluations <= budget as u64, "{} of {budget}", analysis.run.evaluations);
         let exact = (10.0 + 9.0 * 0.09f64).sqrt();
         errors.push((sigma(&analysis) / exact - 1.0).abs());
         if budget == 60 {
@@ -303,7 +304,7 @@ fn domain_edges_are_not_passed_in_silence() {
     let analysis = analyze(&Problem::new(standard(3), root).unwrap(), &auto(0.01)).unwrap();
     let found = codes(&analysis);
     assert!(found.contains(&"domain-edge") || found.contains(&"failed-points"), "{found:?}");
-    assert!(analysis.failed > 0);
+    assert!(analysis.run.failed > 0);
     // Where the edge lies beyond every axis point, only points that move several dimensions meet it.
     let far = refusing(|x| x.iter().sum(), |x| x.iter().map(|x| x * x).sum::<f64>() > 8.0);
     let analysis = analyze(&Problem::new(standard(6), far).unwrap(), &auto(0.01)).unwrap();
@@ -326,7 +327,7 @@ fn scales_do_not_matter() {
     // Sigma of u + (5 + v)^2 - 25: 1 + 100 + 2.
     relative(sigma(&far), 103f64.sqrt(), 1e-6);
     let dominated = of(standard(4), |x| 1e6 * x[0] + (x[1] * x[2]).sin() + x[3], &auto(0.01));
-    assert_eq!(dominated.evaluations, 9 + 16);
+    assert_eq!(dominated.run.evaluations, 9 + 16);
 }
 
 /// A thousand dimensions of a formula without interactions take two points each, and sixteen.
@@ -334,7 +335,7 @@ fn scales_do_not_matter() {
 fn a_thousand_dimensions() {
     let analysis =
         of(standard(1000), |x| x.iter().enumerate().map(|(j, x)| (1.0 + 0.001 * j as f64) * x).sum(), &auto(0.01));
-    assert_eq!(analysis.evaluations, 2001 + 16);
+    assert_eq!(analysis.run.evaluations, 2001 + 16);
     let exact: f64 = (0..1000).map(|j| (1.0 + 0.001 * f64::from(j)).powi(2)).sum();
     relative(sigma(&analysis), exact.sqrt(), 1e-10);
 }
@@ -361,7 +362,7 @@ fn exponential_inputs_stay_within_their_support() {
     ];
     let function = refusing(|x| x[1] - x[0].sqrt(), |x| x[0] < 0.0);
     let analysis = analyze(&Problem::new(dimensions, function).unwrap(), &auto(0.01)).unwrap();
-    assert_eq!(analysis.failed, 0, "a node beyond the support");
+    assert_eq!(analysis.run.failed, 0, "a node beyond the support");
     // Var sqrt(x) = mean (1 - pi/4).
     let exact = (0.09 + 2.0 * (1.0 - std::f64::consts::FRAC_PI_4)).sqrt();
     let error = (sigma(&analysis) / exact - 1.0).abs();
@@ -415,7 +416,7 @@ fn the_account_says_what_ended_it() {
         Problem::new(normals(&[0.5, 0.6, 0.7, 0.8], &[0.3; 4]), function).unwrap()
     };
     let account = |options: &Options, stop: bool| {
-        let stop = || stop;
+        let stop = || stop.then_some(StopReason::Requested);
         let run = Run::to_the_end().stopping_when(&stop);
         analyze_within(&problem(), options, &run).unwrap().account.unwrap()
     };

@@ -1,5 +1,6 @@
 //! The surrogate as control variate: the same truth, with smaller standard errors that hold what they promise.
 
+use sensitol::StopReason;
 use sensitol::assembly::Run;
 use sensitol::correlation::Pair;
 use sensitol::method::MethodError;
@@ -105,8 +106,8 @@ fn quasi_random_standard_errors_cover_the_truth() {
 /// The plain standard error of sigma by the controlled one, at the same number of evaluations, of every characteristic.
 fn gains(problem: &Problem, samples: u64) -> Vec<f64> {
     let with = controlled(problem, samples, Sampler::Random, 7);
-    assert_eq!(with.evaluations, samples + with.surrogate_evaluations.unwrap());
-    let without = plain(problem, with.evaluations, 7);
+    assert_eq!(with.run.evaluations, samples + with.surrogate_evaluations.unwrap());
+    let without = plain(problem, with.run.evaluations, 7);
     let error = |estimate: Option<Estimate>| estimate.unwrap().standard_error.unwrap();
     let pairs = without.characteristics.iter().zip(&with.characteristics);
     pairs.map(|(without, with)| error(without.sigma) / error(with.sigma)).collect()
@@ -280,7 +281,7 @@ fn every_evaluation_is_counted() {
     let problem = Problem::new(standard(2), asked.watching(|x| x[0] * x[1] + x[0])).unwrap();
     let found = controlled(&problem, 1000, Sampler::Random, 1);
     // N^2 + N + 1 = 7.
-    assert_eq!((found.samples, found.evaluations, found.surrogate_evaluations), (1000, 1007, Some(7)));
+    assert_eq!((found.samples, found.run.evaluations, found.surrogate_evaluations), (1000, 1007, Some(7)));
     assert_eq!(asked.distinct(), 1007);
     assert_eq!(plain(&problem, 1000, 1).surrogate_evaluations, None);
 }
@@ -324,9 +325,9 @@ fn without_a_surrogate_it_is_refused() {
 #[test]
 fn it_stops_when_told_to() {
     let (problem, _) = lognormal(0.15);
-    let run = Run::to_the_end().stopping_when(&|| true);
+    let run = Run::to_the_end().stopping_when(&|| Some(StopReason::Requested));
     let found = simulate_within(&problem, &options(1000, Sampler::Random, 1), &run, &|_| {}).unwrap();
-    assert!(found.stopped && found.samples == 0 && found.characteristics[0].mean.is_none());
+    assert!(found.run.stopped.is_some() && found.samples == 0 && found.characteristics[0].mean.is_none());
 }
 
 #[test]

@@ -139,7 +139,7 @@ fn trade(example: &str, characteristic: &str, truth: &serde_json::Value, rows: &
             let found = analyze(&problem, &Options::from(*method)).unwrap();
             let moments = found.characteristics[0].moments.unwrap();
             let (skewness, kurtosis) = (moments.skewness().unwrap(), moments.kurtosis().unwrap());
-            (method.name().to_owned(), found.evaluations as u64, [moments.mean(), moments.sigma(), skewness, kurtosis])
+            (method.name().to_owned(), found.run.evaluations, [moments.mean(), moments.sigma(), skewness, kurtosis])
         }
         Ours::MonteCarlo(samples) => {
             let options = SimulationOptions { samples: *samples, ..SimulationOptions::default() };
@@ -206,7 +206,7 @@ fn measured() -> String {
             let expected = |key: &str| truth[key].as_f64().unwrap();
             let mean = (moments.mean() - expected("mean")).abs() / expected("sigma");
             let sigma = (moments.sigma() / expected("sigma") - 1.0).abs();
-            write!(table, " {} | {} | {} |", analysis.evaluations, one_digit(mean), one_digit(sigma)).unwrap();
+            write!(table, " {} | {} | {} |", analysis.run.evaluations, one_digit(mean), one_digit(sigma)).unwrap();
         }
         table.push('\n');
     }

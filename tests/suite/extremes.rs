@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sensitol::StopReason;
 use sensitol::analysis::Analysis;
 use sensitol::assembly::{Ask, Points, Responses, Run};
 use sensitol::extremes::{Ended, Extremes, Place};
@@ -93,7 +94,7 @@ fn the_engine_has_its_true_extremes() {
         for (found, sampled) in found.iter().zip(&sampled) {
             assert!(found[0] <= sampled[0] && sampled[1] <= found[1], "{method:?}: {found:?} and {sampled:?}");
         }
-        counts.push(format!("{:<12} {}", method.name(), analysis.evaluations));
+        counts.push(format!("{:<12} {}", method.name(), analysis.run.evaluations));
     }
     insta::assert_snapshot!("extremes-engine-counts", counts.join("\n"));
 }
@@ -107,8 +108,8 @@ fn a_linear_characteristic_takes_four_evaluations() {
         let asked = Asked::default();
         let problem = Problem::new(standard(n), asked.watching(function)).unwrap();
         let analysis = searched(&problem, Method::Rss);
-        assert_eq!(analysis.evaluations, 2 * n + 1 + 4);
-        assert_eq!(asked.distinct(), analysis.evaluations);
+        assert_eq!(analysis.run.evaluations, 2 * n as u64 + 1 + 4);
+        assert_eq!(asked.distinct() as u64, analysis.run.evaluations);
         let one = &analysis.characteristics[0];
         let found = one.extremes.as_ref().unwrap();
         let reach: f64 = 3.0 * (0..n).map(|j| slope(j).abs()).sum::<f64>();
@@ -127,7 +128,7 @@ fn a_linear_characteristic_takes_four_evaluations() {
 #[test]
 fn one_dimension_is_enough() {
     let linear = of(normals(&[10.0], &[0.3]), |x| 2.0 * x[0], Method::SecondOrder);
-    assert_eq!((ends(&linear), linear.evaluations), ([19.4, 20.6], 3));
+    assert_eq!((ends(&linear), linear.run.evaluations), ([19.4, 20.6], 3));
     // Its vertex lies within, at 10.1: an interior least value, and the far end.
     let parabola = of(normals(&[10.0], &[0.3]), |x| (x[0] - 10.1).powi(2), Method::SecondOrder);
     // Near its vertex a parabola is as flat as the square of a rounding error of 10.
@@ -209,8 +210,8 @@ fn two_hundred_dimensions_stay_affordable() {
         for (found, exact) in ends(found).into_iter().zip(exact) {
             close(found, exact, 1e-12, 1.0);
         }
-        assert_eq!(asked.distinct(), analysis.evaluations, "{name}");
-        counts.push(format!("{name}: {} of {}", found.evaluations, analysis.evaluations));
+        assert_eq!(asked.distinct() as u64, analysis.run.evaluations, "{name}");
+        counts.push(format!("{name}: {} of {}", found.evaluations, analysis.run.evaluations));
     }
     insta::assert_snapshot!("extremes-two-hundred-counts", counts.join("\n"));
 }
@@ -251,7 +252,7 @@ fn points_are_shared_and_idle_dimensions_left_alone() {
     assert_eq!((names(0), names(2)), (vec!["a", "b"], vec!["c"]));
     assert_eq!((found[0].evaluations, found[1].evaluations, found[2].evaluations), (4, 4, 3));
     // 2N+1 for the method, one for the nominal off the means; four that two share, and three.
-    assert_eq!(analysis.evaluations, 7 + 1 + 4 + 3);
+    assert_eq!(analysis.run.evaluations, 7 + 1 + 4 + 3);
 }
 
 /// The rest of the budget is what the search may spend; what it has found by then is reported.
@@ -263,7 +264,7 @@ fn the_budget_holds() {
         let problem = Problem::new(normals(&[0.5; 6], &[2.0; 6]), asked.watching(function)).unwrap();
         let options = Options { extremes: true, budget: Some(13 + left), ..Method::SecondOrder.into() };
         let analysis = analyze(&problem, &options).unwrap();
-        assert_eq!((asked.distinct(), analysis.evaluations), (13 + left, 13 + left));
+        assert_eq!((asked.distinct(), analysis.run.evaluations as usize), (13 + left, 13 + left));
         let found = analysis.characteristics[0].extremes.as_ref().unwrap();
         assert_eq!((found.ended, found.evaluations), (Ended::Budget, left));
         let warning = analysis.warnings.iter().find(|warning| warning.code() == "not-proven").unwrap().message();
@@ -281,12 +282,12 @@ fn a_stop_is_heeded() {
         x.iter().map(|x| x.sin()).product::<f64>()
     };
     let problem = Problem::new(normals(&[0.5; 6], &[2.0; 6]), Closure::scalar("y", function)).unwrap();
-    let stop = || count.load(Ordering::Relaxed) > 13;
+    let stop = || (count.load(Ordering::Relaxed) > 13).then_some(StopReason::TimeLimit);
     let options = Options { extremes: true, ..Method::SecondOrder.into() };
     let analysis = analyze_within(&problem, &options, &Run::to_the_end().stopping_when(&stop)).unwrap();
     let found = analysis.characteristics[0].extremes.as_ref().unwrap();
-    assert!(analysis.stopped && found.ended == Ended::Stopped);
-    assert_eq!(analysis.evaluations, count.load(Ordering::Relaxed));
+    assert!(analysis.run.stopped.is_some() && found.ended == Ended::Stopped);
+    assert_eq!(analysis.run.evaluations, count.load(Ordering::Relaxed) as u64);
     assert!(analysis.characteristics[0].moments.is_some());
 }
 
@@ -295,7 +296,7 @@ fn a_stop_is_heeded() {
 fn nothing_is_searched_unless_asked() {
     let problem = Problem::new(standard(2), Closure::scalar("y", |x| x[0] * x[1])).unwrap();
     let analysis = analyze(&problem, &Method::SecondOrder.into()).unwrap();
-    assert_eq!((analysis.evaluations, &analysis.characteristics[0].extremes), (5, &None));
+    assert_eq!((analysis.run.evaluations, &analysis.characteristics[0].extremes), (5, &None));
     assert!(analysis.warnings.iter().all(|warning| warning.code() != "not-proven"));
 }
 

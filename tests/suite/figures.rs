@@ -52,7 +52,7 @@ fn the_tutorial_reads_its_output_right() {
     says(TUTORIAL, &format!("so its mean is {mean:.3}: that is {:.3} mm.", number(&spacer.0["nominal"]) - mean));
     says(TUTORIAL, &format!("The tilt takes {:.4} mm away", -number(&tilt.1["mean_shift"])));
     let normal = 100.0 * number(&gap["normal_fit"]["yield"]);
-    says(TUTORIAL, &format!("- Yield {:.3} %, target not known.", 100.0 * of("yield")));
+    says(TUTORIAL, &format!("- Yield {:.3} %, target inconclusive.", 100.0 * of("yield")));
     says(TUTORIAL, &format!("would say {normal:.2} %: kurtosis {:.2} instead of 3", of("kurtosis")));
     let [low, high] = [0, 1].map(|end| number(&gap["worst_case"]["linear"][end]));
     says(TUTORIAL, &format!("- Worst case {low:.3} .. {high:.3}:"));

@@ -157,7 +157,7 @@ fn sensitivities_are_exact() {
     let linear = Options { derivatives: Some(DerivativeSource::Exact), ..Method::Rss.into() };
     assert_eq!(options, linear);
     let analysis = analyze(&problem, &linear).unwrap();
-    assert_eq!((analysis.evaluations, analysis.basis), (1, Basis::Exact));
+    assert_eq!((analysis.run.evaluations, analysis.basis), (1, Basis::Exact));
     let gap = &analysis.characteristics[0];
     let rss = |d: usize| derivatives.first[d].unwrap() * problem.dimensions()[d].half_band();
     let expected = (0..x.len()).map(|d| rss(d).powi(2)).sum::<f64>().sqrt();
@@ -311,7 +311,7 @@ fn conditions_use_outputs_of_a_model() {
                 root = \"u^2 - F\"\n[characteristics]\nu = {}\nF = {}\n";
     let problem = study(text).problem;
     let analysis = analyze(&problem, &Method::SecondOrder.into()).unwrap();
-    assert_eq!(analysis.evaluations, 4);
+    assert_eq!(analysis.run.evaluations, 4);
     let [u, f] = [0, 1].map(|c| analysis.characteristics[c].nominal.unwrap());
     close(u, f.sqrt(), 1e-14, 0.0);
     assert!(!analysis.characteristics[0].sensitivities[0].exact);
@@ -334,7 +334,7 @@ fn a_quadratic_by_exact_derivatives_and_by_differences() {
     {
         let by = |source| analyze(&problem, &with(method, source)).unwrap();
         let (one, other) = (by(DerivativeSource::Exact), by(DerivativeSource::Difference));
-        assert_eq!((one.evaluations, other.evaluations), (exact, differences), "{method:?}");
+        assert_eq!((one.run.evaluations, other.run.evaluations), (exact, differences), "{method:?}");
         let (one, other) = (&one.characteristics[0], &other.characteristics[0]);
         let figures = |m: sensitol::Moments| [m.mean(), m.sigma(), m.skewness().unwrap(), m.kurtosis().unwrap()];
         for (a, b) in figures(one.moments.unwrap()).into_iter().zip(figures(other.moments.unwrap())) {
@@ -361,7 +361,7 @@ fn a_kink_has_a_difference_for_a_sensitivity() {
                 [characteristics]\nq = { formula = \"abs(x - 1) + exp(y) + z\" }\n";
     let problem = study(text).problem;
     let analysis = analyze(&problem, &Method::SecondOrder.into()).unwrap();
-    assert_eq!(analysis.evaluations, 5);
+    assert_eq!(analysis.run.evaluations, 5);
     let [x, y, z] = &analysis.characteristics[0].sensitivities[..] else { panic!("three dimensions") };
     assert!(!x.exact && x.first == Some(0.0) && x.second.unwrap() > 1.0);
     assert!(y.exact && y.first == Some(2.0f64.exp()) && y.second == Some(2.0f64.exp()));

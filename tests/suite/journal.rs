@@ -73,7 +73,7 @@ impl Slow {
 fn result(output: &Output) -> serde_json::Value {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    for key in ["wall_s", "evaluations", "reused", "study_sha256"] {
+    for key in ["wall_s", "in_model_s", "evaluations", "cached", "retried", "stages", "study_sha256"] {
         report[key] = serde_json::Value::Null;
     }
     report
@@ -88,15 +88,15 @@ fn field(output: &Output, key: &str) -> u64 {
 fn nothing_is_evaluated_twice() {
     let study = Slow::new(5, 0.0, 2, 4);
     let first = study.run(&[]);
-    assert_eq!((field(&first, "reused"), study.evaluations()), (0, 30));
+    assert_eq!((field(&first, "cached"), study.evaluations()), (0, 30));
     // One more for each child that was asked whether it still answers as it did.
     assert!((32..=33).contains(&field(&first, "evaluations")));
     let second = study.run(&[]);
-    assert_eq!((field(&second, "evaluations"), field(&second, "reused"), study.evaluations()), (0, 31, 30));
+    assert_eq!((field(&second, "evaluations"), field(&second, "cached"), study.evaluations()), (0, 31, 30));
     assert_eq!(result(&first), result(&second));
     // A smaller method needs nothing new where its nodes are the same.
     let axes = study.run(&["--method", "second-order"]);
-    assert_eq!((field(&axes, "evaluations"), field(&axes, "reused")), (0, 11));
+    assert_eq!((field(&axes, "evaluations"), field(&axes, "cached")), (0, 11));
     // Without a journal all is evaluated, and nothing is left behind.
     study.run(&["--journal", "none"]);
     assert_eq!(study.evaluations(), 60);
@@ -156,7 +156,7 @@ fn killed_runs_go_on_where_they_were() {
     std::thread::sleep(Duration::from_millis(200));
     let evaluations = study.evaluations() - before;
     assert!(evaluations <= 182 + kills * study.workers * study.window, "{evaluations}");
-    assert!(field(&resumed, "reused") > 0, "some of it was kept");
+    assert!(field(&resumed, "cached") > 0, "some of it was kept");
 }
 
 /// What a sentinel puts in doubt does not stay in the file: the point that flips the model flips the fresh child too, and is
@@ -239,11 +239,11 @@ fn a_full_disk_is_an_error_that_loses_nothing() {
     // Every slope is known from before: the characteristic has moments, and warnings.
     assert_eq!(full.status.code(), Some(0), "{error}");
     assert!(error.contains("disk") && error.contains("what it holds already is not touched"), "{error}");
-    assert!(field(&full, "evaluations") < 132 && field(&full, "reused") == 25);
+    assert!(field(&full, "evaluations") < 132 && field(&full, "cached") == 25);
     // With room again, what was kept is there.
     let before = study.evaluations();
     let again = study.run(&[]);
-    let reused = field(&again, "reused");
+    let reused = field(&again, "cached");
     assert!(reused >= 25);
     assert_eq!((study.evaluations() - before) as u64 + reused, 157);
 }
@@ -330,7 +330,7 @@ fn ctrl_c_keeps_everything() {
     assert!(done < 182);
     assert_eq!(field(&output, "evaluations") as usize, done + 1);
     let resumed = study.run(&[]);
-    assert_eq!((field(&resumed, "reused") as usize, study.evaluations()), (done + 1, 182));
+    assert_eq!((field(&resumed, "cached") as usize, study.evaluations()), (done + 1, 182));
 }
 
 /// An allocation that is interrupted at any time: everything evaluated is kept, and no file is written or left behind.
@@ -362,7 +362,7 @@ fn ctrl_c_ends_an_allocation() {
     let report: serde_json::Value = serde_json::from_slice(&resumed.stdout).unwrap();
     assert_eq!((&report["status"], &report["confirmed"]), (&"optimal".into(), &true.into()));
     // The nominal point is kept too, and not counted: once, as all rounds have it.
-    assert!(report["reused"].as_u64().unwrap() as usize > done, "{done} {}", report["reused"]);
+    assert!(report["cached"].as_u64().unwrap() as usize > done, "{done} {}", report["cached"]);
     assert!(Path::new(&written).exists());
 }
 
@@ -446,7 +446,7 @@ fn points_may_be_evaluated_elsewhere() {
     };
     write(99, 17, "");
     let all = sensitol(&["analyze", "--json", "--points", &answered]);
-    assert_eq!((field(&all, "evaluations"), field(&all, "reused"), study.evaluations()), (0, 13, 0));
+    assert_eq!((field(&all, "evaluations"), field(&all, "cached"), study.evaluations()), (0, 13, 0));
     assert_eq!(result(&all)["characteristics"], result(&study.run(&[]))["characteristics"]);
     // Fifteen digits, as a spreadsheet keeps them, and a point of somebody else.
     write(99, 14, "9,9,9,1\n");
@@ -456,7 +456,7 @@ fn points_may_be_evaluated_elsewhere() {
     // Some are missing.
     write(9, 17, "");
     let counted = sensitol(&["analyze", "--json", "--points", &answered]);
-    assert_eq!((field(&counted, "evaluations"), field(&counted, "reused")), (0, 9));
+    assert_eq!((field(&counted, "evaluations"), field(&counted, "cached")), (0, 9));
     let few = sensitol(&["analyze", "--points", &answered]);
     let error = String::from_utf8_lossy(&few.stderr).into_owned();
     assert!(error.contains("4 points have no answer") && error.contains("no answer is given"), "{error}");
@@ -536,7 +536,7 @@ fn all_stages_may_be_evaluated_elsewhere() {
     };
     assert!(rounds >= 1, "one stage was not all of it");
     // All that was asked for was of use, and no row is of a point that nobody asked for.
-    assert_eq!(field(&last, "reused") as usize, table.len() - 1);
+    assert_eq!(field(&last, "cached") as usize, table.len() - 1);
     // Exactly, by hand: b (exp(0.4 a) + c) with independent factors, a normal of mean 1 and sigma 0.2, b of 2 and 0.2, c uniform.
     let (first, second) = (0.4032f64.exp(), 0.8128f64.exp());
     let mean = 2.0 * (first + 3.0);
@@ -572,13 +572,13 @@ fn a_study_may_be_moved() {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
         command.arg("analyze").arg(folder.join("study.toml")).args(["--json", "--method", "full"]).output().unwrap()
     };
-    assert_eq!(field(&run(&here), "reused"), 0);
+    assert_eq!(field(&run(&here), "cached"), 0);
     std::fs::rename(&here, &there).unwrap();
     let moved = run(&there);
-    assert_eq!((field(&moved, "evaluations"), field(&moved, "reused")), (0, 7));
+    assert_eq!((field(&moved, "evaluations"), field(&moved, "cached")), (0, 7));
     // Another program is another model.
     let script = there.join("gap.py");
     let changed = std::fs::read_to_string(&script).unwrap().replace(" - ", " + ");
     std::fs::write(&script, changed).unwrap();
-    assert_eq!(field(&run(&there), "reused"), 0);
+    assert_eq!(field(&run(&there), "cached"), 0);
 }

@@ -47,3 +47,4 @@ mod support;
 mod sweep;
 mod tolerances;
 mod trust;
+mod verdicts;

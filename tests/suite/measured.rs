@@ -498,7 +498,7 @@ fn intervals_hang_on_the_seed_alone() {
     let on =
         |threads: usize| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| of(None));
     let first = of(None);
-    assert_eq!(first.seed, Some(Options::SEED));
+    assert_eq!(first.run.seed, Some(Options::SEED));
     assert_eq!(on(1).characteristics, first.characteristics);
     assert_eq!(on(3).characteristics, first.characteristics);
     assert_eq!(of(Some(Options::SEED)).characteristics, first.characteristics);
@@ -517,7 +517,7 @@ fn intervals_hang_on_the_seed_alone() {
     assert!(nothing.is_none_or(|[low, high]| (high - low).abs() < 1e-12), "{nothing:?}");
     let known = Problem::new([Dimension::normal("x", 1.0, 0.1).unwrap()], Closure::scalar("y", |x| x[0])).unwrap();
     let known = analyze(&known, &Method::Full.into()).unwrap();
-    assert_eq!((known.seed, &known.characteristics[0].sampling), (None, &None));
+    assert_eq!((known.run.seed, &known.characteristics[0].sampling), (None, &None));
 }
 
 /// A fitted law whose resamples have infinite moments: a straight characteristic does not need them, a curved one does.

@@ -200,7 +200,7 @@ fn zero_tolerance_changes_nothing() {
         five.push(Dimension::normal("still", 7.0, 0.0).unwrap());
         let other = analysis(five, method, |x| bent(x) + 0.0 * x[4]);
         assert_eq!(one.characteristics[0].moments, other.characteristics[0].moments);
-        assert_eq!(one.evaluations, other.evaluations);
+        assert_eq!(one.run.evaluations, other.run.evaluations);
     }
 }
 

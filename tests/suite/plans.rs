@@ -1,5 +1,7 @@
 //! Plans: exact counts, every point once, realised steps, and what happens when points fail.
 
+use sensitol::RunSummary;
+use sensitol::StopReason;
 use sensitol::distribution::{CentralMoments, Normal, Uniform};
 use sensitol::method::Pairs;
 use sensitol::plan::{Nodes, Spread, Stencil};
@@ -13,10 +15,10 @@ fn count(n: usize, options: &Options) -> usize {
     let problem = Problem::new(standard(n), asked.watching(|x| x.iter().sum())).unwrap();
     let plan = options.method.procedure().plan(&problem, options).unwrap();
     let analysis = analyze(&problem, options).unwrap();
-    assert_eq!(analysis.evaluations, asked.distinct());
-    assert_eq!(analysis.evaluations, plan.cost().0, "the plan said otherwise");
-    assert_eq!(analysis.stages, plan.cost().1);
-    analysis.evaluations
+    assert_eq!(analysis.run.evaluations, asked.distinct() as u64);
+    assert_eq!(analysis.run.evaluations, plan.cost().0 as u64, "the plan said otherwise");
+    assert_eq!(analysis.run.stages, plan.cost().1 as u64);
+    analysis.run.evaluations as usize
 }
 
 #[test]
@@ -65,7 +67,7 @@ fn an_asymmetric_band_costs_one_evaluation_more() {
     let asked = Asked::default();
     let problem = Problem::new(dimensions, asked.watching(|x| x[0] * x[1])).unwrap();
     let analysis = analyze(&problem, &Method::SecondOrder.into()).unwrap();
-    assert_eq!(analysis.evaluations, 6);
+    assert_eq!(analysis.run.evaluations, 6);
     assert!(asked.points().contains(&vec![10.0, 5.0]), "the nominal point");
     assert!(asked.points().contains(&vec![10.1, 5.0]), "the means");
     let found = &analysis.characteristics[0];
@@ -81,7 +83,7 @@ fn a_point_of_two_purposes_is_evaluated_once() {
     let asked = Asked::default();
     let problem = Problem::new([shifted], asked.watching(|x| x[0])).unwrap();
     let analysis = analyze(&problem, &Options { step: Some(1.0), ..Method::SecondOrder.into() }).unwrap();
-    assert_eq!((analysis.evaluations, asked.distinct()), (3, 3));
+    assert_eq!((analysis.run.evaluations, asked.distinct() as u64), (3, 3));
     assert_eq!(analysis.characteristics[0].nominal, Some(9.0));
 }
 
@@ -93,11 +95,11 @@ fn what_does_not_vary_costs_nothing() {
     let asked = Asked::default();
     let problem = Problem::new(dimensions, asked.watching(|x| x[0] + x[1] * x[2] + x[3] * x[4])).unwrap();
     let analysis = analyze(&problem, &Method::Full.into()).unwrap();
-    assert_eq!((analysis.evaluations, analysis.varying), (13, 3));
+    assert_eq!((analysis.run.evaluations, analysis.varying), (13, 3));
     assert_eq!(analysis.characteristics[0].sensitivities[1].first, None);
     let all = Options { all_sensitivities: true, ..Method::Full.into() };
     let analysis = analyze(&problem, &all).unwrap();
-    assert_eq!(analysis.evaluations, 13 + 4);
+    assert_eq!(analysis.run.evaluations, 13 + 4);
     let fixed = &analysis.characteristics[0].sensitivities[4];
     relative(fixed.first.unwrap() + 1.0, 1.0, 1e-12);
     assert_eq!(fixed.linear_share, Some(0.0));
@@ -173,7 +175,7 @@ fn stages_are_as_few_as_can_be() {
         (Options::from(Method::SixN), 2),
         (Options { pairs: Some(Pairs::Adjacent), ..Method::SixN.into() }, 1),
     ] {
-        assert_eq!(analyze(&problem, &options).unwrap().stages, stages, "{options:?}");
+        assert_eq!(analyze(&problem, &options).unwrap().run.stages, stages, "{options:?}");
     }
 }
 
@@ -196,11 +198,11 @@ fn pairs_that_no_characteristic_shares_are_not_evaluated() {
     )
     .unwrap();
     let analysis = analyze(&study.problem, &study.options).unwrap();
-    assert_eq!(analysis.evaluations, 1 + 6 + 2 * 2);
+    assert_eq!(analysis.run.evaluations, 1 + 6 + 2 * 2);
     assert_eq!(analysis.characteristics[0].possible_interactions, 1);
     assert_eq!(analysis.characteristics[0].left_out_share, Some(0.0));
     let alone = analyze(&study.problem.clone().only(&["ab"]).unwrap(), &study.options).unwrap();
-    assert_eq!((alone.evaluations, alone.varying), (7, 2));
+    assert_eq!((alone.run.evaluations, alone.varying), (7, 2));
 }
 
 fn warnings(analysis: &Analysis, code: &str) -> usize {
@@ -214,7 +216,7 @@ fn a_failed_node_is_replaced_by_a_nearer_one() {
     let problem = Problem::new(standard(2), refusing(function, |x| x[0] > 1.5)).unwrap();
     let analysis = analyze(&problem, &Method::Full.into()).unwrap();
     let found = &analysis.characteristics[0];
-    assert_eq!((found.sensitivities[0].first, analysis.failed), (Some(3.0), 2));
+    assert_eq!((found.sensitivities[0].first, analysis.run.failed), (Some(3.0), 2));
     relative(found.sensitivities[0].second.unwrap(), 1.0, 1e-14);
     relative(found.moments.unwrap().sigma(), (9.0f64 + 0.5 + 1.0).sqrt(), 1e-14);
     assert_eq!(warnings(&analysis, "domain-edge"), 1);
@@ -249,7 +251,7 @@ fn a_failed_corner_leaves_a_one_sided_interaction() {
     let one = Problem::new(standard(2), refusing(function, |x| x[0] > 0.0 && x[1] > 0.0)).unwrap();
     let analysis = analyze(&one, &Method::Full.into()).unwrap();
     relative(analysis.characteristics[0].interactions[0].mixed.unwrap(), 1.0, 1e-14);
-    assert_eq!((warnings(&analysis, "lost-derivative"), analysis.failed), (1, 1));
+    assert_eq!((warnings(&analysis, "lost-derivative"), analysis.run.failed), (1, 1));
     let both = Problem::new(standard(2), refusing(function, |x| x[0] * x[1] > 0.0)).unwrap();
     let analysis = analyze(&both, &Method::Full.into()).unwrap();
     let found = &analysis.characteristics[0];
@@ -265,7 +267,7 @@ fn a_failed_centre_leaves_nothing() {
     let analysis = analyze(&problem, &Method::Full.into()).unwrap();
     let found = &analysis.characteristics[0];
     assert_eq!((found.moments, found.nominal, found.sensitivities[0].first), (None, None, None));
-    assert_eq!(analysis.evaluations, 7, "nothing is gained by shorter steps");
+    assert_eq!(analysis.run.evaluations, 7, "nothing is gained by shorter steps");
     assert_eq!(warnings(&analysis, "failed-points"), 1);
 }
 
@@ -277,7 +279,7 @@ fn characteristics_fail_alone() {
     let analysis = analyze(&both, &Method::SecondOrder.into()).unwrap();
     let alone = analyze(&both.only(&["sum"]).unwrap(), &Method::SecondOrder.into()).unwrap();
     assert_eq!(analysis.characteristics[0], alone.characteristics[0]);
-    assert_eq!((alone.evaluations, analysis.evaluations), (5, 6));
+    assert_eq!((alone.run.evaluations, analysis.run.evaluations), (5, 6));
     assert!(analysis.characteristics[1].moments.is_some());
 }
 
@@ -293,7 +295,7 @@ fn threads_do_not_matter() {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let mut analysis = pool.install(|| analyze(&problem(), &Method::Full.into())).unwrap();
-        analysis.in_model = std::time::Duration::ZERO;
+        analysis.run = RunSummary::default();
         analysis
     };
     assert_eq!(on(1), on(7));
@@ -303,10 +305,10 @@ fn threads_do_not_matter() {
 fn a_run_that_is_told_to_stop_stops() {
     use std::sync::atomic::{AtomicUsize, Ordering};
     let asked = AtomicUsize::new(0);
-    let stop = || asked.fetch_add(1, Ordering::Relaxed) >= 3;
+    let stop = || (asked.fetch_add(1, Ordering::Relaxed) >= 3).then_some(StopReason::TimeLimit);
     let run = sensitol::assembly::Run::to_the_end().stopping_when(&stop);
     let problem = Problem::new(standard(100), Closure::scalar("y", |x| x.iter().sum())).unwrap();
     let analysis = sensitol::analyze_within(&problem, &Method::Full.into(), &run).unwrap();
-    assert!(analysis.stopped);
-    assert!(analysis.evaluations > 0 && analysis.evaluations < 10_101, "{}", analysis.evaluations);
+    assert_eq!(analysis.run.stopped, Some(StopReason::TimeLimit));
+    assert!(analysis.run.evaluations > 0 && analysis.run.evaluations < 10_101, "{}", analysis.run.evaluations);
 }

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use sensitol::assembly::Run;
-use sensitol::probe::{Probe, Verdict, evaluations, probe};
+use sensitol::probe::{Finding, Probe, evaluations, probe};
 use sensitol::{Closure, Problem};
 
 use super::cli::sensitol;
@@ -19,14 +19,14 @@ fn scalar(function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Probe {
 
 /// The checks that failed.
 fn failed(probe: &Probe) -> Vec<&'static str> {
-    probe.checks.iter().filter(|check| matches!(check.verdict, Verdict::Failed(_))).map(|check| check.what).collect()
+    probe.checks.iter().filter(|check| matches!(check.verdict, Finding::Failed(_))).map(|check| check.what).collect()
 }
 
 #[test]
 fn a_model_that_behaves_passes() {
     let found = scalar(|x| x[0] * x[1]);
     assert!(found.passed(), "{:?}", found.checks);
-    assert_eq!((found.evaluations, found.adapter.is_none()), (2 * 2 + 31, true));
+    assert_eq!((found.run.evaluations, found.adapter.is_none()), (2 * 2 + 31, true));
     assert_eq!(found.characteristics[0].nominal, Some(6.0));
     // A rounding error of 6 is 9e-16: its noise is of that size, if it shows at all.
     assert!(found.characteristics[0].noise.is_none_or(|noise| noise < 1e-14));
@@ -89,8 +89,8 @@ fn models_that_remember_are_found_out() {
 fn models_without_values_or_reaction_fail() {
     let none = of(refusing(|x| x[0], |_| true));
     // Nothing else is asked, and nothing is said of what was not seen.
-    assert_eq!((failed(&none), none.evaluations), (vec!["the nominal dimensions have values"], 1));
-    assert!(none.checks[1..].iter().all(|check| check.verdict == Verdict::NotChecked), "{:?}", none.checks);
+    assert_eq!((failed(&none), none.run.evaluations), (vec!["the nominal dimensions have values"], 1));
+    assert!(none.checks[1..].iter().all(|check| check.verdict == Finding::NotChecked), "{:?}", none.checks);
     assert!(!none.passed());
     let mute = scalar(|_| 7.0);
     assert_eq!(failed(&mute), ["every characteristic reacts to some dimension"]);
@@ -104,22 +104,22 @@ fn points_without_values_are_named() {
         |found: &Probe, what: &str| found.checks.iter().find(|check| check.what == what).unwrap().verdict.clone();
     let within = "every point within the tolerances has values";
     let one = of(refusing(|x| x[0] * x[1], |x| x[1] == 2.0 && x[0] > 3.05));
-    let Verdict::Doubtful(fault) = verdict(&one, within) else { panic!("{:?}", one.checks) };
+    let Finding::Doubtful(fault) = verdict(&one, within) else { panic!("{:?}", one.checks) };
     assert!(fault.starts_with("1 of 21 points had no value: x0 = 3.1: "), "{fault}");
     assert!(one.passed() && failed(&one).is_empty());
     let half = of(refusing(|x| x[0] * x[1], |x| x[0] > 3.0));
-    let Verdict::Failed(fault) = verdict(&half, within) else { panic!("{:?}", half.checks) };
+    let Finding::Failed(fault) = verdict(&half, within) else { panic!("{:?}", half.checks) };
     // Four of the nine points on the line and a step are above, and some of the scattered points: five are named.
     assert!(fault.matches("x0 = ").count() == 5 && fault.contains("; and "), "{fault}");
     // Values at the nominal dimensions alone: neither order nor reaction can be told.
     let lonely = of(refusing(|x| x[0], |x| x[0] != 3.0 || x[1] != 2.0));
     for what in ["the order of the points does not matter", "every characteristic reacts to some dimension"] {
-        assert_eq!(verdict(&lonely, what), Verdict::NotChecked);
+        assert_eq!(verdict(&lonely, what), Finding::NotChecked);
     }
-    assert_eq!(verdict(&lonely, "the nominal values are the same after other points"), Verdict::Passed);
+    assert_eq!(verdict(&lonely, "the nominal values are the same after other points"), Finding::Passed);
     assert!(!lonely.passed());
     let problem = Problem::new(normals(&[3.0, 2.0], &[0.3, 0.6]), Closure::scalar("y", |x| x[0])).unwrap();
-    assert_eq!((evaluations(&problem), half.evaluations), (35, 35));
+    assert_eq!((evaluations(&problem), half.run.evaluations), (35, 35));
 }
 
 /// A program by what it does at a point `x`, behind a study of one dimension with sigma 1/30, and what a command says of it.

@@ -6,6 +6,7 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use sensitol::StopReason;
 use sensitol::assembly::process::{Exit, Greeting, Process, ProcessFault, Settings};
 use sensitol::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Responses, Run, Signature};
 use sensitol::rare::{RareOptions, rare};
@@ -276,7 +277,7 @@ fn a_stop_loses_nothing() {
     // The child is up before the clock runs, however long that takes.
     right_but(&POINTS[..1], &at(&model, &POINTS[..1]), &[]);
     let begun = Instant::now();
-    let stop = || begun.elapsed() > Duration::from_millis(400);
+    let stop = || (begun.elapsed() > Duration::from_millis(400)).then_some(StopReason::TimeLimit);
     let mut out = Responses::open(a.len(), 2);
     model.evaluate(&Ask::values(&points, &[0, 1]), &Run::to_the_end().stopping_when(&stop), &mut out);
     let answered = (0..a.len()).filter(|&row| !out.is_open(row, 0)).count();

@@ -21,7 +21,7 @@ fn first(found: &CharacteristicAnalysis, dimension: &str) -> f64 {
 #[test]
 fn engine_balance_nominal_values_and_rss() {
     let analysis = run("engine-balance/study.toml", Method::Rss);
-    assert_eq!(analysis.evaluations, 21);
+    assert_eq!(analysis.run.evaluations, 21);
     let [force, moment] = &analysis.characteristics[..] else { panic!("two characteristics") };
     // 12556.9361 and 941.77020: four and five decimals.
     close(force.nominal.unwrap(), 12556.9361, 5e-5, 1e-4 / 12556.9361);
@@ -156,7 +156,7 @@ fn stacked_blocks_moments() {
     let expected = |key: &str| truth["moments"][key].as_f64().unwrap();
     let analysis = run("stacked-blocks/study.toml", Method::Full);
     let found = &analysis.characteristics[0];
-    assert_eq!((analysis.evaluations, analysis.varying), (73, 8));
+    assert_eq!((analysis.run.evaluations, analysis.varying), (73, 8));
     // "Second order, pair nodes": 5.99539, 0.28920, -0.00858, 3.0005.
     let moments = found.moments.unwrap();
     assert!((moments.mean() - 5.99539).abs() < 5e-6);
@@ -183,7 +183,7 @@ fn quick_return_published() {
     let analysis = run("quick-return-published/study.toml", Method::SecondOrder);
     let found = &analysis.characteristics[0];
     let moments = found.moments.unwrap();
-    assert_eq!((analysis.evaluations, analysis.varying), (41, 20));
+    assert_eq!((analysis.run.evaluations, analysis.varying), (41, 20));
     assert!((found.nominal.unwrap() - 175.4642).abs() < 1e-9);
     // The tolerances are recovered from rounded shares: 0.6 % of sigma.
     relative(moments.sigma(), 0.376, 0.006);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
+use sensitol::RunSummary;
 use sensitol::correlation::Pair;
 use sensitol::distribution::{
     CentralMoments, Distribution, Exponential, Lognormal, Measured, Mixture, Normal, Part, Rule, Triangular, Uniform,
@@ -335,11 +336,11 @@ fn correlated_inputs_go_by_eigenvectors() {
     close(levels.mean(), r, 1e-12, 1.0);
     relative(levels.variance(), 1.0 + r * r, 1e-12);
     // 2N+1 and 4N+1, and nothing for a direction that does not vary.
-    assert_eq!([3, 5].map(|m| found(|x| x[0], &with_nodes(Method::DimensionReduction, m)).evaluations), [7, 13]);
+    assert_eq!([3, 5].map(|m| found(|x| x[0], &with_nodes(Method::DimensionReduction, m)).run.evaluations), [7, 13]);
     let tied = Problem::new(standard(2), Closure::scalar("y", |x| x[0] + x[1])).unwrap();
     let tied = tied.correlated(&[pair("x0", "x1", 1.0)]).unwrap();
     let tied = analyze(&tied, &Method::DimensionReduction.into()).unwrap();
-    assert_eq!(tied.evaluations, 5);
+    assert_eq!(tied.run.evaluations, 5);
     cumulants(moments(&tied), [0.0, 4.0, 0.0, 0.0], 1e-12);
 }
 
@@ -380,7 +381,7 @@ fn correlated_lognormals_have_normal_logarithms() {
     // Quantiles are good to 1e-14, the coefficient behind to 1e-12.
     cumulants(moments(&found), [0.0, variance, 0.0, 0.0], 1e-10);
     // The reference is at the medians, and the means are evaluated as the nominal point only.
-    assert_eq!(found.evaluations, asked.distinct());
+    assert_eq!(found.run.evaluations, asked.distinct() as u64);
     assert!(asked.points().iter().any(|x| (x[0] - 1.0).abs() < 1e-12 && (x[1] - 1.0).abs() < 1e-12), "the medians");
     assert_eq!(found.characteristics[0].sensitivities[0].first, None, "no derivative at the means was had");
 }
@@ -395,9 +396,9 @@ fn counts_are_stated() {
         let fits = procedure.fits(&problem, options).unwrap();
         assert_eq!(fits.evaluations, procedure.plan(&problem, options).unwrap().cost().0);
         let found = analyze(&problem, options).unwrap();
-        assert_eq!(found.evaluations, asked.distinct());
-        assert_eq!((found.evaluations, found.stages), (fits.evaluations, fits.stages));
-        found.evaluations
+        assert_eq!(found.run.evaluations, asked.distinct() as u64);
+        assert_eq!((found.run.evaluations, found.run.stages), (fits.evaluations as u64, fits.stages as u64));
+        found.run.evaluations
     };
     let skewed = |n: usize| -> Vec<Dimension> {
         (0..n).map(|j| of(&format!("x{j}"), Exponential::new(0.0, 1.0).unwrap())).collect()
@@ -428,13 +429,13 @@ fn a_lost_point_is_not_made_up() {
         assert_eq!((one.moments, one.capability, one.left_out_share), (None, None, None));
         assert!(one.sensitivities.iter().all(|row| row.linear_share.is_none()));
         close(one.sensitivities[0].first.unwrap(), 1.0, 1e-12, 1.0);
-        assert!(found.failed > 0);
+        assert!(found.run.failed > 0);
         let codes: Vec<&str> = found.warnings.iter().map(Warning::code).collect();
         assert!(codes.contains(&"failed-points") && codes.contains(&"lost-moments"), "{codes:?}");
     }
     let centre = refusing(|x| x[0], |x| x[0] == 0.0);
     let found = analyze(&Problem::new(standard(1), centre).unwrap(), &Method::DimensionReduction.into()).unwrap();
-    assert_eq!((found.characteristics[0].moments, found.failed), (None, 1));
+    assert_eq!((found.characteristics[0].moments, found.run.failed), (None, 1));
     let text = found.warnings.iter().find(|warning| warning.code() == "lost-moments").unwrap().message();
     assert_eq!(
         text,
@@ -482,19 +483,19 @@ fn zero_tolerance_everywhere() {
     for method in QUADRATURES.into_iter().chain([Method::ResponseSurface]) {
         let still = normals(&[2.0, 3.0], &[0.0, 0.0]);
         let found = analysis(still, &method.into(), |x| x[0] * x[1]);
-        assert_eq!((found.evaluations, found.varying), (1, 0));
+        assert_eq!((found.run.evaluations, found.varying), (1, 0));
         assert_eq!(moments(&found), Moments::constant(6.0));
         // One of zero tolerance changes nothing, to the last bit.
         let f = |x: &[f64]| (x[0] * x[1]).sin() + x[1].exp();
         let two = analysis(normals(&[0.4, -0.3], &[0.3, 0.2]), &method.into(), f);
         let three = analysis(normals(&[0.4, -0.3, 7.0], &[0.3, 0.2, 0.0]), &method.into(), f);
-        assert_eq!((moments(&two), two.evaluations), (moments(&three), three.evaluations));
+        assert_eq!((moments(&two), two.run.evaluations), (moments(&three), three.run.evaluations));
         let constant = analysis(standard(2), &method.into(), |_| 0.1);
         assert_eq!(moments(&constant), Moments::constant(0.1));
         // A dimension without tolerance gets its sensitivity where it is asked for.
         let options = Options { all_sensitivities: true, ..method.into() };
         let asked = analysis(normals(&[0.4, -0.3, 7.0], &[0.3, 0.2, 0.0]), &options, |x| x[0] + x[1] + 3.0 * x[2]);
-        assert_eq!(asked.evaluations, three.evaluations + 2);
+        assert_eq!(asked.run.evaluations, three.run.evaluations + 2);
         close(asked.characteristics[0].sensitivities[2].first.unwrap(), 3.0, 1e-9, 1.0);
     }
 }
@@ -507,7 +508,7 @@ fn threads_do_not_matter() {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let f = |x: &[f64]| (x[0] * x[1] + x[2]).sin() + (x[3] * x[4]).exp() + x[5] * x[0] * x[2];
             let mut found = pool.install(|| analysis(standard(6), &method.into(), f));
-            found.in_model = std::time::Duration::ZERO;
+            found.run = RunSummary::default();
             found
         };
         assert_eq!(on(1), on(3));

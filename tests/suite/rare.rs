@@ -1,5 +1,6 @@
 //! Rare events against what is known of them by other routes.
 
+use sensitol::StopReason;
 use sensitol::assembly::Run;
 use sensitol::correlation::Pair;
 use sensitol::distribution::Exponential;
@@ -80,7 +81,7 @@ fn the_engine_beyond_four_and_a_half_sigma() {
     let truth = ["below", "above"].map(|side| tails[side]["probability"].as_f64().unwrap());
     let both = limited(force.clone(), Some(ends[0]), Some(ends[1]));
     // 91 of the surrogate: N = 9 of the ten dimensions have a part in F.
-    assert_eq!(found(&both, 409, 1, Method::Full).evaluations, 500);
+    assert_eq!(found(&both, 409, 1, Method::Full).run.evaluations, 500);
     for record in records(&both, 409, Method::Full, truth.map(Some)) {
         holds(&record);
         assert!(record.error < 0.05, "{record:?}");
@@ -219,8 +220,8 @@ fn every_evaluation_is_counted() {
     let asked = Asked::default();
     let problem = Problem::new(standard(2), asked.watching(|x| x[0] * x[1] + x[0])).unwrap();
     let found = found(&limited(problem, None, Some(15.0)), 300, 1, Method::Full);
-    assert_eq!((found.surrogate_evaluations, found.evaluations), (7, 307));
-    assert!(found.samples < 300 && !found.stopped);
+    assert_eq!((found.surrogate_evaluations, found.run.evaluations), (7, 307));
+    assert!(found.samples < 300 && found.run.stopped.is_none());
     // The distance of a place may be one of the stations of a second look.
     assert!((300..=307).contains(&asked.distinct()), "{}", asked.distinct());
 }
@@ -235,7 +236,7 @@ fn until_it_is_known_that_well() {
             let estimate = beyond.probability.unwrap();
             estimate.standard_error.unwrap() / estimate.value
         });
-        (found.reached, found.stopped, worst.fold(0.0, f64::max))
+        (found.reached, found.run.stopped.is_some(), worst.fold(0.0, f64::max))
     };
     let (reached, stopped, worst) = until(0.02, 100_000);
     assert!(reached == Some(true) && !stopped && worst <= 0.02, "{worst}");
@@ -250,7 +251,7 @@ fn failed_points_bound_the_probability() {
     let problem = limited(Problem::new(standard(2), model).unwrap(), None, Some(4.0 * 2f64.sqrt()));
     let found = found(&problem, 4000, 1, Method::Full);
     let one = &found.characteristics[0];
-    assert!(one.failed > 0 && one.error.is_some() && found.failed >= one.failed, "{one:?}");
+    assert!(one.failed > 0 && one.error.is_some() && found.run.failed >= one.failed, "{one:?}");
     let above = one.above.clone().unwrap();
     // The sum and the difference are independent.
     let lost = tail(1.5 / 2f64.sqrt());
@@ -264,16 +265,16 @@ fn failed_points_bound_the_probability() {
 #[test]
 fn it_stops_when_told_to() {
     let problem = lognormal(0.15, 4.5);
-    let run = Run::to_the_end().stopping_when(&|| true);
+    let run = Run::to_the_end().stopping_when(&|| Some(StopReason::Requested));
     let found = rare_within(&problem, &RareOptions::default(), &run, &|_| {}).unwrap();
-    assert!(found.stopped && found.samples == 0 && sides(&found) == [None, None]);
+    assert!(found.run.stopped.is_some() && found.samples == 0 && sides(&found) == [None, None]);
     // After the surrogate and some points, what is known is told.
     let seen = std::sync::atomic::AtomicUsize::new(0);
-    let later = || seen.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 40;
+    let later = || (seen.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 40).then_some(StopReason::TimeLimit);
     let run = Run::to_the_end().stopping_when(&later);
     let options = RareOptions { samples: 1_000_000, ..RareOptions::default() };
     let found = rare_within(&problem, &options, &run, &|_| {}).unwrap();
-    assert!(found.stopped && found.samples < 1_000_000);
+    assert!(found.run.stopped.is_some() && found.samples < 1_000_000);
 }
 
 #[test]

@@ -51,9 +51,9 @@ fn counts_are_stated() {
         let options = Options::from(Method::ResponseSurface);
         let fits = options.method.procedure().fits(&problem, &options).unwrap();
         let found = analyze(&problem, &options).unwrap();
-        assert_eq!(found.evaluations, asked.distinct());
-        assert_eq!((found.evaluations, found.stages), (fits.evaluations, fits.stages));
-        assert_eq!(found.evaluations, corners(n).len() + 2 * n + 1);
+        assert_eq!(found.run.evaluations, asked.distinct() as u64);
+        assert_eq!((found.run.evaluations, found.run.stages), (fits.evaluations as u64, fits.stages as u64));
+        assert_eq!(found.run.evaluations as usize, corners(n).len() + 2 * n + 1);
     }
 }
 
@@ -147,7 +147,7 @@ fn lost_points_are_left_out_or_end_it() {
     let moments = found.characteristics[0].moments.unwrap();
     relative(moments.variance(), 1.0 + 1.0 + 0.5, 1e-12);
     assert_eq!(found.characteristics[0].residual.unwrap().points, 14);
-    assert_eq!(found.failed, 1);
+    assert_eq!(found.run.failed, 1);
     assert!(found.warnings.iter().any(|warning| warning.code() == "failed-points"));
 
     // Half the design is just enough, and says nothing of what it misses.

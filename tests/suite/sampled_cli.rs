@@ -63,7 +63,7 @@ fn samples_of_programs_are_journaled() {
     let journal = folder.path().join("a.sqlite");
     let arguments = ["simulate", PYTHON, "--samples", "300", "--json", "--journal", journal.to_str().unwrap()];
     let (first, second) = (json(&arguments), json(&arguments));
-    assert_eq!((&first["reused"], &second["reused"]), (&0.into(), &300.into()));
+    assert_eq!((&first["cached"], &second["cached"]), (&0.into(), &300.into()));
     // The nominal point, asked again by the sentinel, is all that the second run evaluates.
     assert!(second["evaluations"].as_u64().unwrap() <= 2, "{}", second["evaluations"]);
     assert_eq!(first["characteristics"][0]["mean"], second["characteristics"][0]["mean"]);
@@ -130,7 +130,7 @@ fn a_comparison_of_a_program_shares_its_points() {
     let named = |name: &str| methods.iter().find(|method| method["method"] == name).unwrap();
     // What rss has asked the others need not ask again; it alone asked the nominal point once more, as a sentinel.
     assert_eq!((&named("rss")["evaluations"], &named("second-order")["evaluations"]), (&18.into(), &17.into()));
-    assert!(named("second-order")["reused"].as_u64().unwrap() >= 17);
+    assert!(named("second-order")["cached"].as_u64().unwrap() >= 17);
     assert!(named("second-order")["evaluation_s"].as_f64().unwrap() > 0.0);
     let projected =
         report["not_run"].as_array().unwrap().iter().find(|one| one["method"] == "monte-carlo 10000").unwrap();

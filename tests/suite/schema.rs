@@ -210,7 +210,7 @@ fn defaults_are_what_is_left_out() {
         let found = |analysis: &Value| {
             let study = read(&plain, analysis);
             let analysis = sensitol::analyze(&study.problem, &study.options).unwrap();
-            (study.options.method, analysis.evaluations, format!("{:?}", analysis.characteristics))
+            (study.options.method, analysis.run.evaluations, format!("{:?}", analysis.characteristics))
         };
         assert_eq!(found(&with(&base, &key, &value)), found(&base), "{key}");
     }

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use sensitol::StopReason;
 use sensitol::assembly::Run;
 use sensitol::sampling::{Estimate, Sampler};
 use sensitol::simulation::{Simulation, SimulationError, SimulationOptions, simulate, simulate_within};
@@ -131,7 +132,10 @@ fn the_number_of_threads_changes_nothing() {
 fn every_point_is_counted() {
     let (problem, _) = lognormal();
     let odd = run(&problem, 12_345, Sampler::Random, 1);
-    assert_eq!((odd.samples, odd.evaluations, odd.failed, odd.stopped, odd.reached), (12_345, 12_345, 0, false, None));
+    assert_eq!(
+        (odd.samples, odd.run.evaluations, odd.run.failed, odd.run.stopped, odd.reached),
+        (12_345, 12_345, 0, None, None)
+    );
     let histogram = odd.characteristics[0].histogram.as_ref().unwrap();
     assert_eq!(histogram.counts.iter().sum::<u64>(), 12_345);
     // 16 replicates of a power of two, at least as many as asked.
@@ -148,7 +152,7 @@ fn failed_points_bound_the_yield() {
     let problem = problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap();
     let found = run(&problem, 50_000, Sampler::Random, 2);
     let one = &found.characteristics[0];
-    assert_eq!(one.failed, found.failed);
+    assert_eq!(one.failed, found.run.failed);
     assert_eq!(one.samples + one.failed, 50_000);
     assert!(one.error.is_some());
     let share = one.yield_.unwrap();
@@ -165,7 +169,7 @@ fn nothing_known_is_none() {
     let found = run(&nowhere, 1000, Sampler::Random, 1);
     let one = &found.characteristics[0];
     assert_eq!((one.mean, one.sigma, one.yield_, one.range), (None, None, None, None));
-    assert_eq!((one.samples, one.failed, found.failed), (0, 1000, 1000));
+    assert_eq!((one.samples, one.failed, found.run.failed), (0, 1000, 1000));
     let still = Problem::new(standard(1), Closure::scalar("y", |_| 4.0)).unwrap();
     let one = run(&still, 1000, Sampler::Random, 1).characteristics.remove(0);
     assert_eq!((one.mean.unwrap().value, one.sigma.unwrap().value, one.skewness, one.kurtosis), (4.0, 0.0, None, None));
@@ -228,7 +232,7 @@ fn it_goes_on_until_it_is_sure() {
     let found = simulate(&problem, &options).unwrap();
     let sigma = found.characteristics[0].sigma.unwrap();
     assert!(sigma.standard_error.unwrap() <= 0.002 * sigma.value);
-    assert_eq!((found.reached, found.stopped), (Some(true), false));
+    assert_eq!((found.reached, found.run.stopped), (Some(true), None));
     assert!(found.samples < 1_000_000, "{}", found.samples);
     let options = SimulationOptions { samples: 1 << 40, until_yield: Some(0.001), ..SimulationOptions::default() };
     let share = simulate(&problem, &options).unwrap().characteristics[0].yield_.unwrap();
@@ -243,7 +247,7 @@ fn it_goes_on_until_it_is_sure() {
 fn it_stops_when_told_to_and_tells_its_pace() {
     let (problem, _) = lognormal();
     let looks = AtomicUsize::new(0);
-    let stop = || looks.fetch_add(1, Ordering::SeqCst) > 200;
+    let stop = || (looks.fetch_add(1, Ordering::SeqCst) > 200).then_some(StopReason::Interrupted);
     let run = Run::to_the_end().stopping_when(&stop);
     let options = SimulationOptions { samples: 1 << 40, ..SimulationOptions::default() };
     let told = AtomicUsize::new(0);
@@ -252,7 +256,7 @@ fn it_stops_when_told_to_and_tells_its_pace() {
         assert!(pace.samples > 0 && pace.expected == (1u64 << 40) as f64 && pace.expected_s() > 0.0);
     })
     .unwrap();
-    assert!(found.stopped && found.samples > 0 && told.load(Ordering::SeqCst) > 0);
+    assert!(found.run.stopped == Some(StopReason::Interrupted) && found.samples > 0 && told.load(Ordering::SeqCst) > 0);
 }
 
 #[test]

@@ -469,7 +469,7 @@ fn unused_names_are_warnings() {
     let messages: Vec<String> = study.warnings.iter().map(|warning| warning.message()).collect();
     assert_eq!(messages, ["no characteristic uses the constant `idle`", "no characteristic uses the formula `v`"]);
     let analysis = analyze(&study.problem, &Method::Full.into()).unwrap();
-    assert_eq!(analysis.evaluations, 3);
+    assert_eq!(analysis.run.evaluations, 3);
     assert_eq!(analysis.warnings.iter().map(|warning| warning.code()).collect::<Vec<_>>(), ["unused-dimension"]);
 }
 

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
+use sensitol::StopReason;
 use sensitol::assembly::{Ask, AssemblyFunction, EvaluationError, Responses, Run, Signature};
 use sensitol::sweep::{SweepError, sweep, sweep_within};
 use sensitol::{Closure, Dimension, Method, Options, Problem, Study, analyze};
@@ -71,13 +72,13 @@ fn a_sweep_is_its_analyses() {
             let found = found.as_ref().unwrap();
             assert_eq!(found.characteristics, expected.characteristics, "{method:?} {value}");
             assert_eq!(found.warnings, expected.warnings);
-            stages = stages.max(expected.stages);
-            alone += expected.evaluations;
+            stages = stages.max(expected.run.stages);
+            alone += expected.run.evaluations;
         }
-        assert!(!swept.stopped && swept.failed == 0);
-        assert_eq!((swept.evaluations, swept.batches), (gathered.iter().sum(), gathered.len()));
+        assert!(swept.run.stopped.is_none() && swept.run.failed == 0);
+        assert_eq!((swept.run.evaluations, swept.run.stages), (gathered.iter().sum(), gathered.len()));
         // Points of two values that coincide are evaluated once.
-        assert!(swept.evaluations <= alone, "{method:?}");
+        assert!(swept.run.evaluations <= alone, "{method:?}");
         if method != Method::Auto {
             assert_eq!(gathered.len(), stages, "{method:?}: {gathered:?}");
         }
@@ -98,17 +99,21 @@ fn a_failing_value_costs_only_itself() {
     let swept = sweep(&problem, "a", &[1.0, 1.5, 2.0], &Method::SecondOrder.into()).unwrap();
     let moments = |at: usize| swept.analyses[at].as_ref().unwrap().characteristics[0].moments;
     assert!(moments(0).is_some() && moments(1).is_some() && moments(2).is_none());
-    assert!(swept.failed >= 3);
+    assert!(swept.run.failed >= 3);
 }
 
 #[test]
 fn a_stop_leaves_what_is_done() {
     let (problem, _) = problem();
     let asked = AtomicUsize::new(0);
-    let stop = || asked.fetch_add(1, Ordering::Relaxed) > 0;
+    let stop = || (asked.fetch_add(1, Ordering::Relaxed) > 0).then_some(StopReason::TimeLimit);
     let run = Run::to_the_end().stopping_when(&stop);
     let swept = sweep_within(&problem, "a", &[1.0, 2.0], &Method::SecondOrder.into(), &run).unwrap();
-    assert!(swept.stopped && swept.analyses.iter().all(Option::is_none) && swept.evaluations == 0);
+    assert!(
+        swept.run.stopped == Some(StopReason::TimeLimit)
+            && swept.analyses.iter().all(Option::is_none)
+            && swept.run.evaluations == 0
+    );
 }
 
 #[test]
@@ -163,6 +168,7 @@ fn the_command() {
     let mut report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(report["wall_s"].as_f64().unwrap() > 0.0);
     report["wall_s"] = 0.0.into();
+    report["in_model_s"] = 0.0.into();
     super::cli::rounded(&mut report);
     insta::assert_json_snapshot!("sweep-json", report);
     insta::assert_snapshot!("sweep-svg", std::fs::read_to_string(chart).unwrap());

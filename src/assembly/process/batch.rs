@@ -23,6 +23,9 @@ pub(super) struct Batch<'a> {
     /// Rows that are not trusted any more and not yet told of as such.
     pub(super) withdrawn: Vec<usize>,
     pub(super) sent: usize,
+    /// Those of them that had been sent before.
+    pub(super) resent: usize,
+    ever: Vec<bool>,
 }
 
 impl<'a> Batch<'a> {
@@ -39,7 +42,15 @@ impl<'a> Batch<'a> {
             done: Vec::new(),
             withdrawn: Vec::new(),
             sent: 0,
+            resent: 0,
+            ever: vec![false; points.rows()],
         }
+    }
+
+    /// Counts a row that is sent.
+    pub(super) fn sends(&mut self, row: usize) {
+        self.sent += 1;
+        self.resent += usize::from(std::mem::replace(&mut self.ever[row], true));
     }
 
     /// Whether a row is evaluated with nothing else under way in its child.

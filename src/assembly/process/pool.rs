@@ -132,6 +132,7 @@ impl Pool {
         }
         let work = batch.expect("a batch");
         work.out.spent(work.sent as i64 - (rows - work.left) as i64);
+        work.out.retried(work.resent);
         // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
         for slot in &mut self.slots {
             if let State::Ready(worker) = &mut slot.state {
@@ -205,7 +206,7 @@ impl Pool {
                 worker.since = Instant::now();
             }
             worker.under_way.push_back((id, row));
-            batch.sent += 1;
+            batch.sends(row);
             let columns = batch.points.dimensions();
             request(&mut lines, id, (0..columns).map(|column| batch.points.column(column)[row]));
             if batch.goes_alone(row) {

@@ -162,13 +162,13 @@ pub(crate) fn climb_until(
     loop {
         while let Some(stage) = climb.next(&evaluated.known, evaluated.evaluations) {
             evaluated.add(problem, &climb.plan, &stage, run);
-            if evaluated.stopped {
+            if evaluated.stopped.is_some() {
                 break;
             }
         }
         let found = outcome(problem, options, &climb, &evaluated);
         let excess = excess(&found);
-        if evaluated.stopped || excess <= 1.0 || !climb.tighten(1.0 / excess) {
+        if evaluated.stopped.is_some() || excess <= 1.0 || !climb.tighten(1.0 / excess) {
             return Ok(found);
         }
     }
@@ -216,7 +216,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
     let climbed = Climbed {
         accuracy: options.accuracy.unwrap_or(ACCURACY),
         accuracies: options.accuracies,
-        rest: if evaluated.stopped { Rest::Stopped } else { climb.rest.unwrap_or(Rest::Budget) },
+        rest: if evaluated.stopped.is_some() { Rest::Stopped } else { climb.rest.unwrap_or(Rest::Budget) },
         refined: (0..climb.refined.len()).filter(|&j| climb.refined[j]).collect(),
         direct: climb.bought.direct.len(),
         probes: climb.bought.judging.len() + climb.bought.fitted.len(),

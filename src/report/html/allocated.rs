@@ -44,7 +44,7 @@ pub fn allocate_html(report: &AllocationReport) -> String {
         status: report.status,
         good: matches!(report.status, "optimal" | "almost-optimal"),
         costs: costs(report),
-        requirements: report.requirements.iter().map(|one| requirement(report, one)).collect(),
+        requirements: report.requirements.iter().map(requirement).collect(),
         tolerances: report.tolerances.iter().map(|one| tolerance(one, dearest)).collect(),
         recentred: (report.recentred.iter())
             .map(|one| [one.dimension.clone(), plain(one.before), plain(one.after)])
@@ -81,8 +81,7 @@ pub fn allocate_html(report: &AllocationReport) -> String {
     let mut facts = vec![
         fact("derivatives by", report.method),
         fact("confirmed", confirmed),
-        fact("evaluations", format!("{} in {}", report.evaluations, plural(report.rounds, "round", "rounds"))),
-        fact("reused answers", report.reused.to_string()),
+        fact("evaluations", format!("{} in {}", report.run.evaluations, plural(report.rounds, "round", "rounds"))),
     ];
     if let Some(residual) = report.proof.kkt_residual {
         facts.push(fact("Karush-Kuhn-Tucker residual", significant(residual, 2)));
@@ -93,7 +92,7 @@ pub fn allocate_html(report: &AllocationReport) -> String {
     if let Some(confirmation) = &report.confirmation {
         facts.push(fact("Monte Carlo at the tolerances found", format!("{} points", confirmation.samples)));
     }
-    facts.extend(provenance(&report.head, report.seed, report.wall_s));
+    facts.extend(provenance(&report.head, &report.run));
     render("allocation.html", &report.head, facts, report.warnings.iter().collect(), None, allocated)
 }
 
@@ -116,7 +115,7 @@ fn costs(report: &AllocationReport) -> Option<[String; 3]> {
     ])
 }
 
-fn requirement(report: &AllocationReport, one: &KeptReport) -> [String; 6] {
+fn requirement(one: &KeptReport) -> [String; 6] {
     let value = |value: f64| if one.requirement == "yield" { share(1.0 - value) } else { significant(value, 5) };
     let text = |of: Option<f64>| of.map_or(UNKNOWN.to_owned(), value);
     [
@@ -126,17 +125,8 @@ fn requirement(report: &AllocationReport, one: &KeptReport) -> [String; 6] {
         text(one.before),
         text(one.after),
         // Where nothing was found there is only what was.
-        match (
-            report.cost_after.is_some() || !report.recentred.is_empty() || one.after.is_some(),
-            one.met,
-            one.met_before,
-        ) {
-            (true, true, _) => "met",
-            (true, false, _) => "missed",
-            (false, _, true) => "met before",
-            (false, _, false) => "missed before",
-        }
-        .to_owned(),
+        one.verdict
+            .map_or_else(|| format!("{} before", one.verdict_before.name()), |verdict| verdict.name().to_owned()),
     ]
 }
 

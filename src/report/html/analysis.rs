@@ -132,8 +132,7 @@ fn facts(report: &Report) -> Vec<Fact> {
     let mut facts = vec![fact("method", method)];
     facts.extend(report.account.as_ref().map(|account| fact("what was bought", account.clone())));
     facts.push(fact("varying dimensions", report.varying.to_string()));
-    facts.push(fact("evaluations", format!("{}, {} of them failed", report.evaluations, report.failed)));
-    facts.push(fact("reused answers", report.reused.to_string()));
+    facts.push(fact("evaluations", format!("{}, {} of them failed", report.run.evaluations, report.run.failed)));
     let derivatives = match report.derivatives {
         Some("exact") => "exact",
         Some(_) => "differences",
@@ -146,7 +145,7 @@ fn facts(report: &Report) -> Vec<Fact> {
     if !pairs.is_empty() {
         facts.push(fact("correlations", pairs.join("; ")));
     }
-    facts.extend(provenance(&report.head, report.seed, report.wall_s));
+    facts.extend(provenance(&report.head, &report.run));
     facts
 }
 
@@ -183,12 +182,7 @@ fn verdict(one: &CharacteristicReport) -> Verdict<'_> {
         yield_: if limited && one.yield_.is_none() { "unknown".to_owned() } else { yielded(one) },
         cpk: one.cpk.map(|cpk| format!("{cpk:.3}")).unwrap_or_default(),
         target: one.target_yield.map(|target| share(1.0 - target)).unwrap_or_default(),
-        met: match (one.met, one.target_yield) {
-            (Some(true), _) => "met",
-            (Some(false), _) => "missed",
-            (None, Some(_)) => "unknown",
-            (None, None) => "none",
-        },
+        met: one.verdict.map_or("none", crate::verdict::Verdict::name),
     }
 }
 

@@ -48,10 +48,7 @@ pub fn compare_html(report: &CompareReport) -> String {
     };
     let mut facts =
         vec![fact("reference", format!("{} with {} points", report.reference_method, report.reference_samples))];
-    if report.stopped {
-        facts.push(fact("ended", "before all was done"));
-    }
-    facts.extend(provenance(&report.head, report.seed, report.wall_s));
+    facts.extend(provenance(&report.head, &report.run));
     render("comparison.html", &report.head, facts, Vec::new(), None, compared)
 }
 

@@ -26,6 +26,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::{Head, WarningReport};
+use crate::summary::RunSummary;
 
 const STYLE: &str = include_str!("page.css");
 /// The mathematics of the what-if, and then what shows it.
@@ -70,9 +71,15 @@ fn fact(name: &'static str, text: impl Into<String>) -> Fact {
 }
 
 /// The facts that every report ends with.
-fn provenance(head: &Head, seed: Option<u64>, wall_s: f64) -> Vec<Fact> {
-    let mut facts = vec![fact("time", format!("{} s", super::number::significant(wall_s, 3)))];
-    facts.extend(seed.map(|seed| fact("seed", seed.to_string())));
+fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
+    let seconds = |time: std::time::Duration| format!("{} s", super::number::significant(time.as_secs_f64(), 3));
+    let mut facts = vec![fact("known answers", run.cached.to_string())];
+    if run.retried > 0 {
+        facts.push(fact("sent again", run.retried.to_string()));
+    }
+    facts.extend(run.stopped.map(|reason| fact("stopped by", reason.to_string())));
+    facts.push(fact("time", format!("{}, {} of it in the model", seconds(run.wall), seconds(run.in_model))));
+    facts.extend(run.seed.map(|seed| fact("seed", seed.to_string())));
     facts.push(fact("sensitol", format!("{}, report schema {}", head.sensitol, head.schema)));
     if !head.study_sha256.is_empty() {
         facts.push(fact("SHA-256 of the study", head.study_sha256.clone()));

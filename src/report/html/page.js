@@ -115,7 +115,7 @@
       }
       const badge = cards[i].querySelector('[data-figure="verdict"]');
       const sure = !of.one.unsure;
-      badge.textContent = met === null ? "" : !sure ? "not known" : met ? "target met" : "target missed";
+      badge.textContent = met === null ? "" : !sure ? "inconclusive" : met ? "target met" : "target missed";
       badge.classList.toggle("good", sure && met === true);
       badge.classList.toggle("bad", sure && met === false);
       badge.classList.toggle("unsure", !sure);

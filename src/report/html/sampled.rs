@@ -40,17 +40,13 @@ pub fn simulate_html(report: &SimulationReport) -> String {
     let mut facts = vec![
         fact("method", format!("{}, {} points", report.method, report.sampler)),
         fact("points", report.samples.to_string()),
-        fact("evaluations", format!("{}, {} of them failed", report.evaluations, report.failed)),
-        fact("reused answers", report.reused.to_string()),
+        fact("evaluations", format!("{}, {} of them failed", report.run.evaluations, report.run.failed)),
     ];
     facts.extend(report.surrogate_evaluations.map(|count| fact("evaluations of the surrogate", count.to_string())));
     if let Some(reached) = report.reached {
         facts.push(fact("wanted standard errors", if reached { "reached" } else { "not reached" }));
     }
-    if report.stopped {
-        facts.push(fact("ended", "before all points were drawn"));
-    }
-    facts.extend(provenance(&report.head, Some(report.seed), report.wall_s));
+    facts.extend(provenance(&report.head, &report.run));
     let warnings = report.warnings.iter().filter(|warning| warning.characteristic.is_none()).collect();
     render("simulation.html", &report.head, facts, warnings, None, simulated)
 }
@@ -82,12 +78,7 @@ fn verdict(one: &SimulatedReport) -> Verdict<'_> {
         yield_: one.yield_.map(|yield_| share(1.0 - yield_)).unwrap_or_default(),
         cpk: one.cpk.map(|cpk| format!("{cpk:.3}")).unwrap_or_default(),
         target: one.target_yield.map(|target| share(1.0 - target)).unwrap_or_default(),
-        met: match (one.met, one.target_yield) {
-            (Some(true), _) => "met",
-            (Some(false), _) => "missed",
-            (None, Some(_)) => "unknown",
-            (None, None) => "none",
-        },
+        met: one.verdict.map_or("none", crate::verdict::Verdict::name),
     }
 }
 

@@ -40,17 +40,13 @@ pub fn sweep_html(report: &SweepReport) -> String {
             "evaluations",
             format!(
                 "{} in {}, {} of them failed",
-                report.evaluations,
-                plural(report.batches, "batch", "batches"),
-                report.failed
+                report.run.evaluations,
+                plural(report.run.stages as usize, "batch", "batches"),
+                report.run.failed
             ),
         ),
-        fact("reused answers", report.reused.to_string()),
     ];
-    if report.stopped {
-        facts.push(fact("ended", "before all was done"));
-    }
-    facts.extend(provenance(&report.head, report.seed, report.wall_s));
+    facts.extend(provenance(&report.head, &report.run));
     let warnings = report.warnings.iter().filter(|warning| warning.characteristic.is_none()).collect();
     render("sweep.html", &report.head, facts, warnings, None, swept)
 }

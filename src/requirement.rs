@@ -1,17 +1,15 @@
 //! What a characteristic must keep.
 
-use crate::characteristic::Characteristic;
-
-/// What a characteristic must keep when tolerances are chosen.
+/// What a characteristic must keep: when tolerances are chosen, and when a result is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Requirement {
-    /// The share within the limits, by four moments and the Pearson fit, is at least this.
+    /// The share within the limits is at least this; where tolerances are chosen, by four moments and the Pearson fit.
     Yield(f64),
     /// `min(U - mean, mean - L) / 3 sigma` is at least this.
     Cpk(f64),
     /// Sigma is at most this.
     Sigma(f64),
-    /// The mean plus and minus the root of the sum of squares lies within the limits.
+    /// The middle of the linear model plus and minus the root of the sum of squares lies within the limits.
     Rss,
     /// The linear worst case lies within the limits.
     WorstCase,
@@ -63,11 +61,11 @@ impl Requirement {
         }
     }
 
-    /// Of this characteristic.
+    /// Of a characteristic that has limits, or has none.
     ///
     /// # Errors
     /// When the number is impossible, or limits are missing that it speaks of.
-    pub fn checked(self, characteristic: &Characteristic) -> Result<Self, RequirementError> {
+    pub fn checked(self, limits_exist: bool) -> Result<Self, RequirementError> {
         match self {
             Self::Yield(value) if !(value > 0.0 && value < 1.0) => {
                 return Err(RequirementError::ImpossibleYield { value });
@@ -77,7 +75,7 @@ impl Requirement {
             }
             _ => {}
         }
-        if !matches!(self, Self::Sigma(_)) && !characteristic.limits().exist() {
+        if !matches!(self, Self::Sigma(_)) && !limits_exist {
             let what = match self {
                 Self::Yield(_) => "a yield",
                 Self::Cpk(_) => "a Cpk",

@@ -1,0 +1,40 @@
+//! External models that do not answer as they did.
+
+use crate::assembly::process::Doubt;
+use crate::problem::Problem;
+use crate::warning::Warning;
+
+/// A change of the nominal value by more than this part of what a characteristic varies by is another solution of the model.
+const FLIP: f64 = 0.01;
+/// Points in doubt that are named.
+const SUSPECTS: usize = 3;
+
+/// One warning for each output.
+pub(crate) fn history(problem: &Problem, doubts: &[Doubt]) -> Vec<Warning> {
+    let first = |index: &usize| !doubts[..*index].iter().any(|earlier| earlier.output == doubts[*index].output);
+    let warning = |index: usize| {
+        let doubt = &doubts[index];
+        let same = || doubts.iter().filter(|other| other.output == doubt.output);
+        let far = |a: f64, b: f64| (a - b).abs() > FLIP * doubt.spread;
+        Warning::History {
+            output: doubt.output.clone(),
+            expected: doubt.expected,
+            found: doubt.found,
+            flip: doubt.expected.zip(doubt.found).is_some_and(|(a, b)| far(a, b)),
+            times: same().count(),
+            points: same().map(|doubt| doubt.suspects.len()).sum(),
+            suspects: same()
+                .flat_map(|doubt| &doubt.suspects)
+                .take(SUSPECTS)
+                .map(|point| words(problem, point))
+                .collect(),
+        }
+    };
+    (0..doubts.len()).filter(first).map(warning).collect()
+}
+
+/// A point by the dimensions that are not at their nominal value.
+fn words(problem: &Problem, point: &[f64]) -> String {
+    let moved = problem.dimensions().iter().zip(point).filter(|(dimension, x)| dimension.nominal() != **x);
+    moved.map(|(dimension, x)| format!("{} = {x}", dimension.name())).collect::<Vec<_>>().join(", ")
+}

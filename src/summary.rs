@@ -1,0 +1,141 @@
+//! What a run came to, whatever it computed: points, time, seed, and why it ended early where it did.
+
+use std::fmt;
+use std::time::Duration;
+
+use serde::{Serialize, Serializer};
+
+/// Why a run ended before everything that it planned was evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum StopReason {
+    /// The time that it was given is over.
+    TimeLimit,
+    /// The evaluations that it was given are spent. What follows from fewer points is complete: nothing planned is open.
+    Budget,
+    /// A person interrupted it.
+    Interrupted,
+    /// The program that called it asked for its end, and gave no other reason.
+    Requested,
+}
+
+impl StopReason {
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TimeLimit => "time-limit",
+            Self::Budget => "budget",
+            Self::Interrupted => "interrupted",
+            Self::Requested => "requested",
+        }
+    }
+
+    /// Whether points that were planned are open: a budget is part of the plan, all else cuts it short.
+    pub fn leaves_points_open(self) -> bool {
+        self != Self::Budget
+    }
+}
+
+/// As part of a sentence: `stopped by` this.
+impl fmt::Display for StopReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TimeLimit => "the time limit",
+            Self::Budget => "the budget",
+            Self::Interrupted => "an interruption",
+            Self::Requested => "its caller",
+        })
+    }
+}
+
+/// What a run came to. Every result has one.
+///
+/// ```
+/// use sensitol::{Closure, Dimension, Method, Problem, analyze};
+/// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::normal("b", 5.0, 0.4)?];
+/// let gap = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?;
+/// let run = analyze(&gap, &Method::Full.into())?.run;
+/// assert_eq!((run.evaluations, run.failed, run.stopped), (7, 0, None));
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[non_exhaustive]
+pub struct RunSummary {
+    /// Points sent to the model, those sent again included.
+    pub evaluations: u64,
+    /// Points whose answers were known from an earlier run.
+    pub cached: u64,
+    /// Points sent again: because an answer was a failure, or was not trusted.
+    pub retried: u64,
+    /// Points that lost at least one characteristic.
+    pub failed: u64,
+    /// Batches in which points were sent.
+    pub stages: u64,
+    /// Time from the first evaluation to the result.
+    #[serde(rename = "wall_s", serialize_with = "seconds")]
+    pub wall: Duration,
+    /// Time within the model, of all threads together.
+    #[serde(rename = "in_model_s", serialize_with = "seconds")]
+    pub in_model: Duration,
+    /// The seed, where random numbers were drawn.
+    pub seed: Option<u64>,
+    /// Why it ended early; None where it did not.
+    pub stopped: Option<StopReason>,
+}
+
+impl RunSummary {
+    /// With another part of the same work: counts and times add up, and the first reason to stop that leaves points open stays.
+    pub fn and(self, other: &Self) -> Self {
+        let open = |stopped: &Option<StopReason>| stopped.is_some_and(StopReason::leaves_points_open);
+        Self {
+            evaluations: self.evaluations + other.evaluations,
+            cached: self.cached + other.cached,
+            retried: self.retried + other.retried,
+            failed: self.failed + other.failed,
+            stages: self.stages + other.stages,
+            wall: self.wall + other.wall,
+            in_model: self.in_model + other.in_model,
+            seed: self.seed.or(other.seed),
+            stopped: if open(&other.stopped) && !open(&self.stopped) {
+                other.stopped
+            } else {
+                self.stopped.or(other.stopped)
+            },
+        }
+    }
+
+    /// Whether planned points were not evaluated, so that what follows from the others is no verdict.
+    pub fn unfinished(&self) -> bool {
+        self.stopped.is_some_and(StopReason::leaves_points_open)
+    }
+}
+
+fn seconds<S: Serializer>(duration: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(duration.as_secs_f64())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A budget that ended one part hides no interruption of another.
+    #[test]
+    fn the_reason_that_leaves_points_open_is_kept() {
+        let of = |stopped| RunSummary { evaluations: 2, stopped, ..RunSummary::default() };
+        let budget = of(Some(StopReason::Budget));
+        let time = of(Some(StopReason::TimeLimit));
+        for both in [budget.and(&time), time.and(&budget)] {
+            assert_eq!((both.stopped, both.evaluations, both.unfinished()), (Some(StopReason::TimeLimit), 4, true));
+        }
+        assert!(!budget.and(&of(None)).unfinished() && of(None).stopped.is_none());
+    }
+
+    /// The name is the one that JSON has.
+    #[test]
+    fn a_reason_has_one_name() {
+        for reason in [StopReason::TimeLimit, StopReason::Budget, StopReason::Interrupted, StopReason::Requested] {
+            assert_eq!(serde_json::to_value(reason).unwrap(), reason.name());
+        }
+    }
+}
