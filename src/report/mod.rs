@@ -36,6 +36,7 @@ mod sweep_svg;
 mod sweep_text;
 mod table;
 mod text;
+mod verification;
 
 pub use allocation::{
     AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, BeforeAfter, ConfirmationReport,
@@ -69,6 +70,7 @@ pub use sweep_csv::sweep_csv;
 pub use sweep_svg::sweep_svg;
 pub use sweep_text::sweep_text;
 pub use text::text;
+pub use verification::{FigureReport, SwitchReport, VarianceShareReport, VerificationReport, VerifiedFiguresReport};
 
 use serde::Serialize;
 
@@ -198,6 +200,9 @@ pub struct CharacteristicReport {
     pub error_estimate: Option<ErrorEstimateReport>,
     /// Points of the model that the moments rest on, where `auto` did not trust its surrogate.
     pub model_sampling: Option<ModelSamplingReport>,
+    /// What the model itself says of them; left out where they were not verified.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verification: Option<VerificationReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
     /// Intervals that no assembly leaves.
@@ -456,6 +461,7 @@ impl CharacteristicReport {
             }),
             error_estimate: analysis.error_estimate.as_ref().map(ErrorEstimateReport::of),
             model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
+            verification: VerificationReport::of(analysis),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
             worst_case: WorstCaseReport::of(analysis),
             middle: analysis.middle,

@@ -24,11 +24,14 @@ pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
 
 use crate::problem::Problem;
+use crate::sampling::Normals;
+use crate::surrogate::Surrogate;
+use figures::moments;
 use model::Model;
 use sample::Sample;
 
 /// Points of the core of a sample.
-const CORE: usize = 1 << 15;
+pub(crate) const CORE: usize = 1 << 15;
 
 /// A figure as the model itself gives it, and its error: three of it reach the truth whenever three standard errors do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +100,30 @@ impl Verified {
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub fn verify_by_sampling(problem: &Problem, seed: u64) -> Vec<SampledFigures> {
-    (0..problem.characteristics().len()).map(|c| sampled(problem, c, seed)).collect()
+    (0..problem.characteristics().len()).map(|c| verify_characteristic(problem, c, seed, CORE)).collect()
+}
+
+/// The share of a characteristic's variance that a surface over the dimensions at `varying` leaves unexplained, by 1024 points of the
+/// model; None where the surface has no value, or the model none at any point.
+pub(crate) fn unexplained(
+    problem: &Problem,
+    c: usize,
+    varying: &[usize],
+    surrogate: &Surrogate,
+    seed: u64,
+) -> Option<f64> {
+    const POINTS: usize = 1 << 10;
+    let model = Model::over(problem, c, varying);
+    let z = Normals::new(varying.len(), seed).columns(1 << 35, POINTS);
+    let rises = surrogate.rises(&model.standardised(&z))?;
+    let y = model.values(&z);
+    let (valid, off): (Vec<f64>, Vec<f64>) = (y.iter().zip(&rises))
+        .filter(|(y, _)| y.is_finite())
+        .map(|(y, rise)| (*y, y - surrogate.centre - rise))
+        .unzip();
+    let variance = moments(&valid, &vec![1.0; valid.len()])[1].powi(2);
+    let square = off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64;
+    (variance > 0.0).then_some(square / variance)
 }
 
 /// What a sampled model says of its inputs: for every dimension on which a characteristic depends first-order and total share of the
@@ -124,14 +150,15 @@ pub fn variance_shares(problem: &Problem, characteristic: usize, seed: u64) -> O
     Some(model.dimensions().zip(shares::shares(&model, seed)?).collect())
 }
 
-fn sampled(problem: &Problem, c: usize, seed: u64) -> SampledFigures {
+/// One characteristic, by so many points in the core.
+pub(crate) fn verify_characteristic(problem: &Problem, c: usize, seed: u64, core: usize) -> SampledFigures {
     let model = Model::new(problem, c);
     let limits = problem.characteristics()[c].limits();
     let [low, high] = [limits.lower().unwrap_or(f64::NEG_INFINITY), limits.upper().unwrap_or(f64::INFINITY)];
     if model.len() == 0 {
         return constant(&model, [low, high]);
     }
-    let sample = Sample::draw(&model, seed, CORE);
+    let sample = Sample::draw(&model, seed, core);
     let sides = sample.sides.clone();
     let beyond = [[f64::NEG_INFINITY, low.next_down()], [high.next_up(), f64::INFINITY]];
     let figures = sample.figures(&[[low, high], beyond[0], beyond[1]]);

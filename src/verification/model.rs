@@ -16,8 +16,18 @@ impl<'p> Model<'p> {
         let dependence = problem.dependence().swap_remove(characteristic);
         let varies = |&d: &usize| dependence[d] && problem.dimensions()[d].sigma() > 0.0;
         let dimensions: Vec<usize> = (0..problem.dimensions().len()).filter(varies).collect();
-        let space = Space::new(problem, &dimensions);
+        Self::over(problem, characteristic, &dimensions)
+    }
+
+    /// A characteristic over these dimensions.
+    pub(super) fn over(problem: &'p Problem, characteristic: usize, dimensions: &[usize]) -> Self {
+        let space = Space::new(problem, dimensions);
         Self { problem, output: problem.outputs()[characteristic], space }
+    }
+
+    /// The inputs in sigmas off their means.
+    pub(super) fn standardised(&self, z: &Columns) -> Columns {
+        self.space.standardised(z)
     }
 
     /// How many variables there are.

@@ -119,7 +119,7 @@ pub(super) fn judge(
 ) -> Option<Judged> {
     let [mean, sigma, skewness, kurtosis] = surface.figures;
     let d: Vec<f64> = model.iter().zip(surface_at).map(|(y, q)| (y - q) / sigma).collect();
-    if !(sigma > 0.0) || d.iter().any(|d| !d.is_finite()) {
+    if sigma.is_nan() || sigma <= 0.0 || d.iter().any(|d| !d.is_finite()) {
         return None;
     }
     let bend = bend(design, wish, &d);

@@ -1,6 +1,6 @@
 //! Warnings in words: cause, consequence, what to try.
 
-use super::{Ended, Figure, Loss, Warning};
+use super::{Change, Ended, Figure, Loss, Warning};
 
 impl Warning {
     /// Cause, consequence, and what to try.
@@ -290,6 +290,43 @@ impl Warning {
                 1e6 * law,
                 1e6 * surface
             ),
+            Self::Switch { characteristic, switch, change, probability } => format!(
+                "`{characteristic}` {} at {switch}, with {} of the assemblies beyond; {}",
+                match change {
+                    Change::Kink => "bends",
+                    Change::Jump => "jumps",
+                    Change::Edge => "has no value beyond a limit",
+                    Change::Pole => "grows without bound",
+                },
+                part(*probability),
+                match change {
+                    Change::Kink | Change::Jump =>
+                        "no polynomial follows that: use the figures of the verification, or sensitol simulate",
+                    Change::Edge => "every figure is of the assemblies that have a value",
+                    Change::Pole =>
+                        "it has no moments, and those printed are of the assemblies within eight sigma: choose another \
+                         characteristic, or a distribution that ends before",
+                }
+            ),
+            Self::UnverifiedSurface { characteristic, share, sampled } => format!(
+                "the surface through the evaluated points leaves {} of the variance of `{characteristic}` unexplained, by {}; {}",
+                share.map_or("an unknown part".to_owned(), |share| format!("{:.1} %", 100.0 * share)),
+                match sampled {
+                    Some(points) => format!("{points} points of the model"),
+                    None => "the check points".to_owned(),
+                },
+                match sampled {
+                    Some(_) => "use the figures of the verification, or --method auto, which takes them",
+                    None => "its figures are a guess: use --method auto, or sensitol simulate",
+                }
+            ),
+            Self::FigureOff { characteristic, figure, value, model, error } => {
+                let [value, model, error] = [(value, 5), (model, 5), (error, 2)].map(|(of, digits)| significant(*of, digits));
+                format!(
+                    "{figure} of `{characteristic}` is {value} by the method, and {model} by the model itself, with an error of \
+                     {error}; use --method auto, which takes that of the model"
+                )
+            }
             Self::SeveralModes { characteristic, coefficient } => format!(
                 "skewness and kurtosis of `{characteristic}` are those of a distribution with two peaks ((skewness^2 + 1)/kurtosis = \
                  {coefficient:.2}): the Pearson law has one or a trough; look at the histogram of sensitol simulate"
@@ -306,6 +343,28 @@ fn lie(count: usize) -> &'static str {
 fn values_and_lines(first: &[(f64, u64)], count: usize) -> String {
     let named: Vec<String> = first.iter().map(|(value, line)| format!("{value} (line {line})")).collect();
     format!("{}{}", named.join(", "), if count > first.len() { ", ..." } else { "" })
+}
+
+/// A share as percent, or as parts per million where it is small.
+fn part(share: f64) -> String {
+    if share < 1e-3 {
+        format!("{} ppm", significant(1e6 * share, 2))
+    } else {
+        format!("{} %", significant(100.0 * share, 2))
+    }
+}
+
+/// So many digits that count.
+fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    match digits - 1 - exponent {
+        places @ 0..=9 => format!("{value:.*}", places as usize),
+        places if places < 0 && exponent < 9 => format!("{value:.0}"),
+        _ => format!("{value:.*e}", (digits - 1) as usize),
+    }
 }
 
 fn places([from, to]: [f64; 2]) -> String {

@@ -308,6 +308,39 @@ pub enum Warning {
         /// An interval that no assembly leaves, and the boxes of interval arithmetic that it took; for formulas.
         bounds: Option<([f64; 2], usize)>,
     },
+    /// A formula changes its form within the assemblies, by its own tree.
+    Switch {
+        /// The characteristic.
+        characteristic: String,
+        /// The part of the formula that does it.
+        switch: String,
+        /// What happens there.
+        change: Change,
+        /// The probability of the smaller side.
+        probability: f64,
+    },
+    /// The error of sigma by the model itself is too large for the surface to be one.
+    UnverifiedSurface {
+        /// The characteristic.
+        characteristic: String,
+        /// The share of the variance that the surface leaves unexplained; None where that is unknown.
+        share: Option<f64>,
+        /// Points of the model that were sampled; None where it was evaluated at a few points only.
+        sampled: Option<u64>,
+    },
+    /// A figure lies beyond three errors of the model's own.
+    FigureOff {
+        /// The characteristic.
+        characteristic: String,
+        /// The figure.
+        figure: &'static str,
+        /// As the method has it.
+        value: f64,
+        /// As the model has it.
+        model: f64,
+        /// The error of that.
+        error: f64,
+    },
     /// Two slopes of a characteristic meet within reach.
     Kink {
         /// The characteristic.
@@ -439,6 +472,19 @@ pub enum Loss {
     },
 }
 
+/// What happens to a characteristic at a switch of its formula.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    /// Its slope changes.
+    Kink,
+    /// Its value jumps.
+    Jump,
+    /// It has no value beyond.
+    Edge,
+    /// It grows without bound.
+    Pole,
+}
+
 /// What an accuracy can be wanted of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Figure {
@@ -511,6 +557,12 @@ impl Warning {
             Self::UnderResolved { .. } => "under-resolved",
             Self::TailsMissed { .. } => "tails-missed",
             Self::SeveralModes { .. } => "several-modes",
+            Self::Switch { change: Change::Kink, .. } => "kink",
+            Self::Switch { change: Change::Jump, .. } => "discontinuity",
+            Self::Switch { change: Change::Edge, .. } => "domain-edge",
+            Self::Switch { change: Change::Pole, .. } => "pole",
+            Self::UnverifiedSurface { .. } => "untrusted-surrogate",
+            Self::FigureOff { .. } => "figure-off",
         }
     }
 
@@ -546,6 +598,9 @@ impl Warning {
             | Self::UnderResolved { characteristic, .. }
             | Self::TailsMissed { characteristic, .. }
             | Self::SeveralModes { characteristic, .. }
+            | Self::Switch { characteristic, .. }
+            | Self::UnverifiedSurface { characteristic, .. }
+            | Self::FigureOff { characteristic, .. }
             | Self::RssInvalid { characteristic, .. } => Some(characteristic),
             _ => None,
         }
