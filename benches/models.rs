@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run};
-use sensitol::models;
+use sensitol::models::{self, Model};
 
 /// Model, outputs asked, and rows.
 const CASES: &[(&str, &[&str], usize)] = &[
@@ -27,7 +27,7 @@ const CASES: &[(&str, &[&str], usize)] = &[
 fn evaluations(c: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     for &(name, outputs, rows) in CASES {
-        let model = models::by_name(name).unwrap();
+        let model = name.parse::<&Model>().unwrap();
         let column = |(d, input): (usize, &models::ModelInput)| -> Vec<f64> {
             let whole = name.starts_with("inline") && input.name == "n";
             let off = |row: usize| if whole { 0.0 } else { 1e-3 * ((row * (d + 3)) as f64).sin() };

@@ -1,6 +1,9 @@
 //! The trade of speed for accuracy, measured: every method on one problem, against a reference that states its own error.
 
+use std::fmt;
 use std::time::{Duration, Instant};
+
+use serde::Serialize;
 
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_within};
 use crate::assembly::Run;
@@ -141,7 +144,43 @@ pub struct NotRun {
     /// Seconds that the model would have taken, at the speed of those that ran.
     pub projected_s: Option<f64>,
     /// Why not.
-    pub reason: String,
+    pub reason: NotRunReason,
+}
+
+/// Why a method was not run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum NotRunReason {
+    /// It takes more evaluations than the reference of a costly model, and no budget allows that.
+    OverReference,
+    /// A sample as long as the reference would be measured by its equal.
+    LongerThanReference,
+    /// It takes more than the budget.
+    OverBudget,
+    /// The run was stopped before its turn came.
+    StoppedBefore,
+    /// The run was stopped before it was done.
+    Stopped,
+    /// It does not fit the problem, or the model cannot be used.
+    Impossible {
+        /// Why, in words.
+        message: String,
+    },
+}
+
+impl fmt::Display for NotRunReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::OverReference => "more than the reference; a budget allows it",
+            Self::LongerThanReference => "longer than the reference",
+            Self::OverBudget => "more than the budget",
+            Self::StoppedBefore => "stopped before",
+            Self::Stopped => "stopped before it was done",
+            Self::Impossible { message } => message,
+        })
+    }
 }
 
 /// What a comparison found out.
@@ -237,8 +276,8 @@ struct Comparer<'a> {
 }
 
 impl Comparer<'_> {
-    fn refuse(&mut self, contender: Contender, evaluations: Option<u64>, reason: impl Into<String>) {
-        self.not_run.push(NotRun { contender, evaluations, projected_s: None, reason: reason.into() });
+    fn refuse(&mut self, contender: Contender, evaluations: Option<u64>, reason: NotRunReason) {
+        self.not_run.push(NotRun { contender, evaluations, projected_s: None, reason });
     }
 
     /// Unless the budget allows it, nothing that is costly is evaluated more often than the `reference`.
@@ -247,24 +286,24 @@ impl Comparer<'_> {
         let options = Options { budget: self.options.budget, ..Options::from(method) };
         let cost = match method.procedure().fits(self.problem, &options) {
             Ok(cost) => Some(cost.evaluations as u64),
-            Err(error) => return self.refuse(contender, error.needed(), error.to_string()),
+            Err(error) => return self.refuse(contender, error.needed(), impossible(&error)),
         };
         if self.run.stopped() {
-            return self.refuse(contender, cost, "stopped before");
+            return self.refuse(contender, cost, NotRunReason::StoppedBefore);
         }
         if let (None, Some(most), Some(needed)) = (self.options.budget, reference, cost)
             && needed > most
         {
-            return self.refuse(contender, cost, "more than the reference; a budget allows it");
+            return self.refuse(contender, cost, NotRunReason::OverReference);
         }
         let begun = Instant::now();
         match analyze_within(self.problem, &options, self.run) {
             Ok(analysis) if analysis.run.unfinished() => {
                 self.lost = self.lost.and(&analysis.run);
-                self.refuse(contender, cost, "stopped before it was done");
+                self.refuse(contender, cost, NotRunReason::Stopped);
             }
             Ok(analysis) => self.ran.push(of_analysis(contender, &analysis, begun.elapsed())),
-            Err(error) => self.refuse(contender, cost, error.to_string()),
+            Err(error) => self.refuse(contender, cost, impossible(&error)),
         }
     }
 
@@ -276,23 +315,23 @@ impl Comparer<'_> {
         };
         // A sample as long as the reference would be measured by its equal.
         if samples >= reference {
-            return self.refuse(contender, Some(samples), "longer than the reference");
+            return self.refuse(contender, Some(samples), NotRunReason::LongerThanReference);
         }
         if self.options.budget.is_some_and(|budget| samples > budget as u64) {
-            return self.refuse(contender, Some(samples), "more than the budget");
+            return self.refuse(contender, Some(samples), NotRunReason::OverBudget);
         }
         if self.run.stopped() {
-            return self.refuse(contender, Some(samples), "stopped before");
+            return self.refuse(contender, Some(samples), NotRunReason::StoppedBefore);
         }
         let options = SimulationOptions { samples, sampler, seed: self.options.seed, ..SimulationOptions::default() };
         let begun = Instant::now();
         match simulate_within(self.problem, &options, self.run, &|_| {}) {
             Ok(found) if found.run.unfinished() => {
                 self.lost = self.lost.and(&found.run);
-                self.refuse(contender, Some(samples), "stopped before it was done");
+                self.refuse(contender, Some(samples), NotRunReason::Stopped);
             }
             Ok(found) => self.ran.push(of_simulation(contender, &found, begun.elapsed())),
-            Err(error) => self.refuse(contender, Some(samples), error.to_string()),
+            Err(error) => self.refuse(contender, Some(samples), impossible(&error)),
         }
     }
 
@@ -326,6 +365,10 @@ impl Comparer<'_> {
         let run = RunSummary { seed: Some(self.options.seed), stopped, ..all };
         Comparison { reference, ran: self.ran, not_run: self.not_run, run }
     }
+}
+
+fn impossible(error: &impl fmt::Display) -> NotRunReason {
+    NotRunReason::Impossible { message: error.to_string() }
 }
 
 fn of_analysis(contender: Contender, analysis: &Analysis, took: Duration) -> Ran {

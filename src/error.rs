@@ -1,17 +1,28 @@
 //! Every error of the library in one type, for who passes them on.
 
 use crate::allocation::{AllocateError, CostError, RequirementError};
-use crate::assembly::CompositeError;
+use crate::analysis::NoFit;
 use crate::assembly::formula::FormulaError;
+use crate::assembly::implicit::ConditionsError;
+use crate::assembly::process::ProcessError;
+use crate::assembly::{CompositeError, EvaluationError, NoColumn};
 use crate::characteristic::LimitsError;
+use crate::compare::CompareError;
 use crate::correlation::CorrelationError;
 use crate::dimension::DimensionError;
 use crate::distribution::DistributionError;
+use crate::fits::FitError;
+#[cfg(feature = "journal")]
+use crate::journal::JournalError;
 use crate::method::MethodError;
+use crate::names::UnknownName;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
+use crate::rare::RareError;
+use crate::sampling::SamplingError;
 use crate::simulation::SimulationError;
 use crate::study::{RewriteError, StudyError};
+use crate::sweep::SweepError;
 
 /// Any error of the library.
 #[derive(Debug, thiserror::Error)]
@@ -62,4 +73,41 @@ pub enum Error {
     /// A method does not fit the problem.
     #[error(transparent)]
     Method(#[from] MethodError),
+    /// A model has no value at a point.
+    #[error(transparent)]
+    Evaluation(#[from] EvaluationError),
+    /// An external program cannot be used.
+    #[error(transparent)]
+    Process(#[from] ProcessError),
+    /// A table of answers has no column for an input or output.
+    #[error(transparent)]
+    NoColumn(#[from] NoColumn),
+    /// Closure conditions do not determine an assembly.
+    #[error(transparent)]
+    Conditions(#[from] ConditionsError),
+    /// There is no such fit of ISO 286.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// A problem cannot be sampled.
+    #[error(transparent)]
+    Sampling(#[from] SamplingError),
+    /// No surface can be fitted.
+    #[error(transparent)]
+    NoFit(#[from] NoFit),
+    /// Rare events cannot be estimated.
+    #[error(transparent)]
+    Rare(#[from] RareError),
+    /// Methods cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// A parameter cannot be swept.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    /// A name stands for nothing.
+    #[error(transparent)]
+    UnknownName(#[from] UnknownName),
+    /// A journal cannot be used.
+    #[cfg(feature = "journal")]
+    #[error(transparent)]
+    Journal(#[from] JournalError),
 }

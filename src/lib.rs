@@ -18,7 +18,9 @@ pub mod extremes;
 pub mod fits;
 #[cfg(feature = "journal")]
 pub mod journal;
+pub mod law;
 pub mod method;
+mod method_kind;
 pub mod models;
 pub mod moments;
 pub mod names;

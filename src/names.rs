@@ -30,3 +30,45 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     }
     best.map(|(_, name)| name)
 }
+
+/// A name that stands for none of a list of things.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there is no {what} `{name}`; {}", self.help())]
+pub struct UnknownName {
+    /// What the name should stand for, such as `method`.
+    pub what: &'static str,
+    /// The name as typed.
+    pub name: String,
+    /// The most similar known name.
+    pub nearest: Option<String>,
+    /// The known names.
+    pub known: Vec<&'static str>,
+}
+
+impl UnknownName {
+    /// The thing of this name among `all`.
+    pub(crate) fn find<T: Copy>(
+        what: &'static str,
+        name: &str,
+        all: &[T],
+        name_of: impl Fn(&T) -> &'static str,
+    ) -> Result<T, Self> {
+        match all.iter().find(|one| name_of(one) == name) {
+            Some(one) => Ok(*one),
+            None => Err(Self::of(what, name, all.iter().map(name_of).collect())),
+        }
+    }
+
+    pub(crate) fn of(what: &'static str, name: &str, known: Vec<&'static str>) -> Self {
+        let nearest = nearest(name, known.iter().copied()).map(str::to_owned);
+        Self { what, name: name.to_owned(), nearest, known }
+    }
+
+    /// The name that was probably meant, or all that there are.
+    pub fn help(&self) -> String {
+        match &self.nearest {
+            Some(nearest) => format!("did you mean `{nearest}`?"),
+            None => format!("the names are {}", self.known.join(", ")),
+        }
+    }
+}

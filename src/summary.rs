@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 
 /// Why a run ended before everything that it planned was evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum StopReason {
@@ -60,6 +61,7 @@ impl fmt::Display for StopReason {
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct RunSummary {
     /// Points sent to the model, those sent again included.
@@ -74,9 +76,11 @@ pub struct RunSummary {
     pub stages: u64,
     /// Time from the first evaluation to the result.
     #[serde(rename = "wall_s", serialize_with = "seconds")]
+    #[cfg_attr(feature = "cli", schemars(with = "f64"))]
     pub wall: Duration,
     /// Time within the model, of all threads together.
     #[serde(rename = "in_model_s", serialize_with = "seconds")]
+    #[cfg_attr(feature = "cli", schemars(with = "f64"))]
     pub in_model: Duration,
     /// The seed, where random numbers were drawn.
     pub seed: Option<u64>,

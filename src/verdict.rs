@@ -23,6 +23,7 @@ const ROUNDING: f64 = 1e-8;
 
 /// What is to be said of a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// The whole interval keeps the target.

@@ -2,11 +2,12 @@
 
 use super::cost::Priced;
 use crate::dimension::Dimension;
-use crate::method::{MethodError, Options};
+use crate::method::{Method, MethodError, Options};
 use crate::names::nearest;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::simulation::{SimulationError, chosen};
+use crate::warning::Advice;
 
 /// Costs and requirements beside a problem.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -51,9 +52,7 @@ impl AllocationOptions {
 #[non_exhaustive]
 pub enum AllocateError {
     /// Nothing may change.
-    #[error(
-        "there is nothing to choose: write what tolerances cost below [costs], or name dimensions to move with --recentre"
-    )]
+    #[error("there is nothing to choose: no tolerance has a cost, and no nominal value may move")]
     NothingToChoose,
     /// Nothing must be kept.
     #[error(
@@ -83,7 +82,7 @@ pub enum AllocateError {
         dimension: String,
     },
     /// A dimension to be moved that is none.
-    #[error("--recentre {name}: there is no such dimension{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
+    #[error("there is no dimension `{name}` to recentre{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
     UnknownDimension {
         /// As given.
         name: String,
@@ -91,7 +90,7 @@ pub enum AllocateError {
         nearest: Option<String>,
     },
     /// A dimension that cannot be moved.
-    #[error("--recentre {name}: {why}")]
+    #[error("`{name}` cannot be recentred: {why}")]
     CannotMove {
         /// The dimension.
         name: String,
@@ -99,13 +98,13 @@ pub enum AllocateError {
         why: &'static str,
     },
     /// No limits to be in the middle of.
-    #[error("--recentre needs a characteristic with limits")]
+    #[error("recentring needs a characteristic with limits")]
     NoLimits,
     /// A front of what is not required.
-    #[error("--front needs a characteristic of which a yield or a Cpk is required, and costs")]
+    #[error("a front of cost against yield needs costs, and a characteristic with a required yield or Cpk")]
     NoFront,
     /// As many points make no front.
-    #[error("--front takes 2 to 200 points, not {points}")]
+    #[error("a front of cost against yield takes 2 to 200 points, not {points}")]
     FrontPoints {
         /// As given.
         points: usize,
@@ -117,9 +116,7 @@ pub enum AllocateError {
         characteristic: String,
     },
     /// A method that has nothing to follow tolerances on.
-    #[error(
-        "{method} has no surface on which the search could follow the tolerances: use --method full, six-n or second-order"
-    )]
+    #[error("{method} has no surface on which the search could follow the tolerances")]
     NoSurrogate {
         /// The method.
         method: &'static str,
@@ -136,6 +133,21 @@ pub enum AllocateError {
     /// Other tolerances do not go with a distribution.
     #[error(transparent)]
     Dimension(#[from] crate::dimension::DimensionError),
+}
+
+impl AllocateError {
+    /// What to do about it.
+    pub fn advice(&self) -> Vec<Advice> {
+        match self {
+            Self::NothingToChoose => vec![Advice::WriteCosts, Advice::NameMovableDimensions],
+            Self::NoSurrogate { .. } => {
+                vec![Advice::UseMethod { methods: vec![Method::Full, Method::SixN, Method::SecondOrder] }]
+            }
+            Self::Method(error) => error.advice(),
+            Self::Simulation(error) => error.advice(),
+            _ => Vec::new(),
+        }
+    }
 }
 
 impl AllocationTask {

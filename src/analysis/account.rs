@@ -1,86 +1,134 @@
-//! What `auto` found and bought, in words.
+//! What `auto` found and what its points went to.
+
+use std::fmt;
+
+use serde::Serialize;
 
 use super::CharacteristicAnalysis;
-use crate::method::{Outcome, Rest};
+use crate::method::{ClimbEnd, Outcome};
 use crate::problem::Problem;
 
-/// Dimensions that are named.
+/// Dimensions that are named in a sentence.
 const NAMED: usize = 8;
 /// A curvature with a share of the variance below this is none, in every characteristic.
 const STRAIGHT: f64 = 1e-8;
 
-/// None for other methods.
-pub(super) fn account(
-    problem: &Problem,
-    outcome: &Outcome,
-    characteristics: &[CharacteristicAnalysis],
-    evaluations: usize,
-) -> Option<String> {
-    let climbed = outcome.climbed.as_ref()?;
-    let plan = &outcome.plan;
-    let n = plan.varying().len();
-    if n == 0 {
-        return None;
-    }
-    let name = |j: usize| problem.dimensions()[plan.varying()[j]].name();
-    let list = |positions: &[usize]| {
-        let named: Vec<&str> = positions.iter().take(NAMED).map(|&j| name(j)).collect();
-        match positions.len() {
-            many if many > NAMED => format!("{} and {} more", named.join(", "), many - NAMED),
-            _ => named.join(", "),
+/// What `auto` found of the dimensions, and what its points went to. As text it is a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Account {
+    /// Dimensions that vary and matter.
+    pub varying: usize,
+    /// Those that act along straight lines: two points each.
+    pub straight: Vec<String>,
+    /// Those that are curved as a parabola is: two points each.
+    pub curved: Vec<String>,
+    /// Those that are more than a parabola: four points each.
+    pub refined: Vec<String>,
+    /// Interactions that there can be.
+    pub possible_interactions: usize,
+    /// Interactions that were examined one by one.
+    pub examined: usize,
+    /// Probes of two points that move all dimensions, by which interactions were sought.
+    pub probes: usize,
+    /// Points that check the surrogate.
+    pub checks: usize,
+    /// Points of the model that the moments rest on, where the surrogate was not trusted.
+    pub samples: Option<u64>,
+    /// Evaluations of the search, those of such a sample excepted.
+    pub evaluations: usize,
+    /// Evaluations that every second derivative would take, `N² + N + 1`.
+    pub full_evaluations: usize,
+    /// Why it ended.
+    pub rest: ClimbEnd,
+}
+
+impl Account {
+    /// None for other methods, and where nothing varies.
+    pub(super) fn of(
+        problem: &Problem,
+        outcome: &Outcome,
+        characteristics: &[CharacteristicAnalysis],
+        evaluations: usize,
+    ) -> Option<Self> {
+        let climbed = outcome.climbed.as_ref()?;
+        let plan = &outcome.plan;
+        let n = plan.varying().len();
+        if n == 0 {
+            return None;
         }
-    };
-    let straight = |j: usize| {
-        let share = |one: &CharacteristicAnalysis| one.sensitivities[plan.varying()[j]].curvature_share;
-        characteristics.iter().all(|one| share(one).is_some_and(|share| share < STRAIGHT))
-    };
-    let three: Vec<usize> = (0..n).filter(|j| !climbed.refined.contains(j)).collect();
-    let (lines, parabolas): (Vec<usize>, Vec<usize>) = three.into_iter().partition(|&j| straight(j));
-    let mut parts = Vec::new();
-    let be = |positions: &[usize], one: &str, many: &str| {
-        if positions.len() == 1 { one.to_owned() } else { many.to_owned() }
-    };
-    if !lines.is_empty() {
-        let all = if lines.len() == n { "all dimensions".to_owned() } else { list(&lines) };
-        parts.push(format!(
-            "{all} {}: 2 points each",
-            if lines.len() == n {
-                "act along straight lines".to_owned()
-            } else {
-                be(&lines, "acts along a straight line", "act along straight lines")
-            }
-        ));
+        let straight = |j: usize| {
+            let share = |one: &CharacteristicAnalysis| one.sensitivities[plan.varying()[j]].curvature_share;
+            characteristics.iter().all(|one| share(one).is_some_and(|share| share < STRAIGHT))
+        };
+        let three: Vec<usize> = (0..n).filter(|j| !climbed.refined.contains(j)).collect();
+        let (lines, parabolas): (Vec<usize>, Vec<usize>) = three.into_iter().partition(|&j| straight(j));
+        let names = |positions: &[usize]| {
+            let name = |&j: &usize| problem.dimensions()[plan.varying()[j]].name().to_owned();
+            positions.iter().map(name).collect::<Vec<String>>()
+        };
+        Some(Self {
+            varying: n,
+            straight: names(&lines),
+            curved: names(&parabolas),
+            refined: names(&climbed.refined),
+            possible_interactions: plan.possible_pairs(),
+            examined: climbed.direct,
+            probes: climbed.probes,
+            checks: climbed.checks,
+            samples: characteristics.iter().filter_map(|one| one.model_sampled.as_ref()).map(|one| one.samples).max(),
+            evaluations,
+            full_evaluations: n * n + n + 1,
+            rest: climbed.rest,
+        })
     }
-    if !parabolas.is_empty() {
-        parts.push(format!("{} {}: 2 points each", list(&parabolas), be(&parabolas, "is curved", "are curved")));
+}
+
+fn list(names: &[String]) -> String {
+    let named = names.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > NAMED { format!("{named} and {} more", names.len() - NAMED) } else { named }
+}
+
+impl fmt::Display for Account {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let be = |names: &[String], one: &'static str, many: &'static str| if names.len() == 1 { one } else { many };
+        let mut parts = Vec::new();
+        if self.straight.len() == self.varying {
+            parts.push("all dimensions act along straight lines: 2 points each".to_owned());
+        } else if !self.straight.is_empty() {
+            let act = be(&self.straight, "acts along a straight line", "act along straight lines");
+            parts.push(format!("{} {act}: 2 points each", list(&self.straight)));
+        }
+        if !self.curved.is_empty() {
+            let are = be(&self.curved, "is curved", "are curved");
+            parts.push(format!("{} {are}: 2 points each", list(&self.curved)));
+        }
+        if !self.refined.is_empty() {
+            let are = be(&self.refined, "is", "are");
+            parts.push(format!("{} {are} more than a parabola: 4 points each", list(&self.refined)));
+        }
+        let possible = self.possible_interactions;
+        parts.push(match (self.probes, self.examined) {
+            _ if possible == 0 => "no interactions possible".to_owned(),
+            (0, 0) if self.rest != ClimbEnd::Reached => format!("no interaction of {possible} examined"),
+            (0, 0) => format!("no interactions of {possible} needed"),
+            (0, direct) => format!("{direct} of {possible} interactions examined one by one"),
+            (probes, 0) => format!("interactions sought by {probes} probes of 2 points that move all dimensions"),
+            (probes, direct) => format!("{probes} probes, {direct} of {possible} interactions examined one by one"),
+        });
+        parts.push(format!("{} points check", self.checks));
+        parts.push(match self.samples {
+            Some(samples) => format!("the model was sampled at {samples} points more"),
+            None => format!(
+                "{} evaluations where every second derivative takes {}",
+                self.evaluations, self.full_evaluations
+            ),
+        });
+        match self.rest {
+            ClimbEnd::Budget => parts.push("the budget ended it".to_owned()),
+            ClimbEnd::Stopped => parts.push("stopped before it was done".to_owned()),
+            ClimbEnd::Reached | ClimbEnd::Exhausted => {}
+        }
+        f.write_str(&parts.join("; "))
     }
-    if !climbed.refined.is_empty() {
-        parts.push(format!(
-            "{} {} more than a parabola: 4 points each",
-            list(&climbed.refined),
-            be(&climbed.refined, "is", "are")
-        ));
-    }
-    let possible = plan.possible_pairs();
-    parts.push(match (climbed.probes, climbed.direct) {
-        _ if possible == 0 => "no interactions possible".to_owned(),
-        (0, 0) if climbed.rest != Rest::Reached => format!("no interaction of {possible} examined"),
-        (0, 0) => format!("no interactions of {possible} needed"),
-        (0, direct) => format!("{direct} of {possible} interactions examined one by one"),
-        (probes, 0) => format!("interactions sought by {probes} probes of 2 points that move all dimensions"),
-        (probes, direct) => format!("{probes} probes, {direct} of {possible} interactions examined one by one"),
-    });
-    parts.push(format!("{} points check", climbed.checks));
-    let full = n * n + n + 1;
-    let sampled = characteristics.iter().filter_map(|one| one.model_sampled.as_ref()).map(|one| one.samples).max();
-    match sampled {
-        Some(samples) => parts.push(format!("the model was sampled at {samples} points more")),
-        None => parts.push(format!("{evaluations} evaluations where every second derivative takes {full}")),
-    }
-    match climbed.rest {
-        Rest::Budget => parts.push("the budget ended it".to_owned()),
-        Rest::Stopped => parts.push("interrupted".to_owned()),
-        Rest::Reached | Rest::Exhausted => {}
-    }
-    Some(parts.join("; "))
 }

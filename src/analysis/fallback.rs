@@ -5,7 +5,7 @@ use super::errors::{excess, of_yield};
 use crate::assembly::Run;
 use crate::assembly::process::Doubt;
 use crate::capability::{Capability, Law};
-use crate::method::{Climbed, ErrorEstimate, Options, Outcome, Source};
+use crate::method::{Climbed, ErrorEstimate, ErrorSource, Options, Outcome};
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler};
@@ -148,7 +148,7 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
     one.normal = Law::normal(&moments).ok().map(|law| capability(&law));
     let error = |estimate: Estimate| estimate.standard_error;
     let standard_errors = [error(mean), error(sigma), error(skewness), error(kurtosis)];
-    let sources = vec![Source::Sampled { points: found.samples }];
+    let sources = vec![ErrorSource::Sampled { points: found.samples }];
     let [mean, sigma, skewness, kurtosis] = standard_errors;
     let estimate = ErrorEstimate { mean, sigma, skewness, kurtosis, yield_: None, sources };
     let yield_ = found.yield_.map(|share| (share.value, share.interval));

@@ -15,6 +15,7 @@ mod trust;
 mod verification;
 mod warnings;
 
+pub use account::Account;
 pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
 pub use fallback::SampledModel;
@@ -25,8 +26,8 @@ pub use verification::{Verification, VerificationKind};
 use std::time::Instant;
 
 use crate::assembly::Run;
-use crate::extremes::{Found, search};
-use crate::method::{Basis, DerivativeSource, Method, MethodError, Options, Outcome, Rest, climb_until};
+use crate::extremes::{SearchedExtremes, search};
+use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
 use crate::warning::Warning;
@@ -42,8 +43,8 @@ pub struct Analysis {
     pub run: RunSummary,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<CharacteristicAnalysis>,
-    /// What `auto` found and bought, in words; None for any other method.
-    pub account: Option<String>,
+    /// What `auto` found, and what its points went to; None for any other method.
+    pub account: Option<Account>,
     /// What the moments rest on.
     pub basis: Basis,
     /// What the moments follow from.
@@ -90,7 +91,7 @@ pub(crate) fn analyze_keeping(
     let begun = Instant::now();
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
-    let found = if options.extremes { search(problem, &outcome, left, run) } else { Found::default() };
+    let found = if options.extremes { search(problem, &outcome, left, run) } else { SearchedExtremes::default() };
     outcome.evaluated.doubts.extend(found.spent.doubts);
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
@@ -111,7 +112,7 @@ pub(crate) fn analyze_keeping(
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics);
-    let account = account::account(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
+    let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
     let seed = options.seed.unwrap_or(Options::SEED);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
     let analysis = Analysis {
@@ -135,7 +136,7 @@ pub(crate) fn analyze_keeping(
 fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
     let spent = outcome.evaluated.summary();
     let rest = outcome.climbed.as_ref().map(|climbed| climbed.rest);
-    let budget = options.budget.filter(|_| rest == Some(Rest::Budget)).map(|_| StopReason::Budget);
+    let budget = options.budget.filter(|_| rest == Some(ClimbEnd::Budget)).map(|_| StopReason::Budget);
     RunSummary { stopped: spent.stopped.or(budget), ..spent }
 }
 

@@ -4,6 +4,7 @@
 //! The surface costs nothing to look at, so that it is sampled wherever there are limits.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::CharacteristicAnalysis;
 use crate::distribution::StandardMoments;
@@ -28,7 +29,8 @@ const APART: f64 = 0.2;
 const STRAIGHT: f64 = 1e-12;
 
 /// What law and surface reject.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Tails {
     /// The share beyond the limits by the law of four moments.
     pub law: f64,

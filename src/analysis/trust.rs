@@ -3,7 +3,7 @@
 use super::errors::beside_sigma;
 use super::shapes::{Shape, higher, shape};
 use super::{CharacteristicAnalysis, Tails};
-use crate::method::{Climbed, Outcome, Rest};
+use crate::method::{ClimbEnd, Climbed, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::warning::{Figure, Warning};
@@ -69,6 +69,7 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
                     dimension: dimension(),
                     slopes,
                     between,
+                    others: Vec::new(),
                 });
                 continue;
             }
@@ -79,6 +80,7 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
                     dimension: dimension(),
                     by,
                     between,
+                    others: Vec::new(),
                 });
                 continue;
             }
@@ -92,8 +94,8 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
             (coefficients[0] * (u.powi(3) - 3.0 * u) + coefficients[1] * (u.powi(4) - 6.0 * u * u + 3.0)).powi(2)
         });
         if share > HELD {
-            let (characteristic, dimension) = (characteristic(), dimension());
-            warnings.push(Warning::HigherOrder { characteristic, dimension, coefficients, held: true });
+            let (characteristic, dimension, others) = (characteristic(), dimension(), Vec::new());
+            warnings.push(Warning::HigherOrder { characteristic, dimension, coefficients, held: true, others });
         }
     }
     warnings
@@ -151,7 +153,7 @@ fn climb(
     let sigma = error.map(|error| (Figure::Sigma, error, climbed.accuracy));
     for (figure, error, wanted) in sigma.into_iter().chain(beside_sigma(analysis, &climbed.accuracies)) {
         if error > wanted {
-            let (error, budget) = (Some(error).filter(|error| error.is_finite()), climbed.rest == Rest::Budget);
+            let (error, budget) = (Some(error).filter(|error| error.is_finite()), climbed.rest == ClimbEnd::Budget);
             warnings.push(Warning::UnderResolved { characteristic: characteristic(), figure, error, wanted, budget });
         }
     }

@@ -8,7 +8,7 @@ use super::CharacteristicAnalysis;
 use super::errors::of_yield;
 use crate::assembly::{EvaluationError, Run};
 use crate::capability::{Capability, Law};
-use crate::method::{ErrorEstimate, Method, Options, Order, Outcome, Source};
+use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome};
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
@@ -134,7 +134,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
         skewness: known(4.0 * part),
         kurtosis: known(8.0 * part),
         yield_: None,
-        sources: vec![Source::Proven { degree }],
+        sources: vec![ErrorSource::Proven { degree }],
     };
     let yield_ = of_yield(&estimate, &moments, one.characteristic.limits());
     // What the law of four moments is off the surface was seen before: it is all that is left.
@@ -188,7 +188,7 @@ fn sample(
         skewness: error(found.skewness, moments.skewness()),
         kurtosis: error(found.kurtosis, moments.kurtosis()),
         yield_: error(found.yield_, law),
-        sources: vec![Source::Sampled { points: found.points as u64 }],
+        sources: vec![ErrorSource::Sampled { points: found.points as u64 }],
     });
     one.verification = Some(Verification {
         kind: VerificationKind::Sample,
@@ -307,7 +307,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         skewness: error(2, skewness.0, skewness.1),
         kurtosis: error(3, kurtosis.0, kurtosis.1),
         yield_: found.yield_.zip(law).map(|(share, law)| share.error_of(law)),
-        sources: vec![Source::Checked { points: checked.count() }],
+        sources: vec![ErrorSource::Checked { points: checked.count() }],
     });
     one.without_value += found.failed;
     one.verification = Some(Verification {
@@ -345,22 +345,27 @@ pub(super) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec
     let characteristic = || one.characteristic.name().to_owned();
     let mut warnings = Vec::new();
     for found in verification.switches.iter().flatten().filter(|found| found.probability >= SELDOM) {
+        let (switch, probability) = (found.switch.name(one.characteristic.name()), found.probability);
         let change = match found.crossing {
             Crossing::Kink => Change::Kink,
             Crossing::Jump => Change::Jump,
             Crossing::Edge => Change::Edge,
-            Crossing::Pole => Change::Pole,
+            Crossing::Pole => {
+                warnings.push(Warning::Pole { characteristic: characteristic(), switch, probability });
+                continue;
+            }
         };
-        let (switch, probability) = (found.switch.name(one.characteristic.name()), found.probability);
         warnings.push(Warning::Switch { characteristic: characteristic(), switch, change, probability });
     }
     let Some(moments) = one.moments else { return warnings };
     let sigma = moments.sigma();
     let error = one.error_estimate.as_ref().and_then(|estimate| estimate.sigma);
-    if sigma > 0.0 && error.is_some_and(|error| error > UNKNOWN * sigma) && !verification.replaced {
-        let share = verification.left.map(|left| left.min(1.0));
-        let sampled = (verification.kind == VerificationKind::Sample).then_some(verification.points as u64);
-        warnings.push(Warning::UnverifiedSurface { characteristic: characteristic(), share, sampled });
+    if sigma > 0.0
+        && error.is_some_and(|error| error > UNKNOWN * sigma)
+        && !verification.replaced
+        && let Some(share) = verification.left.map(|left| left.min(1.0))
+    {
+        warnings.push(Warning::UntrustedSurrogate { characteristic: characteristic(), share, sampled: None });
     }
     let matters = wanted.unwrap_or(0.0).max(MATTERS);
     let values = [Some(moments.mean()), Some(sigma), moments.skewness(), moments.kurtosis()];

@@ -8,7 +8,7 @@ use crate::method::{Basis, Lacking, Order, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::surrogate::Surrogate;
-use crate::warning::{Loss, Warning};
+use crate::warning::{Loss, Warning, aggregated};
 
 /// A rounding error of one value above this part of sigma is worth a warning.
 const NOISE: f64 = 1e-4;
@@ -36,10 +36,11 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
     let mut warnings = Vec::new();
     warnings.extend(unused(problem));
     for &d in outcome.plan.varying() {
-        let moved = |moved: &crate::plan::Moved| Warning::SupportEdge {
+        let moved = |moved: &crate::plan::MovedNode| Warning::SupportEdge {
             dimension: problem.dimensions()[d].name().to_owned(),
             from: moved.from,
             to: moved.to,
+            others: Vec::new(),
         };
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
@@ -65,32 +66,29 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
     if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
-    warnings
+    aggregated(warnings)
 }
 
 /// Measured dimensions whose sample was not drawn anew.
-fn not_resampled<'a>(problem: &'a Problem, outcome: &'a Outcome) -> impl Iterator<Item = Warning> + 'a {
+fn not_resampled(problem: &Problem, outcome: &Outcome) -> Option<Warning> {
     let correlated = outcome.plan.inputs().correlation().is_some();
     let integrated = outcome.basis == Basis::Quadrature;
-    let measured = move |d: &&usize| {
+    let measured = |d: &&usize| {
         let law = problem.dimensions()[**d].distribution();
         (correlated || integrated) && law.is_some_and(|law| law.measured().is_some())
     };
-    let warning = move |d: &usize| Warning::NoSamplingInterval {
-        dimension: problem.dimensions()[*d].name().to_owned(),
-        correlated,
-    };
-    outcome.plan.varying().iter().filter(measured).map(warning)
+    let name = |d: &usize| problem.dimensions()[*d].name().to_owned();
+    let dimensions: Vec<String> = outcome.plan.varying().iter().filter(measured).map(name).collect();
+    (!dimensions.is_empty()).then_some(Warning::NoSamplingInterval { dimensions, correlated })
 }
 
 /// Dimensions that vary and on which no characteristic can depend.
-fn unused(problem: &Problem) -> Vec<Warning> {
+fn unused(problem: &Problem) -> Option<Warning> {
     let dependence = problem.dependence();
     let idle = |&d: &usize| !dependence.iter().any(|row| row[d]);
-    (0..problem.dimensions().len())
-        .filter(idle)
-        .map(|d| Warning::UnusedDimension { dimension: problem.dimensions()[d].name().to_owned() })
-        .collect()
+    let idle = (0..problem.dimensions().len()).filter(idle);
+    let dimensions: Vec<String> = idle.map(|d| problem.dimensions()[d].name().to_owned()).collect();
+    (!dimensions.is_empty()).then_some(Warning::UnusedDimension { dimensions })
 }
 
 fn failed_points(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
@@ -129,10 +127,9 @@ fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warnin
         Lacking::Points { lost, of } if outcome.evaluated.stopped.is_some() => {
             format!("the run was stopped before {lost} of the {of} values of its quadrature were known")
         }
-        Lacking::Points { lost, of } => format!(
-            "{lost} of the {of} values of its quadrature {} missing, and none is made up",
-            if lost == 1 { "is" } else { "are" }
-        ),
+        Lacking::Points { lost, of } => {
+            format!("{lost} of the {of} values of its quadrature {} missing", if lost == 1 { "is" } else { "are" })
+        }
         Lacking::NotEstimable { left, coefficients } => {
             format!(
                 "the {left} points that have a value do not determine the {coefficients} coefficients of its surface"
@@ -147,8 +144,12 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
     let (plan, fitted, known) = (&outcome.plan, &outcome.fitted[c], &outcome.evaluated.known);
     let mut warnings = Vec::new();
     let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
-    let lost =
-        |dimensions: Vec<String>, loss| Warning::LostDerivative { characteristic: name(problem, c), dimensions, loss };
+    let lost = |dimensions: Vec<String>, loss| Warning::LostDerivative {
+        characteristic: name(problem, c),
+        dimensions,
+        loss,
+        others: Vec::new(),
+    };
     let mut unevaluated = 0;
     let mut gone = |dimensions: &[usize], loss: Loss| match missing(outcome, c, dimensions) {
         Missing::Failed => Some(lost(dimensions.iter().map(|&d| dimension(d)).collect(), loss)),
@@ -175,6 +176,7 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
                     dimension: dimension(d),
                     failed: axis.nodes[slot[0] as usize].u,
                     used,
+                    others: Vec::new(),
                 });
             }
         }
@@ -209,6 +211,7 @@ fn long_tails(problem: &Problem, outcome: &Outcome, analysis: &CharacteristicAna
             farthest: tail.farthest,
             reach: tail.reach,
             share,
+            others: Vec::new(),
         })
     };
     outcome.plan.varying().iter().filter_map(warning).collect()

@@ -1,6 +1,7 @@
 //! Why one output has no value at one point.
 
 use super::formula::FormulaFailure;
+use crate::names::nearest;
 
 /// Why an assembly function gave no value for one output at one point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -26,7 +27,7 @@ pub enum EvaluationError {
     NotGiven,
     /// The table of answers that were evaluated elsewhere has none at all for an output.
     #[error(transparent)]
-    NoColumn(#[from] super::given::NoColumn),
+    NoColumn(#[from] NoColumn),
     /// The answer could not be kept, or what is kept could not be read.
     #[error("{message}")]
     NotKept {
@@ -39,4 +40,26 @@ pub enum EvaluationError {
         /// The model's own words.
         message: String,
     },
+}
+
+/// A dimension or output for which a table has no column.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the points that were evaluated elsewhere have no column `{name}`{}", self.instead())]
+pub struct NoColumn {
+    /// The name of what is wanted.
+    pub name: String,
+    /// The most similar column.
+    pub nearest: Option<String>,
+}
+
+impl NoColumn {
+    /// Of a table with these columns.
+    pub(super) fn among<'c>(name: &str, columns: impl Iterator<Item = &'c str>) -> Self {
+        let nearest = nearest(name, columns).map(str::to_owned);
+        Self { name: name.to_owned(), nearest }
+    }
+
+    fn instead(&self) -> String {
+        self.nearest.as_ref().map(|nearest| format!("; there is `{nearest}`")).unwrap_or_default()
+    }
 }

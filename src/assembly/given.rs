@@ -4,8 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, PoisonError};
 
 use super::process::Adapter;
-use super::{Ask, AssemblyFunction, EvaluationError, Responses, Run, Signature};
-use crate::names::nearest;
+use super::{Ask, AssemblyFunction, EvaluationError, NoColumn, Responses, Run, Signature};
 
 /// Coordinates are the same when they differ by no more than this part of themselves: a spreadsheet keeps 15 digits.
 const SAME: f64 = 1e-12;
@@ -40,6 +39,11 @@ impl Table {
         &self.columns
     }
 
+    /// That it has no column of this name.
+    fn lacks(&self, name: &str) -> NoColumn {
+        NoColumn::among(name, self.columns.iter().map(String::as_str))
+    }
+
     /// Rows, from 0, that answered no point so far.
     pub fn unused(&self) -> Vec<usize> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
@@ -57,29 +61,8 @@ impl Table {
     }
 }
 
-/// A dimension or output for which a table has no column.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the points that were evaluated elsewhere have no column `{name}`{}", self.instead())]
-pub struct NoColumn {
-    /// The name of what is wanted.
-    pub name: String,
-    /// The most similar column.
-    pub nearest: Option<String>,
-}
-
-impl NoColumn {
-    fn of(name: &str, table: &Table) -> Self {
-        let nearest = nearest(name, table.columns.iter().map(String::as_str)).map(str::to_owned);
-        Self { name: name.to_owned(), nearest }
-    }
-
-    fn instead(&self) -> String {
-        self.nearest.as_ref().map(|nearest| format!("; there is `{nearest}`")).unwrap_or_default()
-    }
-}
-
 /// A table as assembly function: what stands in it is known, nothing else is.
-pub struct Given {
+pub struct GivenAnswers {
     signature: Signature,
     table: std::sync::Arc<Table>,
     /// The table's columns of the dimensions.
@@ -88,13 +71,13 @@ pub struct Given {
     exact: HashMap<Vec<u64>, usize>,
 }
 
-impl Given {
+impl GivenAnswers {
     /// Of the dimensions and outputs of `signature`.
     ///
     /// # Errors
     /// The first dimension for which there is no column.
     pub fn new(signature: Signature, table: std::sync::Arc<Table>) -> Result<Self, NoColumn> {
-        let column = |input: &super::Input| table.column(&input.name).ok_or_else(|| NoColumn::of(&input.name, &table));
+        let column = |input: &super::Input| table.column(&input.name).ok_or_else(|| table.lacks(&input.name));
         let inputs = signature.inputs.iter().map(column).collect::<Result<Vec<usize>, NoColumn>>()?;
         let exact = (table.rows.iter().enumerate())
             .filter_map(|(row, cells)| {
@@ -122,7 +105,7 @@ fn bits(point: &[f64]) -> Vec<u64> {
     point.iter().map(|x| (x + 0.0).to_bits()).collect()
 }
 
-impl AssemblyFunction for Given {
+impl AssemblyFunction for GivenAnswers {
     fn signature(&self) -> &Signature {
         &self.signature
     }
@@ -130,7 +113,7 @@ impl AssemblyFunction for Given {
     fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
         let names = outputs.iter().map(|&output| &self.signature.outputs[output].name);
         match names.into_iter().find(|name| self.table.column(name).is_none()) {
-            Some(name) => Err(EvaluationError::NoColumn(NoColumn::of(name, &self.table))),
+            Some(name) => Err(EvaluationError::NoColumn(self.table.lacks(name))),
             None => Ok(None),
         }
     }

@@ -7,7 +7,7 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::progress::Bar;
-use super::running::{Clock, externals, on_threads, stopped};
+use super::running::{Clock, externals, on_threads};
 use super::{interrupt, study};
 use crate::allocation::{Allocation, AllocationOptions, Status, allocate_within};
 use crate::assembly::{Progress, Run};
@@ -17,6 +17,7 @@ use crate::report::{
     AllocationReport, WrittenAnew, allocation_csv, allocation_csv_names, allocation_svg, allocation_text,
 };
 use crate::study::{NamedFile, Rewritten, Study};
+use crate::warning::{Counted, Warning};
 
 pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read(&asked.study, externals(asked.work.journal.as_deref(), look, None))?;
@@ -47,7 +48,11 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         });
     let about = clock.about(&study);
     let report = AllocationReport::of(&study.problem, &allocation, table.as_ref(), about);
-    let printed = if asked.output.json { json(&report) } else { allocation_text(&report, look.style(&asked.output)) };
+    let printed = match asked.output.json {
+        true if look.verbose => json(&report),
+        true => json(&report.clone().shortened()),
+        false => allocation_text(&report, look.style(&asked.output)),
+    };
     let mut result = destination.write(&printed);
     result = result.and(folder.map_or(Ok(()), |folder| folder.write(&allocation_csv(&report))));
     result = result.and(chart.map_or(Ok(()), |chart| chart.write(&allocation_svg(&report))));
@@ -55,16 +60,14 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     match (written, anew) {
         (Some(file), Some(Ok(anew))) => result = result.and(file.write(&anew.text)),
         (Some(_), Some(Err(error))) => result = result.and(Err(Failure::Rewrite(error))),
-        (Some(_), None) => {
-            look.warn("not-written", "there are no tolerances to write: the file of --write is as it was")
-        }
-        (None, Some(Err(error))) => look.warn("not-written", &error.to_string()),
+        (Some(_), None) => look.warn(&Warning::NothingToWrite),
+        (None, Some(Err(error))) => look.warn(&Warning::NotWritten { reason: error.to_string() }),
         (None, _) => {}
     }
     for warning in &report.warnings {
-        look.warn(warning.code, &warning.message);
+        look.tell(warning);
     }
-    stopped(&allocation.run, &format!("after {} evaluations", allocation.run.evaluations), look);
+    clock.stopped(&allocation.run, (allocation.run.evaluations, None), Counted::Evaluations, look);
     result?;
     if interrupt::stopped() {
         return Ok(Exit::Interrupted);

@@ -11,7 +11,7 @@ use super::interrupt;
 use super::output::{Destination, Look, json};
 use super::points;
 use super::progress::Bar;
-use super::running::{Clock, checked, externals, on_threads, stopped};
+use super::running::{Clock, checked, externals, on_threads};
 use super::{several, study};
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_within};
 use crate::assembly::{Progress, Run, Table};
@@ -19,6 +19,7 @@ use crate::characteristic::Characteristic;
 use crate::report::html::{WhatIf, analyze_html};
 use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_markdown, stack_text, text};
 use crate::study::Study;
+use crate::warning::{Counted, Warning};
 
 pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     match &asked.studies[..] {
@@ -74,7 +75,8 @@ impl Beside {
 
 pub(super) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> String {
     match asked.stack {
-        None if asked.output.json => json(report),
+        None if asked.output.json && look.verbose => json(report),
+        None if asked.output.json => json(&report.clone().shortened()),
         None => text(report, look.style(&asked.output)),
         Some(StackArg::Text) => stack_text(&report.stacks(), look.style(&asked.output)),
         Some(StackArg::Csv) => stack_csv(&report.stacks()),
@@ -105,12 +107,12 @@ pub(super) fn analyzed(
     let written =
         written.and(files.missing.map_or(Ok(()), |missing| missing.write(&points::table(&study.problem, &points))));
     for warning in &report.warnings {
-        look.warn(warning.code, &warning.message);
+        look.tell(warning);
     }
     if let Some(given) = given {
         unmatched(given, asked.write_missing.as_deref(), look);
     }
-    stopped(&analysis.run, &format!("after {} evaluations", analysis.run.evaluations), look);
+    clock.stopped(&analysis.run, (analysis.run.evaluations, None), Counted::Evaluations, look);
     written?;
     if interrupt::stopped() {
         return Ok(Exit::Interrupted);
@@ -124,31 +126,16 @@ pub(super) fn analyzed(
     Ok(if asked.check { checked(unfinished, judged) } else { Exit::Done })
 }
 
-/// Tells of points without an answer, and of answers to points that nobody asked for.
+/// Tells of points without an answer, and of answers to points that are not in the plan.
 fn unmatched(given: &Table, written: Option<&Path>, look: Look) {
-    match (given.missing().len(), written) {
-        (0, _) => {}
-        (count, None) => {
-            look.warn(
-                "missing-points",
-                &format!("{count} points have no answer; --write-missing NEXT.csv writes them"),
-            );
-        }
-        (count, Some(path)) => look.warn(
-            "missing-points",
-            &format!(
-                "{count} points have no answer: append the answers to those of {} and run it again",
-                path.display()
-            ),
-        ),
+    let count = given.missing().len();
+    if count > 0 {
+        look.warn(&Warning::MissingPoints { count, written: written.map(|path| path.display().to_string()) });
     }
     let unused = given.unused();
     if !unused.is_empty() {
-        let lines: Vec<String> = unused.iter().take(10).map(|row| (row + 2).to_string()).collect();
-        let more = if unused.len() > 10 { ", ..." } else { "" };
-        let what =
-            format!("{} answers are of points that nobody asked for: lines {}{more}", unused.len(), lines.join(", "));
-        look.warn("unmatched-points", &what);
+        let lines = unused.iter().take(10).map(|row| row + 2).collect();
+        look.warn(&Warning::UnmatchedPoints { count: unused.len(), lines });
     }
 }
 

@@ -81,8 +81,10 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml\n  sensitol init balance --model engine-balance"
     )]
     Init(InitArgs),
-    /// The JSON Schema of study files
-    #[command(after_help = "Examples:\n  sensitol schema -o study.schema.json")]
+    /// The JSON Schema of study files, or of reports
+    #[command(
+        after_help = "Examples:\n  sensitol schema -o study.schema.json\n  sensitol schema --report -o report.schema.json"
+    )]
     Schema(SchemaArgs),
     /// The Pearson distribution of four moments: densities, probabilities, quantiles
     #[command(
@@ -476,6 +478,10 @@ pub(super) struct ModelsArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct SchemaArgs {
+    /// The JSON Schema of what --json prints, instead of that of study files
+    #[arg(long)]
+    pub(super) report: bool,
+
     /// Write to a file instead of stdout
     #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
     pub(super) output: Option<PathBuf>,

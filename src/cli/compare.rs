@@ -4,13 +4,14 @@ use super::args::CompareArgs;
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
-use super::running::{Clock, on_threads, stopped};
+use super::running::{Clock, on_threads};
 use super::{interrupt, study};
 use crate::assembly::Run;
 use crate::compare::{CompareOptions, compare_within};
 use crate::method::Options;
 use crate::report::html::compare_html;
 use crate::report::{CompareReport, compare_csv, compare_svg, compare_text};
+use crate::warning::{Counted, Warning};
 
 pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
@@ -40,17 +41,18 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&compare_svg(&report))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&compare_html(&report))));
     for warning in &study.warnings {
-        look.warn(warning.code(), &warning.message());
+        look.warn(warning);
     }
     for one in comparison.reference.characteristics.iter().filter(|one| one.failed > 0) {
-        let name = one.characteristic.name();
-        look.warn("failed-points", &format!("`{name}` has no value at {} points of the reference", one.failed));
+        look.warn(&Warning::FailedSamples {
+            characteristic: one.characteristic.name().to_owned(),
+            failed: one.failed,
+            samples: one.samples + one.failed,
+            error: one.error.as_ref().map(ToString::to_string).unwrap_or_default(),
+        });
     }
-    stopped(
-        &comparison.run,
-        &format!("after {} evaluations; what was not run is named", comparison.run.evaluations),
-        look,
-    );
+    let methods = (comparison.ran.len(), comparison.ran.len() + comparison.not_run.len());
+    clock.stopped(&comparison.run, (methods.0 as u64, Some(methods.1 as u64)), Counted::Methods, look);
     written?;
     if interrupt::stopped() {
         return Ok(Exit::Interrupted);

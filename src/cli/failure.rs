@@ -5,16 +5,19 @@ use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
+use super::advice;
 use crate::allocation::AllocateError;
 use crate::compare::CompareError;
 use crate::journal::JournalError;
 use crate::method::MethodError;
+use crate::names::UnknownName;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
 use crate::rare::RareError;
 use crate::simulation::SimulationError;
 use crate::study::{RewriteError, StudyError};
 use crate::sweep::SweepError;
+use crate::warning::Advice;
 
 /// The exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,8 +119,8 @@ pub(super) enum Failure {
     NothingToCheck,
     #[error("--pairs {text}: {fault}")]
     Pairs { text: String, fault: &'static str },
-    #[error("there is no built-in model `{name}`; {help}")]
-    UnknownModel { name: String, help: String },
+    #[error(transparent)]
+    UnknownName(#[from] UnknownName),
     #[error("{path} cannot be written: {error}", path = path.display())]
     Unwritable { path: PathBuf, error: std::io::Error },
     #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]
@@ -152,6 +155,18 @@ impl Failure {
         }
     }
 
+    /// What to do about it, where the library can say that.
+    fn advice(&self) -> Vec<Advice> {
+        match self {
+            Self::Method(error) | Self::Sweep(SweepError::Method(error)) => error.advice(),
+            Self::Simulation(error)
+            | Self::Rare(RareError::Simulation(error))
+            | Self::Compare(CompareError::Reference(error)) => error.advice(),
+            Self::Allocate(error) => error.advice(),
+            _ => Vec::new(),
+        }
+    }
+
     /// The message with its place in the file, or None where there is nothing to say.
     pub(super) fn render(&self) -> Option<String> {
         self.rendered(String::new())
@@ -170,23 +185,28 @@ impl Failure {
             Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. }) => {
                 Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
             }
-            _ => Some(title(&format!("{of}{self}"), None)),
+            _ => Some(title(&format!("{of}{self}"), advice::help(&self.advice()))),
         }
     }
+}
+
+/// What to write instead, or what to do.
+fn help(error: &StudyError) -> Option<String> {
+    error.help().or_else(|| advice::help(&error.fault.advice()))
 }
 
 /// Title, the lines of the file concerned with what is wrong underlined, and what to write instead.
 fn render(error: &StudyError) -> String {
     let Some(span) = error.span.clone().filter(|_| !error.text.is_empty()) else {
         let place = if error.key.is_empty() { error.file.clone() } else { format!("{}: {}", error.file, error.key) };
-        return title(&format!("{place}: {}", error.fault), error.help());
+        return title(&format!("{place}: {}", error.fault), help(error));
     };
     let heading = error.fault.to_string();
     let label = error.key.as_str();
     let snippet =
         Snippet::source(&*error.text).path(&error.file).annotation(AnnotationKind::Primary.span(span).label(label));
     let mut group = Group::with_title(Level::ERROR.primary_title(heading)).element(snippet);
-    if let Some(help) = error.help() {
+    if let Some(help) = help(error) {
         group = group.element(Level::HELP.message(help));
     }
     Renderer::styled().render(&[group])

@@ -4,17 +4,19 @@ use std::collections::BTreeMap;
 use std::io::IsTerminal;
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::args::{JournalArgs, JournalCommand, OutputArgs};
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Destination, Look, json};
-use crate::journal::{Kept, KnownModel, Store};
+use crate::journal::{KnownModel, Store, StoredAnswer};
 
 /// What `journal show --json` prints of one model.
-#[derive(Debug, Serialize)]
-struct ModelReport {
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "JournalReport")]
+pub(super) struct ModelReport {
     id: i64,
     since: String,
     points: usize,
@@ -40,7 +42,7 @@ pub(super) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {
             let model = chosen(&store, *model)?;
             let mut answers = store.answers(model.id)?;
             // In order of the numbers, not of their bytes.
-            let order = |kept: &Kept| kept.point.clone();
+            let order = |kept: &StoredAnswer| kept.point.clone();
             answers.sort_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal));
             print(file, output, &table(&model, &answers)?)
         }
@@ -97,13 +99,13 @@ fn chosen(store: &Store, number: Option<i64>) -> Result<KnownModel, Failure> {
 }
 
 /// A row for each point: its dimensions, and a column and a reason for every output.
-fn table(model: &KnownModel, answers: &[Kept]) -> Result<String, Failure> {
+fn table(model: &KnownModel, answers: &[StoredAnswer]) -> Result<String, Failure> {
     let mut outputs: Vec<&str> = answers.iter().map(|kept| kept.output.as_str()).collect();
     outputs.sort_unstable();
     outputs.dedup();
     let bits = |point: &[f64]| point.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
     let mut order: Vec<&[f64]> = Vec::new();
-    let mut rows: BTreeMap<Vec<u64>, BTreeMap<&str, &Kept>> = BTreeMap::new();
+    let mut rows: BTreeMap<Vec<u64>, BTreeMap<&str, &StoredAnswer>> = BTreeMap::new();
     for kept in answers {
         let row = rows.entry(bits(&kept.point)).or_insert_with(|| {
             order.push(&kept.point);

@@ -2,6 +2,7 @@
 //!
 //! Results go to stdout; progress, warnings and errors to stderr. A closed pipe is no error.
 
+mod advice;
 mod allocate;
 mod analyze;
 mod args;

@@ -1,17 +1,17 @@
 //! `sensitol models`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::args::ModelsArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
-use crate::models::{ALL, Model, by_name};
-use crate::names::nearest;
+use crate::models::{ALL, Model};
 use crate::report::number::plain;
 
 /// What `models --json` prints of one model.
-#[derive(Debug, Serialize)]
-struct ModelReport {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct ModelReport {
     name: &'static str,
     title: &'static str,
     source: &'static str,
@@ -19,7 +19,7 @@ struct ModelReport {
     outputs: Vec<OutputReport>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct InputReport {
     name: &'static str,
     unit: &'static str,
@@ -27,7 +27,7 @@ struct InputReport {
     about: &'static str,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct OutputReport {
     name: &'static str,
     unit: &'static str,
@@ -49,16 +49,7 @@ pub(super) fn run(asked: &ModelsArgs, _: Look) -> Result<Exit, Failure> {
 
 /// The model of this name.
 pub(super) fn known(name: &str) -> Result<&'static Model, Failure> {
-    by_name(name).ok_or_else(|| unknown(name))
-}
-
-fn unknown(name: &str) -> Failure {
-    let known: Vec<&str> = ALL.iter().map(|model| model.name).collect();
-    let help = match nearest(name, known.iter().copied()) {
-        Some(nearest) => format!("did you mean `{nearest}`?"),
-        None => format!("there are {}", known.join(", ")),
-    };
-    Failure::UnknownModel { name: name.to_owned(), help }
+    Ok(name.parse::<&Model>()?)
 }
 
 fn list() -> String {

@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use clap::ColorChoice;
 use tempfile::TempPath;
 
+use super::advice;
 use super::args::OutputArgs;
 use super::failure::Failure;
-use crate::report::{Detail, Style};
+use crate::report::{Detail, Style, WarningReport};
+use crate::warning::Warning;
 
 /// What the user wants to see.
 #[derive(Debug, Clone, Copy)]
@@ -39,11 +41,21 @@ impl<'s> Look<'s> {
         Style { detail, unicode: self.color != ColorChoice::Never && utf8_locale(), color, width }
     }
 
-    /// Tells of something that is no error.
-    pub(super) fn warn(self, code: &str, message: &str) {
-        if !self.quiet {
-            let of = self.study.map(|study| format!("{study}: ")).unwrap_or_default();
-            anstream::eprintln!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {of}{message}");
+    /// Shows a warning and what to do about it.
+    pub(super) fn warn(self, warning: &Warning) {
+        self.tell(&WarningReport::of(warning));
+    }
+
+    /// The same of a report.
+    pub(super) fn tell(self, warning: &WarningReport) {
+        if self.quiet {
+            return;
+        }
+        let WarningReport { code, message, .. } = warning;
+        let of = self.study.map(|study| format!("{study}: ")).unwrap_or_default();
+        anstream::eprintln!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {of}{message}");
+        if let Some(help) = advice::help(&warning.advice) {
+            anstream::eprintln!("  \u{1b}[1mhelp\u{1b}[0m: {help}");
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::method::Pairs;
 
 /// `A:B,C:D`, names with `:` or `,` in backquotes.
 pub(super) fn parse(text: &str) -> Result<Pairs, Failure> {
-    if let Some(named) = Pairs::by_name(text) {
+    if let Ok(named) = text.parse::<Pairs>() {
         return Ok(named);
     }
     let failed = |fault| Failure::Pairs { text: text.to_owned(), fault };

@@ -1,5 +1,6 @@
 //! `sensitol pearson`: the Pearson system as a calculator.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::args::PearsonArgs;
@@ -9,8 +10,8 @@ use crate::pearson::Pearson;
 use crate::report::law_text;
 
 /// What was asked, in the order in which it was.
-#[derive(Debug, Serialize)]
-struct Answers {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Answers {
     #[serde(rename = "type")]
     kind: &'static str,
     mean: f64,
@@ -23,7 +24,9 @@ struct Answers {
     cdf: Vec<f64>,
     sf: Vec<f64>,
     /// Null where the quantile is infinite.
+    #[schemars(with = "Vec<Option<f64>>")]
     quantile: Vec<f64>,
+    #[schemars(with = "Vec<Option<f64>>")]
     upper_quantile: Vec<f64>,
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::args::PlanArgs;
@@ -13,10 +14,11 @@ use crate::method::DerivativeSource;
 use crate::plan::{Known, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
+use crate::warning::Warning;
 
 /// What `plan --json` prints.
-#[derive(Debug, Serialize)]
-struct PlanReport {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct PlanReport {
     schema: u32,
     command: &'static str,
     method: &'static str,
@@ -33,21 +35,21 @@ struct PlanReport {
 }
 
 /// One batch; what a later one asks depends on the answers to those before.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct StageReport {
     evaluations: usize,
     known_beforehand: bool,
     purposes: Vec<PurposeReport>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct PurposeReport {
     points: usize,
     purpose: &'static str,
 }
 
 /// Where one dimension is evaluated.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct AxisReport {
     name: String,
     unit: Option<String>,
@@ -89,10 +91,10 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     if let Some(file) = written {
         file.write(&points::table(&study.problem, &rows(&*plan, &first)))?;
         if stages > 1 {
-            look.warn("first-stage-only", "the points of later stages depend on the answers to those of the first: analyze --points ANSWERS.csv --write-missing NEXT.csv writes them");
+            look.warn(&Warning::FirstStageOnly);
         }
     }
-    study.warnings.iter().for_each(|warning| look.warn(warning.code(), &warning.message()));
+    study.warnings.iter().for_each(|warning| look.warn(warning));
     destination.write(&if asked.output.json { json(&report) } else { text(&report) })?;
     Ok(Exit::Done)
 }

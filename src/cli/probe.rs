@@ -1,5 +1,6 @@
 //! `sensitol probe`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::args::ProbeArgs;
@@ -17,8 +18,8 @@ use crate::study::{Externals, JournalPlace};
 use crate::summary::RunSummary;
 
 /// What `probe --json` prints.
-#[derive(Debug, Serialize)]
-struct ProbeReport {
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct ProbeReport {
     schema: u32,
     command: &'static str,
     adapter: Option<AdapterReport>,
@@ -32,14 +33,14 @@ struct ProbeReport {
     characteristics: Vec<CharacteristicReport>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct AdapterReport {
     name: Option<String>,
     version: Option<String>,
     window: usize,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct CheckReport {
     check: &'static str,
     /// None where there were no values to check it with.
@@ -48,7 +49,7 @@ struct CheckReport {
     fault: Option<String>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct CharacteristicReport {
     name: String,
     nominal: Option<f64>,
@@ -56,7 +57,7 @@ struct CharacteristicReport {
     steps: Vec<StepReport>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct StepReport {
     dimension: String,
     /// In sigmas.

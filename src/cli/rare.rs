@@ -5,12 +5,13 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::interrupt;
 use super::output::{Look, json};
-use super::running::{Clock, checked, stopped};
+use super::running::{Clock, checked};
 use super::simulate::{sampling, surrogate};
 use crate::method::Options;
 use crate::rare::{RareCharacteristic, RareOptions, rare_within};
 use crate::report::{CsvFile, RareCharacteristicReport, RareReport, rare_csv, rare_text};
 use crate::study::Study;
+use crate::warning::{Counted, Warning};
 
 /// Points unless the user says otherwise, of a cheap model and of a costly one.
 const SAMPLES: [u64; 2] = [10_000, 1000];
@@ -42,16 +43,15 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
         folder.write(&[CsvFile { name, text: rare_csv(&report) }])
     }));
     for warning in &report.warnings {
-        look.warn(warning.code, &warning.message);
+        look.tell(warning);
     }
-    let after = format!("after {} points", found.samples);
-    stopped(&found.run, &after, look);
+    clock.stopped(&found.run, (found.samples, None), Counted::Points, look);
     if interrupt::stopped() {
         written?;
         return Ok(Exit::Interrupted);
     }
     if found.reached == Some(false) {
-        look.warn("under-resolved", &format!("{after} the standard errors are larger than wanted"));
+        look.warn(&Warning::TargetErrorMissed { points: found.samples });
     }
     written?;
     let nothing = |one: &RareCharacteristicReport| {

@@ -13,6 +13,7 @@ use crate::report::About;
 use crate::study::{Externals, JournalPlace, Study};
 use crate::summary::{RunSummary, StopReason};
 use crate::verdict::{self, Judged, Verdict};
+use crate::warning::{Counted, StopCause, Warning};
 
 /// Since when a command runs, and for how long it may.
 pub(super) struct Clock {
@@ -39,6 +40,19 @@ impl Clock {
         interrupt::reason().or_else(|| over().then_some(StopReason::TimeLimit))
     }
 
+    /// Warns of a run that ended early: why, and how much of what was planned it did.
+    pub(super) fn stopped(&self, run: &RunSummary, (done, planned): (u64, Option<u64>), counted: Counted, look: Look) {
+        // A run that was interrupted when all was done is reported as interrupted too.
+        let Some(reason) = interrupt::reason().or(run.stopped) else { return };
+        let cause = match (reason, self.limit) {
+            (StopReason::TimeLimit, Some(limit)) => StopCause::TimeLimit { limit_s: limit.as_secs_f64() },
+            (StopReason::Budget, _) => StopCause::Budget,
+            (StopReason::Interrupted, _) => StopCause::Interrupted,
+            _ => StopCause::Requested,
+        };
+        look.warn(&Warning::Stopped { cause, done, planned, counted });
+    }
+
     /// What a report says of the study beside the results.
     pub(super) fn about(&self, study: &Study) -> About {
         About { title: study.title.clone(), sha256: study.sha256.clone(), warnings: study.warnings.clone() }
@@ -60,15 +74,6 @@ pub(super) fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T
     let Some(threads) = threads else { return Ok(work()) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
     Ok(pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(work))
-}
-
-/// Tells why a run ended early, and how far it came.
-pub(super) fn stopped(run: &RunSummary, after: &str, look: Look) {
-    // What was interrupted when all was done is told of as interrupted too.
-    let reason = interrupt::reason().or(run.stopped);
-    if let Some(reason) = reason {
-        look.warn("stopped", &format!("stopped by {reason} {after}"));
-    }
 }
 
 /// How `--check` ends: a run that left planned points open says nothing, and everything that is required must be met.

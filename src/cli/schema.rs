@@ -1,12 +1,69 @@
 //! `sensitol schema`.
 
+use schemars::generate::{Contract, SchemaSettings};
+use schemars::{JsonSchema, SchemaGenerator};
+use serde_json::{Map, Value, json as value};
+
 use super::args::{OutputArgs, SchemaArgs};
 use super::failure::{Exit, Failure};
 use super::output::{Destination, json};
+use super::{journal, models, pearson, plan, probe, several};
+use crate::report::{AllocationReport, CompareReport, RareReport, Report, SCHEMA, SimulationReport, SweepReport};
 use crate::study::schema;
 
 pub(super) fn run(asked: &SchemaArgs) -> Result<Exit, Failure> {
     let destination = Destination::open(&OutputArgs { json: true, output: asked.output.clone() })?;
-    destination.write(&json(&schema()))?;
+    destination.write(&json(&if asked.report { reports() } else { schema() }))?;
     Ok(Exit::Done)
+}
+
+/// The schema of everything that `--json` prints, draft 2020-12: what each command prints stands below `$defs`, by its name.
+///
+/// No key is left out, and there are no others.
+fn reports() -> Value {
+    let settings = SchemaSettings::draft2020_12().with(|settings| settings.contract = Contract::Serialize);
+    let mut generator = settings.into_generator();
+    let commands: [(&str, Value); 12] = [
+        ("analyze", of::<Report>(&mut generator)),
+        ("analyze-several", of::<Vec<several::Entry>>(&mut generator)),
+        ("simulate", of::<SimulationReport>(&mut generator)),
+        ("simulate-rare", of::<RareReport>(&mut generator)),
+        ("compare", of::<CompareReport>(&mut generator)),
+        ("sweep", of::<SweepReport>(&mut generator)),
+        ("allocate", of::<AllocationReport>(&mut generator)),
+        ("plan", of::<plan::PlanReport>(&mut generator)),
+        ("probe", of::<probe::ProbeReport>(&mut generator)),
+        ("models", of::<Vec<models::ModelReport>>(&mut generator)),
+        ("pearson", of::<pearson::Answers>(&mut generator)),
+        ("journal-show", of::<Vec<journal::ModelReport>>(&mut generator)),
+    ];
+    let mut definitions: Map<String, Value> = generator.take_definitions(true);
+    let all: Vec<Value> = commands.iter().map(|(name, _)| value!({ "$ref": format!("#/$defs/{name}") })).collect();
+    definitions.extend(commands.map(|(name, schema)| (name.to_owned(), schema)));
+    let mut schema = value!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": format!("Reports of sensitol, schema {SCHEMA}"),
+        "anyOf": all,
+        "$defs": definitions,
+    });
+    close(&mut schema);
+    schema
+}
+
+fn of<T: JsonSchema>(generator: &mut SchemaGenerator) -> Value {
+    generator.subschema_for::<T>().to_value()
+}
+
+/// Objects have the keys that are named and no others.
+fn close(schema: &mut Value) {
+    match schema {
+        Value::Object(object) => {
+            object.values_mut().for_each(close);
+            if object.contains_key("properties") && !object.contains_key("additionalProperties") {
+                object.insert("unevaluatedProperties".to_owned(), false.into());
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(close),
+        _ => {}
+    }
 }

@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::analyze::{Beside, analyzed, printed, read};
@@ -14,6 +15,7 @@ use super::interrupt;
 use super::output::{Destination, Look, error, json};
 use crate::report::{Report, Stack, stack_csv_of_studies};
 use crate::study::Study;
+use crate::warning::{Counted, StopCause, Warning};
 
 /// Tells what is wrong with one study, and how it ended. What ends all is that nothing can be printed any more.
 pub(super) fn outcome(study: &str, result: Result<Exit, Failure>) -> Result<Exit, Failure> {
@@ -67,7 +69,8 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
             }
         };
         if interrupt::stopped() {
-            look.of(name).warn("stopped", "interrupted before it was analysed");
+            let (cause, counted) = (StopCause::Interrupted, Counted::Evaluations);
+            look.of(name).warn(&Warning::Stopped { cause, done: 0, planned: None, counted });
             printer.failed(name, "interrupted before it was analysed".to_owned());
             exit = Exit::Interrupted;
             continue;
@@ -149,16 +152,16 @@ fn folder_of_pages(path: &Path) -> Result<(), Failure> {
 }
 
 /// A study in the array of reports.
-#[derive(Serialize)]
-struct Entry {
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Entry {
     study: String,
     #[serde(flatten)]
     outcome: Outcome,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 #[serde(untagged)]
-enum Outcome {
+pub(super) enum Outcome {
     Report(Box<Report>),
     Failed { error: String },
 }
@@ -187,7 +190,8 @@ impl<'a> Printer<'a> {
         let first = self.shown == 0;
         self.shown += 1;
         if self.asked.output.json {
-            let outcome = Outcome::Report(Box::new(report.clone()));
+            let report = if self.look.verbose { report.clone() } else { report.clone().shortened() };
+            let outcome = Outcome::Report(Box::new(report));
             self.entries.push(Entry { study: name.to_owned(), outcome });
             return Ok(());
         }

@@ -8,7 +8,7 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::progress::Samples;
-use super::running::{Clock, checked, on_threads, stopped};
+use super::running::{Clock, checked, on_threads};
 use super::{interrupt, rare, study};
 use crate::assembly::Run;
 use crate::method::{Method, Options};
@@ -17,6 +17,7 @@ use crate::report::{SimulationReport, simulation_csv, simulation_text};
 use crate::sampling::Sampler;
 use crate::simulation::{Pace, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_within};
 use crate::study::Study;
+use crate::warning::{Counted, Warning};
 
 /// Points unless the user says otherwise; where accuracy is wanted, as many as that takes.
 const SAMPLES: u64 = 100_000;
@@ -61,16 +62,15 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&simulation_csv(&report))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
     for warning in &report.warnings {
-        look.warn(warning.code, &warning.message);
+        look.tell(warning);
     }
-    let after = format!("after {} points", simulation.samples);
-    stopped(&simulation.run, &after, look);
+    clock.stopped(&simulation.run, (simulation.samples, None), Counted::Points, look);
     if interrupt::stopped() {
         written?;
         return Ok(Exit::Interrupted);
     }
     if simulation.reached == Some(false) {
-        look.warn("under-resolved", &format!("{after} the standard errors are larger than wanted"));
+        look.warn(&Warning::TargetErrorMissed { points: simulation.samples });
     }
     written?;
     if simulation.characteristics.iter().any(|one| one.samples == 0) {
@@ -119,7 +119,7 @@ pub(super) fn sampling<T: Send>(
         let rest = Duration::try_from_secs_f64(pace.expected_s()).unwrap_or(Duration::MAX);
         if !*told && !clock.limited() && pace.elapsed > Duration::from_secs(1) && rest > LONG {
             *told = true;
-            look.warn("long", &format!("this will take about {}; --time S ends it before", span(pace.expected_s())));
+            look.warn(&Warning::Long { expected_s: pace.expected_s() });
         }
     };
     let stop = || clock.stop();
@@ -127,13 +127,4 @@ pub(super) fn sampling<T: Send>(
     let result = on_threads(threads, || work(&run, &pace));
     bar.clear();
     result
-}
-
-/// A time in the unit that people would use.
-fn span(seconds: f64) -> String {
-    const UNITS: [(f64, &str); 4] =
-        [(365.25 * 86400.0, "years"), (86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];
-    let (size, name) = UNITS.into_iter().find(|(size, _)| seconds >= 2.0 * size).unwrap_or((1.0, "seconds"));
-    let value = seconds / size;
-    if value < 1e4 { format!("{value:.0} {name}") } else { format!("{value:.0e} {name}") }
 }

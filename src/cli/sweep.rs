@@ -5,13 +5,14 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::progress::Bar;
-use super::running::{Clock, externals, on_threads, stopped};
+use super::running::{Clock, externals, on_threads};
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
 use crate::report::html::sweep_html;
 use crate::report::{SweepReport, sweep_csv, sweep_svg, sweep_text};
 use crate::study::Study;
 use crate::sweep::{Sweep, sweep_within};
+use crate::warning::Counted;
 
 pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let externals = externals(asked.work.journal.as_deref(), look, None);
@@ -35,10 +36,10 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&sweep_svg(&report))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&sweep_html(&report))));
     for warning in &report.warnings {
-        look.warn(warning.code, &warning.message);
+        look.tell(warning);
     }
     let done = sweep.analyses.iter().flatten().count();
-    stopped(&sweep.run, &format!("with {done} of {} values done", sweep.values.len()), look);
+    clock.stopped(&sweep.run, (done as u64, Some(sweep.values.len() as u64)), Counted::Values, look);
     written?;
     if interrupt::stopped() {
         return Ok(Exit::Interrupted);

@@ -122,6 +122,12 @@ impl Probability for Measured {
         None
     }
 
+    /// The distinct values with their shares.
+    fn atoms(&self) -> Vec<(f64, f64)> {
+        let share = |&count: &u32| self.share(count as usize);
+        self.sample.values().iter().copied().zip(self.sample.counts().iter().map(share)).collect()
+    }
+
     fn cdf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.share(self.at_most(x)) }
     }

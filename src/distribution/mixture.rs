@@ -213,6 +213,36 @@ impl Probability for Mixture {
         self.parts.iter().map(|part| Some(part.weight * Self::law(part).density(x)?)).sum()
     }
 
+    /// Those of the parts, and the finite ends of their supports.
+    fn corners(&self) -> Vec<f64> {
+        let own = |part: &Part| {
+            let ends = part.distribution.support().into_iter().filter(|end| end.is_finite());
+            Self::law(part).corners().into_iter().chain(ends).collect::<Vec<_>>()
+        };
+        let mut corners: Vec<f64> = self.parts.iter().flat_map(own).collect();
+        corners.sort_unstable_by(f64::total_cmp);
+        corners.dedup();
+        corners
+    }
+
+    fn atoms(&self) -> Vec<(f64, f64)> {
+        let own = |part: &Part| -> Vec<(f64, f64)> {
+            Self::law(part).atoms().into_iter().map(|(x, share)| (x, part.weight * share)).collect()
+        };
+        let mut atoms: Vec<(f64, f64)> = self.parts.iter().flat_map(own).collect();
+        atoms.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        atoms.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            kept.1 += if same { next.1 } else { 0.0 };
+            same
+        });
+        atoms
+    }
+
+    fn smooth_density(&self, x: f64) -> f64 {
+        self.sum(|law| law.smooth_density(x))
+    }
+
     fn cdf(&self, x: f64) -> f64 {
         clamped(self.sum(|law| law.cdf(x)))
     }

@@ -37,6 +37,23 @@ pub trait Probability: Send + Sync {
     /// The value above which the probability is `p`, with the digits of a small `p`; NaN where `p` is no probability.
     fn upper_quantile(&self, p: f64) -> f64;
 
+    /// Where the density is not smooth inside the support, ascending: corners and jumps at which a quadrature splits.
+    ///
+    /// Empty by default: the density is smooth between the ends of the support.
+    fn corners(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Values that have a probability of their own, ascending, with that probability; empty where there is a density.
+    fn atoms(&self) -> Vec<(f64, f64)> {
+        Vec::new()
+    }
+
+    /// Density of what is not in the [`atoms`](Self::atoms).
+    fn smooth_density(&self, x: f64) -> f64 {
+        self.density(x).unwrap_or(0.0)
+    }
+
     /// Puts quantiles in the place of probabilities above 0, counted from the nearer end: `p` from below, `-p` from above.
     fn quantiles(&self, tails: &mut [f64]) {
         for tail in tails {

@@ -130,6 +130,15 @@ impl Probability for Trapezoidal {
         Some(of_top * self.height() / self.half)
     }
 
+    /// The ends of the flat part.
+    fn corners(&self) -> Vec<f64> {
+        match self.top {
+            1.0 => Vec::new(),
+            0.0 => vec![self.middle],
+            top => vec![self.middle - self.half * top, self.middle + self.half * top],
+        }
+    }
+
     fn cdf(&self, x: f64) -> f64 {
         self.below((x - self.middle) / self.half)
     }

@@ -145,6 +145,11 @@ impl Probability for Triangular {
         Some(of_peak / self.half)
     }
 
+    /// The mode.
+    fn corners(&self) -> Vec<f64> {
+        if self.lean.abs() < 1.0 { vec![self.middle + self.half * self.lean] } else { Vec::new() }
+    }
+
     fn cdf(&self, x: f64) -> f64 {
         if x.is_nan() { x } else { self.masses(self.y(x))[0] }
     }

@@ -16,18 +16,13 @@ pub(crate) fn history(problem: &Problem, doubts: &[Doubt]) -> Vec<Warning> {
         let doubt = &doubts[index];
         let same = || doubts.iter().filter(|other| other.output == doubt.output);
         let far = |a: f64, b: f64| (a - b).abs() > FLIP * doubt.spread;
-        Warning::History {
-            output: doubt.output.clone(),
-            expected: doubt.expected,
-            found: doubt.found,
-            flip: doubt.expected.zip(doubt.found).is_some_and(|(a, b)| far(a, b)),
-            times: same().count(),
-            points: same().map(|doubt| doubt.suspects.len()).sum(),
-            suspects: same()
-                .flat_map(|doubt| &doubt.suspects)
-                .take(SUSPECTS)
-                .map(|point| words(problem, point))
-                .collect(),
+        let (output, expected, found) = (doubt.output.clone(), doubt.expected, doubt.found);
+        let (times, points) = (same().count(), same().map(|doubt| doubt.suspects.len()).sum());
+        let suspects = same().flat_map(|doubt| &doubt.suspects).take(SUSPECTS);
+        let suspects = suspects.map(|point| words(problem, point)).collect();
+        match expected.zip(found).is_some_and(|(a, b)| far(a, b)) {
+            true => Warning::BranchFlip { output, expected, found, times, points, suspects },
+            false => Warning::NotRepeatable { output, expected, found, times, points, suspects },
         }
     };
     (0..doubts.len()).filter(first).map(warning).collect()

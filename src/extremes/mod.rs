@@ -18,7 +18,7 @@
 //! start, of which there are rarely more than three; coordinates that end within the box take up to four in a round, and two in
 //! each of the rounds of refinement, where each pair of them takes one more while there are no more than eight.
 //!
-//! A search finds no certainty. A [`Proof`] is one: branch and bound with formulas in interval arithmetic, until no value can
+//! A search finds no certainty. An [`ExtremesProof`] is one: branch and bound with formulas in interval arithmetic, until no value can
 //! lie beyond the extremes by more than a part in 10^9 of their range, and one in 10^12 of their size for rounding. It costs no
 //! evaluation, and ends with the bounds that it has after 20000 boxes a side, fewer where there are more than ten dimensions.
 //! Should it come upon a value beyond the extremes, the search goes on from there.
@@ -48,7 +48,7 @@ const REPEATED: usize = 4;
 
 /// What the search found for every characteristic, and what it took.
 #[derive(Debug, Clone, Default)]
-pub struct Found {
+pub struct SearchedExtremes {
     /// In the problem's order; None where no point in the box has a value.
     pub extremes: Vec<Option<Extremes>>,
     /// What it took.
@@ -71,12 +71,12 @@ pub struct Extremes {
     /// How the search ended.
     pub ended: Ended,
     /// What interval arithmetic says, where the characteristic is a formula.
-    pub proof: Option<Proof>,
+    pub proof: Option<ExtremesProof>,
 }
 
 /// An interval that no assembly leaves.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Proof {
+pub struct ExtremesProof {
     /// The interval.
     pub bounds: [f64; 2],
     /// Whether both of its ends are as near to the extremes as makes no difference.
@@ -129,7 +129,7 @@ pub enum Place {
 ///
 /// Evaluations: as the module says, no more than `budget`; a point that serves several characteristics is evaluated once. A
 /// point at which the model fails is never used.
-pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: &Run<'_>) -> Found {
+pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: &Run<'_>) -> SearchedExtremes {
     let mut answers = Answers::new(problem, budget, run);
     let tasks: Vec<Task> = (0..problem.characteristics().len()).map(|c| Task::of(problem, outcome, c)).collect();
     tasks.iter().for_each(|task| task.learn_from(&mut answers, outcome));
@@ -159,7 +159,7 @@ pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: 
     }
     let result = |((task, proof), asked)| Task::result(task, problem, &answers, asked, proof);
     let extremes = tasks.iter().zip(proofs).zip(asked).map(result).collect();
-    Found { extremes, spent: answers.spent }
+    SearchedExtremes { extremes, spent: answers.spent }
 }
 
 /// A search of one characteristic and side.

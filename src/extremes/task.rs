@@ -4,7 +4,7 @@ use super::answers::Answers;
 use super::climb::Climb;
 use super::model::{Model, Region};
 use super::start::Starts;
-use super::{Coordinate, Ended, Extreme, Extremes, Place, Proof, proof};
+use super::{Coordinate, Ended, Extreme, Extremes, ExtremesProof, Place, proof};
 use crate::assembly::Run;
 use crate::dimension::Dimension;
 use crate::distribution::Distribution;
@@ -192,7 +192,7 @@ impl Task {
         problem: &Problem,
         answers: &Answers<'_>,
         run: &Run<'_>,
-    ) -> (Option<Proof>, Vec<Vec<f64>>) {
+    ) -> (Option<ExtremesProof>, Vec<Vec<f64>>) {
         let output = problem.outputs()[self.characteristic];
         let everywhere = |region: &[[f64; 2]]| {
             let mut all: Vec<[f64; 2]> = self.centre.iter().map(|&x| [x, x]).collect();
@@ -219,7 +219,7 @@ impl Task {
             proof::least(&bounds, &region, sign * best, allowed, limit, &|| run.stopped())
         };
         let (below, above) = (side(1.0, least), side(-1.0, greatest));
-        let proof = Proof {
+        let proof = ExtremesProof {
             bounds: [below.lower.min(least), (-above.lower).max(greatest)],
             proven: below.lower >= least - allowed && -above.lower <= greatest + allowed,
             boxes: below.boxes + above.boxes,
@@ -237,7 +237,7 @@ impl Task {
         problem: &Problem,
         answers: &Answers<'_>,
         asked: usize,
-        proof: Option<Proof>,
+        proof: Option<ExtremesProof>,
     ) -> Option<Extremes> {
         let least = self.known(answers).min_by(|a, b| a.1.total_cmp(&b.1))?;
         let greatest = self.known(answers).max_by(|a, b| a.1.total_cmp(&b.1))?;

@@ -1,6 +1,6 @@
 //! Why there is no such fit, and what there is.
 
-use super::class::Side;
+use super::grade::Side;
 use super::tables::Letter;
 use crate::names::nearest;
 

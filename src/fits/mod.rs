@@ -16,11 +16,13 @@
 
 mod class;
 mod error;
+mod grade;
 mod tables;
 
 pub use error::FitError;
 
-use class::{Class, Grade, Side};
+use class::Class;
+use grade::{Grade, Side};
 use tables::Letter;
 
 /// The largest size that the tables have, in mm.

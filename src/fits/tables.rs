@@ -2,7 +2,7 @@
 
 use Column::{Ranges, Steps};
 
-use super::class::{Grade, Side};
+use super::grade::{Grade, Side};
 
 /// The fundamental deviations, from far within the material to far outside it (shafts), or the other way (holes).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -8,7 +8,7 @@
 
 mod store;
 
-pub use store::{Answer, JournalError, JournalFault, Kept, KnownModel, Store};
+pub use store::{Answer, JournalError, JournalFault, KnownModel, Store, StoredAnswer};
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -137,7 +137,7 @@ impl AssemblyFunction for Journaled {
         let mut answers = Responses::open(missing.len(), out.outputs());
         let (told, failure) = (Mutex::new(out), Mutex::new(None));
         let finished = |finished: &[usize], answers: &Responses| {
-            let kept: Vec<Kept> =
+            let kept: Vec<StoredAnswer> =
                 finished.iter().flat_map(|&row| worth_keeping(&points, answers, row, &names)).collect();
             let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
             let stored = open.as_mut().map_or(Ok(()), |open| open.store.keep(model, &kept));
@@ -192,7 +192,7 @@ fn refuse(out: &mut Responses, error: &EvaluationError) {
 }
 
 /// Values, and reasons for none that the program gave itself.
-fn worth_keeping(points: &Points, answers: &Responses, row: usize, names: &[&str]) -> Vec<Kept> {
+fn worth_keeping(points: &Points, answers: &Responses, row: usize, names: &[&str]) -> Vec<StoredAnswer> {
     let kept = |(output, name): (usize, &&str)| {
         let answer = match (answers.value(row, output), answers.error(row, output)) {
             (Some(value), _) => Ok(value),
@@ -202,7 +202,7 @@ fn worth_keeping(points: &Points, answers: &Responses, row: usize, names: &[&str
             },
             _ => return None,
         };
-        Some(Kept { point: points.row(row), output: (*name).to_owned(), answer })
+        Some(StoredAnswer { point: points.row(row), output: (*name).to_owned(), answer })
     };
     names.iter().enumerate().filter_map(kept).collect()
 }

@@ -103,7 +103,7 @@ pub struct KnownModel {
 
 /// A kept answer with its place.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Kept {
+pub struct StoredAnswer {
     /// The point.
     pub point: Vec<f64>,
     /// The output.
@@ -210,14 +210,14 @@ impl Store {
     ///
     /// # Errors
     /// When writing fails; nothing of these is kept then.
-    pub fn keep(&mut self, model: i64, answers: &[Kept]) -> Result<(), JournalError> {
+    pub fn keep(&mut self, model: i64, answers: &[StoredAnswer]) -> Result<(), JournalError> {
         let kept = (|| {
             let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
             {
                 let add =
                     "INSERT OR REPLACE INTO answer (model, point, output, value, error) VALUES (?1, ?2, ?3, ?4, ?5)";
                 let mut statement = transaction.prepare_cached(add)?;
-                for Kept { point, output, answer } in answers {
+                for StoredAnswer { point, output, answer } in answers {
                     let (value, error) = match answer {
                         Ok(value) => (Some(*value), None),
                         Err(error) => (None, Some(error)),
@@ -279,14 +279,14 @@ impl Store {
     ///
     /// # Errors
     /// When reading fails.
-    pub fn answers(&self, model: i64) -> Result<Vec<Kept>, JournalError> {
+    pub fn answers(&self, model: i64) -> Result<Vec<StoredAnswer>, JournalError> {
         let all = "SELECT point, output, value, error FROM answer WHERE model = ?1";
         let answers = self.connection.prepare(all).and_then(|mut statement| {
             let kept = |row: &rusqlite::Row<'_>| {
                 let bytes: Vec<u8> = row.get(0)?;
                 let coordinate = |eight: &[u8]| f64::from_le_bytes(eight.try_into().expect("eight bytes"));
                 let point = bytes.chunks_exact(8).map(coordinate).collect();
-                Ok(Kept { point, output: row.get(1)?, answer: answer(row.get(2)?, row.get(3)?)? })
+                Ok(StoredAnswer { point, output: row.get(1)?, answer: answer(row.get(2)?, row.get(3)?)? })
             };
             statement.query_map([model], kept)?.collect()
         });

@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 use super::dimension_reduction::{tables, univariate};
 use super::quadrature::{Quadrature, affordable, check, complete, next_to_the_mean};
-use super::{Integrated, Joint, Lacking, Method, MethodError, Options, Outcome, Own, Procedure};
+use super::{Integrated, InteractionEffect, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
 use crate::moments::Tables;
 use crate::plan::{Known, Mixed, Plan, Point, Purpose};
@@ -46,10 +46,6 @@ struct Planes<'p> {
 impl Procedure for BivariateDimensionReduction {
     fn method(&self) -> Method {
         Method::BivariateDimensionReduction
-    }
-
-    fn name(&self) -> &'static str {
-        "bivariate-dimension-reduction"
     }
 
     fn about(&self) -> &'static str {
@@ -173,18 +169,18 @@ impl Decomposed {
                 let slope = mean(&|i| part[i] * rule.nodes[i]);
                 let curvature = mean(&|i| (part[i] - slope * rule.nodes[i]).powi(2));
                 let mean_shift = Some(mean(&|i| self.own[v][i]));
-                own[position] = Some(Own { linear: slope * slope, curvature, mean_shift });
+                own[position] = Some(MainEffect { linear: slope * slope, curvature, mean_shift });
             }
         }
         let joint = |&pair: &(usize, usize)| {
             own[pair.0].as_ref().and(own[pair.1].as_ref())?;
             let place = self.place(quadrature, pair);
-            Some(place.map_or(Joint { share: 0.0, mean_shift: Some(0.0) }, |place| Joint {
+            Some(place.map_or(InteractionEffect { share: 0.0, mean_shift: Some(0.0) }, |place| InteractionEffect {
                 share: found.shares[place],
                 mean_shift: Some(found.mean_shifts[place]),
             }))
         };
-        let joints: Vec<Option<Joint>> = pairs.iter().map(joint).collect();
+        let joints: Vec<Option<InteractionEffect>> = pairs.iter().map(joint).collect();
         let left_out = own.iter().all(Option::is_some).then_some(0.0);
         Integrated { moments: found.moments, own, pairs: joints, left_out, nodes: quadrature.variables.longest() }
     }

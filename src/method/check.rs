@@ -27,7 +27,7 @@ pub(super) fn failed(known: &Known, point: &Point, characteristic: usize) -> boo
 ///
 /// What is left out and has no part in these, as an interaction that was not examined, adds its own variance.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Check {
+pub struct SurrogateCheck {
     /// Points with a value.
     pub points: usize,
     /// Points without one.
@@ -48,7 +48,7 @@ pub struct Check {
     pub effects: [(f64, f64); 4],
 }
 
-impl Check {
+impl SurrogateCheck {
     /// At these pairs of mirrored points; None where none has a value, or the surrogate has none.
     pub(super) fn of(
         plan: &DifferencePlan,

@@ -9,7 +9,6 @@ use crate::plan::{Spread, Stencil};
 pub(super) const CLASSIC: Ladder = Ladder {
     method: Method::Classic,
     runs: Method::Classic,
-    name: "classic",
     about: "every second derivative by the papers' four-point stencil",
     count: "2N^2+1",
     spread: Spread::Pair,

@@ -40,12 +40,12 @@ impl Cost {
 }
 
 /// The derivative method with the most evaluations that so many allow.
-pub(super) fn fitting(problem: &Problem, budget: usize) -> Option<(&'static str, usize)> {
+pub(super) fn fitting(problem: &Problem, budget: usize) -> Option<(Method, usize)> {
     [Method::Full, Method::SixN, Method::SecondOrder]
         .into_iter()
         .filter_map(|method| {
             let cost = method.procedure().plan(problem, &Options::from(method)).ok()?.cost().0;
-            (cost <= budget).then_some((method.name(), cost))
+            (cost <= budget).then_some((method, cost))
         })
         .max_by_key(|&(_, cost)| cost)
 }

@@ -22,7 +22,7 @@
 use std::sync::Arc;
 
 use super::quadrature::{Quadrature, check, complete};
-use super::{Integrated, Lacking, Method, MethodError, Options, Outcome, Own, Procedure};
+use super::{Integrated, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
 use crate::distribution::Rule;
 use crate::moments::{Interactions, Term, contributions};
@@ -37,10 +37,6 @@ pub(super) const NODES: usize = 5;
 impl Procedure for DimensionReduction {
     fn method(&self) -> Method {
         Method::DimensionReduction
-    }
-
-    fn name(&self) -> &'static str {
-        "dimension-reduction"
     }
 
     fn about(&self) -> &'static str {
@@ -118,7 +114,7 @@ fn integrated(
     for v in 0..variables.len() {
         if let Some(position) = quadrature.variables.position(v) {
             let (linear, curvature) = (all.linear[v], all.curvature[v]);
-            own[position] = Some(Own { linear, curvature, mean_shift: Some(all.mean_shift[v]) });
+            own[position] = Some(MainEffect { linear, curvature, mean_shift: Some(all.mean_shift[v]) });
         }
     }
     let alone = (0..n).all(|j| (j + 1..n).all(|k| !quadrature.design.joint(c, j, k)));

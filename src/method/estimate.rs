@@ -3,8 +3,10 @@
 //! Every source changes the surrogate as what it stands for might, and the change of the moments is its part in the estimate; parts
 //! of different sources add. What nothing is known of makes the estimate None.
 
+use serde::Serialize;
+
 use super::hidden::{hidden, ratio};
-use super::{Basis, Check, Climbed, Order, Outcome};
+use super::{Basis, Climbed, Order, Outcome, SurrogateCheck};
 use crate::assembly::Directions;
 use crate::moments::{Interactions, Moments, Term, contributions};
 use crate::problem::Problem;
@@ -32,13 +34,15 @@ pub struct ErrorEstimate {
     /// Of the share within the limits.
     pub yield_: Option<f64>,
     /// What it rests on.
-    pub sources: Vec<Source>,
+    pub sources: Vec<ErrorSource>,
 }
 
 /// What an estimate rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
-pub enum Source {
+pub enum ErrorSource {
     /// Model against surrogate at points of the dimensions' distribution.
     Checked {
         /// How many.
@@ -86,7 +90,7 @@ pub enum Source {
     },
 }
 
-impl Source {
+impl ErrorSource {
     /// In words.
     pub fn words(self) -> String {
         match self {
@@ -158,7 +162,7 @@ pub fn estimate(problem: &Problem, outcome: &Outcome, c: usize, moments: &Moment
     match of.hidden(moments) {
         None => {
             of.known = [false; 4];
-            of.sources.push(Source::Lost);
+            of.sources.push(ErrorSource::Lost);
         }
         Some(hidden) => match checked {
             Some((climbed, check)) if check.points > 1 => of.checked(climbed, check, hidden, moments),
@@ -184,7 +188,7 @@ struct Estimate<'a> {
     surrogate: &'a Surrogate,
     errors: Errors,
     known: [bool; 4],
-    sources: Vec<Source>,
+    sources: Vec<ErrorSource>,
 }
 
 impl Estimate<'_> {
@@ -229,7 +233,7 @@ impl Estimate<'_> {
     }
 
     /// Of a surrogate that was compared with the model: what was not seen there is not there.
-    fn checked(&mut self, climbed: &Climbed, check: &Check, hidden: Errors, moments: &Moments) {
+    fn checked(&mut self, climbed: &Climbed, check: &SurrogateCheck, hidden: Errors, moments: &Moments) {
         let sigma = moments.sigma();
         let left = if sigma > 0.0 { check.variance / (sigma * sigma) } else { 0.0 };
         let root = left.sqrt();
@@ -243,9 +247,9 @@ impl Estimate<'_> {
                 kurtosis.min(6.0 * root) + check.effect(3) + 6.0 * left,
             ],
         );
-        let far = climbed.tails[self.c].map_or(0.0, Check::far_out);
+        let far = climbed.tails[self.c].map_or(0.0, SurrogateCheck::far_out);
         add(&mut self.errors, [far * sigma, far * sigma, 6.0 * far, 20.0 * far]);
-        self.sources.push(Source::Checked { points: check.points });
+        self.sources.push(ErrorSource::Checked { points: check.points });
         self.powers();
         let scatter = climbed.noise[self.c].unwrap_or(0.0);
         if sigma > 0.0 && scatter > 1e-9 * sigma {
@@ -254,7 +258,7 @@ impl Estimate<'_> {
                 &mut self.errors,
                 [scatter * (1.0 + n / 3.0), 0.41 * scatter + 0.08 * n * part * scatter, 2.0 * part, 4.0 * part],
             );
-            self.sources.push(Source::Scatter);
+            self.sources.push(ErrorSource::Scatter);
         }
     }
 
@@ -262,9 +266,9 @@ impl Estimate<'_> {
         let nodes = |&d: &usize| Some(self.outcome.fitted[self.c].parts[d]?.degree() + 1);
         let fewest = self.outcome.plan.varying().iter().filter_map(nodes).min().unwrap_or(1);
         self.sources.push(if self.outcome.basis == Basis::Exact {
-            Source::Taylor
+            ErrorSource::Taylor
         } else {
-            Source::Powers { nodes: fewest }
+            ErrorSource::Powers { nodes: fewest }
         });
     }
 
@@ -279,7 +283,7 @@ impl Estimate<'_> {
             if let Some((first, second)) = first.zip(second) {
                 add(&mut self.errors, apart(&first, &second));
             }
-            self.sources.push(Source::Curvature);
+            self.sources.push(ErrorSource::Curvature);
         }
         add(&mut self.errors, hidden);
         self.powers();
@@ -315,7 +319,7 @@ impl Estimate<'_> {
                 &mut self.errors,
                 [0.0, 0.5 * triples * moments.sigma(), 4.0 * root, 24.0 * triples + 10.0 * triples.sqrt()],
             );
-            self.sources.push(Source::Triples);
+            self.sources.push(ErrorSource::Triples);
         }
     }
 
@@ -341,17 +345,17 @@ impl Estimate<'_> {
                 add(&mut self.errors, apart(&whole, &without));
             }
             products.extend(left.iter().zip(&exact).map(|(&(j, k), &value)| (j, k, value)));
-            self.sources.push(Source::ExactPairs { pairs });
+            self.sources.push(ErrorSource::ExactPairs { pairs });
             return exact.iter().map(|value| value * value).sum::<f64>() / variance;
         }
         let Some(share) = self.similar_pairs(left, variance) else {
             self.known = [self.outcome.plan.inputs().correlation().is_none(), false, false, false];
-            self.sources.push(Source::UnknownPairs { pairs });
+            self.sources.push(ErrorSource::UnknownPairs { pairs });
             return 0.0;
         };
         let sigma = variance.sqrt();
         add(&mut self.errors, [0.0, 0.5 * share * sigma, 4.0 * share.sqrt(), 24.0 * share]);
-        self.sources.push(Source::SimilarPairs { pairs });
+        self.sources.push(ErrorSource::SimilarPairs { pairs });
         share
     }
 

@@ -10,7 +10,6 @@ use crate::plan::{Spread, Stencil};
 pub(super) const FULL: Ladder = Ladder {
     method: Method::Full,
     runs: Method::Full,
-    name: "full",
     about: "every second derivative, mixed ones by two evaluations",
     count: "N^2+N+1",
     spread: Spread::Pair,

@@ -21,7 +21,6 @@ pub(super) struct Ladder {
     pub(super) method: Method,
     /// The method that it stands for: itself, but for `auto`.
     pub(super) runs: Method,
-    pub(super) name: &'static str,
     pub(super) about: &'static str,
     pub(super) count: &'static str,
     pub(super) spread: Spread,
@@ -43,10 +42,6 @@ impl Procedure for Ladder {
         self.method
     }
 
-    fn name(&self) -> &'static str {
-        self.name
-    }
-
     fn about(&self) -> &'static str {
         self.about
     }
@@ -61,7 +56,7 @@ impl Procedure for Ladder {
 
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
         let plan = self.differences(problem, options)?;
-        Cost::of(&plan).within(self.name, problem, options)?;
+        Cost::of(&plan).within(self.name(), problem, options)?;
         problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
         let exact = options.derivatives == Some(DerivativeSource::Exact);
         if exact {
@@ -84,7 +79,7 @@ impl Ladder {
             return Err(MethodError::BadStep { step });
         }
         if options.nodes.is_some() {
-            return Err(MethodError::OptionDoesNotApply { method: self.name, option: "nodes", only: NODES });
+            return Err(MethodError::OptionDoesNotApply { method: self.name(), option: "nodes", only: NODES });
         }
         fits(options.derivatives, "step", options.step.is_some())?;
         fits(options.derivatives, "stencil", options.stencil.is_some())?;
@@ -97,7 +92,7 @@ impl Ladder {
 
     fn layout(&self, problem: &Problem, options: &Options) -> Result<(Spread, PairChoice, Stencil), MethodError> {
         let refused =
-            |option| Err(MethodError::OptionDoesNotApply { method: self.name, option, only: Method::SixN.name() });
+            |option| Err(MethodError::OptionDoesNotApply { method: self.name(), option, only: Method::SixN.name() });
         match (self.interactions, &options.pairs, options.stencil) {
             (Examined::Chosen, pairs, stencil) => {
                 let pairs = pairs.as_ref().map_or(Ok(PairChoice::Strongest), |pairs| choice(problem, pairs))?;

@@ -8,6 +8,7 @@ mod auto;
 mod bivariate_dimension_reduction;
 mod check;
 mod classic;
+mod climbed;
 mod cost;
 mod dimension_reduction;
 mod estimate;
@@ -16,6 +17,7 @@ mod full;
 mod hidden;
 mod ladder;
 mod options;
+mod order;
 mod outcome;
 mod quadrature;
 mod response_surface;
@@ -25,48 +27,24 @@ mod six_n;
 mod three_point;
 mod worst_case;
 
+pub use crate::method_kind::Method;
+pub use auto::ACCURACY;
 pub(crate) use auto::climb_until;
-pub use auto::{ACCURACY, Climbed, Rest};
-pub use check::Check;
+pub use check::SurrogateCheck;
+pub use climbed::{ClimbEnd, Climbed};
 pub use cost::Cost;
-pub use estimate::{ErrorEstimate, Source, estimate};
+pub use estimate::{ErrorEstimate, ErrorSource, estimate};
 pub use exact::ExactDerivatives;
 pub use options::{Accuracies, DerivativeSource, Options, Pairs};
-pub use outcome::{Basis, Fitted, Integrated, Joint, Lacking, Order, Outcome, Own, Residual};
+pub use order::{Basis, Order};
+pub use outcome::{Fitted, Integrated, InteractionEffect, Lacking, MainEffect, Outcome, Residual};
 
 use std::sync::Arc;
 
 use crate::assembly::{EvaluationError, Run};
 use crate::plan::Plan;
 use crate::problem::Problem;
-use crate::warning::Figure;
-
-/// A method by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Method {
-    /// Root of the sum of squares: first order.
-    Rss,
-    /// Sum of absolute values: first order.
-    WorstCase,
-    /// First and second derivatives, no mixed ones.
-    SecondOrder,
-    /// Five-point axes and the strongest interactions.
-    SixN,
-    /// Every second derivative.
-    Full,
-    /// Every second derivative by the published four-point stencil.
-    Classic,
-    /// Every dimension by itself, integrated by its own Gauss rule.
-    DimensionReduction,
-    /// Every two dimensions together, integrated by products of their Gauss rules.
-    BivariateDimensionReduction,
-    /// All combinations of three levels of every dimension.
-    ThreePoint,
-    /// A quadratic fitted by least squares to a central composite design.
-    ResponseSurface,
-    /// As few evaluations as the wanted accuracy takes.
-    Auto,
-}
+use crate::warning::{Advice, Figure};
 
 /// Every method, in the order in which they are listed.
 pub static ALL: &[&dyn Procedure] = &[
@@ -89,7 +67,9 @@ pub trait Procedure: Sync {
     fn method(&self) -> Method;
 
     /// Its name in study files and on the command line.
-    fn name(&self) -> &'static str;
+    fn name(&self) -> &'static str {
+        self.method().name()
+    }
 
     /// What it does, in one line.
     fn about(&self) -> &'static str;
@@ -138,26 +118,6 @@ impl Method {
     pub fn procedure(self) -> &'static dyn Procedure {
         *ALL.iter().find(|procedure| procedure.method() == self).expect("every method is registered")
     }
-
-    /// Its name in study files and on the command line.
-    pub fn name(self) -> &'static str {
-        self.procedure().name()
-    }
-
-    /// Whether it has a surrogate that can stand beside the model, rather than integrals only.
-    pub fn has_surrogate(self) -> bool {
-        !matches!(self, Self::DimensionReduction | Self::BivariateDimensionReduction | Self::ThreePoint)
-    }
-
-    /// The method of this name.
-    ///
-    /// ```
-    /// use sensitol::Method;
-    /// assert_eq!(Method::by_name("six-n"), Some(Method::SixN));
-    /// ```
-    pub fn by_name(name: &str) -> Option<Self> {
-        ALL.iter().find(|procedure| procedure.name() == name).map(|procedure| procedure.method())
-    }
 }
 
 /// Why a method cannot be run on a problem as asked.
@@ -165,7 +125,7 @@ impl Method {
 #[non_exhaustive]
 pub enum MethodError {
     /// The plan needs more evaluations than allowed.
-    #[error("{method} needs {needed} evaluations, more than the budget of {budget}{}", advice(.fitting))]
+    #[error("{method} needs {needed} evaluations, more than the budget of {budget}{}", instead(.fitting))]
     OverBudget {
         /// The method's name.
         method: &'static str,
@@ -174,7 +134,7 @@ pub enum MethodError {
         /// How many are allowed.
         budget: usize,
         /// The best method that fits the budget, and what it needs.
-        fitting: Option<(&'static str, usize)>,
+        fitting: Option<(Method, usize)>,
     },
     /// The model cannot be used at all; nothing was evaluated.
     #[error("{error}")]
@@ -193,16 +153,13 @@ pub enum MethodError {
         only: &'static str,
     },
     /// Exact derivatives of something that is known by its values only.
-    #[error(
-        "`{characteristic}` has no exact derivatives: it depends on a model that is known by its values only; \
-         do without derivatives = exact (--derivatives exact)"
-    )]
+    #[error("`{characteristic}` has no exact derivatives: it depends on a model that returns values only")]
     DerivativesUnknown {
         /// The characteristic.
         characteristic: String,
     },
     /// A derivative that does not exist at the means.
-    #[error("`{characteristic}` has no derivative by {} at the means: a kink, a jump or the edge of its domain; --derivatives difference steps over it", dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and "))]
+    #[error("`{characteristic}` has no derivative by {} at the means: a kink, a jump or the edge of its domain", dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and "))]
     NoDerivative {
         /// The characteristic.
         characteristic: String,
@@ -238,7 +195,7 @@ pub enum MethodError {
         still: String,
     },
     /// More points than can ever be evaluated, whatever the budget.
-    #[error("{method} needs {} evaluations for {dimensions} varying dimensions, {limit}{}", count(*.needed), advice(.fitting))]
+    #[error("{method} needs {} evaluations for {dimensions} varying dimensions, {limit}{}", count(*.needed), instead(.fitting))]
     TooMany {
         /// The method's name.
         method: &'static str,
@@ -249,7 +206,7 @@ pub enum MethodError {
         /// What is the most, in words.
         limit: &'static str,
         /// The derivative method to use instead, and what it needs.
-        fitting: Option<(&'static str, usize)>,
+        fitting: Option<(Method, usize)>,
     },
     /// A number of nodes of which there is no rule.
     #[error("a quadrature rule has 3, 5 or 7 nodes, not {nodes}")]
@@ -274,6 +231,19 @@ pub enum MethodError {
 }
 
 impl MethodError {
+    /// What to do about it.
+    pub fn advice(&self) -> Vec<Advice> {
+        match self {
+            Self::OverBudget { fitting, .. } => {
+                let method = fitting.map(|(method, _)| Advice::UseMethod { methods: vec![method] });
+                method.into_iter().chain([Advice::RaiseBudget]).collect()
+            }
+            Self::TooMany { fitting: Some((method, _)), .. } => vec![Advice::UseMethod { methods: vec![*method] }],
+            Self::DerivativesUnknown { .. } | Self::NoDerivative { .. } => vec![Advice::UseDifferences],
+            _ => Vec::new(),
+        }
+    }
+
     /// How many evaluations it would have taken, where that is why it cannot be run.
     pub fn needed(&self) -> Option<u64> {
         match self {
@@ -291,9 +261,9 @@ fn count(needed: u128) -> String {
     if needed == u128::MAX { "more than 10^38".to_owned() } else { needed.to_string() }
 }
 
-fn advice(fitting: &Option<(&'static str, usize)>) -> String {
+fn instead(fitting: &Option<(Method, usize)>) -> String {
     match fitting {
-        Some((name, evaluations)) => format!("; --method {name} needs {evaluations}"),
+        Some((method, evaluations)) => format!("; {method} needs {evaluations}"),
         None => "; no method does with so few".to_owned(),
     }
 }

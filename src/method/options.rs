@@ -1,6 +1,9 @@
 //! What can be chosen about an analysis.
 
+use std::str::FromStr;
+
 use super::Method;
+use crate::names::UnknownName;
 use crate::plan::Stencil;
 use crate::warning::Figure;
 
@@ -89,14 +92,13 @@ impl DerivativeSource {
             Self::Difference => "difference",
         }
     }
+}
 
-    /// The source of this name.
-    pub fn by_name(name: &str) -> Option<Self> {
-        match name {
-            "exact" => Some(Self::Exact),
-            "difference" => Some(Self::Difference),
-            _ => None,
-        }
+impl FromStr for DerivativeSource {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        UnknownName::find("source of derivatives", name, &[Self::Exact, Self::Difference], |source| source.name())
     }
 }
 
@@ -114,13 +116,17 @@ pub enum Pairs {
 impl Pairs {
     /// The choices that have a name.
     pub const NAMES: [&str; 2] = ["strongest", "adjacent"];
+}
 
-    /// The choice of this name.
-    pub fn by_name(name: &str) -> Option<Self> {
+/// The choices that have a name; pairs are given by the names of their dimensions.
+impl FromStr for Pairs {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
         match name {
-            "strongest" => Some(Self::Strongest),
-            "adjacent" => Some(Self::Adjacent),
-            _ => None,
+            "strongest" => Ok(Self::Strongest),
+            "adjacent" => Ok(Self::Adjacent),
+            _ => Err(UnknownName::of("choice of pairs", name, Self::NAMES.to_vec())),
         }
     }
 }

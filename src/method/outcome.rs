@@ -2,33 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{Climbed, ExactDerivatives, Method};
+use super::{Basis, Climbed, ExactDerivatives, Method, Order};
 use crate::evaluation::Evaluated;
 use crate::moments::Moments;
 use crate::plan::{Mixed, Plan};
 use crate::surrogate::{Surrogate, Univariate};
-
-/// How much of the derivatives a method makes use of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
-    /// Slopes only.
-    First,
-    /// Curvatures and interactions too.
-    Second,
-}
-
-/// What the moments rest on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Basis {
-    /// A surrogate of exact derivatives.
-    Exact,
-    /// A surrogate of differences.
-    Differences,
-    /// A surrogate fitted by least squares.
-    LeastSquares,
-    /// Quadrature of the values themselves, without a surrogate.
-    Quadrature,
-}
 
 /// What a method found out.
 #[derive(Debug, Clone)]
@@ -82,9 +60,9 @@ pub struct Integrated {
     /// The moments.
     pub moments: Moments,
     /// For every varying dimension what it does by itself; None for one that is correlated.
-    pub own: Vec<Option<Own>>,
+    pub own: Vec<Option<MainEffect>>,
     /// For every pair examined what the two do together; None where one of them is correlated.
-    pub pairs: Vec<Option<Joint>>,
+    pub pairs: Vec<Option<InteractionEffect>>,
     /// The share of the variance that no contribution accounts for.
     pub left_out: Option<f64>,
     /// Nodes of the longest rule.
@@ -93,7 +71,7 @@ pub struct Integrated {
 
 /// What one dimension does by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Own {
+pub struct MainEffect {
     /// Share of the variance that the best straight line explains.
     pub linear: f64,
     /// Share that the rest of its own part adds.
@@ -104,7 +82,7 @@ pub struct Own {
 
 /// What two dimensions do together, beyond what each does by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Joint {
+pub struct InteractionEffect {
     /// Share of the variance.
     pub share: f64,
     /// How far it moves the mean; None where that is not known apart from what others do.

@@ -51,10 +51,6 @@ impl Procedure for ResponseSurface {
         Method::ResponseSurface
     }
 
-    fn name(&self) -> &'static str {
-        "response-surface"
-    }
-
     fn about(&self) -> &'static str {
         "a quadratic fitted by least squares to a central composite design"
     }

@@ -13,7 +13,6 @@ use crate::plan::Spread;
 pub(super) const RSS: Ladder = Ladder {
     method: Method::Rss,
     runs: Method::Rss,
-    name: "rss",
     about: "root of the sum of squares: first order",
     count: "2N+1",
     spread: Spread::Pair,

@@ -10,7 +10,6 @@ use crate::plan::Spread;
 pub(super) const SECOND_ORDER: Ladder = Ladder {
     method: Method::SecondOrder,
     runs: Method::SecondOrder,
-    name: "second-order",
     about: "slopes and curvatures, no interactions",
     count: "2N+1",
     spread: Spread::Pair,

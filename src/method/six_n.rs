@@ -11,7 +11,6 @@ use crate::plan::Spread;
 pub(super) const SIX_N: Ladder = Ladder {
     method: Method::SixN,
     runs: Method::SixN,
-    name: "six-n",
     about: "five-point axes and the N strongest interactions",
     count: "6N+1",
     spread: Spread::Five,

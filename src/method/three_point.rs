@@ -21,7 +21,9 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::quadrature::{Quadrature, affordable, check, complete};
-use super::{Cost, Integrated, Joint, Lacking, Method, MethodError, Options, Outcome, Own, Procedure};
+use super::{
+    Cost, Integrated, InteractionEffect, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure,
+};
 use crate::assembly::Run;
 use crate::distribution::Rule;
 use crate::moments::{Moments, exact};
@@ -36,10 +38,6 @@ const LEVELS: usize = 3;
 impl Procedure for ThreePoint {
     fn method(&self) -> Method {
         Method::ThreePoint
-    }
-
-    fn name(&self) -> &'static str {
-        "three-point"
     }
 
     fn about(&self) -> &'static str {
@@ -153,8 +151,10 @@ fn integrated(quadrature: &Quadrature<'_>, grid: &Grid, values: &[f64], pairs: &
     let rounding = 4.0 * f64::EPSILON * middle.abs();
     let of = |position: usize| quadrature.variables.variable(position);
     if largest <= rounding {
-        let nothing = |position: usize| of(position).map(|_| Own { linear: 0.0, curvature: 0.0, mean_shift: None });
-        let together = |&(j, k): &(usize, usize)| of(j).and(of(k)).map(|_| Joint { share: 0.0, mean_shift: None });
+        let nothing =
+            |position: usize| of(position).map(|_| MainEffect { linear: 0.0, curvature: 0.0, mean_shift: None });
+        let together =
+            |&(j, k): &(usize, usize)| of(j).and(of(k)).map(|_| InteractionEffect { share: 0.0, mean_shift: None });
         return Integrated {
             moments: Moments::constant(middle),
             own: (0..n).map(nothing).collect(),
@@ -167,7 +167,7 @@ fn integrated(quadrature: &Quadrature<'_>, grid: &Grid, values: &[f64], pairs: &
     let [skewness, kurtosis] = [3, 4].map(|order| mean(&|value| ((value - middle) / sigma).powi(order)));
     let deviations: Vec<f64> = values.iter().map(|value| (value - middle) / sigma).collect();
     let given = Given { grid, deviations: &deviations, weights: &weights, rules: &rules };
-    let own: Vec<Option<(Own, Vec<f64>)>> = (0..n)
+    let own: Vec<Option<(MainEffect, Vec<f64>)>> = (0..n)
         .into_par_iter()
         .map(|position| {
             let v = of(position)?;
@@ -177,17 +177,17 @@ fn integrated(quadrature: &Quadrature<'_>, grid: &Grid, values: &[f64], pairs: &
             };
             let slope = over(&|level| part[level] * rule.nodes[level]);
             let curvature = over(&|level| (part[level] - slope * rule.nodes[level]).powi(2));
-            Some((Own { linear: slope * slope, curvature, mean_shift: None }, part))
+            Some((MainEffect { linear: slope * slope, curvature, mean_shift: None }, part))
         })
         .collect();
-    let joints: Vec<Option<Joint>> = pairs
+    let joints: Vec<Option<InteractionEffect>> = pairs
         .par_iter()
         .map(|&(j, k)| {
             let ((_, of_j), (_, of_k)) = (own[j].as_ref()?, own[k].as_ref()?);
-            Some(Joint { share: given.two([of(j)?, of(k)?], of_j, of_k), mean_shift: None })
+            Some(InteractionEffect { share: given.two([of(j)?, of(k)?], of_j, of_k), mean_shift: None })
         })
         .collect();
-    let own: Vec<Option<Own>> = own.into_iter().map(|own| Some(own?.0)).collect();
+    let own: Vec<Option<MainEffect>> = own.into_iter().map(|own| Some(own?.0)).collect();
     let shares = own.iter().map(|own| Some(own.as_ref()?.linear + own.as_ref()?.curvature));
     let known: Option<Vec<f64>> = shares.chain(joints.iter().map(|joint| Some(joint.as_ref()?.share))).collect();
     Integrated {

@@ -10,7 +10,6 @@ use crate::plan::Spread;
 pub(super) const WORST_CASE: Ladder = Ladder {
     method: Method::WorstCase,
     runs: Method::WorstCase,
-    name: "worst-case",
     about: "sum of absolute values: first order, the interval no linear assembly leaves",
     count: "2N+1",
     spread: Spread::Pair,

@@ -15,8 +15,10 @@ mod quick_return;
 mod spot_weld;
 
 use std::ops::Range;
+use std::str::FromStr;
 
 use crate::assembly::{Ask, AssemblyFunction, Input, Output, Points, Responses, Run, Signature, in_blocks};
+use crate::names::UnknownName;
 
 /// Every built-in model, in the order in which they are listed.
 pub static ALL: &[&Model] = &[
@@ -102,7 +104,7 @@ impl Model {
     ///
     /// ```
     /// use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run};
-    /// let engine = sensitol::models::by_name("engine-balance").unwrap();
+    /// let engine: &sensitol::models::Model = "engine-balance".parse().unwrap();
     /// let nominal: Vec<f64> = engine.inputs.iter().map(|input| input.nominal).collect();
     /// let (points, mut force) = (Points::repeated(&nominal, 1), Responses::open(1, 1));
     /// engine.function().evaluate(&Ask::values(&points, &[0]), &Run::to_the_end(), &mut force);
@@ -143,6 +145,10 @@ impl AssemblyFunction for BuiltIn {
 }
 
 /// The model of this name.
-pub fn by_name(name: &str) -> Option<&'static Model> {
-    ALL.iter().copied().find(|model| model.name == name)
+impl FromStr for &'static Model {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        UnknownName::find("built-in model", name, ALL, |model| model.name)
+    }
 }

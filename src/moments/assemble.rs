@@ -14,7 +14,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
 use super::interactions::{Interactions, Kind};
-use super::part::Part;
+use super::part::JointCumulants;
 use super::sum::exact;
 
 /// Cumulants of the whole.
@@ -40,7 +40,7 @@ struct Row {
 impl Row {
     /// Adds column `k`, where the matrices hold `a` and `w` and the input is `part`.
     #[inline]
-    fn add(&mut self, a: f64, w: f64, part: &Part) {
+    fn add(&mut self, a: f64, w: f64, part: &JointCumulants) {
         let b = a * a;
         self.rho += b;
         self.ap += a * part.p;
@@ -54,13 +54,14 @@ impl Row {
 
 impl Assembly {
     /// `factor` scales the interactions as the parts are scaled already.
-    pub(super) fn of(parts: &[Part], interactions: &Interactions, factor: f64) -> Self {
+    pub(super) fn of(parts: &[JointCumulants], interactions: &Interactions, factor: f64) -> Self {
         let rows = match interactions.kind() {
             Kind::Sparse(rows) => sparse(parts, rows, factor),
             Kind::Dense(matrix) => dense(parts, matrix, factor),
         };
-        let over =
-            |term: &dyn Fn(&Part, &Row) -> f64| exact(parts.iter().zip(&rows).map(|(part, row)| term(part, row)));
+        let over = |term: &dyn Fn(&JointCumulants, &Row) -> f64| {
+            exact(parts.iter().zip(&rows).map(|(part, row)| term(part, row)))
+        };
         let skewness = [
             over(&|part, _| part.k3),
             3.0 * over(&|part, row| part.p * row.ap),
@@ -87,7 +88,7 @@ impl Assembly {
 }
 
 /// Row by row, so that only one row of `W` exists at a time.
-fn sparse(parts: &[Part], rows: &[Vec<(usize, f64)>], factor: f64) -> Vec<Row> {
+fn sparse(parts: &[JointCumulants], rows: &[Vec<(usize, f64)>], factor: f64) -> Vec<Row> {
     let mut w = vec![0.0; rows.len()];
     let mut touched = Vec::new();
     let sums = rows.iter().map(|row| {
@@ -111,7 +112,7 @@ fn sparse(parts: &[Part], rows: &[Vec<(usize, f64)>], factor: f64) -> Vec<Row> {
     sums.collect()
 }
 
-fn dense(parts: &[Part], matrix: &Mat<f64>, factor: f64) -> Vec<Row> {
+fn dense(parts: &[JointCumulants], matrix: &Mat<f64>, factor: f64) -> Vec<Row> {
     let n = parts.len();
     let a = Mat::from_fn(n, n, |j, k| factor * matrix[(j, k)]);
     let mut w = Mat::zeros(n, n);

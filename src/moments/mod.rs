@@ -23,7 +23,7 @@ mod sum;
 
 pub use interactions::Interactions;
 pub use pairwise::{Pairwise, Tables};
-pub use part::{Part, Term};
+pub use part::{JointCumulants, Term};
 pub(crate) use sum::exact;
 
 use std::collections::BTreeMap;
@@ -189,7 +189,7 @@ pub fn contributions(constant: f64, terms: &[Term<'_>], interactions: &Interacti
     let variances = terms.iter().map(|term| term.variance(1.0 / largest));
     let relative = (sum::exact(variances) + interactions.variance(1.0 / largest)).sqrt();
     let per_sigma = 1.0 / largest / relative;
-    let parts: Vec<Part> = terms.iter().map(|term| term.part(per_sigma)).collect();
+    let parts: Vec<JointCumulants> = terms.iter().map(|term| term.part(per_sigma)).collect();
     let assembly = Assembly::of(&parts, interactions, per_sigma);
     Contributions {
         moments: Moments::new(mean, largest * relative, assembly.skewness, assembly.excess),

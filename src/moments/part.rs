@@ -30,7 +30,7 @@ pub enum Term<'a> {
 /// `g = p u + h` with `E[u h] = 0`. Every cumulant is computed from `p` and `h`, so that a small curvature beside a large
 /// slope keeps its digits.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Part {
+pub struct JointCumulants {
     /// `E[g u]`: the slope of the best straight line.
     pub p: f64,
     /// `E[h^2]`: the variance that no straight line explains.
@@ -80,13 +80,13 @@ impl Term<'_> {
     }
 
     /// The joint cumulants of `factor g`.
-    pub fn part(&self, factor: f64) -> Part {
+    pub fn part(&self, factor: f64) -> JointCumulants {
         let (p, h) = self.split(factor);
         let moments = self.moments();
         let (s, k) = (moments.skewness, moments.excess);
         // With E h = E[u h] = 0 these are cumulants of u and h alone; the names give the powers.
         let Rest { uuh, uhh, hhh, uuuh, uuhh, uhhh, hhhh, hh } = h;
-        Part {
+        JointCumulants {
             p,
             curved: hh,
             q: p * s + uuh,

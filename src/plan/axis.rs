@@ -1,6 +1,6 @@
 //! One dimension's nodes as numbers that a model can be given.
 
-use super::nodes::{Moved, Nodes, Spread, Tail};
+use super::nodes::{MovedNode, Nodes, Spread, Tail};
 use crate::dimension::Dimension;
 
 /// A place on an axis: the value, and how many sigmas it really lies off the mean.
@@ -26,7 +26,7 @@ pub struct Axis {
     /// The slots on the left and on the right at which pairs stand: those next to the mean when the plan was made.
     pub inner: [Option<Vec<u32>>; 2],
     /// Nodes that would have lain outside the support.
-    pub moved: Vec<Moved>,
+    pub moved: Vec<MovedNode>,
     /// A tail that is too long for the nodes.
     pub tail: Option<Tail>,
 }

@@ -21,7 +21,7 @@ pub use design::Design;
 pub use difference::{Corner, DifferencePlan, Layout, Mixed};
 pub use factorial::corners;
 pub use known::Known;
-pub use nodes::{Moved, Nodes, Spread, Tail};
+pub use nodes::{MovedNode, Nodes, Spread, Tail};
 pub use pairs::{PairChoice, Stencil};
 pub use point::{At, Point};
 pub use stage::{Purpose, Stage};

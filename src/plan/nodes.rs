@@ -19,7 +19,7 @@ pub struct Nodes {
     /// In sigmas, ascending, without the mean.
     pub u: Vec<f64>,
     /// Nodes that would have lain outside the support.
-    pub moved: Vec<Moved>,
+    pub moved: Vec<MovedNode>,
     /// How long the tail is, where it is too long for the nodes.
     pub tail: Option<Tail>,
 }
@@ -38,7 +38,7 @@ pub struct Tail {
 
 /// A node that was moved into the support.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Moved {
+pub struct MovedNode {
     /// Where the moments want it, in sigmas.
     pub from: f64,
     /// Where it is, in sigmas.
@@ -99,7 +99,7 @@ impl Nodes {
     }
 }
 
-fn pair(distribution: &dyn Distribution, [lower, upper]: [f64; 2]) -> (Vec<f64>, Vec<Moved>) {
+fn pair(distribution: &dyn Distribution, [lower, upper]: [f64; 2]) -> (Vec<f64>, Vec<MovedNode>) {
     let moments = distribution.standard_moments();
     let s = moments.skewness;
     let half = (moments.kurtosis() - 0.75 * s * s).sqrt();
@@ -138,8 +138,8 @@ fn five(distribution: &dyn Distribution, [lower, upper]: [f64; 2]) -> Option<(Ve
 }
 
 /// The nodes that were wanted outside the support; a partner that goes with one of them is no fault of its own.
-fn moved(wanted: &[f64], u: &[f64], [lower, upper]: [f64; 2]) -> Vec<Moved> {
+fn moved(wanted: &[f64], u: &[f64], [lower, upper]: [f64; 2]) -> Vec<MovedNode> {
     let outside = |from: f64| from <= lower || from >= upper;
     let both = wanted.iter().zip(u).filter(|(from, _)| outside(**from));
-    both.map(|(&from, &to)| Moved { from, to }).collect()
+    both.map(|(&from, &to)| MovedNode { from, to }).collect()
 }

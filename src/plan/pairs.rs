@@ -1,5 +1,9 @@
 //! Which pairs of dimensions are examined, and with which stencil.
 
+use std::str::FromStr;
+
+use crate::names::UnknownName;
+
 /// Which mixed derivatives are evaluated.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PairChoice {
@@ -30,12 +34,11 @@ impl Stencil {
     /// The names of the stencils.
     pub const NAMES: [&str; 2] = ["two-point", "four-point"];
 
-    /// The stencil of this name.
-    pub fn by_name(name: &str) -> Option<Self> {
-        match name {
-            "two-point" => Some(Self::TwoPoint),
-            "four-point" => Some(Self::FourPoint),
-            _ => None,
+    /// Its name in study files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TwoPoint => "two-point",
+            Self::FourPoint => "four-point",
         }
     }
 
@@ -87,4 +90,12 @@ pub(super) fn strongest(
     let mut pairs: Vec<(usize, usize)> = ranked.into_iter().take(count).map(|(_, j, k)| (j, k)).collect();
     pairs.sort_unstable();
     pairs
+}
+
+impl FromStr for Stencil {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        UnknownName::find("stencil", name, &[Self::TwoPoint, Self::FourPoint], |stencil| stencil.name())
+    }
 }

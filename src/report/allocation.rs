@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::requirement::{amount, word};
+use super::requirement::{amount, ends, word};
 use super::simulation::SimulatedReport;
 use super::{About, CharacteristicReport, Head, WarningReport};
 use crate::allocation::{Allocated, Allocation, Attainable, Bound, JointYield};
@@ -13,6 +13,7 @@ use crate::warning::Warning;
 
 /// What an allocation found out. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct AllocationReport {
     /// What every report begins with.
     #[serde(flatten)]
@@ -71,6 +72,7 @@ pub struct WrittenAnew {
 
 /// Something before and after.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BeforeAfter<T> {
     /// Before.
     pub before: T,
@@ -80,6 +82,7 @@ pub struct BeforeAfter<T> {
 
 /// One dimension with a cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct AllocatedReport {
     /// Its name.
     pub dimension: String,
@@ -105,6 +108,7 @@ pub struct AllocatedReport {
 
 /// A share of a variance before and after.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ContributionReport {
     /// The characteristic.
     pub characteristic: String,
@@ -116,6 +120,7 @@ pub struct ContributionReport {
 
 /// A nominal value that has moved.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RecentredReport {
     /// The dimension.
     pub dimension: String,
@@ -129,6 +134,7 @@ pub struct RecentredReport {
 
 /// A requirement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct KeptReport {
     /// The characteristic.
     pub characteristic: String,
@@ -140,8 +146,8 @@ pub struct KeptReport {
     pub before: Option<f64>,
     /// What there is.
     pub after: Option<f64>,
-    /// Within which that is known; null where that is not known.
-    pub interval: Option<[f64; 2]>,
+    /// Within which that is known, an end null where there is none; null where it is not known at all.
+    pub interval: Option<[Option<f64>; 2]>,
     /// Whether it was kept; null where that is not known.
     pub met_before: Option<bool>,
     /// Whether it is; null where that is not known, and where nothing was found.
@@ -154,6 +160,7 @@ pub struct KeptReport {
 
 /// What gives way, and what that saves, per unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PriceReport {
     /// The characteristic.
     pub characteristic: String,
@@ -169,6 +176,7 @@ pub struct PriceReport {
 
 /// A requirement that cannot be kept.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct AttainableReport {
     /// The characteristic.
     pub characteristic: String,
@@ -188,6 +196,7 @@ pub struct AttainableReport {
 
 /// What shows that nothing is cheaper.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ProofReport {
     /// The largest violation of the conditions of Karush, Kuhn and Tucker.
     pub kkt_residual: Option<f64>,
@@ -205,6 +214,7 @@ pub struct ProofReport {
 
 /// A share of a sample of the surrogates.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct JointReport {
     /// The share.
     #[serde(rename = "yield")]
@@ -219,6 +229,7 @@ pub struct JointReport {
 
 /// One characteristic before and after.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct AllocatedCharacteristic {
     /// Its name.
     pub name: String,
@@ -232,6 +243,7 @@ pub struct AllocatedCharacteristic {
 
 /// One point of the front.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct FrontReport {
     /// What was required of each characteristic.
     pub required: Vec<FrontRequirement>,
@@ -243,6 +255,7 @@ pub struct FrontReport {
 
 /// What a point of the front requires of one characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct FrontRequirement {
     /// The characteristic.
     pub characteristic: String,
@@ -254,6 +267,7 @@ pub struct FrontRequirement {
 
 /// Monte Carlo at the tolerances found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ConfirmationReport {
     /// Points.
     pub samples: u64,
@@ -277,8 +291,10 @@ impl AllocationReport {
         let mut warnings: Vec<WarningReport> =
             about.warnings.iter().chain(&found.warnings).map(WarningReport::of).collect();
         let fits = table.iter().flat_map(|table| &table.replaced_fits);
-        warnings
-            .extend(fits.map(|dimension| WarningReport::of(&Warning::FitReplaced { dimension: dimension.clone() })));
+        let dimensions: Vec<String> = fits.cloned().collect();
+        if !dimensions.is_empty() {
+            warnings.push(WarningReport::of(&Warning::FitReplaced { dimensions }));
+        }
         warnings.extend(allocation.warnings.iter().map(WarningReport::of));
         Self {
             head: Head::of("allocate", &about),
@@ -303,9 +319,9 @@ impl AllocationReport {
                     characteristic: name(one.characteristic),
                     requirement: word(one.requirement),
                     required: amount(one.requirement),
-                    before: one.before.value,
-                    after: one.after.and_then(|after| after.value),
-                    interval: one.after.and_then(|after| after.interval),
+                    before: one.before.value.filter(|value| value.is_finite()),
+                    after: one.after.and_then(|after| after.value).filter(|value| value.is_finite()),
+                    interval: one.after.and_then(|after| after.interval).map(ends),
                     met_before: one.before.verdict.met(),
                     met: one.after.and_then(|after| after.verdict.met()),
                     verdict_before: one.before.verdict,

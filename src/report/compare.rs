@@ -4,12 +4,13 @@ use serde::Serialize;
 
 use super::simulation::SimulatedReport;
 use super::{About, Head};
-use crate::compare::{Comparison, Contender, Errors, Figures, Ran};
+use crate::compare::{Comparison, Contender, Errors, Figures, NotRunReason, Ran};
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
 
 /// The report of a comparison, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CompareReport {
     /// What every report begins with.
     #[serde(flatten)]
@@ -29,6 +30,7 @@ pub struct CompareReport {
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ComparedReport {
     /// Its name.
     pub name: String,
@@ -40,6 +42,7 @@ pub struct ComparedReport {
 
 /// One method on one characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct MethodReport {
     /// Its name; of samples with the number of points.
     pub method: String,
@@ -66,6 +69,7 @@ pub struct MethodReport {
 
 /// Moments and yield.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct FiguresReport {
     /// First moment.
     pub mean: Option<f64>,
@@ -82,6 +86,7 @@ pub struct FiguresReport {
 
 /// How far a method is off.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ErrorReport {
     /// The mean in sigmas, sigma relative, the others as they are.
     #[serde(flatten)]
@@ -99,6 +104,7 @@ pub struct ErrorReport {
 
 /// A method that was not run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NotRunReport {
     /// Its name.
     pub method: String,
@@ -107,7 +113,7 @@ pub struct NotRunReport {
     /// Seconds that the model would have taken.
     pub projected_s: Option<f64>,
     /// Why not.
-    pub reason: String,
+    pub reason: NotRunReason,
 }
 
 impl CompareReport {

@@ -28,6 +28,7 @@ enum Tail {
 
 /// The distribution that has a characteristic's moments.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(tag = "family", rename_all = "lowercase")]
 pub enum DistributionReport {
     /// Every assembly has the same value.

@@ -4,10 +4,11 @@ use serde::Serialize;
 
 use super::simulation::HistogramReport;
 use crate::analysis::SampledModel;
-use crate::method::ErrorEstimate;
+use crate::method::{ErrorEstimate, ErrorSource};
 
 /// Estimated errors, each in the unit of its result. What nothing is known of is null.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ErrorEstimateReport {
     /// Of the mean.
     pub mean: Option<f64>,
@@ -21,11 +22,12 @@ pub struct ErrorEstimateReport {
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
     /// What they rest on.
-    pub basis: String,
+    pub sources: Vec<ErrorSource>,
 }
 
 /// Points of the model that the moments rest on.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ModelSamplingReport {
     /// How many.
     pub samples: u64,
@@ -47,9 +49,14 @@ pub struct ModelSamplingReport {
 }
 
 impl ErrorEstimateReport {
+    /// What the estimates rest on, in words.
+    pub fn basis(&self) -> String {
+        self.sources.iter().map(|source| source.words()).collect::<Vec<_>>().join("; ")
+    }
+
     pub(super) fn of(estimate: &ErrorEstimate) -> Self {
         let ErrorEstimate { mean, sigma, skewness, kurtosis, yield_, .. } = *estimate;
-        Self { mean, sigma, skewness, kurtosis, yield_, basis: estimate.basis() }
+        Self { mean, sigma, skewness, kurtosis, yield_, sources: estimate.sources.clone() }
     }
 }
 

@@ -8,6 +8,7 @@ use crate::summary::RunSummary;
 
 /// Versions, the study, and the command.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Head {
     /// The version of this shape.
     pub schema: u32,

@@ -8,6 +8,8 @@ mod compare;
 mod compare_csv;
 mod compare_svg;
 mod compare_text;
+#[cfg(test)]
+mod complete;
 mod csv;
 mod distribution;
 mod estimate;
@@ -22,8 +24,11 @@ mod page;
 mod rare;
 mod rare_csv;
 mod rare_text;
+mod remainder;
 mod requirement;
 mod sampling;
+#[cfg(feature = "cli")]
+mod schema;
 mod simulation;
 mod simulation_csv;
 mod simulation_text;
@@ -59,6 +64,7 @@ pub use page::{Detail, Style};
 pub use rare::{BeyondReport, DesignPointReport, RareCharacteristicReport, RareReport};
 pub use rare_csv::rare_csv;
 pub use rare_text::rare_text;
+pub use remainder::RemainderReport;
 pub use requirement::RequirementReport;
 pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
@@ -74,7 +80,7 @@ pub use verification::{FigureReport, SwitchReport, VarianceShareReport, Verifica
 
 use serde::Serialize;
 
-use crate::analysis::{Analysis, CharacteristicAnalysis, Missing};
+use crate::analysis::{Account, Analysis, CharacteristicAnalysis, Missing, Tails};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
 use crate::extremes::{Extreme, Extremes};
@@ -82,13 +88,14 @@ use crate::method::{Basis, DerivativeSource};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
-use crate::warning::Warning;
+use crate::warning::{Advice, Warning};
 
 /// The version of the JSON report's shape.
 pub const SCHEMA: u32 = 2;
 
 /// The report of an analysis, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Report {
     /// What every report begins with.
     #[serde(flatten)]
@@ -97,12 +104,11 @@ pub struct Report {
     pub method: &'static str,
     /// Dimensions that vary and matter, N.
     pub varying: usize,
-    /// What `auto` found and bought, in words; null for any other method.
-    pub account: Option<String>,
+    /// What `auto` found, and what its points went to; null for any other method.
+    pub account: Option<Account>,
     /// Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on none.
     pub derivatives: Option<&'static str>,
-    /// What the moments rest on, to be printed.
-    #[serde(skip)]
+    /// What the moments rest on.
     pub basis: Basis,
     /// What it came to in points and time, and why it ended early.
     #[serde(flatten)]
@@ -119,6 +125,7 @@ pub struct Report {
 
 /// One dimension as the analysis took it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct DimensionReport {
     /// Its name.
     pub name: String,
@@ -140,6 +147,7 @@ pub struct DimensionReport {
 
 /// Two dimensions that vary together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CorrelationReport {
     /// The two.
     pub between: [String; 2],
@@ -149,6 +157,7 @@ pub struct CorrelationReport {
 
 /// Standard errors of moments that were sampled from the surrogate of correlated inputs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SurrogateSamplingReport {
     /// Points, none of them evaluated by the model.
     pub samples: usize,
@@ -162,6 +171,7 @@ pub struct SurrogateSamplingReport {
 
 /// How well a surface of least squares fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct LeastSquaresReport {
     /// What it misses of the values, in the characteristic's unit; null without degrees of freedom.
     pub residual_standard_error: Option<f64>,
@@ -177,6 +187,7 @@ pub struct LeastSquaresReport {
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CharacteristicReport {
     /// Its name.
     pub name: String,
@@ -205,6 +216,14 @@ pub struct CharacteristicReport {
     pub verification: Option<VerificationReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
+    /// What law and surface reject; null without limits, or where the surface is plainly normal.
+    pub tails: Option<Tails>,
+    /// Whether planned points of it were not evaluated because the run was stopped.
+    pub unfinished: bool,
+    /// Evaluated points at which it has no value.
+    pub without_value: usize,
+    /// Whether it can depend on nothing that varies.
+    pub constant: bool,
     /// Intervals that no assembly leaves.
     pub worst_case: WorstCaseReport,
     /// The value of a linear model with every dimension in the middle of its band.
@@ -219,6 +238,8 @@ pub struct CharacteristicReport {
     pub sensitivities: Vec<SensitivityReport>,
     /// The interactions examined, strongest first.
     pub interactions: Vec<InteractionReport>,
+    /// What the interactions make that are not listed one by one; null where all are.
+    pub interactions_remainder: Option<RemainderReport>,
     /// How many interactions there can be.
     pub possible_interactions: usize,
     /// Share of the variance that nothing above accounts for.
@@ -265,6 +286,7 @@ pub struct CharacteristicReport {
 
 /// Intervals that no assembly leaves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WorstCaseReport {
     /// Of the linear model.
     pub linear: Option<[f64; 2]>,
@@ -285,6 +307,7 @@ pub struct WorstCaseReport {
 
 /// Where the extremes are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ExtremesAtReport {
     /// The dimensions at the least value.
     pub lower: PointReport,
@@ -304,6 +327,7 @@ impl Serialize for PointReport {
 
 /// What a normal distribution with the same mean and sigma would make of the limits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NormalFitReport {
     /// The share of assemblies within them.
     #[serde(rename = "yield")]
@@ -316,6 +340,7 @@ pub struct NormalFitReport {
 
 /// What one dimension does.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SensitivityReport {
     /// The dimension.
     pub dimension: String,
@@ -339,6 +364,7 @@ pub struct SensitivityReport {
 
 /// What two dimensions do together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct InteractionReport {
     /// The two.
     pub dimensions: [String; 2],
@@ -358,6 +384,7 @@ pub struct InteractionReport {
 
 /// A warning.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WarningReport {
     /// What kind.
     pub code: &'static str,
@@ -365,8 +392,15 @@ pub struct WarningReport {
     pub characteristic: Option<String>,
     /// The dimension concerned.
     pub dimension: Option<String>,
-    /// Cause, consequence, and what to try.
+    /// Cause and consequence.
     pub message: String,
+    /// The fields of the warning.
+    pub data: serde_json::Map<String, serde_json::Value>,
+    /// What to do, the most promising first.
+    pub advice: Vec<Advice>,
+    /// Of a sweep, the values of the parameter at which it is so.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<f64>,
 }
 
 /// What a report says of the study beside the analysis.
@@ -463,6 +497,10 @@ impl CharacteristicReport {
             model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
             verification: VerificationReport::of(analysis),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
+            tails: analysis.tails,
+            unfinished: analysis.unfinished,
+            without_value: analysis.without_value,
+            constant: analysis.constant,
             worst_case: WorstCaseReport::of(analysis),
             middle: analysis.middle,
             rss: analysis.rss,
@@ -492,6 +530,7 @@ impl CharacteristicReport {
                     mean_shift: interaction.mean_shift,
                 })
                 .collect(),
+            interactions_remainder: None,
             possible_interactions: analysis.possible_interactions,
             left_out_share: analysis.left_out_share,
             distribution: law.as_ref().map(DistributionReport::of),
@@ -537,12 +576,15 @@ impl WorstCaseReport {
 }
 
 impl WarningReport {
-    fn of(warning: &Warning) -> Self {
+    pub(crate) fn of(warning: &Warning) -> Self {
         Self {
             code: warning.code(),
             characteristic: warning.characteristic().map(str::to_owned),
             dimension: warning.dimension().map(str::to_owned),
             message: warning.message(),
+            data: warning.data(),
+            advice: warning.advice(),
+            at: Vec::new(),
         }
     }
 }

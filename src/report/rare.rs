@@ -10,6 +10,7 @@ use crate::verdict::Verdict;
 
 /// The report of rare events, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RareReport {
     /// What every report begins with.
     #[serde(flatten)]
@@ -39,6 +40,7 @@ pub struct RareReport {
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RareCharacteristicReport {
     /// Its name.
     pub name: String,
@@ -46,6 +48,10 @@ pub struct RareCharacteristicReport {
     pub unit: Option<String>,
     /// Points at which it has no value.
     pub failed: u64,
+    /// Why not, of the first of them.
+    pub error: Option<String>,
+    /// Whether the search was stopped before all points were drawn.
+    pub unfinished: bool,
     /// Lower limit.
     pub lower: Option<f64>,
     /// Upper limit.
@@ -71,6 +77,7 @@ pub struct RareCharacteristicReport {
 
 /// What lies beyond one limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BeyondReport {
     /// The limit.
     pub limit: f64,
@@ -88,6 +95,8 @@ pub struct BeyondReport {
     pub hits: u64,
     /// Equally weighted points that would tell as much.
     pub effective_samples: f64,
+    /// The part of the estimate that the heaviest point has.
+    pub greatest_part: Option<f64>,
     /// Points of a plain random sample that would have the same standard error.
     pub plain_samples: Option<f64>,
     /// The most likely assembly at the limit, as the surrogate has it.
@@ -96,6 +105,7 @@ pub struct BeyondReport {
 
 /// The most likely assembly at a limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct DesignPointReport {
     /// Its distance from the middle in standard deviations of independent normal variables.
     pub distance: f64,
@@ -129,6 +139,8 @@ impl RareCharacteristicReport {
             name: one.characteristic.name().to_owned(),
             unit: one.characteristic.unit().map(str::to_owned),
             failed: one.failed,
+            error: one.error.as_ref().map(ToString::to_string),
+            unfinished: one.unfinished,
             lower: limits.lower(),
             upper: limits.upper(),
             target_yield: one.characteristic.target_yield(),
@@ -155,6 +167,7 @@ impl BeyondReport {
             ppm: value.map(|value| 1e6 * value),
             hits: beyond.hits,
             effective_samples: beyond.effective_samples,
+            greatest_part: beyond.greatest_part,
             plain_samples: beyond.plain_samples,
             design_point: beyond
                 .design_point

@@ -9,6 +9,7 @@ use crate::verdict::{Judged, Verdict};
 
 /// Something that a characteristic must keep, and whether it does.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RequirementReport {
     /// `yield`, `cpk`, `sigma`, `rss` or `worst-case`.
     pub requirement: &'static str,
@@ -16,8 +17,8 @@ pub struct RequirementReport {
     pub required: f64,
     /// What there is.
     pub value: Option<f64>,
-    /// Within which that is known; null where that is not known.
-    pub interval: Option<[f64; 2]>,
+    /// Within which that is known, an end null where there is none; null where it is not known at all.
+    pub interval: Option<[Option<f64>; 2]>,
     /// Whether it is kept; null where that is not known.
     pub met: Option<bool>,
     /// The same in a word.
@@ -29,8 +30,8 @@ impl RequirementReport {
         Self {
             requirement: word(judged.requirement),
             required: amount(judged.requirement),
-            value: judged.value,
-            interval: judged.interval,
+            value: judged.value.filter(|value| value.is_finite()),
+            interval: judged.interval.map(ends),
             met: judged.verdict.met(),
             verdict: judged.verdict,
         }
@@ -48,6 +49,11 @@ impl RequirementReport {
         };
         Some(format!("requires {required}, {}", loud(self.verdict)))
     }
+}
+
+/// The ends of an interval that there are.
+pub(super) fn ends(interval: [f64; 2]) -> [Option<f64>; 2] {
+    interval.map(|end| Some(end).filter(|end| end.is_finite()))
 }
 
 /// A verdict in a text, where a missed target is to be seen at once.

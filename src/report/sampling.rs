@@ -13,6 +13,7 @@ const NAMED: usize = 3;
 
 /// Intervals that cover the true results, as far as the size of measured samples decides.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SamplingReport {
     /// Of the mean.
     pub mean: Option<[f64; 2]>,
@@ -31,14 +32,20 @@ pub struct SamplingReport {
     pub level: f64,
     /// How many resamples they come from.
     pub resamples: usize,
-    /// What they rest on.
+    /// What they rest on, in words, to be printed.
+    #[serde(skip)]
     pub basis: String,
     /// Of the share outside the limits, with digits that the yield has lost.
     #[serde(skip)]
     pub rejected: Option<[f64; 2]>,
-    /// The measured dimensions with the number of their values.
-    #[serde(skip)]
+    /// The measured dimensions with the number of their values, which were drawn anew (BCa bootstrap) with the surrogate kept.
+    #[serde(serialize_with = "by_name")]
+    #[cfg_attr(feature = "cli", schemars(with = "std::collections::BTreeMap<String, usize>"))]
     pub samples: Vec<(String, usize)>,
+}
+
+fn by_name<S: serde::Serializer>(samples: &[(String, usize)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(samples.iter().map(|(name, count)| (name, count)))
 }
 
 impl SamplingReport {

@@ -12,6 +12,7 @@ use crate::verdict::Verdict;
 
 /// The report of a simulation, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SimulationReport {
     /// What every report begins with.
     #[serde(flatten)]
@@ -41,6 +42,7 @@ pub struct SimulationReport {
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SimulatedReport {
     /// Its name.
     pub name: String,
@@ -50,6 +52,10 @@ pub struct SimulatedReport {
     pub samples: u64,
     /// Points at which it has none.
     pub failed: u64,
+    /// Why not, of the first of them.
+    pub error: Option<String>,
+    /// Whether the sample was stopped before all its points were drawn.
+    pub unfinished: bool,
     /// First moment.
     pub mean: Option<f64>,
     /// Standard deviation.
@@ -97,6 +103,7 @@ pub struct SimulatedReport {
 
 /// What a surrogate as control variate has done.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ControlReport {
     /// The method that it comes from.
     pub method: &'static str,
@@ -108,6 +115,7 @@ pub struct ControlReport {
 
 /// The standard error without the surrogate by that with it; null where that is unknown or 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Reduction {
     /// Of the mean.
     pub mean: Option<f64>,
@@ -117,6 +125,7 @@ pub struct Reduction {
 
 /// Standard errors, and the 95 % interval of the yield.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct StandardErrors {
     /// Of the mean.
     pub mean: Option<f64>,
@@ -135,6 +144,7 @@ pub struct StandardErrors {
 
 /// A distribution that is known by a sample.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct EmpiricalReport {
     /// Always `empirical`.
     pub family: &'static str,
@@ -144,6 +154,7 @@ pub struct EmpiricalReport {
 
 /// A sample in intervals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct HistogramReport {
     /// One more than there are intervals, ascending.
     pub edges: Vec<f64>,
@@ -200,6 +211,8 @@ impl SimulatedReport {
             unit: one.characteristic.unit().map(str::to_owned),
             samples: one.samples,
             failed: one.failed,
+            error: one.error.as_ref().map(ToString::to_string),
+            unfinished: one.unfinished,
             mean: value(one.mean),
             sigma: value(one.sigma),
             skewness: value(one.skewness),

@@ -322,16 +322,16 @@ impl fmt::Display for StackNote {
                 significant(*mean_shift, 3)
             ),
             Self::NotExamined => {
-                f.write_str("curvature was not examined: this is the stack of its tangent at the means (--method full examines all)")
+                f.write_str("curvature was not examined: this is the stack of its tangent at the means (the method full examines all)")
             }
             Self::InteractionsNotExamined { count } => {
                 let which = if *count == 1 { "one interaction".to_owned() } else { format!("{count} interactions") };
-                write!(f, "linear, unless an interaction says otherwise: {which} not examined (--method full)")
+                write!(f, "linear, unless an interaction says otherwise: {which} not examined (the method full examines all)")
             }
             Self::SlopeUnknown { dimensions } => write!(f, "without slope, so that the totals are unknown: {}", list(dimensions)),
             Self::ThreeSigma { dimensions } => write!(f, "3 sigma stands for a tolerance of {}", list(dimensions)),
             Self::Fixed { dimensions } => {
-                write!(f, "left out, without tolerance: {} (--sensitivities all shows them)", list(dimensions))
+                write!(f, "left out, without tolerance: {} (`sensitivities = \"all\"` shows them)", list(dimensions))
             }
             Self::Correlated { dimensions } => {
                 write!(f, "{} are correlated: every rss takes that in, shares and worst case do not", list(dimensions))

@@ -15,6 +15,7 @@ use crate::verdict::Verdict;
 
 /// The report of a sweep, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SweepReport {
     /// What every report begins with.
     #[serde(flatten)]
@@ -34,6 +35,7 @@ pub struct SweepReport {
 
 /// The parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ParameterReport {
     /// Its name.
     pub name: String,
@@ -47,6 +49,7 @@ pub struct ParameterReport {
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SweptReport {
     /// Its name.
     pub name: String,
@@ -62,6 +65,7 @@ pub struct SweptReport {
 
 /// One characteristic at one value of the parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SweptPointReport {
     /// The parameter.
     pub at: f64,
@@ -141,8 +145,8 @@ fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport>
     let of_values = kinds.into_values().map(|(warning, at)| {
         let share = if at.len() == all { "every value".to_owned() } else { format!("{} of {all} values", at.len()) };
         let message =
-            format!("at {share}, first at {parameter} = {}: {}", super::number::plain(at[0]), warning.message);
-        WarningReport { message, ..warning }
+            format!("At {share}, first at {parameter} = {}: {}", super::number::plain(at[0]), warning.message);
+        WarningReport { message, at, ..warning }
     });
     about.warnings.iter().map(WarningReport::of).chain(of_values).collect()
 }

@@ -24,7 +24,7 @@ pub fn text(report: &Report, style: Style) -> String {
     }
     page.line(&summary(report));
     if let Some(account) = &report.account {
-        page.wrapped(account);
+        page.wrapped(&account.to_string());
     }
     page.line("");
     verdicts(&mut page, report);
@@ -144,7 +144,7 @@ fn estimate(page: &mut Page, one: &CharacteristicReport) {
         });
     }
     page.wrapped(&format!("  estimated errors: {}", parts.join(", ")));
-    page.wrapped(&format!("  they rest on: {}", estimate.basis));
+    page.wrapped(&format!("  they rest on: {}", estimate.basis()));
     if let Some(sampled) = &one.model_sampling {
         page.wrapped(&format!(
             "  the surrogate was not trusted: mean to kurtosis from {} points of the model, with it as control variate",

@@ -8,6 +8,7 @@ use crate::verification::{Crossing, Verified};
 
 /// A figure and its error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct FigureReport {
     /// The value.
     pub value: f64,
@@ -17,6 +18,7 @@ pub struct FigureReport {
 
 /// How results were verified, and by what.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct VerificationReport {
     /// `sample`, `checks` or `exact`.
     pub kind: &'static str,
@@ -43,6 +45,7 @@ pub struct VerificationReport {
 
 /// The figures of a verification.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct VerifiedFiguresReport {
     /// First moment.
     pub mean: Option<FigureReport>,
@@ -63,6 +66,7 @@ pub struct VerifiedFiguresReport {
 
 /// A place at which a formula changes its form.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SwitchReport {
     /// The part of the formula that does it.
     pub name: String,
@@ -74,6 +78,7 @@ pub struct SwitchReport {
 
 /// What a dimension explains of the variance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct VarianceShareReport {
     /// The dimension.
     pub dimension: String,

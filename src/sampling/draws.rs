@@ -1,5 +1,7 @@
 //! Blocks of points of the inputs' joint distribution.
 
+use std::str::FromStr;
+
 use faer::Mat;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -10,6 +12,7 @@ use crate::correlation::Correlation;
 use crate::dimension::Dimension;
 use crate::distribution::{Probability, behind_normal, standard_normal, ziggurat};
 use crate::elementary::{Work, on_this_processor};
+use crate::names::UnknownName;
 
 /// How points are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -18,6 +21,24 @@ pub enum Sampler {
     Random,
     /// Sobol's points, scrambled anew in every replicate.
     Sobol,
+}
+
+impl Sampler {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Random => "random",
+            Self::Sobol => "sobol",
+        }
+    }
+}
+
+impl FromStr for Sampler {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        UnknownName::find("sampler", name, &[Self::Random, Self::Sobol], |sampler| sampler.name())
+    }
 }
 
 /// Why a problem cannot be sampled.

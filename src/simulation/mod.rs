@@ -14,11 +14,11 @@ use rayon::prelude::*;
 
 use crate::assembly::process::Doubt;
 use crate::assembly::{Ask, EvaluationError, Responses, Run};
-use crate::method::{MethodError, Options, Outcome};
+use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
 use crate::summary::RunSummary;
-use crate::warning::Warning;
+use crate::warning::{Advice, Warning};
 use control::Control;
 pub(crate) use surrogates::{Surrogates, chosen};
 use tally::{Block, Lens, Tally};
@@ -152,7 +152,7 @@ pub enum SimulationError {
         /// The characteristic.
         characteristic: String,
         /// The method.
-        method: &'static str,
+        method: Method,
         /// What is unknown.
         reason: String,
     },
@@ -173,6 +173,19 @@ pub enum SimulationError {
         /// The value.
         value: f64,
     },
+}
+
+impl SimulationError {
+    /// What to do about it.
+    pub fn advice(&self) -> Vec<Advice> {
+        match self {
+            Self::NoSurrogate { method, .. } if !method.has_surrogate() => {
+                vec![Advice::UseMethod { methods: vec![Method::Full] }]
+            }
+            Self::Method(error) => error.advice(),
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// Counts are exact in a double up to here.

@@ -41,8 +41,8 @@ impl Surrogates {
         if let Some(first) = problem.characteristics().first().filter(|_| !asked.method.has_surrogate()) {
             return Err(SimulationError::NoSurrogate {
                 characteristic: first.name().to_owned(),
-                method: asked.method.name(),
-                reason: "the method integrates without one, --method full and the like have one".to_owned(),
+                method: asked.method,
+                reason: "the method integrates without one".to_owned(),
             });
         }
         let outcome = asked.method.procedure().run(problem, &asked, run)?;
@@ -62,7 +62,7 @@ impl Surrogates {
     fn of_one(problem: &Problem, outcome: &Outcome, c: usize) -> Result<Option<Known>, SimulationError> {
         let unknown = |reason: &str| SimulationError::NoSurrogate {
             characteristic: problem.characteristics()[c].name().to_owned(),
-            method: outcome.method.name(),
+            method: outcome.method,
             reason: reason.to_owned(),
         };
         let lost = || {

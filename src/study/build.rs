@@ -1,7 +1,6 @@
 //! From the file's types to a problem: names, model, formulas, characteristics.
 
 use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::correlation::correlated;
@@ -13,10 +12,10 @@ use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
 use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
-use super::source::Source;
+use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use crate::allocation::Priced;
-use crate::assembly::formula::{Formula, FormulaError, is_reserved};
+use crate::assembly::formula::{Formula, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
@@ -26,7 +25,7 @@ use crate::models::{self, Model};
 use crate::names::nearest;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
-use crate::warning::Warning;
+use crate::warning::{NameKind, Warning, aggregated};
 
 /// What a study file comes to.
 pub(super) struct Built {
@@ -60,7 +59,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     known_to_model(file, model, &used)?;
     let (characteristics, outputs) = characteristics(file, model, program)?;
     let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
-    let mut warnings = std::mem::take(&mut data.warnings);
+    let mut warnings = aggregated(std::mem::take(&mut data.warnings));
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
@@ -196,12 +195,6 @@ impl Written<'_> {
     fn is_unknown(&self, name: &str) -> bool {
         self.implicit.iter().flat_map(|implicit| implicit.conditions.unknowns()).any(|unknown| unknown.name() == name)
     }
-}
-
-/// A fault within a formula, at its place in the file.
-pub(super) fn in_formula(source: &Source, text: Range<usize>, key: String, error: FormulaError) -> Fault {
-    let span = source.within_string(text, error.span);
-    fault(span, key, StudyFault::Formula(error.fault))
 }
 
 /// Dimensions and constants are inputs of the model, or else a formula uses them.
@@ -398,12 +391,9 @@ fn unused(
     used: &dyn Fn(&str) -> bool,
 ) -> Vec<Warning> {
     let (needed, solved) = composite.used();
-    let idle_formulas = (written.formulas.iter().zip(needed))
-        .filter(|(_, needed)| !needed)
-        .map(|(named, _)| Warning::UnusedName { what: "formula", name: named.name.clone() });
-    let idle_unknowns = (file.unknowns.names().into_iter())
-        .filter(|_| !solved)
-        .map(|name| Warning::UnusedName { what: "unknown", name: name.get_ref().clone() });
+    let idle_formulas =
+        (written.formulas.iter().zip(needed)).filter(|(_, needed)| !needed).map(|(named, _)| named.name.clone());
+    let idle_unknowns = (file.unknowns.names().into_iter()).filter(|_| !solved).map(|name| name.get_ref().clone());
     let is_input = |name: &str| match model {
         None => false,
         Some(ModelOf::BuiltIn(model)) => model.inputs.iter().any(|input| input.name == name),
@@ -412,8 +402,14 @@ fn unused(
     };
     let idle_constants = (file.constants.names().into_iter())
         .filter(|name| !used(name.get_ref()) && !is_input(name.get_ref()))
-        .map(|name| Warning::UnusedName { what: "constant", name: name.get_ref().clone() });
-    idle_constants.chain(idle_formulas).chain(idle_unknowns).collect()
+        .map(|name| name.get_ref().clone());
+    let idle = [
+        (NameKind::Constant, idle_constants.collect::<Vec<_>>()),
+        (NameKind::Formula, idle_formulas.collect()),
+        (NameKind::Unknown, idle_unknowns.collect()),
+    ];
+    let some = idle.into_iter().filter(|(_, names)| !names.is_empty());
+    some.map(|(kind, names)| Warning::UnusedName { kind, names }).collect()
 }
 
 impl<T> Entries<T> {

@@ -15,7 +15,9 @@ use crate::dimension::DimensionFault;
 use crate::distribution::DistributionError;
 use crate::fits::FitError;
 use crate::method::MethodError;
+use crate::names::UnknownName;
 use crate::problem::ProblemError;
+use crate::warning::Advice;
 
 /// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -279,7 +281,19 @@ pub enum StudyFault {
     Problem(#[from] ProblemError),
 }
 
+impl From<UnknownName> for StudyFault {
+    fn from(UnknownName { what, name, nearest, known }: UnknownName) -> Self {
+        let known = known.into_iter().map(str::to_owned).collect();
+        Self::UnknownWord { what, found: name, nearest, known }
+    }
+}
+
 impl StudyFault {
+    /// What to do about it, beside changing what is written.
+    pub fn advice(&self) -> Vec<Advice> {
+        if let Self::Method(error) = self { error.advice() } else { Vec::new() }
+    }
+
     /// What to write instead, where that can be said.
     pub fn help(&self) -> Option<String> {
         let meant = |name: &String| format!("did you mean `{name}`?");

@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use super::build::in_formula;
 use super::error::{Fault, fault};
 use super::file::StudyFile;
-use super::source::Source;
+use super::source::{Source, in_formula};
 use crate::assembly::formula::Formula;
 use crate::assembly::implicit::{Condition, Conditions, ConditionsError, Link, Unknown};
 use crate::dimension::Dimension;

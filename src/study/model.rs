@@ -9,9 +9,9 @@ use super::file::ModelEntry;
 use super::source::Source;
 use super::spanned::Spanned;
 use crate::assembly::process::{Greeting, Process, Settings};
-use crate::assembly::{AssemblyFunction, Given, Input, Output, Signature};
-use crate::models::{self, Model};
-use crate::names::nearest;
+use crate::assembly::{AssemblyFunction, GivenAnswers, Input, Output, Signature};
+use crate::models::Model;
+use crate::names::UnknownName;
 
 /// Most children side by side: more is a slip of the pen.
 const WORKERS: u64 = 1024;
@@ -71,13 +71,7 @@ pub(super) fn model(entry: &Spanned<ModelEntry>, source: &Source) -> Result<Mode
 }
 
 fn built_in(name: &Spanned<String>) -> Result<&'static Model, Fault> {
-    let found = name.get_ref();
-    models::by_name(found).ok_or_else(|| {
-        let known: Vec<String> = models::ALL.iter().map(|model| model.name.to_owned()).collect();
-        let nearest = nearest(found, known.iter().map(String::as_str)).map(str::to_owned);
-        let found = found.clone();
-        fault(name.span(), "model.builtin", StudyFault::UnknownWord { what: "built-in model", found, nearest, known })
-    })
+    name.get_ref().parse().map_err(|unknown: UnknownName| fault(name.span(), "model.builtin", unknown))
 }
 
 fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) -> Result<Program, Fault> {
@@ -136,7 +130,7 @@ pub(super) fn process(
     let outputs = outputs.into_iter().map(|(name, unit)| Output { name, unit, depends_on: None }).collect();
     let signature = Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() };
     if let Some(table) = &source.externals.points {
-        let given = Given::new(signature, Arc::clone(table));
+        let given = GivenAnswers::new(signature, Arc::clone(table));
         return Ok(Arc::new(given.map_err(StudyFault::MissingColumn)?));
     }
     let process = Process::new(signature, greeting, program.settings.clone());

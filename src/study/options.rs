@@ -1,23 +1,23 @@
 //! From `[analysis]` to options.
 
+use std::str::FromStr;
+
 use super::error::{Fault, StudyFault, fault};
 use super::file::{AnalysisEntry, PairsEntry};
 use super::spanned::Spanned;
-use crate::method::{ALL as METHODS, Accuracies, DerivativeSource, Method, MethodError, Options, Pairs};
-use crate::names::nearest;
-use crate::plan::Stencil;
+use crate::method::{Accuracies, MethodError, Options, Pairs};
+use crate::names::UnknownName;
 use crate::problem::Problem;
 
 /// Which sensitivities can be asked for.
 pub(super) const SENSITIVITIES: [&str; 2] = ["all", "varying"];
 
+/// What stands for this word under a key of `[analysis]`.
+fn named<T: FromStr<Err = UnknownName>>(word: &Spanned<String>, key: &str) -> Result<T, Fault> {
+    word.get_ref().parse().map_err(|unknown: UnknownName| fault(word.span(), format!("analysis.{key}"), unknown))
+}
+
 pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Options, Fault> {
-    let word = |given: &Spanned<String>, key: &str, what: &'static str, known: &[&str]| {
-        let found = given.get_ref().clone();
-        let nearest = nearest(&found, known.iter().copied()).map(str::to_owned);
-        let known = known.iter().map(|&word| word.to_owned()).collect();
-        fault(given.span(), format!("analysis.{key}"), StudyFault::UnknownWord { what, found, nearest, known })
-    };
     let positive = |given: &Option<Spanned<f64>>, key: &str| match given {
         Some(given) if *given.get_ref() <= 0.0 => {
             let out = StudyFault::OutOfRange { value: *given.get_ref(), range: "above 0" };
@@ -40,35 +40,30 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
         ..Options::default()
     };
     if let Some(method) = &entry.method {
-        let known: Vec<&str> = METHODS.iter().map(|method| method.name()).collect();
-        options.method = Method::by_name(method.get_ref()).ok_or_else(|| word(method, "method", "method", &known))?;
+        options.method = named(method, "method")?;
     }
     if let Some(pairs) = &entry.pairs {
         options.pairs = Some(match pairs.get_ref() {
             PairsEntry::Listed(pairs) => Pairs::Listed(pairs.clone()),
-            PairsEntry::Word(text) => Pairs::by_name(text).ok_or_else(|| {
-                let given = Spanned::new(pairs.span(), text.clone());
-                word(&given, "pairs", "choice of pairs", &Pairs::NAMES)
-            })?,
+            PairsEntry::Word(text) => named(&Spanned::new(pairs.span(), text.clone()), "pairs")?,
         });
     }
     if let Some(stencil) = &entry.stencil {
-        let found = Stencil::by_name(stencil.get_ref());
-        options.stencil = Some(found.ok_or_else(|| word(stencil, "stencil", "stencil", &Stencil::NAMES))?);
+        options.stencil = Some(named(stencil, "stencil")?);
     }
     options.nodes = entry.nodes.as_ref().map(|nodes| usize::try_from(*nodes.get_ref()).unwrap_or(usize::MAX));
     if let Some(sensitivities) = &entry.sensitivities {
         options.all_sensitivities = match sensitivities.get_ref().as_str() {
             "all" => true,
             "varying" => false,
-            _ => return Err(word(sensitivities, "sensitivities", "choice of sensitivities", &SENSITIVITIES)),
+            found => {
+                let unknown = UnknownName::of("choice of sensitivities", found, SENSITIVITIES.to_vec());
+                return Err(fault(sensitivities.span(), "analysis.sensitivities", unknown));
+            }
         };
     }
     if let Some(derivatives) = &entry.derivatives {
-        let found = DerivativeSource::by_name(derivatives.get_ref());
-        let known = &DerivativeSource::NAMES;
-        options.derivatives =
-            Some(found.ok_or_else(|| word(derivatives, "derivatives", "source of derivatives", known))?);
+        options.derivatives = Some(named(derivatives, "derivatives")?);
     }
     // Whether the options fit each other and the study shows at its plan; what is at fault is most likely the pairs.
     options.method.procedure().check(problem, &options).map_err(|error| {

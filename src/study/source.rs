@@ -4,7 +4,9 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::error::{Fault, StudyFault, fault};
 use super::externals::Externals;
+use crate::assembly::formula::FormulaError;
 
 /// The two formats of one schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,4 +70,10 @@ fn raw_offset(body: &str, target: usize, escapes: bool) -> usize {
         raw += (2 + digits).min(rest.len());
     }
     raw
+}
+
+/// A fault within a formula, at its place in the file.
+pub(super) fn in_formula(source: &Source, text: Range<usize>, key: String, error: FormulaError) -> Fault {
+    let span = source.within_string(text, error.span);
+    fault(span, key, StudyFault::Formula(error.fault))
 }

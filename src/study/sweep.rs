@@ -5,7 +5,7 @@ use super::error::{Fault, StudyFault, fault};
 use super::file::{DimensionEntry, StudyFile};
 use super::spanned::Spanned;
 use super::values::NominalEntry;
-use crate::models;
+use crate::models::Model;
 use crate::names::nearest;
 
 /// Makes a dimension without tolerance of a constant, or of an input of the built-in model that the study leaves out.
@@ -15,7 +15,7 @@ pub(super) fn as_dimension(file: &mut StudyFile, name: &str) -> Result<(), Fault
         return Ok(());
     }
     let model = file.model.as_ref().map(Spanned::get_ref);
-    let builtin = model.and_then(|model| model.builtin.as_ref()).and_then(|name| models::by_name(name.get_ref()));
+    let builtin = model.and_then(|model| model.builtin.as_ref()).and_then(|name| name.get_ref().parse::<&Model>().ok());
     let constant = file.constants.0.iter().position(|(constant, _)| constant.get_ref() == name);
     let input = builtin.and_then(|model| model.inputs.iter().find(|input| input.name == name));
     let (key, nominal) = match (constant, input) {
@@ -24,7 +24,7 @@ pub(super) fn as_dimension(file: &mut StudyFile, name: &str) -> Result<(), Fault
             if model.is_some_and(|model| model.command.is_some()) {
                 // A program is told constants once, and dimensions at every point.
                 let (what, instead) = ("a constant of a program".to_owned(), "make it a dimension without tolerance");
-                let does_not = StudyFault::DoesNotApply { key: "--over", to: what, instead };
+                let does_not = StudyFault::DoesNotApply { key: "sweep", to: what, instead };
                 return Err(fault(key.span(), format!("constants.{name}"), does_not));
             }
             (key, *file.constants.0.remove(at).1.get_ref())
@@ -39,7 +39,7 @@ pub(super) fn as_dimension(file: &mut StudyFile, name: &str) -> Result<(), Fault
             let nearest = nearest(name, known.iter().map(String::as_str)).map(str::to_owned);
             let what = "dimension, constant or input of the model to sweep:";
             let unknown = StudyFault::UnknownWord { what, found: name.to_owned(), nearest, known };
-            return Err(Fault { span: None, key: "--over".to_owned(), fault: Box::new(unknown) });
+            return Err(Fault { span: None, key: "sweep".to_owned(), fault: Box::new(unknown) });
         }
     };
     let span = key.span();

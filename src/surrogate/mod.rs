@@ -8,6 +8,7 @@
 
 mod correlated;
 mod inputs;
+mod parabolas;
 mod relocation;
 mod sampled;
 mod shape;

@@ -5,7 +5,7 @@ use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
-use super::correlated::Parabolas;
+use super::parabolas::Parabolas;
 use crate::moments::{Contributions, Moments, Sampled};
 
 /// Blocks of the sample: what they differ by is the standard error (delete-one jackknife), and each has its own seed.

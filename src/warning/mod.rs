@@ -1,315 +1,370 @@
-//! Warnings: where an assumption of the method fails, what that means, and what to try.
+//! Warnings: an assumption of the method fails, or a result is not what was asked for.
+//!
+//! A warning is data: its [`code`](Warning::code) and its fields ([`data`](Warning::data)). The [`message`](Warning::message) says what happened
+//! and what it means for the result. The [`advice`](Warning::advice) says what to do; each front end shows it in its own words.
+//!
+//! # A new warning
+//! One entry in the list below (variant, code, fields), one function of these fields in the file of its theme, and one entry on the page
+//! `docs/reference/warnings.md`. The compiler and the tests ask for whatever is forgotten. A field named `characteristic` or `output` is the
+//! characteristic that the warning concerns. A field named `dimension`, or `dimensions` with one name, is its dimension. A field named
+//! `others` takes the further dimensions when [`aggregated`] joins warnings of one code.
 
-mod message;
+#[macro_use]
+mod define;
 
-/// Something that a reader of the results must know.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum Warning {
-    /// No asked characteristic can depend on a dimension.
-    UnusedDimension {
-        /// The dimension.
-        dimension: String,
-    },
-    /// No characteristic of the study uses a constant or formula.
-    UnusedName {
-        /// `constant` or `formula`.
-        what: &'static str,
-        /// Its name.
-        name: String,
-    },
-    /// A tolerance that was found is no fit of ISO 286 any more.
-    FitReplaced {
-        /// The dimension.
-        dimension: String,
-    },
-    /// The model was not asked at the tolerances that were found.
-    NotConfirmed,
-    /// Monte Carlo at the tolerances that were found says that a required yield is missed.
-    ConfirmationMisses {
-        /// The characteristic.
-        characteristic: String,
-        /// What is required.
-        required: f64,
-        /// 95 % interval of what there is.
-        interval: [f64; 2],
-    },
-    /// The model failed at some points.
-    FailedPoints {
-        /// The characteristic that has no value there.
-        characteristic: String,
-        /// At how many points.
-        failed: usize,
-        /// Of how many.
-        points: usize,
-        /// The first such point, in words.
-        point: String,
-        /// Why it has no value there.
-        error: String,
-    },
-    /// The model failed at some points of a sample.
-    FailedSamples {
-        /// The characteristic that has no value there.
-        characteristic: String,
-        /// At how many points.
-        failed: u64,
-        /// Of how many.
-        samples: u64,
-        /// Why, of the first.
-        error: String,
-    },
-    /// Most of a small probability rests on one drawn point.
-    HeavyPoint {
-        /// The characteristic.
-        characteristic: String,
-        /// The limit that it lies beyond.
-        limit: f64,
-        /// The part of the estimate that is this point's.
-        part: f64,
-    },
-    /// No drawn point lies beyond a limit.
-    NothingBeyond {
-        /// The characteristic.
-        characteristic: String,
-        /// The limit.
-        limit: f64,
-        /// Points drawn.
-        points: u64,
-        /// What the probability may be at most.
-        most: f64,
-    },
-    /// What importance sampling found, plain sampling would have found with fewer points.
-    PlainSampling {
-        /// The characteristic.
-        characteristic: String,
-        /// The limit.
-        limit: f64,
-        /// Points that a plain sample would have taken.
-        plain: f64,
-        /// Points that were evaluated.
-        evaluations: u64,
-    },
-    /// Moments could not be had by a method that is no difference plan.
-    LostMoments {
-        /// The characteristic.
-        characteristic: String,
-        /// Why not, in words.
-        because: String,
-    },
-    /// Rules of three nodes do not integrate high powers of what is curved.
-    ShallowRules {
-        /// The characteristic.
-        characteristic: String,
-        /// The share of its variance that curvature adds.
-        share: f64,
-    },
-    /// A surface of least squares misses the values that it was fitted to.
-    PoorFit {
-        /// The characteristic.
-        characteristic: String,
-        /// The residual standard error, in sigmas.
-        residual: f64,
-    },
-    /// A derivative could not be had.
-    LostDerivative {
-        /// The characteristic.
-        characteristic: String,
-        /// The dimension, or the two of a mixed derivative.
+mod advice;
+mod aggregate;
+mod allocation;
+mod derivatives;
+mod distribution;
+mod measured;
+mod model;
+mod run;
+mod sample;
+mod study;
+mod surface;
+mod terms;
+mod text;
+
+pub use advice::Advice;
+pub use aggregate::aggregated;
+pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind, StopCause};
+
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
+
+use text::Text;
+
+warnings! {
+    /// None of the analysed characteristics can depend on these dimensions.
+    UnusedDimension = "unused-dimension" by study::unused_dimension {
+        /// The dimensions.
         dimensions: Vec<String>,
-        /// What is lost.
-        loss: Loss,
-    },
-    /// The model fails within reach of the tolerances: differences were taken over a shorter step.
-    DomainEdge {
-        /// The characteristic.
-        characteristic: String,
-        /// The dimension along which it fails.
-        dimension: String,
-        /// The node that failed, in sigmas off the mean.
-        failed: f64,
-        /// The node in its place.
-        used: f64,
-    },
-    /// A node that the moments want lies outside a distribution's support.
-    SupportEdge {
-        /// The dimension.
-        dimension: String,
-        /// Where the moments want it, in sigmas off the mean.
-        from: f64,
-        /// Where it is.
-        to: f64,
-    },
-    /// A characteristic is curved along a dimension whose distribution reaches far beyond the nodes.
-    LongTail {
-        /// The characteristic.
-        characteristic: String,
-        /// The dimension.
-        dimension: String,
-        /// The farthest node, in sigmas off the mean.
-        farthest: f64,
-        /// How far values count in the fourth moment, in sigmas.
-        reach: f64,
-        /// The share of the variance that the curvature makes.
-        share: f64,
-    },
-    /// The characteristic is the same at every point.
-    NoReaction {
-        /// The characteristic.
-        characteristic: String,
-    },
-    /// The characteristic is exactly 0 at several points, though not at the means.
-    Atom {
-        /// The characteristic.
-        characteristic: String,
-        /// At how many points.
-        points: usize,
-    },
-    /// Rounding in the model is not small beside the differences.
-    Noise {
-        /// The characteristic.
-        characteristic: String,
-        /// The rounding error of one value, relative to sigma.
-        rounding: f64,
-    },
-    /// Interactions were left unexamined.
-    PairsNotExamined {
-        /// How many were examined.
-        examined: usize,
-        /// Of how many.
-        possible: usize,
-    },
-    /// A first-order method on a characteristic that is visibly curved.
-    RssInvalid {
-        /// The characteristic.
-        characteristic: String,
-        /// How far curvature moves the mean, in sigmas.
-        mean_shift: f64,
-        /// What curvature adds to the variance, relative to what the slopes make of it.
-        variance: f64,
-    },
-    /// An external model answered the nominal point otherwise than before.
-    History {
-        /// What of the model: a characteristic, or something that formulas use.
-        output: String,
-        /// What it was at first; None where it had no value.
-        expected: Option<f64>,
-        /// What it was then.
-        found: Option<f64>,
-        /// Whether the difference is of the size of what the output varies by: another solution, not a drift.
-        flip: bool,
-        /// How often.
-        times: usize,
-        /// Points that were evaluated again for it.
-        points: usize,
-        /// The first few of them, in words.
-        suspects: Vec<String>,
-    },
+    };
+    /// No characteristic of the study uses these constants, formulas or unknowns.
+    UnusedName = "unused-name" by study::unused_name {
+        /// What they are.
+        kind: NameKind,
+        /// Their names.
+        names: Vec<String>,
+    };
     /// Near the nominal dimensions the assembly can move or jam.
-    NearSingular {
-        /// The unknown that is held least.
+    NearSingular = "near-singular" by study::near_singular {
+        /// The unknown that the closure conditions determine least.
         unknown: String,
         /// The condition number of the scaled closure conditions.
         condition: f64,
-    },
-    /// No distribution has the moments.
-    InfeasibleMoments {
-        /// The characteristic.
-        characteristic: String,
-        /// Why not, with the law at the bound.
-        reason: String,
-    },
-    /// Hardly any distribution has the moments.
-    NearInfeasibleMoments {
-        /// The characteristic.
-        characteristic: String,
-        /// Third standardised moment.
-        skewness: f64,
-        /// Fourth standardised moment.
-        kurtosis: f64,
-    },
+    };
+
     /// Cells of a measured column have no value.
-    MissingValues {
+    MissingValues = "missing-values" by measured::missing_values {
         /// The dimension.
         dimension: String,
         /// The file.
         file: String,
-        /// How many have none.
+        /// Cells without a value.
         missing: usize,
-        /// Of how many.
+        /// All cells.
         rows: usize,
-        /// The first lines without one.
+        /// The first lines without a value.
         lines: Vec<u64>,
-    },
+    };
     /// Measured values that lie too far from the others.
-    Outliers {
+    Outliers = "outliers" by measured::outliers {
         /// The dimension.
         dimension: String,
         /// The file.
         file: String,
-        /// How many do.
+        /// How many outliers there are.
         count: usize,
-        /// Of how many.
+        /// All values.
         values: usize,
         /// The farthest of them with their lines.
         first: Vec<(f64, u64)>,
-    },
-    /// A sample that says little of the higher moments.
-    SmallSample {
-        /// The dimension.
+    };
+    /// A sample too small for the higher moments.
+    SmallSample = "small-sample" by measured::small_sample {
+        /// The dimension with the fewest values.
         dimension: String,
-        /// How many values it has.
+        /// Its values.
         values: usize,
-        /// How many it should have.
+        /// The values that it should have.
         enough: usize,
-    },
-    /// What the size of a sample leaves uncertain is not computed where dimensions are correlated.
-    NoSamplingInterval {
-        /// The dimension.
-        dimension: String,
-        /// Whether because dimensions are correlated; else because the method has no surrogate.
+        /// Further dimensions with fewer values than that.
+        others: Vec<String>,
+    };
+    /// The uncertainty that comes from the size of a sample is not computed.
+    NoSamplingInterval = "no-sampling-interval" by measured::no_sampling_interval {
+        /// The measured dimensions.
+        dimensions: Vec<String>,
+        /// True where dimensions are correlated; false where the method has no surrogate.
         correlated: bool,
-    },
+    };
     /// Measured values that are rounded too coarsely.
-    CoarseResolution {
-        /// The dimension.
+    CoarseResolution = "coarse-resolution" by measured::coarse_resolution {
+        /// The dimension with the coarsest rounding.
         dimension: String,
         /// The least difference of two values.
         resolution: f64,
-        /// Their sigma.
+        /// Their standard deviation.
         sigma: f64,
         /// How many different values there are.
         distinct: usize,
-    },
+        /// Further dimensions with coarse rounding.
+        others: Vec<String>,
+    };
     /// Measured values outside the tolerance band.
-    OutsideBand {
+    OutsideBand = "outside-band" by measured::outside_band {
         /// The dimension.
         dimension: String,
-        /// How many.
+        /// How many lie outside.
         count: usize,
-        /// Of how many.
+        /// All values.
         values: usize,
         /// The first of them with their lines.
         first: Vec<(f64, u64)>,
         /// Whether their mean lies outside too.
         mean_too: bool,
-    },
-    /// The extremes of a characteristic are those that a search found, and no proof.
-    NotProven {
+    };
+
+    /// The model failed at some points of the evaluation plan.
+    FailedPoints = "failed-points" by model::failed_points {
+        /// The characteristic that has no value there.
+        characteristic: String,
+        /// Points without a value.
+        failed: usize,
+        /// All points.
+        points: usize,
+        /// The first failed point, in words.
+        point: String,
+        /// The error there.
+        error: String,
+    };
+    /// The model failed at some points of a sample.
+    FailedSamples = "failed-samples" by model::failed_samples {
+        /// The characteristic that has no value there.
+        characteristic: String,
+        /// Points without a value.
+        failed: u64,
+        /// All points.
+        samples: u64,
+        /// The error at the first of them.
+        error: String,
+    };
+    /// An external model gave a slightly different answer to the nominal point later.
+    NotRepeatable = "not-repeatable" by model::not_repeatable {
+        /// The output: a characteristic, or a value that formulas use.
+        output: String,
+        /// The first answer; None where it had no value.
+        expected: Option<f64>,
+        /// The first differing answer; None where it had no value.
+        found: Option<f64>,
+        /// How often the answer differed.
+        times: usize,
+        /// Points that a fresh process evaluated again.
+        points: usize,
+        /// The first few of these points, in words.
+        suspects: Vec<String>,
+    };
+    /// An external model gave an answer of another solution to the nominal point later.
+    BranchFlip = "branch-flip" by model::branch_flip {
+        /// The output: a characteristic, or a value that formulas use.
+        output: String,
+        /// The first answer; None where it had no value.
+        expected: Option<f64>,
+        /// The first differing answer; None where it had no value.
+        found: Option<f64>,
+        /// How often the answer differed.
+        times: usize,
+        /// Points that a fresh process evaluated again.
+        points: usize,
+        /// The first few of these points, in words.
+        suspects: Vec<String>,
+    };
+    /// The characteristic is the same at every point.
+    NoReaction = "no-reaction" by model::no_reaction {
         /// The characteristic.
         characteristic: String,
-        /// Evaluations of the search.
-        evaluations: usize,
-        /// How it ended.
-        ended: Ended,
-        /// Points in the box at which the characteristic has no value.
+    };
+    /// The characteristic is exactly 0 at several points, though not at the means.
+    Atom = "atom" by model::atom {
+        /// The characteristic.
+        characteristic: String,
+        /// Points at which it is 0.
+        points: usize,
+    };
+    /// Rounding in the model is not small beside the differences.
+    Noise = "noise" by model::noise {
+        /// The characteristic.
+        characteristic: String,
+        /// The rounding error of one value, relative to sigma.
+        rounding: f64,
+    };
+    /// Answers next to the means scatter.
+    Scatter = "scatter" by model::scatter {
+        /// The characteristic.
+        characteristic: String,
+        /// The standard deviation of the scatter, in sigmas of the characteristic.
+        scatter: f64,
+        /// Dimensions whose second difference is no larger than the scatter.
+        drowned: usize,
+    };
+
+    /// A derivative is unknown.
+    LostDerivative = "lost-derivative" by derivatives::lost_derivative {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension, or the two of a mixed derivative; empty where every derivative is lost.
+        dimensions: Vec<String>,
+        /// What is lost.
+        loss: Loss,
+        /// Further dimensions, or pairs as `a:b`, with the same loss.
+        others: Vec<String>,
+    };
+    /// The moments of a method without derivatives are unknown.
+    LostMoments = "lost-moments" by derivatives::lost_moments {
+        /// The characteristic.
+        characteristic: String,
+        /// The reason, in words.
+        because: String,
+    };
+    /// The model fails within the tolerances: differences were taken over a shorter step.
+    DomainEdge = "domain-edge" by derivatives::domain_edge {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which it fails nearest to the mean.
+        dimension: String,
+        /// The node that failed, in sigmas from the mean.
+        failed: f64,
+        /// The node that was used instead.
+        used: f64,
+        /// Further dimensions along which it fails.
+        others: Vec<String>,
+    };
+    /// The model has no value at points of the distribution, though it has one wherever differences were taken.
+    DomainEdgeWithin = "domain-edge-within" by derivatives::domain_edge_within {
+        /// The characteristic.
+        characteristic: String,
+        /// Check points without a value.
         failed: usize,
-        /// Why it has none at the first of them.
-        failure: Option<String>,
-        /// An interval that no assembly leaves, and the boxes of interval arithmetic that it took; for formulas.
-        bounds: Option<([f64; 2], usize)>,
-    },
+        /// All check points.
+        points: usize,
+    };
+    /// A matched node lies outside the support of a distribution and was moved inside.
+    SupportEdge = "support-edge" by derivatives::support_edge {
+        /// The dimension with the longest move.
+        dimension: String,
+        /// The matched node, in sigmas from the mean.
+        from: f64,
+        /// The node that was used instead.
+        to: f64,
+        /// Further dimensions with a moved node.
+        others: Vec<String>,
+    };
+    /// A characteristic is curved along a dimension whose distribution reaches far beyond the nodes.
+    LongTail = "long-tail" by derivatives::long_tail {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension whose curvature contributes most.
+        dimension: String,
+        /// The farthest node, in sigmas from the mean.
+        farthest: f64,
+        /// The distance up to which values count in the fourth moment, in sigmas.
+        reach: f64,
+        /// The share of the variance that the curvature contributes.
+        share: f64,
+        /// Further dimensions with a long tail.
+        others: Vec<String>,
+    };
+    /// Some interactions were not examined.
+    PairsNotExamined = "pairs-not-examined" by derivatives::pairs_not_examined {
+        /// Interactions examined.
+        examined: usize,
+        /// All interactions.
+        possible: usize,
+    };
+
+    /// A first-order method on a characteristic that is visibly curved.
+    RssInvalid = "rss-invalid" by surface::rss_invalid {
+        /// The characteristic.
+        characteristic: String,
+        /// The mean shift of second order, in sigmas.
+        mean_shift: f64,
+        /// What curvature adds to the variance, relative to the linear variance.
+        variance: f64,
+    };
+    /// Powers beyond the second have a visible effect.
+    HigherOrder = "higher-order" by surface::higher_order {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which the effect is largest.
+        dimension: String,
+        /// Third and fourth coefficient, in sigmas of the characteristic.
+        coefficients: [f64; 2],
+        /// Whether the surrogate has these powers.
+        held: bool,
+        /// Further dimensions with such an effect.
+        others: Vec<String>,
+    };
+    /// Rules of three nodes do not integrate the high powers of a curved characteristic.
+    ShallowRules = "shallow-rules" by surface::shallow_rules {
+        /// The characteristic.
+        characteristic: String,
+        /// The share of its variance that curvature contributes.
+        share: f64,
+    };
+    /// A fitted surface misses the values that it was fitted to.
+    PoorFit = "poor-fit" by surface::poor_fit {
+        /// The characteristic.
+        characteristic: String,
+        /// The residual standard error, in sigmas.
+        residual: f64,
+    };
+    /// The slope of a characteristic changes abruptly within the tolerances.
+    Kink = "kink" by surface::kink {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which the slopes differ most.
+        dimension: String,
+        /// On the left and on the right, in sigmas of the characteristic per sigma of the dimension.
+        slopes: [f64; 2],
+        /// The places between which the kink lies, in sigmas from the mean.
+        between: [f64; 2],
+        /// Further dimensions with a kink.
+        others: Vec<String>,
+    };
+    /// A characteristic jumps within the tolerances.
+    Discontinuity = "discontinuity" by surface::discontinuity {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which the jump is largest.
+        dimension: String,
+        /// The height of the jump, in sigmas of the characteristic.
+        by: f64,
+        /// The places between which the jump lies, in sigmas from the mean.
+        between: [f64; 2],
+        /// Further dimensions with a jump.
+        others: Vec<String>,
+    };
+    /// Part of the variance comes from terms that were not examined.
+    InteractionsLeftOut = "interactions-left-out" by surface::interactions_left_out {
+        /// The characteristic.
+        characteristic: String,
+        /// Their share of the variance.
+        share: f64,
+    };
+    /// Model and surrogate differ at the check points.
+    UntrustedSurrogate = "untrusted-surrogate" by surface::untrusted_surrogate {
+        /// The characteristic.
+        characteristic: String,
+        /// The share of the variance that the surrogate does not explain.
+        share: f64,
+        /// Points of the model from which the moments come instead; None where the budget did not allow any.
+        sampled: Option<u64>,
+    };
     /// A formula changes its form within the assemblies, by its own tree.
-    Switch {
+    Switch = "switch" by surface::switch {
         /// The characteristic.
         characteristic: String,
         /// The part of the formula that does it.
@@ -318,21 +373,21 @@ pub enum Warning {
         change: Change,
         /// The probability of the smaller side.
         probability: f64,
-    },
-    /// The error of sigma by the model itself is too large for the surface to be one.
-    UnverifiedSurface {
+    };
+    /// A divisor passes through 0 within the assemblies.
+    Pole = "pole" by surface::pole {
         /// The characteristic.
         characteristic: String,
-        /// The share of the variance that the surface leaves unexplained; None where that is unknown.
-        share: Option<f64>,
-        /// Points of the model that were sampled; None where it was evaluated at a few points only.
-        sampled: Option<u64>,
-    },
+        /// The part of the formula that grows without bound.
+        switch: String,
+        /// The probability of the smaller side.
+        probability: f64,
+    };
     /// A figure lies beyond three errors of the model's own.
-    FigureOff {
+    FigureOff = "figure-off" by surface::figure_off {
         /// The characteristic.
         characteristic: String,
-        /// The figure.
+        /// Mean, sigma, skewness or kurtosis.
         figure: &'static str,
         /// As the method has it.
         value: f64,
@@ -340,291 +395,193 @@ pub enum Warning {
         model: f64,
         /// The error of that.
         error: f64,
-    },
-    /// Two slopes of a characteristic meet within reach.
-    Kink {
-        /// The characteristic.
-        characteristic: String,
-        /// The dimension along which they do.
-        dimension: String,
-        /// On the left and on the right, per sigma of the dimension, in sigmas of the characteristic.
-        slopes: [f64; 2],
-        /// Between which places, in sigmas off the mean.
-        between: [f64; 2],
-    },
-    /// A characteristic jumps within reach.
-    Discontinuity {
-        /// The characteristic.
-        characteristic: String,
-        /// The dimension along which it does.
-        dimension: String,
-        /// By how many of its sigmas.
-        by: f64,
-        /// Between which places, in sigmas off the mean.
-        between: [f64; 2],
-    },
-    /// Powers beyond the second have a visible part.
-    HigherOrder {
-        /// The characteristic.
-        characteristic: String,
-        /// The dimension along which they have.
-        dimension: String,
-        /// Third and fourth coefficient, in sigmas of the characteristic.
-        coefficients: [f64; 2],
-        /// Whether the surrogate has them.
-        held: bool,
-    },
-    /// Answers next to the means scatter.
-    Scatter {
-        /// The characteristic.
-        characteristic: String,
-        /// What they scatter by, in sigmas of the characteristic.
-        scatter: f64,
-        /// Dimensions whose second difference is no more than that makes.
-        drowned: usize,
-    },
-    /// The model has no value at points of the distribution, though it has one wherever differences were taken.
-    DomainEdgeWithin {
-        /// The characteristic.
-        characteristic: String,
-        /// At how many points.
-        failed: usize,
-        /// Of how many that check.
-        points: usize,
-    },
-    /// Interactions, or what else the surrogate does not have, are in the variance as an unexplained part.
-    InteractionsLeftOut {
-        /// The characteristic.
-        characteristic: String,
-        /// Their share of the variance.
-        share: f64,
-    },
-    /// Model and surrogate differ at the points that check.
-    UntrustedSurrogate {
-        /// The characteristic.
-        characteristic: String,
-        /// The share of the variance that the surrogate does not have.
-        share: f64,
-        /// Points of the model on which the moments rest instead; None where there was no money for them.
-        sampled: Option<u64>,
-    },
-    /// The estimated error is larger than wanted.
-    UnderResolved {
+    };
+    /// The estimated error is larger than the wanted accuracy.
+    UnderResolved = "under-resolved" by surface::under_resolved {
         /// The characteristic.
         characteristic: String,
         /// Which of its results.
         figure: Figure,
-        /// Its error as estimated, that of sigma relative; None where nothing is known of it.
+        /// The estimated error, that of sigma relative; None where it is unknown.
         error: Option<f64>,
-        /// As wanted.
+        /// The wanted error.
         wanted: f64,
-        /// Whether the budget was the reason.
+        /// Whether the budget ended the analysis.
         budget: bool,
-    },
-    /// The law of four moments rejects other assemblies than the surface that has these moments.
-    TailsMissed {
+    };
+
+    /// No distribution has the moments.
+    InfeasibleMoments = "infeasible-moments" by distribution::infeasible_moments {
         /// The characteristic.
         characteristic: String,
-        /// The share that the law rejects.
+        /// The reason, in words.
+        reason: String,
+    };
+    /// The moments lie close to the bound beyond which no distribution has them.
+    NearInfeasibleMoments = "near-infeasible-moments" by distribution::near_infeasible_moments {
+        /// The characteristic.
+        characteristic: String,
+        /// Third standardised moment.
+        skewness: f64,
+        /// Fourth standardised moment.
+        kurtosis: f64,
+    };
+    /// The Pearson fit and the surface reject different shares.
+    TailsMissed = "tails-missed" by distribution::tails_missed {
+        /// The characteristic.
+        characteristic: String,
+        /// The share that the Pearson fit rejects.
         law: f64,
-        /// The share of the surface's points.
+        /// The share of the surface's points that are rejected.
         surface: f64,
-        /// How many these are.
+        /// The number of these points.
         points: usize,
-    },
-    /// Four moments that a distribution with several peaks has.
-    SeveralModes {
+    };
+    /// The moments are those of a distribution with several peaks.
+    SeveralModes = "several-modes" by distribution::several_modes {
         /// The characteristic.
         characteristic: String,
         /// `(skewness^2 + 1)/kurtosis`: 5/9 for a uniform distribution, 1 for one with two values.
         coefficient: f64,
-    },
-}
+    };
 
-/// How a search for extremes ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ended {
-    /// No move along a coordinate improves either extreme.
-    Converged,
-    /// The budget was spent.
-    Budget,
-    /// The run was stopped.
-    Stopped,
-}
+    /// One drawn point carries most of a small probability.
+    HeavyPoint = "heavy-point" by sample::heavy_point {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit beyond which the point lies.
+        limit: f64,
+        /// The point's share of the estimate.
+        part: f64,
+    };
+    /// No drawn point lies beyond a limit.
+    NothingBeyond = "nothing-beyond" by sample::nothing_beyond {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit.
+        limit: f64,
+        /// Points drawn.
+        points: u64,
+        /// The upper bound of the probability.
+        most: f64,
+    };
+    /// Plain sampling would have given the same error with fewer points than importance sampling.
+    PlainSampling = "plain-sampling" by sample::plain_sampling {
+        /// The characteristic.
+        characteristic: String,
+        /// The limit.
+        limit: f64,
+        /// Points of a plain sample with the same standard error.
+        plain: f64,
+        /// Evaluations spent.
+        evaluations: u64,
+    };
+    /// The standard errors of a sample are larger than wanted.
+    TargetErrorMissed = "target-error-missed" by sample::target_error_missed {
+        /// Points drawn.
+        points: u64,
+    };
 
-/// What of a derivative is lost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Loss {
-    /// Every derivative: there is no value at the means, from which differences are taken.
-    Centre,
-    /// Slope and curvature: without them the characteristic has no moments.
-    Slope,
-    /// The curvature; the slope is one-sided.
-    Curvature,
-    /// The mixed derivative.
-    Mixed,
-    /// One side of the mixed derivative.
-    OneSidedMixed,
-    /// Nothing failed: the run was stopped before the points of these derivatives were evaluated.
-    NotEvaluated {
-        /// How many derivatives are missing.
-        derivatives: usize,
-    },
-}
+    /// The extremes of a characteristic come from a search and are not proven.
+    NotProven = "not-proven" by allocation::not_proven {
+        /// The characteristic.
+        characteristic: String,
+        /// Evaluations of the search.
+        evaluations: usize,
+        /// How the search ended.
+        ended: Ended,
+        /// Points of the search without a value.
+        failed: usize,
+        /// The error at the first of them.
+        failure: Option<String>,
+        /// An interval that contains every assembly, and the boxes of interval arithmetic that it took; for formulas.
+        bounds: Option<([f64; 2], usize)>,
+    };
+    /// Dimensions with a fit of ISO 286 were given a free tolerance.
+    FitReplaced = "fit-replaced" by allocation::fit_replaced {
+        /// The dimensions.
+        dimensions: Vec<String>,
+    };
+    /// The model was not evaluated at the tolerances that were found.
+    NotConfirmed = "not-confirmed" by allocation::not_confirmed;
+    /// Monte Carlo at the tolerances that were found misses a required yield.
+    ConfirmationMisses = "confirmation-misses" by allocation::confirmation_misses {
+        /// The characteristic.
+        characteristic: String,
+        /// The required yield.
+        required: f64,
+        /// 95 % interval of the sample's yield.
+        interval: [f64; 2],
+    };
+    /// There are no tolerances to write into a study.
+    NothingToWrite = "nothing-to-write" by allocation::nothing_to_write;
+    /// The study cannot be written with the tolerances that were found.
+    NotWritten = "not-written" by allocation::not_written {
+        /// The reason, in words.
+        reason: String,
+    };
 
-/// What happens to a characteristic at a switch of its formula.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Change {
-    /// Its slope changes.
-    Kink,
-    /// Its value jumps.
-    Jump,
-    /// It has no value beyond.
-    Edge,
-    /// It grows without bound.
-    Pole,
-}
-
-/// What an accuracy can be wanted of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Figure {
-    /// Sigma, relative.
-    Sigma,
-    /// The skewness.
-    Skewness,
-    /// The kurtosis.
-    Kurtosis,
-    /// The share within the limits.
-    Yield,
-}
-
-impl Figure {
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sigma => "sigma",
-            Self::Skewness => "skewness",
-            Self::Kurtosis => "kurtosis",
-            Self::Yield => "yield",
-        }
-    }
+    /// The run was stopped before its end.
+    Stopped = "stopped" by run::stopped {
+        /// What stopped it.
+        cause: StopCause,
+        /// How much was done until then.
+        done: u64,
+        /// How much there was to do, where that is known.
+        planned: Option<u64>,
+        /// What is counted.
+        counted: Counted,
+    };
+    /// The run will take long.
+    Long = "long" by run::long {
+        /// The expected time in seconds.
+        expected_s: f64,
+    };
+    /// Points of the plan have no answer in the table of answers.
+    MissingPoints = "missing-points" by run::missing_points {
+        /// How many.
+        count: usize,
+        /// The file to which they were written, where one was named.
+        written: Option<String>,
+    };
+    /// Answers in the table belong to no point of the plan.
+    UnmatchedPoints = "unmatched-points" by run::unmatched_points {
+        /// How many.
+        count: usize,
+        /// The first of their lines.
+        lines: Vec<usize>,
+    };
+    /// Only the points of the first stage are known.
+    FirstStageOnly = "first-stage-only" by run::first_stage_only;
 }
 
 impl Warning {
-    /// The code that reports use.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::UnusedDimension { .. } => "unused-dimension",
-            Self::UnusedName { .. } => "unused-name",
-            Self::FailedPoints { .. } | Self::FailedSamples { .. } => "failed-points",
-            Self::HeavyPoint { .. } => "untrusted-surrogate",
-            Self::NothingBeyond { .. } => "under-resolved",
-            Self::PlainSampling { .. } => "plain-sampling",
-            Self::LostMoments { .. } => "lost-moments",
-            Self::ShallowRules { .. } => "higher-order",
-            Self::PoorFit { .. } => "untrusted-surrogate",
-            Self::LostDerivative { .. } => "lost-derivative",
-            Self::DomainEdge { .. } => "domain-edge",
-            Self::SupportEdge { .. } => "support-edge",
-            Self::LongTail { .. } => "long-tail",
-            Self::NoReaction { .. } => "no-reaction",
-            Self::Atom { .. } => "atom",
-            Self::Noise { .. } => "noise",
-            Self::PairsNotExamined { .. } => "pairs-not-examined",
-            Self::RssInvalid { .. } => "rss-invalid",
-            Self::History { flip: true, .. } => "branch-flip",
-            Self::History { flip: false, .. } => "history",
-            Self::NearSingular { .. } => "near-singular",
-            Self::InfeasibleMoments { .. } => "infeasible-moments",
-            Self::NearInfeasibleMoments { .. } => "near-infeasible-moments",
-            Self::MissingValues { .. } => "missing-values",
-            Self::Outliers { .. } => "outliers",
-            Self::SmallSample { .. } => "small-sample",
-            Self::NoSamplingInterval { .. } => "no-sampling-interval",
-            Self::CoarseResolution { .. } => "coarse-resolution",
-            Self::OutsideBand { .. } => "outside-band",
-            Self::NotProven { .. } => "not-proven",
-            Self::FitReplaced { .. } => "fit-replaced",
-            Self::NotConfirmed => "not-confirmed",
-            Self::ConfirmationMisses { .. } => "confirmation-misses",
-            Self::Kink { .. } => "kink",
-            Self::Discontinuity { .. } => "discontinuity",
-            Self::HigherOrder { .. } => "higher-order",
-            Self::Scatter { .. } => "noise",
-            Self::DomainEdgeWithin { .. } => "domain-edge",
-            Self::InteractionsLeftOut { .. } => "interactions-left-out",
-            Self::UntrustedSurrogate { .. } => "untrusted-surrogate",
-            Self::UnderResolved { .. } => "under-resolved",
-            Self::TailsMissed { .. } => "tails-missed",
-            Self::SeveralModes { .. } => "several-modes",
-            Self::Switch { change: Change::Kink, .. } => "kink",
-            Self::Switch { change: Change::Jump, .. } => "discontinuity",
-            Self::Switch { change: Change::Edge, .. } => "domain-edge",
-            Self::Switch { change: Change::Pole, .. } => "pole",
-            Self::UnverifiedSurface { .. } => "untrusted-surrogate",
-            Self::FigureOff { .. } => "figure-off",
-        }
+    /// What happened, and what it means for the result, in sentences. It names no option of any front end.
+    pub fn message(&self) -> String {
+        self.text().message
     }
 
-    /// The characteristic that it concerns, where it concerns one.
-    pub fn characteristic(&self) -> Option<&str> {
-        match self {
-            Self::FailedPoints { characteristic, .. }
-            | Self::FailedSamples { characteristic, .. }
-            | Self::HeavyPoint { characteristic, .. }
-            | Self::NothingBeyond { characteristic, .. }
-            | Self::PlainSampling { characteristic, .. }
-            | Self::LostMoments { characteristic, .. }
-            | Self::ShallowRules { characteristic, .. }
-            | Self::PoorFit { characteristic, .. }
-            | Self::LostDerivative { characteristic, .. }
-            | Self::DomainEdge { characteristic, .. }
-            | Self::LongTail { characteristic, .. }
-            | Self::NoReaction { characteristic }
-            | Self::Atom { characteristic, .. }
-            | Self::Noise { characteristic, .. }
-            | Self::History { output: characteristic, .. }
-            | Self::InfeasibleMoments { characteristic, .. }
-            | Self::NearInfeasibleMoments { characteristic, .. }
-            | Self::NotProven { characteristic, .. }
-            | Self::ConfirmationMisses { characteristic, .. }
-            | Self::Kink { characteristic, .. }
-            | Self::Discontinuity { characteristic, .. }
-            | Self::HigherOrder { characteristic, .. }
-            | Self::Scatter { characteristic, .. }
-            | Self::DomainEdgeWithin { characteristic, .. }
-            | Self::InteractionsLeftOut { characteristic, .. }
-            | Self::UntrustedSurrogate { characteristic, .. }
-            | Self::UnderResolved { characteristic, .. }
-            | Self::TailsMissed { characteristic, .. }
-            | Self::SeveralModes { characteristic, .. }
-            | Self::Switch { characteristic, .. }
-            | Self::UnverifiedSurface { characteristic, .. }
-            | Self::FigureOff { characteristic, .. }
-            | Self::RssInvalid { characteristic, .. } => Some(characteristic),
-            _ => None,
-        }
+    /// What to do, the most promising first; empty where there is nothing to do.
+    pub fn advice(&self) -> Vec<Advice> {
+        self.text().advice
     }
+}
 
-    /// The dimension that it concerns, where it concerns one.
-    pub fn dimension(&self) -> Option<&str> {
-        match self {
-            Self::UnusedDimension { dimension }
-            | Self::DomainEdge { dimension, .. }
-            | Self::LongTail { dimension, .. }
-            | Self::MissingValues { dimension, .. }
-            | Self::Outliers { dimension, .. }
-            | Self::SmallSample { dimension, .. }
-            | Self::NoSamplingInterval { dimension, .. }
-            | Self::CoarseResolution { dimension, .. }
-            | Self::OutsideBand { dimension, .. }
-            | Self::FitReplaced { dimension }
-            | Self::Kink { dimension, .. }
-            | Self::Discontinuity { dimension, .. }
-            | Self::HigherOrder { dimension, .. }
-            | Self::SupportEdge { dimension, .. } => Some(dimension),
-            Self::LostDerivative { dimensions, .. } => dimensions.first().map(String::as_str),
-            _ => None,
-        }
+impl Serialize for Warning {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Text { message, advice } = self.text();
+        let mut shape = serializer.serialize_struct("Warning", 6)?;
+        shape.serialize_field("code", self.code())?;
+        shape.serialize_field("characteristic", &self.characteristic())?;
+        shape.serialize_field("dimension", &self.dimension())?;
+        shape.serialize_field("message", &message)?;
+        shape.serialize_field("data", &self.data())?;
+        shape.serialize_field("advice", &advice)?;
+        shape.end()
     }
+}
+
+/// As `data` has it.
+fn value(of: &impl Serialize) -> Value {
+    serde_json::to_value(of).expect("the fields of warnings are plain data")
 }

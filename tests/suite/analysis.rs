@@ -104,7 +104,7 @@ fn problems_that_do_not_fit_are_refused() {
     assert_eq!(error(Problem::new([], y())), "a problem needs at least one dimension");
     let twice = [Dimension::normal("a", 1.0, 0.1).unwrap(), Dimension::fixed("a", 1.0).unwrap()];
     assert_eq!(error(Problem::new(twice, y())), "the name `a` is given twice");
-    let engine = || sensitol::models::by_name("engine-balance").unwrap().function();
+    let engine = || "engine-balance".parse::<&sensitol::models::Model>().unwrap().function();
     assert!(error(Problem::new(standard(2), engine())).starts_with("the assembly function's inputs are MP, MR,"));
     let gap = Characteristic::new("gap").with_limits(SpecLimits::new(None, Some(1.0)).unwrap());
     let asking = Problem::new(standard(1), y()).unwrap().asking([gap]);

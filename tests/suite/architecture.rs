@@ -19,6 +19,7 @@ const LAYERS: &[&[&str]] = &[
     &["verification"],
     &["problem"],
     &["plan"],
+    &["law"],
     &["surrogate", "verdict"],
     &["capability"],
     &["moments"],
@@ -29,7 +30,7 @@ const LAYERS: &[&[&str]] = &[
     &["correlation"],
     &["dimension", "characteristic"],
     &["distribution", "fits", "requirement"],
-    &["pearson"],
+    &["pearson", "method_kind"],
     &["names", "elementary", "summary"],
 ];
 
@@ -111,6 +112,21 @@ fn layers_import_downward_only() {
     assert!(wrong.is_empty(), "imports that do not lead downward: {wrong:#?}");
 }
 
+/// The table of the house in CONTRIBUTING.md: every module once, from the roof to the ground.
+#[test]
+fn the_table_of_the_house_is_the_list_of_layers() {
+    let text = std::fs::read_to_string(repository("CONTRIBUTING.md")).unwrap();
+    let house = text.split("## The house").nth(1).unwrap().split("\n## ").next().unwrap();
+    let cells = house.lines().filter_map(|line| line.strip_prefix("| `")?.split('|').next());
+    let shown: Vec<&str> = cells.flat_map(|cell| cell.split(',')).map(|name| name.trim().trim_matches('`')).collect();
+    let mut expected: Vec<&str> = LAYERS.concat();
+    assert!(shown.is_sorted_by_key(|module| layer(module)), "the table is not in the order of the layers: {shown:?}");
+    let mut sorted = shown.clone();
+    sorted.sort_unstable();
+    expected.sort_unstable();
+    assert_eq!(sorted, expected, "modules of the table and of the list");
+}
+
 #[test]
 fn the_check_of_imports_sees_every_form() {
     assert_eq!(imports("use crate::plan::Known;"), ["plan"]);
@@ -151,4 +167,75 @@ fn a_library_user_compiles_no_command_line() {
         let line = dependencies.lines().find(|line| line.starts_with(&format!("{library} "))).unwrap();
         assert!(line.contains("optional = true"), "{library} is not optional");
     }
+}
+
+/// The string literals of Rust code, raw and ordinary, without comments.
+fn literals(code: &str) -> Vec<String> {
+    let letters: Vec<char> = code.chars().collect();
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < letters.len() {
+        match letters[at] {
+            '/' if letters.get(at + 1) == Some(&'/') => {
+                while at < letters.len() && letters[at] != '\n' {
+                    at += 1;
+                }
+            }
+            // A quotation mark as a character.
+            '\'' if letters.get(at + 1) == Some(&'"') => at += 3,
+            '\'' if letters.get(at + 1) == Some(&'\\') => at += 4,
+            '"' => {
+                let hashes = letters[..at].iter().rev().take_while(|&&c| c == '#').count();
+                let raw = letters[..at - hashes].last() == Some(&'r');
+                let mut text = String::new();
+                at += 1;
+                while at < letters.len() {
+                    let ends = letters[at] == '"' && (1..=hashes).all(|more| letters.get(at + more) == Some(&'#'));
+                    if ends {
+                        break;
+                    }
+                    if letters[at] == '\\' && !raw {
+                        at += 1;
+                    }
+                    text.push(letters[at]);
+                    at += 1;
+                }
+                at += 1;
+                found.push(text);
+            }
+            _ => at += 1,
+        }
+    }
+    found
+}
+
+/// Whether a text names an option of the command line, as `--method`.
+fn names_an_option(text: &str) -> bool {
+    let begins = |(at, _): (usize, &str)| {
+        let (before, after) = (&text[..at], text[at + 2..].chars().next());
+        let inside = before.ends_with(|c: char| c.is_alphanumeric() || c == '-') || before.ends_with("var(");
+        !inside && after.is_some_and(|c| c.is_ascii_lowercase())
+    };
+    text.match_indices("--").any(begins)
+}
+
+/// Other front ends have no options: what to do is an `Advice`, which each shows in its own words.
+#[test]
+fn the_library_names_no_option_of_the_command_line() {
+    let tests = |code: &str| code.split("#[cfg(test)]").next().unwrap_or_default().to_owned();
+    for (file, module, code) in files() {
+        for text in literals(&tests(&code)) {
+            assert!(module == "cli" || !names_an_option(&text), "{file} names an option of the command line: {text}");
+        }
+    }
+}
+
+#[test]
+fn the_check_of_options_sees_every_form() {
+    let code =
+        "let a = \"use --method full\"; // \"--no\"\nlet b = r#\"(\"--step\")\"#; let c = ['\"', '\\n']; f(\"x -- y\")";
+    assert_eq!(literals(code), ["use --method full", "(\"--step\")", "x -- y"]);
+    assert!(names_an_option("all (--method full)") && names_an_option("--step"));
+    // Properties of style sheets, dashes, and comments of the markup.
+    assert!(!names_an_option("var(--ink)") && !names_an_option("a -- b") && !names_an_option("<!-- x -->"));
 }

@@ -557,7 +557,7 @@ fn time_is_kept() {
     assert_eq!(output.status.code(), Some(3));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(report["evaluations"].as_u64().unwrap() < 360_601);
-    assert!(String::from_utf8(output.stderr).unwrap().contains("stopped by the time limit after"));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("The time limit of 0.001 s ended the run after "));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::assembly::process::{Greeting, Process, Settings};
 use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run, Signature};
-use sensitol::journal::{JournalFault, Journaled, Kept, Store};
+use sensitol::journal::{JournalFault, Journaled, Store, StoredAnswer};
 
 use super::support::repository;
 
@@ -275,7 +275,7 @@ fn files_that_are_no_journals() {
     let broken = folder.path().join("broken.sqlite");
     let mut store = Store::open(&broken).unwrap();
     let model = store.model("{}", &["x".to_owned()]).unwrap();
-    let kept = |x: i32| Kept { point: vec![f64::from(x)], output: "y".into(), answer: Ok(f64::from(x)) };
+    let kept = |x: i32| StoredAnswer { point: vec![f64::from(x)], output: "y".into(), answer: Ok(f64::from(x)) };
     store.keep(model, &(0..2000).map(kept).collect::<Vec<_>>()).unwrap();
     drop(store);
     let mut bytes = std::fs::read(&broken).unwrap();
@@ -296,7 +296,7 @@ fn answers_are_kept_exactly() {
     let mut store = Store::open(&folder.path().join("j.sqlite")).unwrap();
     let model = store.model("{}", &["x".to_owned()]).unwrap();
     let values = [0.1 + 0.2, -0.0, 5e-324, f64::MAX, 1.0 / 3.0];
-    let kept = |&value: &f64| Kept { point: vec![value], output: "y".into(), answer: Ok(value) };
+    let kept = |&value: &f64| StoredAnswer { point: vec![value], output: "y".into(), answer: Ok(value) };
     store.keep(model, &values.iter().map(kept).collect::<Vec<_>>()).unwrap();
     for value in values {
         assert_eq!(store.answer(model, &[value], "y").unwrap(), Some(Ok(value)));
@@ -304,7 +304,7 @@ fn answers_are_kept_exactly() {
     // 0 and -0 are one point.
     assert!(store.answer(model, &[0.0], "y").unwrap().is_some());
     assert_eq!(store.answer(model, &[0.3], "y").unwrap(), None, "0.1 + 0.2 is another point");
-    let reason = Kept { point: vec![0.3], output: "y".into(), answer: Err("face 7 is gone".into()) };
+    let reason = StoredAnswer { point: vec![0.3], output: "y".into(), answer: Err("face 7 is gone".into()) };
     store.keep(model, &[reason]).unwrap();
     assert_eq!(store.answer(model, &[0.3], "y").unwrap(), Some(Err("face 7 is gone".into())));
     assert_eq!((store.models().unwrap()[0].values, store.models().unwrap()[0].errors), (5, 1));
@@ -452,7 +452,7 @@ fn points_may_be_evaluated_elsewhere() {
     write(99, 14, "9,9,9,1\n");
     let rounded = sensitol(&["analyze", "--points", &answered]);
     let error = String::from_utf8_lossy(&rounded.stderr).into_owned();
-    assert!(rounded.status.success() && error.contains("unmatched-points") && error.contains("lines 15"), "{error}");
+    assert!(rounded.status.success() && error.contains("unmatched-points") && error.contains("line 15"), "{error}");
     // Some are missing.
     write(9, 17, "");
     let counted = sensitol(&["analyze", "--json", "--points", &answered]);
@@ -518,6 +518,9 @@ fn all_stages_may_be_evaluated_elsewhere() {
     table.extend(answered(&points));
     let study = at("elsewhere.toml");
     let analyze = [&["analyze", &study, "--points", &answers, "--json"][..], &wanted].concat();
+    let missing = |count: usize| {
+        if count == 1 { "1 point has no answer.".to_owned() } else { format!("{count} points have no answer.") }
+    };
     let mut rounds = 0;
     let last = loop {
         std::fs::write(&answers, table.join("\n") + "\n").unwrap();
@@ -528,8 +531,8 @@ fn all_stages_may_be_evaluated_elsewhere() {
             assert!(!error.contains("missing-points") && told.status.success(), "{error}");
             break output;
         }
-        assert!(error.contains(&format!("{} points have no answer; --write-missing", more.len())), "{error}");
-        assert!(written.contains(&format!("append the answers to those of {next}")), "{written}");
+        assert!(error.contains(&missing(more.len())) && error.contains("--write-missing"), "{error}");
+        assert!(written.contains(&format!("append the answers to the points of {next}")), "{written}");
         table.extend(more);
         rounds += 1;
         assert!(rounds < 30, "it comes to an end");

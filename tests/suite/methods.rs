@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use sensitol::distribution::{CentralMoments, StandardMoments};
 use sensitol::method::{ALL, MethodError, Pairs};
 use sensitol::plan::Stencil;
+use sensitol::warning::Advice;
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, analyze};
 
 use super::support::{close, normals, relative, standard};
@@ -252,7 +253,8 @@ fn options_that_mean_nothing_are_refused() {
     ));
     assert!(matches!(refused(Options { step: Some(0.0), ..Method::Rss.into() }), MethodError::BadStep { .. }));
     let over = refused(Options { budget: Some(100), ..Method::Full.into() });
-    assert_eq!(over.to_string(), "full needs 111 evaluations, more than the budget of 100; --method six-n needs 61");
+    assert_eq!(over.to_string(), "full needs 111 evaluations, more than the budget of 100; six-n needs 61");
+    assert_eq!(over.advice(), [Advice::UseMethod { methods: vec![Method::SixN] }, Advice::RaiseBudget]);
     let none = refused(Options { budget: Some(5), ..Method::Full.into() });
     assert_eq!(none.to_string(), "full needs 111 evaluations, more than the budget of 5; no method does with so few");
     assert!(analyze(&problem, &Options { budget: Some(111), ..Method::Full.into() }).is_ok());

@@ -103,7 +103,7 @@ fn quadratics_are_exact() {
     let residual = one.residual.unwrap();
     assert_eq!((residual.points, residual.coefficients), (16 + 10 + 1, 21));
     assert!(residual.standard_error.unwrap() < 1e-13);
-    assert!(found.warnings.iter().all(|warning| warning.code() != "untrusted-surrogate"));
+    assert!(found.warnings.iter().all(|warning| warning.code() != "poor-fit"));
 }
 
 /// A cubic term of one normal dimension: by hand, from the normal equations. With x = -1, 1 (corners, each twice) and 0 (the other
@@ -121,7 +121,7 @@ fn a_cubic_shows_in_the_residual() {
     // Of c + a_0 + a_1, whose normal matrix is [9 10 10; 10 22 4; 10 4 22], and of the two slopes, of variance s^2/10 each.
     relative(residual.mean.unwrap(), error * (2.0f64 / 17.0).sqrt(), 1e-12);
     relative(residual.sigma.unwrap(), error / 10f64.sqrt(), 1e-12);
-    let warning = found.warnings.iter().find(|warning| warning.code() == "untrusted-surrogate").unwrap();
+    let warning = found.warnings.iter().find(|warning| warning.code() == "poor-fit").unwrap();
     assert!(warning.message().contains("32.7 % of sigma"), "{}", warning.message());
 }
 

@@ -467,7 +467,7 @@ fn unused_names_are_warnings() {
     )
     .unwrap();
     let messages: Vec<String> = study.warnings.iter().map(|warning| warning.message()).collect();
-    assert_eq!(messages, ["no characteristic uses the constant `idle`", "no characteristic uses the formula `v`"]);
+    assert_eq!(messages, ["No characteristic uses the constant `idle`.", "No characteristic uses the formula `v`."]);
     let analysis = analyze(&study.problem, &Method::Full.into()).unwrap();
     assert_eq!(analysis.run.evaluations, 3);
     assert_eq!(analysis.warnings.iter().map(|warning| warning.code()).collect::<Vec<_>>(), ["unused-dimension"]);
@@ -491,8 +491,8 @@ fn a_formula_that_leaves_its_domain_names_point_and_value() {
     let message = analysis.warnings.iter().find(|warning| warning.code() == "failed-points").unwrap().message();
     assert_eq!(
         message,
-        "`angle` has no value at 1 of 6 points; first at a = 1.0732050807568878 (mean +1.732 sigma): `acos(a)` in formula \
-         `angle`: the argument must lie in -1 .. 1, but is 1.0732050807568878"
+        "`angle` has no value at 1 of 6 points. The first is at a = 1.0732050807568878 (mean +1.732 sigma): `acos(a)` in formula \
+         `angle`: the argument must lie in -1 .. 1, but is 1.0732050807568878. The share of assemblies without a value is unknown."
     );
     let [angle, sum] = &analysis.characteristics[..] else { panic!("two characteristics") };
     assert!(angle.moments.is_some());

@@ -76,11 +76,14 @@ fn a_sweep_is_its_analyses() {
             alone += expected.run.evaluations;
         }
         assert!(swept.run.stopped.is_none() && swept.run.failed == 0);
-        assert_eq!((swept.run.evaluations, swept.run.stages), (gathered.iter().sum(), gathered.len()));
+        assert_eq!(
+            (swept.run.evaluations, swept.run.stages),
+            (gathered.iter().sum::<usize>() as u64, gathered.len() as u64)
+        );
         // Points of two values that coincide are evaluated once.
         assert!(swept.run.evaluations <= alone, "{method:?}");
         if method != Method::Auto {
-            assert_eq!(gathered.len(), stages, "{method:?}: {gathered:?}");
+            assert_eq!(gathered.len() as u64, stages, "{method:?}: {gathered:?}");
         }
     }
 }

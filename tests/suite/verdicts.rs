@@ -83,10 +83,9 @@ fn what_was_not_evaluated_is_no_failure() {
     let whole = analyze(&problem, &Method::Full.into()).unwrap();
     assert_eq!(whole.characteristics[0].verdict(), Some(Verdict::Missed));
     // Cheap models are asked block by block: the strongest pairs come in a second stage, after the first look at `stop`.
-    let options = sensitol::Options { pairs: Some(sensitol::method::Pairs::Strongest(3)), ..Method::SixN.into() };
     asked.store(0, order);
-    let stop = || (asked.load(order) >= 13).then_some(StopReason::TimeLimit);
-    let cut = analyze_within(&problem, &options, &Run::to_the_end().stopping_when(&stop)).unwrap();
+    let stop = || (asked.load(order) >= 7).then_some(StopReason::TimeLimit);
+    let cut = analyze_within(&problem, &Method::SixN.into(), &Run::to_the_end().stopping_when(&stop)).unwrap();
     let one = &cut.characteristics[0];
     assert_eq!((cut.run.stopped, cut.run.unfinished(), one.unfinished), (Some(StopReason::TimeLimit), true, true));
     assert!(one.requirements().len() == 2 && one.requirements().iter().all(|of| of.verdict == Verdict::Inconclusive));

@@ -12,7 +12,7 @@
 //! nearly all of that. `u_j^2 u_k` is the one that matters most: with its mean it is a slope `B_jjk u_k` that no difference about the
 //! means has seen.
 
-use super::view::Bought;
+use super::chosen::ChosenPoints;
 use crate::plan::{Corner, DifferencePlan};
 use crate::surrogate::Univariate;
 
@@ -148,7 +148,7 @@ pub(super) struct Atoms {
 /// have told it.
 pub(super) fn atoms(
     plan: &DifferencePlan,
-    bought: &Bought,
+    bought: &ChosenPoints,
     bends: &Bends,
     left: &[Option<f64>],
     together: Option<f64>,

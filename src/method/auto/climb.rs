@@ -3,7 +3,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::view::{Bought, Probe, View, skewed};
+use super::chosen::{ChosenPoints, Probe};
+use super::view::{View, skewed};
+use crate::method::climbed::ClimbEnd;
 use crate::plan::{DifferencePlan, Known, Point, Purpose, Stage, scattered};
 use crate::problem::Problem;
 
@@ -41,19 +43,6 @@ const ON_TOP: usize = 16;
 /// The signs are the same for every study of as many dimensions, and no seed of anybody's.
 const KEY: u64 = 0x5e_75_17_02;
 
-/// How a climb ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rest {
-    /// Every characteristic is known as well as it was wanted, by the estimate.
-    Reached,
-    /// The budget does not allow what would be next.
-    Budget,
-    /// Nothing that could be bought is expected to help.
-    Exhausted,
-    /// It was stopped before any of that.
-    Stopped,
-}
-
 /// Evaluations of derivatives beyond which it does not go, failed points apart.
 pub(super) fn most(n: usize) -> usize {
     (OVER_FULL * (n * n + 3 * n + 1) as f64) as usize + ON_TOP
@@ -63,7 +52,7 @@ pub(super) fn most(n: usize) -> usize {
 pub(super) struct Climb<'p> {
     problem: &'p Problem,
     pub(super) plan: DifferencePlan,
-    pub(super) bought: Bought,
+    pub(super) bought: ChosenPoints,
     accuracy: f64,
     budget: usize,
     /// Evaluated so far, and what has been chosen since.
@@ -77,7 +66,7 @@ pub(super) struct Climb<'p> {
     /// Every interaction is bought one by one.
     pub(super) dense: bool,
     short_of_budget: bool,
-    pub(super) rest: Option<Rest>,
+    pub(super) rest: Option<ClimbEnd>,
 }
 
 impl<'p> Climb<'p> {
@@ -87,7 +76,7 @@ impl<'p> Climb<'p> {
         let mut climb = Self {
             problem,
             plan,
-            bought: Bought::default(),
+            bought: ChosenPoints::default(),
             accuracy,
             budget,
             spent: 0,
@@ -110,7 +99,7 @@ impl<'p> Climb<'p> {
 
     /// Wants more of sigma than it did, by a factor below 1, where that can lead on; whether it can.
     pub(super) fn tighten(&mut self, factor: f64) -> bool {
-        let on = self.rest == Some(Rest::Reached) && self.accuracy > FINEST;
+        let on = self.rest == Some(ClimbEnd::Reached) && self.accuracy > FINEST;
         if on {
             self.rest = None;
             self.accuracy = (self.accuracy * factor.clamp(0.1, 0.5)).max(FINEST);
@@ -128,7 +117,7 @@ impl<'p> Climb<'p> {
                 if stage.points.len() > left {
                     // Failed points are replaced beyond what was planned.
                     stage.points.truncate(left);
-                    self.rest = Some(Rest::Budget);
+                    self.rest = Some(ClimbEnd::Budget);
                 }
                 return (!stage.points.is_empty()).then_some(stage);
             }
@@ -189,7 +178,7 @@ impl<'p> Climb<'p> {
             if doubtful && self.sets == 1 && self.positions() >= CONFIRM_FROM && self.check() {
                 return true;
             }
-            self.rest = Some(Rest::Reached);
+            self.rest = Some(ClimbEnd::Reached);
             return false;
         }
         let curved = self.refine_hidden(&short);
@@ -200,7 +189,7 @@ impl<'p> Climb<'p> {
             || self.examine_rest(&short)
             || near && self.sets < SETS && self.spent + 2 * CHECKS <= most(self.positions()) && self.check();
         if !found {
-            self.rest = Some(if self.short_of_budget { Rest::Budget } else { Rest::Exhausted });
+            self.rest = Some(if self.short_of_budget { ClimbEnd::Budget } else { ClimbEnd::Exhausted });
         }
         found
     }

@@ -13,19 +13,18 @@
 //! are those of a fixed design: the same study gives the same numbers, whatever the seed.
 
 mod atoms;
+mod chosen;
 mod climb;
 mod screening;
 mod start;
 mod view;
 
-pub use climb::Rest;
-
 use std::sync::Arc;
 
-use super::check::Check;
+use super::climbed::{ClimbEnd, Climbed};
 use super::exact::ExactDerivatives;
 use super::ladder::{Examined, Ladder, Order};
-use super::{Accuracies, Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
+use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::Evaluated;
 use crate::plan::{Mixed, Plan, Point, Spread};
@@ -48,7 +47,6 @@ pub(super) const AUTO: Auto = Auto;
 const BASE: Ladder = Ladder {
     method: Method::Auto,
     runs: Method::Auto,
-    name: "auto",
     about: "the default: buys evaluations where they lower the error of sigma most, until it is known well enough",
     count: "2N+17 for what is linear or a parabola",
     spread: Spread::Pair,
@@ -59,50 +57,9 @@ const BASE: Ladder = Ladder {
 /// Where derivatives are exact, all of them cost one evaluation.
 const EXACT: Ladder = Ladder { interactions: Examined::All(crate::plan::Stencil::TwoPoint), ..BASE };
 
-/// How `auto` came to its result.
-#[derive(Debug, Clone)]
-pub struct Climbed {
-    /// The relative error of sigma that was wanted.
-    pub accuracy: f64,
-    /// What was wanted of other results.
-    pub accuracies: Accuracies,
-    /// Why it ended.
-    pub rest: Rest,
-    /// Positions of varying dimensions with five points.
-    pub refined: Vec<usize>,
-    /// Pairs bought for themselves.
-    pub direct: usize,
-    /// Probes that moved all dimensions, of two evaluations each.
-    pub probes: usize,
-    /// Points that checked.
-    pub checks: usize,
-    /// Whether every pair was examined.
-    pub all_pairs: bool,
-    /// For every characteristic what the check says; None where it has no surrogate, or nothing was checked.
-    pub checked: Vec<Option<Check>>,
-    /// What answers next to the means scatter by.
-    pub noise: Vec<Option<f64>>,
-    /// How many sigmas model and surrogate differ by three sigma out along the steepest line, infinite where the model has no
-    /// value there; None where nobody looked.
-    pub tails: Vec<Option<f64>>,
-    /// The share of the variance that interactions have which the screening did not find, where it was needed.
-    pub unscreened: Vec<Option<f64>>,
-}
-
-impl Climbed {
-    /// The variance that the surrogate of a characteristic does not have, by the check; None where nothing was checked.
-    pub fn unexplained(&self, c: usize) -> Option<f64> {
-        self.checked[c].as_ref().filter(|check| check.points > 1).map(|check| check.variance)
-    }
-}
-
 impl Procedure for Auto {
     fn method(&self) -> Method {
         Method::Auto
-    }
-
-    fn name(&self) -> &'static str {
-        BASE.name
     }
 
     fn about(&self) -> &'static str {
@@ -126,7 +83,7 @@ impl Procedure for Auto {
             return EXACT.fits(problem, options);
         }
         // It makes do with less than it would like.
-        Cost::of(&BASE.differences(problem, options)?).within(BASE.name, problem, options)?;
+        Cost::of(&BASE.differences(problem, options)?).within(self.name(), problem, options)?;
         Ok(Cost::of(&*self.plan(problem, options)?))
     }
 
@@ -216,7 +173,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
     let climbed = Climbed {
         accuracy: options.accuracy.unwrap_or(ACCURACY),
         accuracies: options.accuracies,
-        rest: if evaluated.stopped.is_some() { Rest::Stopped } else { climb.rest.unwrap_or(Rest::Budget) },
+        rest: if evaluated.stopped.is_some() { ClimbEnd::Stopped } else { climb.rest.unwrap_or(ClimbEnd::Budget) },
         refined: (0..climb.refined.len()).filter(|&j| climb.refined[j]).collect(),
         direct: climb.bought.direct.len(),
         probes: climb.bought.judging.len() + climb.bought.fitted.len(),

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::atoms::{Bends, atoms};
+use super::chosen::{ChosenPoints, Probe};
 use super::screening::{self, Fit, Probed};
 use crate::distribution::StandardMoments;
-use crate::method::check::{Check, failed};
+use crate::method::check::{SurrogateCheck, failed};
 use crate::method::hidden::hidden;
 use crate::moments::{Interactions, Moments};
 use crate::plan::{DifferencePlan, Known, Mixed, Plan, Point};
@@ -14,36 +15,13 @@ use crate::surrogate::{Surrogate, Univariate};
 /// Mixed derivatives by pair.
 type Products = BTreeMap<(usize, usize), Mixed>;
 
-/// Every dimension up or down, and all turned round.
-#[derive(Debug, Clone)]
-pub(super) struct Probe {
-    pub(super) signs: Vec<f64>,
-    pub(super) points: [Point; 2],
-}
-
-/// What has been bought beside the axes.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Bought {
-    /// Points of the distribution, in mirrored pairs.
-    pub(super) checks: Vec<[Point; 2]>,
-    /// Two points next to the means, opposite to each other.
-    pub(super) noise: Option<[Point; 2]>,
-    /// For every characteristic that is looked at so, points far out along its steepest line.
-    pub(super) tails: Vec<(usize, [Point; 2])>,
-    /// Pairs with two evaluations of their own.
-    pub(super) direct: Vec<(usize, usize)>,
-    /// Probes that judge, and probes that are fitted.
-    pub(super) judging: Vec<Probe>,
-    pub(super) fitted: Vec<Probe>,
-}
-
 /// One characteristic as far as it is known.
 pub(super) struct View {
     pub(super) characteristic: usize,
     pub(super) surrogate: Surrogate,
     /// Of the surrogate.
     pub(super) moments: Moments,
-    pub(super) check: Option<Check>,
+    pub(super) check: Option<SurrogateCheck>,
     /// What parts may hide, by position: variance.
     pub(super) hidden: Vec<f64>,
     /// Variance of every part, and what of it is curved, as a share of the surrogate's.
@@ -61,7 +39,13 @@ pub(super) struct View {
 
 impl View {
     /// None without a value at the means, or where a part is unknown.
-    pub(super) fn of(plan: &DifferencePlan, known: &Known, bought: &Bought, c: usize, accuracy: f64) -> Option<Self> {
+    pub(super) fn of(
+        plan: &DifferencePlan,
+        known: &Known,
+        bought: &ChosenPoints,
+        c: usize,
+        accuracy: f64,
+    ) -> Option<Self> {
         let centre = known.value(&Point::Centre, c)?;
         let mut parts: Vec<Option<Univariate>> = plan.varying().iter().map(|&d| plan.part(known, c, d)).collect();
         let n = parts.len();
@@ -141,7 +125,7 @@ impl View {
             (hidden.map_or(0.0, |hidden| hidden.variance), [share(own[j]), share(part.term(shape).part(1.0).curved)])
         };
         let (hidden, shares) = (0..n).map(part).unzip();
-        let check = Check::of(plan, known, c, &bought.checks, (&surrogate, &moments));
+        let check = SurrogateCheck::of(plan, known, c, &bought.checks, (&surrogate, &moments));
         let tail = tail(plan, known, c, bought, (&surrogate, moments.sigma()));
         let noise = bought.noise.as_ref().and_then(|points| scatter(plan, known, c, points, &surrogate));
         let unscreened = unscreened.map(share);
@@ -189,8 +173,8 @@ impl View {
     /// The estimated relative error of sigma.
     pub(super) fn error(&self) -> f64 {
         let sigma = self.moments.sigma().max(f64::MIN_POSITIVE);
-        let unseen = |check: &Check| check.unseen(self.variance()) + check.shown(1) / sigma;
-        let tail = self.tail.map_or(0.0, Check::far_out);
+        let unseen = |check: &SurrogateCheck| check.unseen(self.variance()) + check.shown(1) / sigma;
+        let tail = self.tail.map_or(0.0, SurrogateCheck::far_out);
         self.truncation() + self.left().unwrap_or(0.0) + self.check.as_ref().map_or(0.0, unseen) + tail
     }
 }
@@ -212,7 +196,7 @@ fn left_at(
     plan: &DifferencePlan,
     known: &Known,
     c: usize,
-    bought: &Bought,
+    bought: &ChosenPoints,
     surrogate: &Surrogate,
 ) -> Option<Vec<Option<f64>>> {
     let points: Vec<&Point> = bought.checks.iter().flatten().collect();
@@ -239,7 +223,7 @@ fn tail(
     plan: &DifferencePlan,
     known: &Known,
     c: usize,
-    bought: &Bought,
+    bought: &ChosenPoints,
     (surrogate, sigma): (&Surrogate, f64),
 ) -> Option<f64> {
     let off = |point: &Point| {
@@ -269,7 +253,7 @@ impl<'a> Screened<'a> {
     fn of(
         plan: &DifferencePlan,
         known: &Known,
-        bought: &'a Bought,
+        bought: &'a ChosenPoints,
         c: usize,
         (centre, parts, products): (f64, &[Option<Univariate>], &Products),
     ) -> Option<Self> {

@@ -7,6 +7,7 @@ use super::super::number::{UNKNOWN, beside, percent, plain, significant, unsigne
 use super::super::text::{band, derivative, rounded};
 use super::super::{CharacteristicReport, Report, Stack, StackNote, WarningReport};
 use super::chart::{Bins, Scale, Span, Spread, quantiles};
+use super::warned::Warned;
 use super::what_if::WhatIf;
 use super::{Fact, fact, json, provenance, render};
 use crate::capability::Law;
@@ -59,8 +60,8 @@ struct One<'r> {
     notes: Vec<String>,
     stack: Option<Stacked>,
     error: Vec<[String; 2]>,
-    basis: Option<&'r str>,
-    warnings: Vec<&'r WarningReport>,
+    basis: Option<String>,
+    warnings: Vec<Warned<'r>>,
 }
 
 /// A contribution.
@@ -130,7 +131,7 @@ fn facts(report: &Report) -> Vec<Fact> {
         None => report.method.to_owned(),
     };
     let mut facts = vec![fact("method", method)];
-    facts.extend(report.account.as_ref().map(|account| fact("what was bought", account.clone())));
+    facts.extend(report.account.as_ref().map(|account| fact("what its points went to", account.to_string())));
     facts.push(fact("varying dimensions", report.varying.to_string()));
     facts.push(fact("evaluations", format!("{}, {} of them failed", report.run.evaluations, report.run.failed)));
     let derivatives = match report.derivatives {
@@ -237,8 +238,8 @@ fn characteristic<'r>(report: &'r Report, one: &'r CharacteristicReport, stack: 
         notes: notes(one),
         stack: stacked(stack),
         error: errors(one),
-        basis: one.error_estimate.as_ref().map(|estimate| estimate.basis.as_str()),
-        warnings: report.warnings.iter().filter(|warning| warning.characteristic.as_ref() == Some(&one.name)).collect(),
+        basis: one.error_estimate.as_ref().map(|estimate| estimate.basis()),
+        warnings: Warned::about(&report.warnings, &one.name),
     }
 }
 

@@ -42,7 +42,7 @@ pub fn compare_html(report: &CompareReport) -> String {
         not_run: (report.not_run.iter())
             .map(|one| {
                 let evaluations = one.evaluations.map_or(UNKNOWN.to_owned(), |count| count.to_string());
-                [one.method.clone(), evaluations, one.reason.clone()]
+                [one.method.clone(), evaluations, one.reason.to_string()]
             })
             .collect(),
     };

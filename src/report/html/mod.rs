@@ -10,6 +10,7 @@ mod chart;
 mod comparison;
 mod sampled;
 mod swept;
+mod warned;
 mod what_if;
 
 pub use allocated::allocate_html;
@@ -27,6 +28,7 @@ use sha2::{Digest, Sha256};
 
 use super::{Head, WarningReport};
 use crate::summary::RunSummary;
+use warned::Warned;
 
 const STYLE: &str = include_str!("page.css");
 /// The mathematics of the what-if, and then what shows it.
@@ -55,7 +57,7 @@ struct Page<'p, T: Serialize> {
     data: String,
     facts: Vec<Fact>,
     /// Warnings of no characteristic in particular.
-    warnings: Vec<&'p WarningReport>,
+    warnings: Vec<Warned<'p>>,
     of: T,
 }
 
@@ -112,7 +114,7 @@ fn render<T: Serialize>(
         script,
         data: data.unwrap_or_default(),
         facts,
-        warnings,
+        warnings: warnings.into_iter().map(Warned::of).collect(),
         of,
     };
     let mut environment = Environment::new();

@@ -104,6 +104,13 @@
     });
   };
 
+  // The counterpart of the module `verdict`: the interval of the yield reaches as far as at the tolerances of the study.
+  const judged = (found, { target, reach }) => {
+    if (reach === null) return "inconclusive";
+    if (found - reach[0] >= target) return "met";
+    return found + reach[1] < target ? "missed" : "inconclusive";
+  };
+
   const show = () => {
     tried.forEach((of, i) => {
       const texts = figures(results[i]), then = figures(before[i]), { met } = results[i];
@@ -114,11 +121,11 @@
         cards[i].querySelector(`[data-before="${name}"]`).textContent = then[name];
       }
       const badge = cards[i].querySelector('[data-figure="verdict"]');
-      const sure = !of.one.unsure;
-      badge.textContent = met === null ? "" : !sure ? "inconclusive" : met ? "target met" : "target missed";
-      badge.classList.toggle("good", sure && met === true);
-      badge.classList.toggle("bad", sure && met === false);
-      badge.classList.toggle("unsure", !sure);
+      const verdict = met === null ? null : judged(results[i].yield, of.one);
+      badge.textContent = verdict === null ? "" : verdict === "inconclusive" ? verdict : `target ${verdict}`;
+      badge.classList.toggle("good", verdict === "met");
+      badge.classList.toggle("bad", verdict === "missed");
+      badge.classList.toggle("unsure", verdict === "inconclusive");
       draw(cards[i], of, before[i], results[i]);
     });
     shares();

@@ -4,9 +4,10 @@ use serde::Serialize;
 
 use super::super::limits::share;
 use super::super::number::{UNKNOWN, plain, significant};
-use super::super::{SimulatedReport, SimulationReport, WarningReport};
+use super::super::{SimulatedReport, SimulationReport};
 use super::analysis::{Verdict, limits};
 use super::chart::{Bins, Spread};
+use super::warned::Warned;
 use super::{fact, provenance, render};
 use crate::capability::Law;
 use crate::moments::Moments;
@@ -28,7 +29,7 @@ struct One<'r> {
     spread: Option<Spread>,
     words: String,
     control: Option<String>,
-    warnings: Vec<&'r WarningReport>,
+    warnings: Vec<Warned<'r>>,
 }
 
 /// A simulation as one page of HTML: every estimate with its standard error, the histogram with the error of every bar.
@@ -147,6 +148,6 @@ fn characteristic<'r>(report: &'r SimulationReport, one: &'r SimulatedReport) ->
                 times(control.reduction.sigma)
             )
         }),
-        warnings: report.warnings.iter().filter(|warning| warning.characteristic.as_ref() == Some(&one.name)).collect(),
+        warnings: Warned::about(&report.warnings, &one.name),
     }
 }

@@ -4,8 +4,9 @@ use serde::Serialize;
 
 use super::super::limits::share;
 use super::super::number::{UNKNOWN, beside, plain, plural, unsigned_zero};
-use super::super::{SweepReport, SweptPointReport, SweptReport, WarningReport, sweep_svg};
+use super::super::{SweepReport, SweptPointReport, SweptReport, sweep_svg};
 use super::analysis::limits;
+use super::warned::Warned;
 use super::{fact, inline, provenance, render};
 
 #[derive(Serialize)]
@@ -21,7 +22,7 @@ struct One<'r> {
     unit: &'r str,
     limits: String,
     rows: Vec<[String; 8]>,
-    warnings: Vec<&'r WarningReport>,
+    warnings: Vec<Warned<'r>>,
 }
 
 /// A sweep as one page of HTML: mean and band over the parameter, and a table for every characteristic.
@@ -57,7 +58,7 @@ fn characteristic<'r>(report: &'r SweepReport, one: &'r SweptReport) -> One<'r> 
         unit: one.unit.as_deref().unwrap_or_default(),
         limits: limits(one.lower, one.upper),
         rows: one.points.iter().map(point).collect(),
-        warnings: report.warnings.iter().filter(|warning| warning.characteristic.as_ref() == Some(&one.name)).collect(),
+        warnings: Warned::about(&report.warnings, &one.name),
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::allocation::{Curve, CurveKind, Priced};
-use crate::analysis::{Analysis, Fit};
+use crate::analysis::{Analysis, CharacteristicAnalysis, Fit};
 use crate::dimension::Dimension;
 use crate::distribution::StandardMoments;
 use crate::problem::Problem;
@@ -98,8 +98,8 @@ pub(super) struct Wanted {
     parts: Vec<[f64; 4]>,
     pairs: Pairs,
     unexplained: Option<f64>,
-    /// Whether what else is known speaks against the yield of the law.
-    unsure: bool,
+    /// How far below and above its yield the interval reaches within which it is known; None where that is not known.
+    reach: Option<[f64; 2]>,
 }
 
 /// Products, column by column.
@@ -108,6 +108,12 @@ struct Pairs {
     j: Vec<usize>,
     k: Vec<usize>,
     a: Vec<f64>,
+}
+
+/// How far the interval of a yield reaches on either side.
+fn reach(found: &CharacteristicAnalysis) -> Option<[f64; 2]> {
+    let (value, [low, high]) = found.capability?.yield_().zip(found.yield_interval().filter(|_| !found.unfinished))?;
+    Some([value - low, high - value])
 }
 
 impl WhatIf {
@@ -141,7 +147,7 @@ impl WhatIf {
                 parts,
                 pairs,
                 unexplained,
-                unsure: one.target_yield().is_some() && found.met().is_none(),
+                reach: reach(found),
             }
         });
         let characteristics = characteristics.collect();

@@ -7,7 +7,6 @@ use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::{DimensionEntry, DistributionEntry};
 use super::super::spanned::Spanned;
 use super::conflict;
-use super::mixture::mixture;
 use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, shift, sigma, sigmas};
 use crate::dimension::DimensionFault;
 use crate::distribution::{
@@ -15,6 +14,9 @@ use crate::distribution::{
     Trapezoidal, Triangular, TruncatedNormal, Uniform, Weibull,
 };
 use crate::names::nearest;
+
+/// A distribution from a dimension's entry, nominal value and tolerance.
+pub(super) type OfBand = fn(&DimensionEntry, f64, Option<[f64; 2]>) -> Result<Spread, Fault>;
 
 /// A kind of distribution by its name in study files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +64,12 @@ pub(in crate::study) fn kinds() -> impl Iterator<Item = (&'static str, &'static 
 }
 
 /// The distribution of this line; None when it does not vary.
-pub(super) fn distribution(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+pub(super) fn distribution(
+    entry: &DimensionEntry,
+    nominal: f64,
+    tolerance: Option<[f64; 2]>,
+    mixture: OfBand,
+) -> Result<Spread, Fault> {
     match kind(entry)? {
         Kind::Moments => moments(entry, nominal),
         Kind::Normal => normal(entry, nominal, tolerance),

@@ -125,7 +125,7 @@ fn warn(name: &str, file: &str, column: &Column, law: &Measured, data: &mut Data
         data.warnings.push(Warning::MissingValues { dimension: dimension(), file, missing, rows, lines });
     }
     if values < SMALL {
-        data.warnings.push(Warning::SmallSample { dimension: dimension(), values, enough: SMALL });
+        data.warnings.push(Warning::SmallSample { dimension: dimension(), values, enough: SMALL, others: Vec::new() });
     }
     let mut far = outliers(&column.values);
     if !far.is_empty() {
@@ -137,8 +137,8 @@ fn warn(name: &str, file: &str, column: &Column, law: &Measured, data: &mut Data
     let distinct = law.sample().values();
     let resolution = distinct.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
     if distinct.len() < values && resolution > RESOLUTION * law.sigma() {
-        let (sigma, distinct) = (law.sigma(), distinct.len());
-        data.warnings.push(Warning::CoarseResolution { dimension: dimension(), resolution, sigma, distinct });
+        let (sigma, distinct, others) = (law.sigma(), distinct.len(), Vec::new());
+        data.warnings.push(Warning::CoarseResolution { dimension: dimension(), resolution, sigma, distinct, others });
     }
 }
 

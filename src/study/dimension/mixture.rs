@@ -3,7 +3,8 @@
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::{DimensionEntry, PartEntry};
 use super::super::spanned::Spanned;
-use super::kinds::{agreeing, distribution, placed, shared};
+use super::distribution;
+use super::kinds::{agreeing, placed, shared};
 use super::spread::{Spread, is_flat, nothing_to_spread, sigma, sigmas};
 use super::tolerance::tolerance;
 use crate::distribution::{Mixture, Part};

@@ -24,6 +24,11 @@ pub(super) use measured::MODELS;
 pub(super) use spread::SIGMAS;
 use spread::Spread;
 
+/// The distribution of this line; None when it does not vary. Parts of a mixture are such lines again.
+fn distribution(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+    kinds::distribution(entry, nominal, tolerance, mixture::mixture)
+}
+
 /// The dimensions of this line, or what is wrong at which key below the dimension's; `model` knows the values that the model
 /// gives by itself. What is needed beside the study, and what is odd about that, is in `data`.
 pub(super) fn dimensions(
@@ -64,7 +69,7 @@ fn dimension(
             measured::outside(name, nominal, tolerance, law, data);
             Some(Arc::clone(&law.distribution))
         }
-        None => kinds::distribution(entry, nominal, tolerance)?,
+        None => distribution(entry, nominal, tolerance)?,
     };
     built(name, entry, nominal, tolerance, distribution, line)
 }

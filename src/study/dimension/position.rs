@@ -6,7 +6,7 @@ use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
 use super::super::spanned::Spanned;
 use super::super::values::NominalEntry;
-use super::{built, conflict, kinds};
+use super::{built, conflict, distribution};
 use crate::dimension::Dimension;
 
 /// The dimensions that a position of this name declares.
@@ -28,7 +28,7 @@ pub(super) fn position(
     let nominal = nominal(entry, names.each_ref().map(|name| model(name)), &line.span())?;
     let band = radius.map(|radius| [-radius, radius]);
     let coordinate = |(coordinate, nominal): (&String, f64)| {
-        let distribution = kinds::distribution(entry, nominal, band)?;
+        let distribution = distribution(entry, nominal, band)?;
         built(coordinate, entry, nominal, band, distribution, line.span()).map(|dimension| dimension.within_zone(name))
     };
     names.iter().zip(nominal).map(coordinate).collect()

@@ -1,0 +1,188 @@
+//! Contours through the saddle point, and the values of the transform on them, which many limits share.
+//!
+//! Tilts stand on a ladder: the contour of a limit is a function of the limit alone, whatever has been asked before, so that
+//! results do not depend on order or threads. Limits are counted from the centre of the surface. A contour keeps the transform at its points; each further limit costs one sum.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::Tail;
+use super::complex::Complex;
+use super::single_sum::BLOCK;
+use super::transform::Transform;
+
+/// From rung to rung; the nearest rung costs half a digit at 40 sigma, and nothing nearer.
+const STEP: f64 = 1.189_207_115_002_721;
+/// The least tilt by sigma.
+const LEAST: f64 = 1.2;
+/// The largest tilt by sigma where a domain has no end: of closed forms; of panels; of trees.
+const MOST: [f64; 3] = [1e9, 3000.0, 300.0];
+/// Logarithm of the part of a tail that the sum may take from its neighbours.
+const NEIGHBOUR: f64 = 32.0;
+/// The same for the neighbour that the end of the domain bounds.
+const ROOM: f64 = 80.0;
+
+/// One side's tilts, and what has been computed on them.
+#[derive(Debug)]
+pub(super) struct Side {
+    tail: Tail,
+    least: f64,
+    most: f64,
+    rungs: Mutex<Vec<Rung>>,
+    contours: Mutex<BTreeMap<Key, Arc<Contour>>>,
+}
+
+/// A tilt and what belongs to it.
+#[derive(Debug, Clone, Copy)]
+struct Rung {
+    theta: f64,
+    cumulants: [f64; 3],
+    /// Up to which limit it is used.
+    until: f64,
+}
+
+/// Rung, spacing, and the direction in which the contour is bent.
+type Key = (usize, u32, i8);
+
+/// `s = theta + bend t^2 + i t`, in steps of `t`.
+#[derive(Debug)]
+pub(super) struct Contour {
+    pub(super) theta: f64,
+    pub(super) step: f64,
+    pub(super) bend: f64,
+    /// `K(theta)`.
+    pub(super) log: f64,
+    /// The same of every single input.
+    logs: Vec<f64>,
+    values: Mutex<Values>,
+}
+
+#[derive(Debug, Default)]
+struct Values {
+    /// `M(s)/M(theta)`; its logarithm where the contour is bent.
+    at: Vec<Complex>,
+    /// Whether the tables of a tree would have been too large to go on.
+    ended: bool,
+}
+
+impl Side {
+    pub(super) fn new(tail: Tail, transform: &Transform) -> Self {
+        let end = match tail {
+            Tail::Upper => transform.domain[1],
+            Tail::Lower => -transform.domain[0],
+        };
+        let kind = match (transform.is_closed(), transform.trees.is_empty()) {
+            (true, _) => 0,
+            (_, true) => 1,
+            _ => 2,
+        };
+        let least = (LEAST / transform.sigma).min(0.5 * end);
+        let most = (0.75 * end).min(MOST[kind] / transform.sigma);
+        Self { tail, least, most, rungs: Mutex::default(), contours: Mutex::default() }
+    }
+
+    fn sign(&self) -> f64 {
+        self.tail.sign()
+    }
+
+    /// The rung whose saddle point is nearest to a limit.
+    fn rung(&self, transform: &Transform, y: f64) -> (usize, Rung) {
+        let mut rungs = self.rungs.lock().unwrap_or_else(PoisonError::into_inner);
+        for place in 0.. {
+            if place == rungs.len() {
+                let size = (self.least * STEP.powi(place as i32)).min(self.most);
+                let between = (size * STEP.sqrt()).min(self.most);
+                let cumulants = transform.cumulants(self.sign() * size);
+                let until = match size >= self.most {
+                    true => self.sign() * f64::INFINITY,
+                    false => transform.cumulants(self.sign() * between)[1],
+                };
+                rungs.push(Rung { theta: self.sign() * size, cumulants, until });
+            }
+            let rung = rungs[place];
+            if self.sign() * (rung.until - y) >= 0.0 {
+                return (place, rung);
+            }
+        }
+        unreachable!("the last rung is used up to infinity")
+    }
+
+    /// The contour for a limit.
+    pub(super) fn contour(&self, transform: &Transform, y: f64) -> Arc<Contour> {
+        let (place, rung) = self.rung(transform, y);
+        let (theta, [log, _, spread]) = (rung.theta, rung.cumulants);
+        let end = match self.tail {
+            Tail::Upper => transform.domain[1],
+            Tail::Lower => -transform.domain[0],
+        };
+        let room = end - theta.abs();
+        // By Poisson's formula the sum is sum_m exp(theta m D) sf(y + m D): far enough from both neighbours.
+        let below = |y: f64| (NEIGHBOUR + (theta * y - log).max(0.0)) / theta.abs();
+        let least = below(if rung.until.is_finite() { rung.until } else { transform.mean })
+            .max(if room.is_finite() { ROOM / room } else { 0.0 })
+            .max(10.0 * spread.max(0.0).sqrt());
+        let doublings = libm::ceil(2.0 * libm::log2(below(y) / least)).max(0.0);
+        let spacing = least * libm::exp2(0.5 * doublings);
+        let bend = match transform.vertex {
+            // 0.12 of the distance that a parabola can be bent by without leaving the domain.
+            Some(vertex) => {
+                let size = if room.is_finite() { theta.abs().max(room) } else { theta.abs() };
+                (0.12 / size).copysign(y - vertex)
+            }
+            None => 0.0,
+        };
+        let key = (place, doublings as u32, if bend == 0.0 { 0 } else { bend.signum() as i8 });
+        let mut contours = self.contours.lock().unwrap_or_else(PoisonError::into_inner);
+        let made = contours.entry(key).or_insert_with(|| {
+            let step = 2.0 * std::f64::consts::PI / spacing;
+            Arc::new(Contour { theta, step, bend, log, logs: transform.logs(theta), values: Mutex::default() })
+        });
+        Arc::clone(made)
+    }
+}
+
+impl Contour {
+    /// With this tilt and these steps, whatever the law is.
+    pub(super) fn fixed(transform: &Transform, theta: f64, step: f64, bend: f64) -> Self {
+        let [log, ..] = transform.cumulants(theta);
+        Self { theta, step, bend, log, logs: transform.logs(theta), values: Mutex::default() }
+    }
+
+    /// The point of this index.
+    pub(super) fn s(&self, index: usize) -> Complex {
+        let t = self.step * index as f64;
+        Complex::new(self.theta + self.bend * t * t, t)
+    }
+
+    /// `exp(K(s) - K(theta) - (s - theta) y)` at the points up to `count`; fewer where a tree ended it.
+    pub(super) fn integrand(&self, transform: &Transform, y: f64, count: usize) -> Vec<Complex> {
+        let mut values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
+        while values.at.len() < count && !values.ended {
+            self.extend(transform, &mut values);
+        }
+        let known = values.at.iter().take(count).enumerate();
+        match self.bend == 0.0 {
+            true => known.map(|(i, value)| *value * Complex::cis(-self.step * i as f64 * y)).collect(),
+            false => known.map(|(i, log)| (*log - (self.s(i) - Complex::from(self.theta)) * y).exp()).collect(),
+        }
+    }
+
+    /// A block of points more.
+    fn extend(&self, transform: &Transform, values: &mut Values) {
+        let first = values.at.len();
+        let mut block = vec![Complex::ONE; BLOCK];
+        if self.bend == 0.0 {
+            let from = self.step * first as f64;
+            if transform.ratios(self.theta, &self.logs, from, self.step, &mut block).is_none() {
+                values.ended = true;
+                return;
+            }
+        } else {
+            let at_theta = transform.forms.log(Complex::from(self.theta));
+            for (i, value) in block.iter_mut().enumerate() {
+                *value = transform.forms.log(self.s(first + i)) - at_theta;
+            }
+        }
+        values.at.extend(block);
+    }
+}

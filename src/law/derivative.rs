@@ -1,0 +1,136 @@
+//! Derivatives of a tail by tolerances, from the contour, the panels or the points that give the tail itself.
+//!
+//! A tolerance that grows by a part `e` makes `z_j` to `(1 + e) z_j` at fixed shape: the surface changes by
+//! `z_j dy/dz_j`, and `dK = s E[z_j dy/dz_j exp(s y)]/E[exp(s y)]`.
+
+use super::complex::Complex;
+use super::contour::Contour;
+use super::forms::Block;
+use super::inversion::Inversion;
+use super::polynomial::{derivative, value};
+use super::single_sum::BLOCK;
+use super::surface::Surface;
+use super::tree::Tree;
+use super::{Figure, Kind, SurfaceLaw, Tail};
+
+/// Of all inputs of the surrogate, 0 for one without a part in the surface; None where the law is a step function.
+pub(super) fn tail_derivatives(law: &SurfaceLaw, y: f64, tail: Tail) -> Option<Vec<Figure>> {
+    let [least, most] = law.range;
+    if y.is_nan() || law.step {
+        return None;
+    }
+    let nothing = Figure::new(0.0, 0.0);
+    let own: Vec<Figure> = match &law.kind {
+        _ if y <= least || y >= most => vec![nothing; law.surface.len()],
+        Kind::Point(_) | Kind::Steps(_) => return None,
+        Kind::Exact(inversion) => exact_derivatives(inversion, &law.surface, y, tail),
+        Kind::Single(single) => single.derivatives(y, tail),
+        Kind::Sampled(sampled) => sampled.derivatives(y, tail, law.mean),
+    };
+    Some(law.surface.places.iter().map(|place| place.map_or(nothing, |place| own[place])).collect())
+}
+
+/// Of all inputs of a surface that an exact law has taken; 0 for the others.
+pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail: Tail) -> Vec<Figure> {
+    law.derivatives(y, tail, |contour, count| {
+        let mut changes = vec![vec![Complex::ZERO; count]; surface.len()];
+        let transform = &law.transform;
+        for hat in &transform.hats.inputs {
+            for (at, change) in changes[hat.input].iter_mut().enumerate() {
+                let s = contour.s(at);
+                *change = hat.halves.iter().fold(Complex::ZERO, |sum, &a| sum + x_coth_x_less_one(s * a));
+            }
+        }
+        for block in &transform.forms.blocks {
+            of_block(block, contour, &mut changes);
+        }
+        for single in &transform.singles {
+            let slope = derivative(&surface.parts[single.input]);
+            for first in (0..count).step_by(BLOCK) {
+                let last = count.min(first + BLOCK);
+                let top = contour.s(last).abs();
+                let tilted = single.tilted(contour.theta, top);
+                for at in first..last {
+                    let s = contour.s(at);
+                    let (mut mass, mut moved) = (Complex::ZERO, Complex::ZERO);
+                    for ((z, g), w) in tilted.z.iter().zip(&tilted.values).zip(&tilted.weights) {
+                        let weight = Complex::cis(s.im * g) * *w;
+                        mass += weight;
+                        moved += weight * (z * value(&slope, *z));
+                    }
+                    changes[single.input][at] = s * moved / mass;
+                }
+            }
+        }
+        for tree in &transform.trees {
+            of_tree(tree, surface, contour, count, &mut changes);
+        }
+        changes
+    })
+}
+
+/// `x coth x - 1`, the change of `log(sinh x/x)` by the logarithm of `x`, for an `x` whose real part is not 0.
+fn x_coth_x_less_one(x: Complex) -> Complex {
+    if x.square() < 0.04 {
+        let square = x * x;
+        // x^2/3 - x^4/45 + 2 x^6/945 - x^8/4725 + 2 x^10/93555 - 1382 x^12/638512875
+        let coefficients = [1.0 / 3.0, -1.0 / 45.0, 2.0 / 945.0, -1.0 / 4725.0, 2.0 / 93555.0, -1382.0 / 638_512_875.0];
+        return coefficients.iter().rev().fold(Complex::ZERO, |sum, &c| (sum + Complex::from(c)) * square);
+    }
+    // Even in x: with the real part that is not negative the exponential falls.
+    let x = if x.re < 0.0 { -x } else { x };
+    let small = (-(x * 2.0)).exp();
+    x * (Complex::ONE + small) / (Complex::ONE - small) - Complex::ONE
+}
+
+/// `s (b_j mu_j + 2 (mu_j (H mu)_j + (Sigma H)_jj))` with the tilted mean `mu` and covariance `Sigma` of the form.
+fn of_block(block: &Block, contour: &Contour, changes: &mut [Vec<Complex>]) {
+    let m = block.members.len();
+    let axis = |j: usize, i: usize| block.axes.as_ref().map_or(1.0, |axes| axes[(j, i)]);
+    let images = block.images();
+    let image = |j: usize, i: usize| images.as_ref().map_or(block.curvatures[0], |images| images[(j, i)]);
+    let count = changes.first().map_or(0, Vec::len);
+    for at in 0..count {
+        let s = contour.s(at);
+        let inverse: Vec<Complex> =
+            block.curvatures.iter().map(|a| Complex::ONE / (Complex::ONE - s * (2.0 * a))).collect();
+        let mean: Vec<Complex> = inverse.iter().zip(&block.slopes).map(|(q, slope)| s * *q * *slope).collect();
+        for (j, &member) in block.members.iter().enumerate() {
+            let (mut mu, mut moved, mut spread) = (Complex::ZERO, Complex::ZERO, Complex::ZERO);
+            for i in 0..m {
+                mu += mean[i] * axis(j, i);
+                moved += mean[i] * image(j, i);
+                spread += inverse[i] * (axis(j, i) * image(j, i));
+            }
+            changes[member][at] = s * (mu * block.linear[j] + (mu * moved + spread) * 2.0);
+        }
+    }
+}
+
+/// By differences of the transform, with the same contour: 1e-8 relative.
+fn of_tree(tree: &Tree, surface: &Surface, contour: &Contour, count: usize, changes: &mut [Vec<Complex>]) {
+    const PART: f64 = 1e-4;
+    let ratios = |tree: &Tree| {
+        let mut all = vec![Complex::ONE; count];
+        for (block, out) in all.chunks_mut(BLOCK).enumerate() {
+            let from = contour.step * (block * BLOCK) as f64;
+            if !tree.multiply(contour.theta, from, contour.step, out) {
+                out.fill(Complex::new(f64::NAN, 0.0));
+            }
+        }
+        (all, tree.log(contour.theta))
+    };
+    let (own, _) = ratios(tree);
+    for j in tree.sorted() {
+        let scaled = |by: f64| Tree::of(&surface.scaled(j, by), &tree.sorted()).map(|tree| ratios(&tree));
+        let (Some((more, log_more)), Some((less, log_less))) = (scaled(1.0 + PART), scaled(1.0 - PART)) else {
+            continue;
+        };
+        let level = (log_more - log_less) / (2.0 * PART);
+        for (at, change) in changes[j].iter_mut().enumerate() {
+            let turn = (more[at] - less[at]) * (0.5 / PART) / own[at];
+            // Where the transform has vanished its change does not count.
+            *change = if turn.is_finite() { turn + Complex::from(level) } else { Complex::ZERO };
+        }
+    }
+}

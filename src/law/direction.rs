@@ -1,0 +1,278 @@
+//! The surface along one direction, which is integrated by its own distribution function (preintegration).
+//!
+//! Coordinates `v` are independent; the inputs follow from them as `z = M v`, where `M` mixes normal inputs only, and
+//! correlated inputs of other distributions are functions of mixed normal variables. Among the normal inputs the direction
+//! is the steepest one, `L'p` with `p_j = E[g_j']`, which is made the first axis of the block (Liu and Owen 2023); otherwise
+//! the single input of largest variance. An input with atoms is never the direction.
+
+use std::sync::Arc;
+
+use faer::Mat;
+
+use super::forms::factor;
+use super::input::Input;
+use super::polynomial::{Quartic, value};
+use super::surface::Surface;
+use crate::distribution::standard_normal;
+
+/// Coordinates of a part of the surface, and the one that is integrated.
+#[derive(Debug, Clone)]
+pub(super) struct Direction {
+    surface: Arc<Surface>,
+    /// Inputs that are mixtures of normal coordinates of the same places.
+    block: Vec<usize>,
+    axes: Mat<f64>,
+    /// Inputs that are functions of mixed normal variables: not normal themselves, or correlated with such.
+    behind: Vec<usize>,
+    behind_factor: Mat<f64>,
+    /// The coordinate that is integrated; None where none can be.
+    along: Option<usize>,
+    /// How the inputs move along it: those that do, and all by their places.
+    slopes: Vec<(usize, f64)>,
+    slope_of: Vec<f64>,
+    /// The inputs that belong to this part of the surface.
+    members: Vec<usize>,
+}
+
+impl Direction {
+    /// Of these inputs, which form whole components.
+    pub(super) fn of(surface: &Arc<Surface>, members: &[usize]) -> Option<Self> {
+        let own = |j: &usize| members.contains(j);
+        // Correlation with an input of another distribution.
+        let mut behind: Vec<usize> = Vec::new();
+        if let Some(correlated) = &surface.correlated {
+            let odd = |j: &usize| !surface.inputs[*j].is_normal();
+            let mut open: Vec<usize> = correlated.members.iter().copied().filter(odd).filter(own).collect();
+            while let Some(j) = open.pop() {
+                if !behind.contains(&j) {
+                    behind.push(j);
+                    open.extend(correlated.members.iter().copied().filter(|&k| correlated.between(j, k) != 0.0));
+                }
+            }
+            behind.sort_unstable();
+        }
+        let block: Vec<usize> =
+            members.iter().copied().filter(|&j| surface.inputs[j].is_normal() && !behind.contains(&j)).collect();
+        let m = block.len();
+        let mut axes = factor(surface, &block)?.unwrap_or_else(|| Mat::identity(m, m));
+        let behind_factor = factor(surface, &behind)?.unwrap_or_else(|| Mat::zeros(0, 0));
+        let moments = |j: usize| {
+            let nodes = surface.inputs[j].nodes(&surface.parts[j], 0.0, 0.0);
+            let over = |f: &dyn Fn(f64) -> f64| nodes.z.iter().zip(&nodes.weight).map(|(&z, w)| w * f(z)).sum::<f64>();
+            let mean = over(&|z| value(&surface.parts[j], z));
+            let slope = over(&|z| value(&surface.parts[j], z) * z);
+            [slope, over(&|z| (value(&surface.parts[j], z) - mean).powi(2))]
+        };
+        let slopes: Vec<f64> = block.iter().map(|&j| moments(j)[0]).collect();
+        let mut steepest: Vec<f64> = (0..m).map(|a| (0..m).map(|j| axes[(j, a)] * slopes[j]).sum()).collect();
+        let strength: f64 = steepest.iter().map(|d| d * d).sum();
+        let free = |j: &&usize| {
+            let input = &surface.inputs[**j];
+            !input.is_normal() && input.atoms.is_empty() && !behind.contains(j)
+        };
+        let others = members.iter().filter(free).map(|&j| (j, moments(j)[1]));
+        let other = others.fold(None, |best: Option<(usize, f64)>, next| match best {
+            Some(best) if best.1 >= next.1 => Some(best),
+            _ => Some(next),
+        });
+        let by_normal = m > 0 && (strength > 0.0 || other.is_none()) && other.is_none_or(|(_, most)| strength >= most);
+        if by_normal && strength > 0.0 {
+            let norm = strength.sqrt();
+            steepest.iter_mut().for_each(|d| *d /= norm);
+            axes = reflected(&axes, &steepest);
+        }
+        let along = if by_normal { Some(block[0]) } else { other.map(|(j, _)| j) };
+        let slopes: Vec<(usize, f64)> = match along {
+            Some(_) if by_normal => block.iter().enumerate().map(|(a, &j)| (j, axes[(a, 0)])).collect(),
+            Some(j) => vec![(j, 1.0)],
+            None => Vec::new(),
+        };
+        let slopes: Vec<(usize, f64)> = slopes.into_iter().filter(|&(_, d)| d != 0.0).collect();
+        let mut slope_of = vec![0.0; surface.len()];
+        slopes.iter().for_each(|&(j, d)| slope_of[j] = d);
+        Some(Self {
+            surface: Arc::clone(surface),
+            block,
+            axes,
+            behind,
+            behind_factor,
+            along,
+            slopes,
+            slope_of,
+            members: members.to_vec(),
+        })
+    }
+
+    /// The law of the direction.
+    pub(super) fn input(&self) -> Option<&Input> {
+        self.along.map(|j| self.surface.inputs[j].as_ref())
+    }
+
+    /// The inputs of this part of the surface.
+    pub(super) fn members(&self) -> &[usize] {
+        &self.members
+    }
+
+    /// The coordinate that is integrated.
+    pub(super) fn coordinate(&self) -> Option<usize> {
+        self.along
+    }
+
+    /// How the inputs move with a coordinate, where that is linear.
+    pub(super) fn column(&self, coordinate: usize) -> Vec<(usize, f64)> {
+        match self.block.binary_search(&coordinate) {
+            Ok(b) => {
+                let own = self.block.iter().enumerate().map(|(a, &j)| (j, self.axes[(a, b)]));
+                own.filter(|&(_, d)| d != 0.0).collect()
+            }
+            Err(_) => vec![(coordinate, 1.0)],
+        }
+    }
+
+    /// The same coordinates and direction of another surface over the same inputs.
+    pub(super) fn over(&self, surface: &Arc<Surface>) -> Self {
+        Self { surface: Arc::clone(surface), ..self.clone() }
+    }
+
+    /// How the inputs move along the direction.
+    pub(super) fn slopes(&self) -> &[(usize, f64)] {
+        &self.slopes
+    }
+
+    /// The same part of the surface with every coordinate sampled.
+    pub(super) fn without(mut self) -> Self {
+        self.along = None;
+        self.slopes.clear();
+        self.slope_of.fill(0.0);
+        self
+    }
+
+    /// Variance along the direction, at the mean of the others.
+    pub(super) fn variance(&self) -> f64 {
+        let Some(input) = self.input() else { return 0.0 };
+        let terms = self.terms(&self.surface);
+        let along = self.along(&vec![0.0; self.surface.len()], &terms);
+        let nodes = input.nodes(&along, 0.0, 0.0);
+        let over = |f: &dyn Fn(f64) -> f64| nodes.z.iter().zip(&nodes.weight).map(|(&z, w)| w * f(z)).sum::<f64>();
+        let mean = over(&|z| value(&along, z));
+        over(&|z| (value(&along, z) - mean).powi(2))
+    }
+
+    /// The other coordinates, each by the place of its input.
+    pub(super) fn rest(&self) -> Vec<usize> {
+        self.members.iter().copied().filter(|&j| Some(j) != self.along).collect()
+    }
+
+    /// Whether a coordinate is a normal variable behind an input.
+    pub(super) fn is_behind(&self, coordinate: usize) -> bool {
+        self.behind.contains(&coordinate)
+    }
+
+    /// Inputs from coordinates, in place; both by the places of the surface.
+    pub(super) fn mix(&self, v: &mut [f64], scratch: &mut Vec<f64>) {
+        for (members, axes) in [(&self.block, &self.axes), (&self.behind, &self.behind_factor)] {
+            if members.len() < 2 && !std::ptr::eq(members, &self.behind) {
+                continue;
+            }
+            scratch.clear();
+            scratch.extend(members.iter().map(|&j| v[j]));
+            for (a, &j) in members.iter().enumerate() {
+                v[j] = scratch.iter().enumerate().map(|(b, v)| axes[(a, b)] * v).sum();
+            }
+        }
+        for &j in &self.behind {
+            let input = &self.surface.inputs[j];
+            if !input.is_normal() {
+                let u = v[j];
+                v[j] = if u < 0.0 {
+                    input.at_tail(standard_normal::cdf(u))
+                } else {
+                    input.at_tail(-standard_normal::sf(u))
+                };
+            }
+        }
+    }
+
+    /// The products of a surface with the same inputs and parts.
+    pub(super) fn terms(&self, surface: &Surface) -> Terms {
+        let products: Vec<(usize, usize, f64)> =
+            surface.products().filter(|(j, _, _)| self.members.binary_search(j).is_ok()).collect();
+        let square = products.iter().map(|&(j, k, b)| b * self.slope_of[j] * self.slope_of[k]).sum();
+        let mut linear: Vec<(usize, usize, f64)> = Vec::new();
+        for &(j, d) in &self.slopes {
+            linear.extend(surface.neighbours[j].iter().map(|&(k, b)| (j, k, d * b)));
+        }
+        Terms { products, linear, square }
+    }
+
+    /// The surface about its centre as a polynomial of the direction, at inputs for which the direction is 0.
+    pub(super) fn along(&self, z: &[f64], terms: &Terms) -> Quartic {
+        let mut c = [0.0; 5];
+        c[0] = terms.products.iter().map(|&(j, k, b)| b * z[j] * z[k]).sum();
+        c[1] = terms.linear.iter().map(|&(_, k, b)| b * z[k]).sum();
+        c[2] = terms.square;
+        for &j in &self.members {
+            shifted(&self.surface.parts[j], z[j], self.slope_of[j], &mut c);
+        }
+        c
+    }
+
+    /// The input that is the direction by itself.
+    pub(super) fn own(&self) -> Option<usize> {
+        if let [(j, _)] = self.slopes[..] { Some(j) } else { None }
+    }
+
+    pub(super) fn surface(&self) -> &Surface {
+        &self.surface
+    }
+}
+
+/// The products of a surface as a direction sees them.
+#[derive(Debug, Clone)]
+pub(super) struct Terms {
+    products: Vec<(usize, usize, f64)>,
+    /// Of the inputs that move with the direction: `d_j b_jk` with the place of `k`.
+    linear: Vec<(usize, usize, f64)>,
+    square: f64,
+}
+
+/// Adds the expansion of a part about `z` in steps of `d` (Taylor).
+#[inline]
+pub(super) fn shifted(part: &Quartic, z: f64, d: f64, c: &mut Quartic) {
+    if d == 0.0 {
+        c[0] += value(part, z);
+        return;
+    }
+    let mut factor = 1.0;
+    for (q, c) in c.iter_mut().enumerate() {
+        let mut sum = 0.0;
+        for i in (q..5).rev() {
+            sum = sum * z + BINOMIAL[i][q] * part[i];
+        }
+        *c += sum * factor;
+        factor *= d;
+    }
+}
+
+const BINOMIAL: [[f64; 5]; 5] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0, 0.0, 0.0],
+    [1.0, 2.0, 1.0, 0.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0, 0.0],
+    [1.0, 4.0, 6.0, 4.0, 1.0],
+];
+
+/// The axes after a reflection that makes this unit vector the first of them.
+fn reflected(axes: &Mat<f64>, unit: &[f64]) -> Mat<f64> {
+    let m = unit.len();
+    // Householder: v = unit + sign e1, H = I - 2 v v'/|v|^2 maps e1 to -sign unit.
+    let sign = if unit[0] < 0.0 { -1.0 } else { 1.0 };
+    let mut v = unit.to_vec();
+    v[0] += sign;
+    let norm: f64 = v.iter().map(|v| v * v).sum();
+    Mat::from_fn(m, m, |i, k| {
+        let along: f64 = (0..m).map(|j| axes[(i, j)] * v[j]).sum();
+        let image = axes[(i, k)] - 2.0 * along * v[k] / norm;
+        if k == 0 { -sign * image } else { image }
+    })
+}

@@ -1,0 +1,51 @@
+//! What a tail has been computed with, to compute others with it: through an optimisation figures then are smooth in the
+//! coefficients of the surface, because neither a contour nor a point changes from one to the next.
+
+use std::sync::Arc;
+
+use super::inversion::Line;
+use super::sampled::Held;
+use super::{Figure, Kind, SurfaceLaw, Tail};
+
+/// The contour, or the direction, points and proposal, of one tail.
+///
+/// Choose it again where an optimisation ends: it stays right for other coefficients, but not as accurate.
+#[derive(Debug, Clone)]
+pub struct HeldTail {
+    tail: Tail,
+    kind: HeldKind,
+}
+
+#[derive(Debug, Clone)]
+enum HeldKind {
+    Line(Line),
+    Points(Arc<Held>),
+    /// Panels and lists need nothing.
+    Nothing,
+}
+
+impl HeldTail {
+    pub(super) fn of(law: &SurfaceLaw, y: f64, tail: Tail) -> Self {
+        let kind = match &law.kind {
+            Kind::Exact(inversion) if !inversion.is_normal() => HeldKind::Line(inversion.held(y, tail)),
+            Kind::Sampled(sampled) => HeldKind::Points(Arc::new(sampled.held(y, tail, law.mean))),
+            _ => HeldKind::Nothing,
+        };
+        Self { tail, kind }
+    }
+
+    /// The tail of a law beyond a limit, along this contour or at these points; the law's own where its structure is another
+    /// one.
+    pub fn tail(&self, law: &SurfaceLaw, y: f64) -> Figure {
+        let [least, most] = law.range;
+        let own = || law.tail(y, self.tail);
+        if y.is_nan() || y <= least || y >= most {
+            return own();
+        }
+        match (&self.kind, &law.kind) {
+            (HeldKind::Line(line), Kind::Exact(inversion)) => inversion.tail_along(y, line).unwrap_or_else(own),
+            (HeldKind::Points(held), Kind::Sampled(sampled)) => sampled.tail_held(y, held).unwrap_or_else(own),
+            _ => own(),
+        }
+    }
+}

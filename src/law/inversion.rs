@@ -1,0 +1,254 @@
+//! Both tails and the density from the transform, by the trapezoidal rule along a contour.
+//!
+//! ```text
+//! sf(y) = 1/pi int_0^inf Re[ exp(K(s) - s y)/s ] dt,  s = theta + i t, theta > 0;   cdf: theta < 0, sign changed
+//! ```
+//!
+//! so that a tail is computed as what it is, with its own relative accuracy (Rice 1980; Lugannani and Rice 1980; Abate and
+//! Whitt 1992; Trefethen and Weideman 2014). Where the transform decays too slowly to be summed to its end (uniform inputs,
+//! atoms), a smooth window ends the sum: that changes the result only where a corner of the law lies within 110/T of the limit.
+//! T is doubled until two windows agree.
+
+use std::f64::consts::PI;
+
+use super::complex::Complex;
+use super::contour::{Contour, Side};
+use super::transform::Transform;
+use super::{Figure, Tail};
+use crate::distribution::standard_normal;
+
+/// Points of the first window.
+const FIRST: usize = 64;
+/// Points of the last one, where panels and trees are summed; closed forms and atoms are cheaper.
+const LAST: [usize; 2] = [1 << 11, 1 << 14];
+/// A term that is below this part of the sum ends it.
+const ENDED: f64 = 1e-14;
+/// Two windows agree.
+const AGREED: f64 = 1e-11;
+/// How steeply a window falls: at its ends it is 1e-13 off 1 and 0.
+const STEEPNESS: f64 = 10.4;
+/// What a window leaves, by the sum: its own ends.
+const LEFT: f64 = 4e-13;
+/// Relative accuracy that the sums are stated to have: rounding of the transform, and the neighbours of the sum.
+const RELATIVE: f64 = 1e-12;
+/// Within so many sigmas of the mean either tail has its own contour; beyond, the larger one is the complement.
+const CENTRAL: f64 = 1.5;
+
+/// The law of a sum of components whose transform is known.
+#[derive(Debug)]
+pub(super) struct Inversion {
+    pub(super) transform: Transform,
+    /// Of the surface: limits are counted from it.
+    centre: f64,
+    sides: [Side; 2],
+}
+
+/// What is summed along a contour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Quantity {
+    Tail(Tail),
+    Density,
+}
+
+impl Inversion {
+    pub(super) fn new(transform: Transform, centre: f64) -> Self {
+        let sides = [Tail::Lower, Tail::Upper].map(|tail| Side::new(tail, &transform));
+        Self { transform, centre, sides }
+    }
+
+    pub(super) fn mean(&self) -> f64 {
+        self.centre + self.transform.mean
+    }
+
+    pub(super) fn sigma(&self) -> f64 {
+        self.transform.sigma
+    }
+
+    /// The mean about the centre under a tilt, or under the nearest one that the law bears.
+    pub(super) fn tilted_mean(&self, theta: f64) -> f64 {
+        let [low, high] = self.transform.domain;
+        self.transform.cumulants(theta.clamp(0.9 * low, 0.9 * high))[1]
+    }
+
+    /// Probability beyond `y` on this side.
+    pub(super) fn tail(&self, y: f64, tail: Tail) -> Figure {
+        let y = y - self.centre;
+        if let Some(z) = self.normal(y) {
+            let value = if tail == Tail::Lower { standard_normal::cdf(z) } else { standard_normal::sf(z) };
+            return Figure::new(value, 4.0 * f64::EPSILON * value * (1.0 + z * z));
+        }
+        let outward = tail.sign() * (y - self.transform.mean) / self.sigma();
+        match outward < -CENTRAL {
+            true => self.sum(y, tail.other(), Quantity::Tail(tail.other())).complement(),
+            false => self.sum(y, tail, Quantity::Tail(tail)),
+        }
+    }
+
+    /// Density per unit of `y`.
+    pub(super) fn density(&self, y: f64) -> Figure {
+        let y = y - self.centre;
+        if let Some(z) = self.normal(y) {
+            let value = standard_normal::density(z) / self.sigma();
+            return Figure::new(value, 4.0 * f64::EPSILON * value * (1.0 + z * z));
+        }
+        let tail = if y < self.transform.mean { Tail::Lower } else { Tail::Upper };
+        self.sum(y, tail, Quantity::Density)
+    }
+
+    /// Whether the law is a normal distribution.
+    pub(super) fn is_normal(&self) -> bool {
+        self.transform.forms.is_normal() && self.transform.is_form()
+    }
+
+    /// The standardised limit, where the law is normal.
+    fn normal(&self, y: f64) -> Option<f64> {
+        self.is_normal().then(|| (y - self.transform.mean) / self.sigma())
+    }
+
+    fn side(&self, tail: Tail) -> &Side {
+        &self.sides[usize::from(tail == Tail::Upper)]
+    }
+
+    /// Of a limit that is counted from the centre.
+    fn sum(&self, y: f64, tail: Tail, quantity: Quantity) -> Figure {
+        let contour = self.side(tail).contour(&self.transform, y);
+        self.along(&contour, y, quantity, None).0
+    }
+
+    /// The sum along a contour, over as many points as it takes or as many as it is told; and how many these were.
+    fn along(&self, contour: &Contour, y: f64, quantity: Quantity, fixed: Option<Window>) -> (Figure, Window) {
+        let transform = &self.transform;
+        let most = LAST[usize::from(transform.is_cheap())];
+        let (mut count, mut before) = (fixed.map_or(FIRST, |window| window.points), f64::NAN);
+        let (sum, off, largest, window) = loop {
+            let terms = terms(contour, transform, y, quantity, count);
+            if terms.is_empty() {
+                // The tables of a tree are too large: nothing is known.
+                return (Figure::new(f64::NAN, f64::INFINITY), Window { points: FIRST, smooth: true });
+            }
+            let largest = terms.iter().map(|term| term.abs()).fold(0.0, f64::max);
+            let last = terms[terms.len() - terms.len() / 4..].iter().map(|term| term.abs()).fold(0.0, f64::max);
+            let plain: f64 = terms.iter().map(|term| term.re).sum();
+            let left = last * terms.len() as f64;
+            let window = |smooth: bool| Window { points: terms.len(), smooth };
+            if let Some(fixed) = fixed {
+                let now = if fixed.smooth { windowed(&terms) } else { plain };
+                break (now, if fixed.smooth { LEFT * now.abs() } else { left }, largest, fixed);
+            }
+            if left < ENDED * plain.abs() {
+                break (plain, left, largest, window(false));
+            }
+            let now = windowed(&terms);
+            let off = (now - before).abs();
+            if off < AGREED * now.abs() || count >= most || terms.len() < count {
+                let off = if off.is_nan() { now.abs() } else { 4.0 * off + LEFT * now.abs() };
+                break (now, off, largest, window(true));
+            }
+            (before, count) = (now, 2 * count);
+        };
+        // What the terms have lost in their sum.
+        let rounding = 1e-15 * (window.points as f64).sqrt() * largest;
+        let level = libm::exp(contour.log - contour.theta * y) * contour.step / PI;
+        let value = level * sum;
+        let value = if quantity == Quantity::Density { value.max(0.0) } else { value.clamp(0.0, 1.0) };
+        (Figure::new(value, level * (off + rounding) + RELATIVE * value), window)
+    }
+
+    /// The contour and the window of a tail, and whether it is computed as the complement of the other one.
+    pub(super) fn held(&self, y: f64, tail: Tail) -> Line {
+        let y = y - self.centre;
+        let outward = tail.sign() * (y - self.transform.mean) / self.sigma();
+        let own = if outward < -CENTRAL { tail.other() } else { tail };
+        let contour = self.side(own).contour(&self.transform, y);
+        let (_, window) = self.along(&contour, y, Quantity::Tail(own), None);
+        Line {
+            tail: own,
+            complement: own != tail,
+            theta: contour.theta,
+            step: contour.step,
+            bend: contour.bend,
+            window,
+        }
+    }
+
+    /// The tail of this law along the contour of another one; None where its transform does not exist there.
+    pub(super) fn tail_along(&self, y: f64, line: &Line) -> Option<Figure> {
+        let [low, high] = self.transform.domain;
+        if !(low < line.theta && line.theta < high) {
+            return None;
+        }
+        let y = y - self.centre;
+        let contour = Contour::fixed(&self.transform, line.theta, line.step, line.bend);
+        let (found, _) = self.along(&contour, y, Quantity::Tail(line.tail), Some(line.window));
+        Some(if line.complement { found.complement() } else { found })
+    }
+
+    /// The derivatives of a tail by something of which `changes` gives the derivatives of `K` at a point of the contour.
+    pub(super) fn derivatives(
+        &self,
+        y: f64,
+        tail: Tail,
+        changes: impl Fn(&Contour, usize) -> Vec<Vec<Complex>>,
+    ) -> Vec<Figure> {
+        let line = self.held(y, tail);
+        let y = y - self.centre;
+        let contour = self.side(line.tail).contour(&self.transform, y);
+        // A derivative decays more slowly than what it is of.
+        let count = 2 * line.window.points;
+        let terms = terms(&contour, &self.transform, y, Quantity::Tail(line.tail), count);
+        let sign = if line.complement { -1.0 } else { 1.0 };
+        let level = sign * libm::exp(contour.log - contour.theta * y) * contour.step / PI;
+        let of = |change: &Vec<Complex>| {
+            let product = |count: usize| -> Vec<Complex> {
+                terms.iter().zip(change).take(count).map(|(term, change)| *term * *change).collect()
+            };
+            let (whole, half) = (windowed(&product(count)), windowed(&product(count / 2)));
+            Figure::new(level * whole, level.abs() * ((whole - half).abs() + 1e-11 * whole.abs()))
+        };
+        changes(&contour, terms.len()).iter().map(of).collect()
+    }
+}
+
+/// How many points a sum has, and whether it ends with a window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Window {
+    points: usize,
+    smooth: bool,
+}
+
+/// A contour with the points on it that give a tail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Line {
+    tail: Tail,
+    complement: bool,
+    theta: f64,
+    step: f64,
+    bend: f64,
+    window: Window,
+}
+
+/// The terms of the sum at the first points, the first one halved.
+fn terms(contour: &Contour, transform: &Transform, y: f64, quantity: Quantity, count: usize) -> Vec<Complex> {
+    let mut terms = contour.integrand(transform, y, count);
+    for (index, term) in terms.iter_mut().enumerate() {
+        let s = contour.s(index);
+        if let Quantity::Tail(tail) = quantity {
+            *term = *term / (s * tail.sign());
+        }
+        if contour.bend != 0.0 {
+            // ds = (2 bend t + i) dt, and an i goes to the front.
+            *term *= Complex::new(1.0, -2.0 * contour.bend * s.im);
+        }
+    }
+    if let Some(first) = terms.first_mut() {
+        *first = *first * 0.5;
+    }
+    terms
+}
+
+/// The sum of the real parts under a window that falls smoothly to 0 at the end.
+fn windowed(terms: &[Complex]) -> f64 {
+    let n = terms.len() as f64;
+    let window = |index: usize| 0.5 * libm::erfc(STEEPNESS * (index as f64 / n - 0.5));
+    terms.iter().enumerate().map(|(index, term)| term.re * window(index)).sum()
+}

@@ -1,0 +1,181 @@
+//! Quartics: values, extremes and real roots.
+
+/// `c[0] + c[1] z + ... + c[4] z^4`.
+pub(super) type Quartic = [f64; 5];
+
+/// Its value.
+#[inline(always)]
+pub(super) fn value(c: &Quartic, z: f64) -> f64 {
+    (((c[4] * z + c[3]) * z + c[2]) * z + c[1]) * z + c[0]
+}
+
+/// Its derivative.
+pub(super) fn derivative(c: &Quartic) -> Quartic {
+    [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 0.0]
+}
+
+/// A few real numbers in ascending order: roots, or the places between which a function is monotone.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Few {
+    values: [f64; 4],
+    count: usize,
+}
+
+impl Few {
+    pub(super) fn push(&mut self, value: f64) {
+        if self.count < self.values.len() {
+            self.values[self.count] = value;
+            self.count += 1;
+        }
+    }
+
+    pub(super) fn as_slice(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
+/// The places between `low` and `high` where the polynomial changes its sign, ascending.
+///
+/// Of a line and a parabola in closed form; of a higher degree between the extremes, where it is monotone, by Newton's method
+/// between bounds. A double root is none: nothing changes its sign there.
+pub(super) fn roots(c: &Quartic, [low, high]: [f64; 2]) -> Few {
+    let reach = low.abs().max(high.abs());
+    let mut degree = 4;
+    // A coefficient that moves nothing within the interval is no coefficient.
+    let scale = (1..5).map(|k| c[k].abs() * reach.powi(k as i32)).fold(0.0, f64::max);
+    while degree > 0 && c[degree].abs() * reach.powi(degree as i32) <= 1e-17 * scale {
+        degree -= 1;
+    }
+    match degree {
+        0 => Few::default(),
+        1 => inside(&[-c[0] / c[1]], low, high),
+        2 => parabola(c, low, high),
+        _ => between_extremes(c, low, high),
+    }
+}
+
+fn inside(places: &[f64], low: f64, high: f64) -> Few {
+    let mut found = Few::default();
+    places.iter().filter(|&&z| z > low && z < high).for_each(|&z| found.push(z));
+    found
+}
+
+fn parabola(c: &Quartic, low: f64, high: f64) -> Few {
+    let discriminant = c[1] * c[1] - 4.0 * c[2] * c[0];
+    if discriminant <= 0.0 {
+        return Few::default();
+    }
+    // The sum without cancellation, the other root by their product.
+    let sum = -0.5 * (c[1] + discriminant.sqrt().copysign(c[1]));
+    let (a, b) = (sum / c[2], if sum == 0.0 { 0.0 } else { c[0] / sum });
+    if sum == 0.0 {
+        let root = (-c[0] / c[2]).max(0.0).sqrt();
+        return inside(&[-root, root], low, high);
+    }
+    inside(&[a.min(b), a.max(b)], low, high)
+}
+
+fn between_extremes(c: &Quartic, low: f64, high: f64) -> Few {
+    let slope = derivative(c);
+    let extremes = roots(&slope, [low, high]);
+    let mut found = Few::default();
+    let (mut from, mut at_from) = (low, value(c, low));
+    for to in extremes.as_slice().iter().copied().chain([high]) {
+        let at_to = value(c, to);
+        if (at_from > 0.0) != (at_to > 0.0) {
+            found.push(bracketed(c, &slope, from, to, at_from > 0.0));
+        }
+        (from, at_from) = (to, at_to);
+    }
+    found
+}
+
+/// The root between two places where a polynomial has different signs.
+fn bracketed(c: &Quartic, slope: &Quartic, mut low: f64, mut high: f64, falling: bool) -> f64 {
+    let mut z = 0.5 * (low + high);
+    let mut width = high - low;
+    for _ in 0..120 {
+        let error = value(c, z);
+        if error == 0.0 {
+            return z;
+        }
+        if (error > 0.0) == falling {
+            low = z
+        } else {
+            high = z
+        }
+        let newton = z - error / value(slope, z);
+        let next =
+            if newton > low && newton < high && (newton - z).abs() < width { newton } else { 0.5 * (low + high) };
+        width = (next - z).abs().max(0.5 * width);
+        if (next - z).abs() <= 2e-16 * z.abs() || next == low || next == high {
+            return next;
+        }
+        z = next;
+    }
+    z
+}
+
+/// Least and greatest value over an interval, whose ends may be infinite.
+pub(super) fn range(c: &Quartic, [low, high]: [f64; 2]) -> [f64; 2] {
+    let at = |z: f64| match z.is_finite() {
+        true => value(c, z),
+        // Of the leading coefficient at infinity; the constant where there is no other.
+        false => match (1..5).rev().find(|&k| c[k] != 0.0) {
+            Some(k) => c[k] * z.signum().powi(k as i32) * f64::INFINITY,
+            None => c[0],
+        },
+    };
+    // Cauchy's bound holds every extreme.
+    let slope = derivative(c);
+    let lead = (0..5).rev().find(|&k| slope[k] != 0.0);
+    let bound = lead.map_or(0.0, |k| 1.0 + (0..k).map(|i| (slope[i] / slope[k]).abs()).fold(0.0, f64::max));
+    let extremes = roots(&slope, [low.max(-bound), high.min(bound)]);
+    let places = extremes.as_slice().iter().copied().chain([low, high]);
+    places.map(at).fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], y| [least.min(y), most.max(y)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of_roots(roots: [f64; 4]) -> Quartic {
+        let mut c = [1.0, 0.0, 0.0, 0.0, 0.0];
+        for (degree, root) in roots.into_iter().enumerate() {
+            for k in (0..=degree + 1).rev() {
+                c[k] = if k > 0 { c[k - 1] } else { 0.0 } - root * c[k];
+            }
+        }
+        c
+    }
+
+    /// Four simple roots of distance 1 are conditioned like their coefficients, of some hundred units in the last place.
+    #[test]
+    fn roots_of_a_quartic_are_found_inside_the_interval_only() {
+        let c = of_roots([-2.0, -0.5, 1.0, 3.0]);
+        let found = roots(&c, [-10.0, 10.0]);
+        for (root, expected) in found.as_slice().iter().zip([-2.0, -0.5, 1.0, 3.0]) {
+            assert!((root - expected).abs() < 1e-13, "{root}");
+        }
+        assert_eq!(found.as_slice().len(), 4);
+        assert_eq!(roots(&c, [-1.0, 2.0]).as_slice().len(), 2);
+    }
+
+    #[test]
+    fn a_root_of_a_parabola_keeps_its_digits_beside_a_large_one() {
+        // z^2 - 1e8 z + 1: the roots 1e8 and 1e-8 (1 + 1e-16).
+        let found = roots(&[1.0, -1e8, 1.0, 0.0, 0.0], [-1e9, 1e9]);
+        assert!((found.as_slice()[0] * 1e8 - 1.0).abs() < 1e-15);
+        assert!(roots(&[1.0, 0.0, 1.0, 0.0, 0.0], [-9.0, 9.0]).as_slice().is_empty());
+        assert_eq!(roots(&[-4.0, 0.0, 1.0, 0.0, 0.0], [-9.0, 9.0]).as_slice(), [-2.0, 2.0]);
+    }
+
+    #[test]
+    fn ranges_reach_to_infinity_where_the_interval_does() {
+        let whole = [f64::NEG_INFINITY, f64::INFINITY];
+        assert_eq!(range(&[1.0, 0.0, 2.0, 0.0, 0.0], whole), [1.0, f64::INFINITY]);
+        assert_eq!(range(&[0.0, 2.0, 0.0, 0.0, 0.0], [-1.0, 3.0]), [-2.0, 6.0]);
+        assert_eq!(range(&[0.0, 0.0, 1.0, 0.0, 0.0], [-1.0, 3.0]), [0.0, 9.0]);
+        assert_eq!(range(&[5.0, 0.0, 0.0, 0.0, 0.0], whole), [5.0, 5.0]);
+    }
+}

@@ -1,0 +1,389 @@
+//! Surfaces with cycles of products, or with a tail that no transform bears: components that must be sampled are, and
+//! everything else is integrated.
+//!
+//! What is integrated is the exact law of all other components, where that is wide enough, or one direction of the sampled
+//! ones by its own distribution function. The nearest exact surface, without the products that make it inexact, is the
+//! control: `P = P_exact + mean(1 - 1_control)` at the same points.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::direction::{Direction, Terms};
+use super::input::Input;
+use super::inversion::Inversion;
+use super::panels::expectation;
+use super::points::{Along, REPLICATES, Sample, visit};
+use super::polynomial::{Quartic, derivative, roots, value};
+use super::surface::Surface;
+use super::table::Table;
+use super::tilt::{Proposal, Tilts};
+use super::transform::Transform;
+use super::{Figure, LawOptions, Tail};
+
+/// Standard errors of the mean of 16 replicates that bound the error: Student's distribution with 15 degrees of freedom leaves
+/// 1 % beyond.
+const QUANTILE: f64 = 2.95;
+/// Sigma of the exact components by that along the direction from which on they take its place.
+const WIDE: f64 = 0.5;
+/// A plain estimate of this relative error rules where a tilted one contradicts it, which may have seen one of two modes.
+const GOOD: f64 = 0.1;
+/// What a table of an exact law leaves, relative.
+const TABULATED: f64 = 1e-7;
+
+/// The law of a surface of which a part is sampled.
+#[derive(Debug)]
+pub(super) struct Sampled {
+    surface: Arc<Surface>,
+    direction: Direction,
+    tilts: Arc<Tilts>,
+    full: Terms,
+    /// The exact law of the components that are not sampled.
+    others: Option<(Table, Inversion)>,
+    control: Option<(Terms, Inversion)>,
+    /// The surface with those products only that the control has.
+    simple: Arc<Surface>,
+    points: usize,
+    seed: u64,
+    plain: Mutex<Option<Arc<Sample>>>,
+    tilted: Mutex<BTreeMap<(Tail, usize), Arc<Sample>>>,
+}
+
+/// What is averaged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Quantity {
+    Tail(Tail),
+    Density,
+}
+
+impl Sampled {
+    /// Of the components that are left when the transform has taken those that it can.
+    pub(super) fn of(
+        surface: &Arc<Surface>,
+        transform: Transform,
+        left: &[Vec<usize>],
+        sigma: f64,
+        options: &LawOptions,
+    ) -> Option<Self> {
+        let mut members: Vec<usize> = left.iter().flatten().copied().collect();
+        members.sort_unstable();
+        let direction = Direction::of(surface, &members)?;
+        let wide = !transform.is_empty() && transform.sigma >= WIDE * direction.variance().sqrt();
+        let (direction, others) = match wide {
+            true => {
+                // About the centre, which belongs to the sampled part.
+                let range = surface.range_without(&members);
+                let law = Inversion::new(transform, 0.0);
+                (direction.without(), Some((Table::of(&law, range), law)))
+            }
+            false => {
+                let all: Vec<usize> = (0..surface.len()).collect();
+                (Direction::of(surface, &all)?, None)
+            }
+        };
+        let simple = surface.with_products(|j, k| surface.is_normal_parabola(j) && surface.is_normal_parabola(k));
+        let (exact, rest) = Transform::of(&simple, &simple.components());
+        let control = rest.is_empty().then(|| (direction.terms(&simple), Inversion::new(exact, surface.centre)));
+        let (full, tilts) = (direction.terms(surface), Arc::new(Tilts::of(&direction, surface, sigma)));
+        let points = options.points.div_ceil(REPLICATES).next_power_of_two();
+        Some(Self {
+            surface: Arc::clone(surface),
+            direction,
+            tilts,
+            full,
+            others,
+            control,
+            simple: Arc::new(simple),
+            points,
+            seed: options.seed,
+            plain: Mutex::default(),
+            tilted: Mutex::default(),
+        })
+    }
+
+    /// Of the smaller tail what it is, of the larger one the complement: no point may lie in the smaller one.
+    pub(super) fn tail(&self, y: f64, tail: Tail, mean: f64) -> Figure {
+        let nearer = if y < mean { Tail::Lower } else { Tail::Upper };
+        let found = self.figure(y, nearer, Quantity::Tail(nearer)).clamped();
+        if nearer == tail { found } else { found.complement() }
+    }
+
+    pub(super) fn density(&self, y: f64, mean: f64) -> Figure {
+        let tail = if y < mean { Tail::Lower } else { Tail::Upper };
+        self.figure(y, tail, Quantity::Density)
+    }
+
+    fn sample(&self, tilted: Option<(Tail, usize, &Proposal)>) -> Arc<Sample> {
+        let control = self.control.as_ref().map(|(terms, _)| terms);
+        let along = Along { direction: &self.direction, full: &self.full, control };
+        match tilted {
+            None => {
+                let mut plain = self.plain.lock().unwrap_or_else(PoisonError::into_inner);
+                let made = || Arc::new(Sample::of(&along, &self.tilts, None, self.points, self.seed));
+                Arc::clone(plain.get_or_insert_with(made))
+            }
+            Some((tail, rung, proposal)) => {
+                let mut known = self.tilted.lock().unwrap_or_else(PoisonError::into_inner);
+                let made = || Arc::new(Sample::of(&along, &self.tilts, Some(proposal), self.points, self.seed));
+                Arc::clone(known.entry((tail, rung)).or_insert_with(made))
+            }
+        }
+    }
+
+    /// The only sampled coordinate, where the others have an exact law: that takes panels and no points.
+    fn only(&self) -> Option<usize> {
+        match *self.tilts.sampled() {
+            [coordinate] if self.others.is_some() && !self.direction.is_behind(coordinate) => Some(coordinate),
+            _ => None,
+        }
+    }
+
+    fn figure(&self, y: f64, tail: Tail, quantity: Quantity) -> Figure {
+        if let Some(coordinate) = self.only() {
+            return self.convolved(coordinate, y, quantity);
+        }
+        let (_, beside, found) = self.chosen(y, tail, quantity);
+        let found = if beside { found.beside } else { Some(found.alone) }.unwrap_or(found.alone);
+        // No point beyond the limit: the rule of three.
+        let fewest = 3.0 / (REPLICATES * self.points) as f64;
+        match quantity {
+            Quantity::Tail(_) if found.value <= 0.0 => Figure::new(0.0, found.error.max(fewest)),
+            _ => found,
+        }
+    }
+
+    fn exact(&self, y: f64, quantity: Quantity) -> Option<Figure> {
+        self.control.as_ref().map(|(_, law)| match quantity {
+            Quantity::Tail(tail) => law.tail(y, tail),
+            Quantity::Density => law.density(y),
+        })
+    }
+
+    /// The estimate that rules: the proposal, None for the own law; whether beside the control; and the estimates.
+    fn chosen(&self, y: f64, tail: Tail, quantity: Quantity) -> (Option<Arc<Proposal>>, bool, Estimates) {
+        let off = y - self.surface.centre;
+        let exact = self.exact(y, quantity);
+        let plain = self.estimates(&self.direction, &self.sample(None), off, quantity, exact);
+        let own = plain.best();
+        // In the middle no tilt does better.
+        if own.value > 0.0 && own.error < 1e-3 * own.value {
+            return (None, plain.is_beside(), plain);
+        }
+        let others = |theta: f64| self.others.as_ref().map_or(0.0, |(_, law)| law.tilted_mean(theta));
+        let Some((rung, proposal)) = self.tilts.proposal(&self.surface, off, tail, others) else {
+            return (None, plain.is_beside(), plain);
+        };
+        let sample = self.sample(Some((tail, rung, &proposal)));
+        let tilted = self.estimates(&self.direction, &sample, off, quantity, exact);
+        let found = tilted.best();
+        let contradicted =
+            own.error < GOOD * own.value && (found.value - own.value).abs() > 2.0 * (found.error + own.error);
+        match own.value > 0.0 && (own.error <= found.error || contradicted) || found.value <= 0.0 {
+            true => (None, plain.is_beside(), plain),
+            false => (Some(proposal), tilted.is_beside(), tilted),
+        }
+    }
+
+    /// The points and the estimate that rules a tail.
+    pub(super) fn held(&self, y: f64, tail: Tail, mean: f64) -> Held {
+        let nearer = if y < mean { Tail::Lower } else { Tail::Upper };
+        let quantity = Quantity::Tail(nearer);
+        let (proposal, beside) = match self.only() {
+            Some(_) => (None, false),
+            None => {
+                let (proposal, beside, _) = self.chosen(y, nearer, quantity);
+                (proposal, beside)
+            }
+        };
+        let (direction, tilts) = (self.direction.clone(), Arc::clone(&self.tilts));
+        Held { direction, tilts, proposal, beside, nearer, tail, points: self.points, seed: self.seed }
+    }
+
+    /// The tail of this law at the points of another one; None where the structure differs.
+    pub(super) fn tail_held(&self, y: f64, held: &Held) -> Option<Figure> {
+        let same = self.surface.len() == held.direction.surface().len()
+            && self.direction.members() == held.direction.members()
+            && self.others.is_some() == held.direction.coordinate().is_none();
+        if !same || self.only().is_some() {
+            return None;
+        }
+        let quantity = Quantity::Tail(held.nearer);
+        let direction = held.direction.over(&self.surface);
+        let (full, simple) = (direction.terms(&self.surface), direction.terms(&self.simple));
+        let control = held.beside.then_some(&simple);
+        let along = Along { direction: &direction, full: &full, control };
+        let sample = Sample::of(&along, &held.tilts, held.proposal.as_deref(), held.points, held.seed);
+        let exact = self.exact(y, quantity).filter(|_| held.beside);
+        let found = self.estimates(&direction, &sample, y - self.surface.centre, quantity, exact);
+        let found = if held.beside { found.beside? } else { found.alone };
+        Some(if held.nearer == held.tail { found } else { found.complement() })
+    }
+
+    /// The derivatives of a tail by the logarithms of the tolerances of all inputs, by their places.
+    pub(super) fn derivatives(&self, y: f64, tail: Tail, mean: f64) -> Vec<Figure> {
+        let nearer = if y < mean { Tail::Lower } else { Tail::Upper };
+        let sign = if nearer == tail { 1.0 } else { -1.0 };
+        let off = y - self.surface.centre;
+        let (proposal, ..) = self.chosen(y, nearer, Quantity::Tail(nearer));
+        let exact = self.others.as_ref().map(|(table, law)| {
+            let places =
+                (0..self.surface.len()).filter(|j| self.direction.members().binary_search(j).is_err()).collect();
+            (places, table.slopes(law, &self.surface, nearer))
+        });
+        let exact: Option<(Vec<usize>, super::table::Slopes)> = exact;
+        let n = self.surface.len();
+        let rows = visit(&self.direction, &self.tilts, proposal.as_deref(), self.points, self.seed, |z, weight| {
+            let mut sums = vec![0.0; n];
+            let polynomial = self.direction.along(z, &self.full);
+            let weight = weight * nearer.sign();
+            match self.direction.input() {
+                Some(input) => pathwise(&self.surface, &self.direction, input, z, polynomial, off, weight, &mut sums),
+                None => {
+                    let left = off - polynomial[0];
+                    let density = self.beside(left, Quantity::Density);
+                    add_moves(&self.surface, self.direction.members(), z, weight * density, &mut sums);
+                    if let Some((places, slopes)) = &exact {
+                        places.iter().for_each(|&j| sums[j] += weight * nearer.sign() * slopes.at(j, left));
+                    }
+                }
+            }
+            sums
+        });
+        (0..n)
+            .map(|j| {
+                let mean = |rows: &[Vec<f64>]| rows.iter().map(|row| row[j]).sum::<f64>() / rows.len() as f64;
+                let means: Vec<f64> = rows.chunks(self.points).map(mean).collect();
+                let (value, error) = of_replicates(&means);
+                Figure::new(sign * value, error)
+            })
+            .collect()
+    }
+
+    /// One coordinate beside an exact law: panels.
+    fn convolved(&self, coordinate: usize, y: f64, quantity: Quantity) -> Figure {
+        let off = y - self.surface.centre;
+        let part = &self.surface.parts[coordinate];
+        let found = expectation(&self.surface.inputs[coordinate], &[], |z| self.beside(off - value(part, z), quantity));
+        Figure::new(found.value, found.error + TABULATED * found.value)
+    }
+
+    /// The exact law of the other components at what is left of a limit.
+    fn beside(&self, y: f64, quantity: Quantity) -> f64 {
+        match (&self.others, quantity) {
+            (Some((table, _)), Quantity::Tail(tail)) => table.tail(y, tail),
+            (Some((table, _)), Quantity::Density) => table.density(y),
+            (None, Quantity::Tail(tail)) => f64::from(u8::from(tail.sign() * -y > 0.0)),
+            (None, Quantity::Density) => 0.0,
+        }
+    }
+
+    /// The mean over a sample, by itself and beside the control.
+    fn estimates(
+        &self,
+        direction: &Direction,
+        sample: &Sample,
+        off: f64,
+        quantity: Quantity,
+        exact: Option<Figure>,
+    ) -> Estimates {
+        let inner = |polynomial: &Quartic| match direction.input() {
+            None => self.beside(off - polynomial[0], quantity),
+            Some(input) => {
+                let mut polynomial = *polynomial;
+                polynomial[0] -= off;
+                match quantity {
+                    Quantity::Tail(tail) => input.beyond(&polynomial, tail),
+                    Quantity::Density => input.density_of(&polynomial),
+                }
+            }
+        };
+        let n = sample.full.len() / REPLICATES;
+        let weight = |at: usize| sample.weights.get(at).copied().unwrap_or(1.0);
+        let means = |f: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            (0..REPLICATES).map(|r| (r * n..(r + 1) * n).map(f).sum::<f64>() / n as f64).collect()
+        };
+        let values: Vec<f64> = sample.full.iter().map(inner).collect();
+        let (mean, error) = of_replicates(&means(&|at| weight(at) * values[at]));
+        let tabulated = if self.others.is_some() { TABULATED } else { 1e-12 };
+        let alone = Figure::new(mean, error + tabulated * mean.abs());
+        let exact = exact.filter(|_| sample.control.len() == values.len());
+        let beside = exact.map(|exact| {
+            let control: Vec<f64> = sample.control.iter().map(inner).collect();
+            let (mean, error) = of_replicates(&means(&|at| weight(at) * (values[at] - control[at])));
+            Figure::new(exact.value + mean, error + exact.error + tabulated * exact.value)
+        });
+        Estimates { alone, beside }
+    }
+}
+
+/// The mean over a sample by itself, and beside the control where there is one.
+#[derive(Debug, Clone, Copy)]
+struct Estimates {
+    alone: Figure,
+    beside: Option<Figure>,
+}
+
+impl Estimates {
+    fn is_beside(&self) -> bool {
+        self.beside.is_some_and(|beside| beside.error < self.alone.error && beside.value > 0.0)
+    }
+
+    /// Whichever scatters less.
+    fn best(&self) -> Figure {
+        if self.is_beside() { self.beside.unwrap_or(self.alone) } else { self.alone }
+    }
+}
+
+/// Direction, points and estimate of one tail.
+#[derive(Debug)]
+pub(super) struct Held {
+    direction: Direction,
+    tilts: Arc<Tilts>,
+    proposal: Option<Arc<Proposal>>,
+    beside: bool,
+    nearer: Tail,
+    tail: Tail,
+    points: usize,
+    seed: u64,
+}
+
+/// Adds `weight z_j dy/dz_j` of every member.
+pub(super) fn add_moves(surface: &Surface, members: &[usize], z: &[f64], weight: f64, sums: &mut [f64]) {
+    if weight == 0.0 {
+        return;
+    }
+    for &j in members {
+        let products: f64 = surface.neighbours[j].iter().map(|&(k, b)| b * z[k]).sum();
+        sums[j] += weight * z[j] * (value(&derivative(&surface.parts[j]), z[j]) + products);
+    }
+}
+
+/// Adds `weight f(w) z_j dy/dz_j/|dy/dw|` of every member at the places where the surface crosses a limit along a direction.
+#[expect(clippy::too_many_arguments, reason = "what a crossing is made of")]
+pub(super) fn pathwise(
+    surface: &Surface,
+    direction: &Direction,
+    input: &Input,
+    z: &[f64],
+    mut polynomial: Quartic,
+    off: f64,
+    weight: f64,
+    sums: &mut [f64],
+) {
+    polynomial[0] -= off;
+    let slope = derivative(&polynomial);
+    let mut at = z.to_vec();
+    for &w in roots(&polynomial, input.ends).as_slice() {
+        at.copy_from_slice(z);
+        direction.slopes().iter().for_each(|&(j, d)| at[j] += d * w);
+        let density = input.density(w) / value(&slope, w).abs();
+        add_moves(surface, direction.members(), &at, weight * density, sums);
+    }
+}
+
+/// The mean of replicates, and its error.
+fn of_replicates(means: &[f64]) -> (f64, f64) {
+    let n = means.len() as f64;
+    let mean = means.iter().sum::<f64>() / n;
+    let variance = means.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (n - 1.0);
+    (mean, QUANTILE * (variance / n).sqrt())
+}

@@ -1,0 +1,164 @@
+//! Surfaces of one or two inputs: Gauss panels in the one, roots and the distribution function of the other.
+
+use super::direction::{Direction, Terms};
+use super::input::Input;
+use super::panels::expectation;
+use super::polynomial::{Quartic, range, roots, value};
+use super::sampled::pathwise;
+use super::{Figure, Tail};
+
+/// Relative accuracy of the distribution functions of the inputs.
+const RELATIVE: f64 = 2e-12;
+
+/// A surface of which one coordinate is left when a direction has been integrated; or none.
+#[derive(Debug)]
+pub(super) struct Single {
+    direction: Direction,
+    outer: Option<usize>,
+}
+
+impl Single {
+    /// None where more than one coordinate is left, or nothing can be the direction.
+    pub(super) fn of(direction: Direction) -> Option<Self> {
+        let rest = direction.rest();
+        direction.input()?;
+        match rest[..] {
+            [] => Some(Self { direction, outer: None }),
+            [outer] => Some(Self { direction, outer: Some(outer) }),
+            _ => None,
+        }
+    }
+
+    pub(super) fn tail(&self, y: f64, tail: Tail) -> Figure {
+        self.figure(y, |input, polynomial| input.beyond(polynomial, tail)).clamped()
+    }
+
+    /// The derivatives of a tail by the logarithms of the tolerances of the inputs.
+    pub(super) fn derivatives(&self, y: f64, tail: Tail) -> Vec<Figure> {
+        let surface = self.direction.surface();
+        let n = surface.len();
+        let terms = self.direction.terms(surface);
+        let Some(inner) = self.direction.input() else { return Vec::new() };
+        let at = |z: Option<(usize, f64)>, j: usize| {
+            let (mut v, mut sums) = (vec![0.0; n], vec![0.0; n]);
+            if let Some((outer, z)) = z {
+                v[outer] = z;
+            }
+            self.direction.mix(&mut v, &mut Vec::new());
+            let polynomial = self.direction.along(&v, &terms);
+            let off = y - surface.centre;
+            pathwise(surface, &self.direction, inner, &v, polynomial, off, tail.sign(), &mut sums);
+            sums[j]
+        };
+        let of = |j: usize| match self.outer {
+            None => Figure::new(at(None, j), RELATIVE * at(None, j).abs()),
+            Some(outer) => {
+                let found = expectation(&surface.inputs[outer], &self.splits(y, outer), |z| at(Some((outer, z)), j));
+                Figure::new(found.value, found.error + RELATIVE * found.value.abs())
+            }
+        };
+        (0..n).map(of).collect()
+    }
+
+    pub(super) fn density(&self, y: f64) -> Figure {
+        self.figure(y, |input, polynomial| input.density_of(polynomial))
+    }
+
+    /// The surface less a limit along the direction.
+    fn along(&self, terms: &Terms, outer: Option<(usize, f64)>, off: f64) -> Quartic {
+        let mut v = vec![0.0; self.direction.surface().len()];
+        if let Some((place, z)) = outer {
+            v[place] = z;
+        }
+        self.direction.mix(&mut v, &mut Vec::new());
+        let mut polynomial = self.direction.along(&v, terms);
+        polynomial[0] += off;
+        polynomial
+    }
+
+    /// Where an integrand over the outer input is not smooth.
+    fn splits(&self, y: f64, outer: usize) -> Vec<f64> {
+        let Some(inner) = self.direction.input() else { return Vec::new() };
+        let surface = self.direction.surface();
+        let (off, law) = (surface.centre - y, &surface.inputs[outer]);
+        let terms = self.direction.terms(surface);
+        let mut splits = Vec::new();
+        // Where the limit crosses an end or a corner of the inner law.
+        if let Some(own) = self.direction.own().filter(|_| !inner.is_normal()) {
+            for at in inner.breaks() {
+                let mut part = surface.parts[outer];
+                part[0] = off + value(&surface.parts[own], at);
+                part[1] += surface.product(own, outer) * at;
+                splits.extend_from_slice(roots(&part, law.ends).as_slice());
+            }
+        }
+        for tail in [Tail::Lower, Tail::Upper] {
+            // Where all or nothing of the inner law is beyond the limit, also in a small part of the outer one: the farthest
+            // value that the inner input reaches.
+            let reach = |z: f64| match (tail, range(&self.along(&terms, Some((outer, z)), off), inner.ends)) {
+                (Tail::Lower, [least, _]) => -least,
+                (Tail::Upper, [_, most]) => most,
+            };
+            splits.extend(crossings(law, reach));
+        }
+        splits
+    }
+
+    /// The expectation over the outer input of something that the inner one does at the limit.
+    fn figure(&self, y: f64, f: impl Fn(&Input, &Quartic) -> f64) -> Figure {
+        let Some(inner) = self.direction.input() else { return Figure::new(f64::NAN, f64::INFINITY) };
+        let surface = self.direction.surface();
+        let (off, terms) = (surface.centre - y, self.direction.terms(surface));
+        let Some(outer) = self.outer else {
+            let value = f(inner, &self.along(&terms, None, off));
+            return Figure::new(value, RELATIVE * value);
+        };
+        let integrand = |z: f64| f(inner, &self.along(&terms, Some((outer, z)), off));
+        let found = expectation(&surface.inputs[outer], &self.splits(y, outer), integrand);
+        Figure::new(found.value, found.error + RELATIVE * found.value)
+    }
+}
+
+/// The places where a function of the outer input passes 0, also those next to an extreme that hardly does.
+fn crossings(law: &Input, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    /// Places between which a function is taken to have no more than one extreme.
+    const GRID: usize = 96;
+    /// Halvings, to the last digit of a place.
+    const HALVINGS: usize = 60;
+    let [low, high] = law.ends;
+    let place = |i: usize| low + (high - low) * i as f64 / GRID as f64;
+    let mut known: Vec<(f64, f64)> = (0..=GRID).map(|i| (place(i), f(place(i)))).collect();
+    let mut extremes = Vec::new();
+    for three in known.windows(3) {
+        let [(a, at_a), (_, at_b), (c, at_c)] = [three[0], three[1], three[2]];
+        // A largest value that stays below 0 on the grid.
+        if at_b <= 0.0 && at_b >= at_a && at_b >= at_c {
+            extremes.push(largest(&f, a, c));
+        }
+    }
+    known.extend(extremes.into_iter().map(|z| (z, f(z))));
+    known.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut found = Vec::new();
+    for pair in known.windows(2) {
+        let ((mut a, at_a), (mut b, at_b)) = (pair[0], pair[1]);
+        if (at_a > 0.0) == (at_b > 0.0) {
+            continue;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (a + b);
+            if (f(middle) > 0.0) == (at_a > 0.0) { a = middle } else { b = middle }
+        }
+        found.push(0.5 * (a + b));
+    }
+    found
+}
+
+/// Where a function with one extreme between two places is largest, by the golden section.
+fn largest(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    const SECTION: f64 = 0.618_033_988_749_894_8;
+    for _ in 0..60 {
+        let (a, b) = (high - SECTION * (high - low), low + SECTION * (high - low));
+        if f(a) >= f(b) { high = b } else { low = a }
+    }
+    0.5 * (low + high)
+}

@@ -1,0 +1,237 @@
+//! The surface over the inputs that count, its range, and how it falls into independent components.
+
+use std::sync::Arc;
+
+use faer::Mat;
+
+use super::LawError;
+use super::input::Input;
+use super::polynomial::{Quartic, range, value};
+use crate::correlation::Correlation;
+use crate::distribution::Distribution;
+use crate::surrogate::Surrogate;
+
+/// `y = centre + sum g_j(z_j) + sum b_jk z_j z_k` over the inputs that have a part in it.
+#[derive(Debug, Clone)]
+pub(super) struct Surface {
+    pub(super) centre: f64,
+    pub(super) inputs: Vec<Arc<Input>>,
+    pub(super) parts: Vec<Quartic>,
+    /// Products with others, ascending by the other.
+    pub(super) neighbours: Vec<Vec<(usize, f64)>>,
+    /// How inputs vary together.
+    pub(super) correlated: Option<Correlated>,
+    /// For each of the surrogate's inputs its place here; None where it has no part in the surface.
+    pub(super) places: Vec<Option<usize>>,
+}
+
+/// Correlated inputs of a surface.
+#[derive(Debug, Clone)]
+pub(super) struct Correlated {
+    /// Places in the surface, ascending.
+    pub(super) members: Vec<usize>,
+    /// Correlation of the normal variables behind them.
+    pub(super) normal: Mat<f64>,
+}
+
+impl Correlated {
+    pub(super) fn place(&self, input: usize) -> Option<usize> {
+        self.members.binary_search(&input).ok()
+    }
+
+    /// Correlation of the normal variables behind two inputs.
+    pub(super) fn between(&self, a: usize, b: usize) -> f64 {
+        match (self.place(a), self.place(b)) {
+            _ if a == b => 1.0,
+            (Some(a), Some(b)) => self.normal[(a, b)],
+            _ => 0.0,
+        }
+    }
+}
+
+impl Surface {
+    pub(super) fn of(
+        surrogate: &Surrogate,
+        laws: &[Arc<dyn Distribution>],
+        correlation: Option<&Correlation>,
+    ) -> Result<Self, LawError> {
+        let n = surrogate.parts.len();
+        if laws.len() != n || surrogate.interactions.dimensions() != n {
+            return Err(LawError::Shapes { parts: n, inputs: laws.len() });
+        }
+        let finite = |value: f64| if value.is_finite() { Ok(value) } else { Err(LawError::NotFinite) };
+        let mut coefficients = Vec::with_capacity(n);
+        for (position, part) in surrogate.parts.iter().enumerate() {
+            let part = part.ok_or(LawError::UnknownPart { position })?;
+            let mut quartic = [0.0; 5];
+            for (to, from) in quartic[1..].iter_mut().zip(part.coefficients()) {
+                *to = finite(from)?;
+            }
+            coefficients.push(quartic);
+        }
+        let mut products = surrogate.interactions.pairs();
+        products.retain(|&(_, _, value)| value != 0.0);
+        let mut counts: Vec<bool> = coefficients.iter().map(|c| c.iter().any(|&c| c != 0.0)).collect();
+        for &(j, k, value) in &products {
+            finite(value)?;
+            (counts[j], counts[k]) = (true, true);
+        }
+        let mut places = vec![None; n];
+        let (mut inputs, mut parts) = (Vec::new(), Vec::new());
+        let mut made: Vec<(usize, Arc<Input>)> = Vec::new();
+        for position in (0..n).filter(|&position| counts[position]) {
+            places[position] = Some(inputs.len());
+            parts.push(coefficients[position]);
+            let same = made.iter().find(|(other, _)| Arc::ptr_eq(&laws[*other], &laws[position]));
+            let input = match same {
+                Some((_, input)) => Arc::clone(input),
+                None => Arc::new(Input::of(&laws[position]).ok_or(LawError::MomentsOnly { position })?),
+            };
+            made.push((position, Arc::clone(&input)));
+            inputs.push(input);
+        }
+        let mut neighbours = vec![Vec::new(); inputs.len()];
+        for (j, k, value) in products {
+            let (Some(j), Some(k)) = (places[j], places[k]) else { continue };
+            neighbours[j].push((k, value));
+            neighbours[k].push((j, value));
+        }
+        neighbours.iter_mut().for_each(|row: &mut Vec<(usize, f64)>| row.sort_unstable_by_key(|&(k, _)| k));
+        let correlated = correlation.and_then(|correlation| Correlated::of(correlation, &places));
+        Ok(Self { centre: finite(surrogate.centre)?, inputs, parts, neighbours, correlated, places })
+    }
+
+    /// How many inputs count.
+    pub(super) fn len(&self) -> usize {
+        self.inputs.len()
+    }
+
+    /// The coefficient of a product.
+    pub(super) fn product(&self, j: usize, k: usize) -> f64 {
+        let row = &self.neighbours[j];
+        row.binary_search_by_key(&k, |&(k, _)| k).map_or(0.0, |at| row[at].1)
+    }
+
+    /// Every product once, `j < k`.
+    pub(super) fn products(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let own = |(j, row): (usize, &'_ Vec<(usize, f64)>)| {
+            row.iter().filter(move |(k, _)| *k > j).map(move |&(k, value)| (j, k, value)).collect::<Vec<_>>()
+        };
+        self.neighbours.iter().enumerate().flat_map(own)
+    }
+
+    /// Whether the part is a parabola of a normal input.
+    pub(super) fn is_normal_parabola(&self, j: usize) -> bool {
+        self.inputs[j].is_normal() && self.parts[j][3] == 0.0 && self.parts[j][4] == 0.0
+    }
+
+    /// Whether the input is correlated with another.
+    pub(super) fn is_correlated(&self, j: usize) -> bool {
+        self.correlated.as_ref().is_some_and(|correlated| correlated.place(j).is_some())
+    }
+
+    /// The surface itself.
+    pub(super) fn value(&self, z: &[f64]) -> f64 {
+        let own: f64 = self.parts.iter().zip(z).map(|(part, &z)| value(part, z)).sum();
+        self.centre + own + self.products().map(|(j, k, b)| b * z[j] * z[k]).sum::<f64>()
+    }
+
+    /// Sets of inputs that depend on each other, by products or by correlation; each ascending.
+    pub(super) fn components(&self) -> Vec<Vec<usize>> {
+        let n = self.len();
+        let mut of: Vec<Option<usize>> = vec![None; n];
+        let mut components = Vec::new();
+        for start in 0..n {
+            if of[start].is_some() {
+                continue;
+            }
+            let (mut component, mut open) = (Vec::new(), vec![start]);
+            of[start] = Some(components.len());
+            while let Some(j) = open.pop() {
+                component.push(j);
+                let products = self.neighbours[j].iter().map(|&(k, _)| k);
+                let together = self.correlated.iter().flat_map(|correlated| {
+                    let own = correlated.place(j).is_some();
+                    correlated.members.iter().copied().filter(move |&k| own && correlated.between(j, k) != 0.0)
+                });
+                for k in products.chain(together) {
+                    if of[k].is_none() {
+                        of[k] = Some(components.len());
+                        open.push(k);
+                    }
+                }
+            }
+            component.sort_unstable();
+            components.push(component);
+        }
+        components
+    }
+
+    /// The same surface with those products only that are kept.
+    pub(super) fn with_products(&self, keep: impl Fn(usize, usize) -> bool) -> Self {
+        let row = |(j, row): (usize, &Vec<(usize, f64)>)| row.iter().copied().filter(|&(k, _)| keep(j, k)).collect();
+        let neighbours = self.neighbours.iter().enumerate().map(row).collect();
+        Self { neighbours, ..self.clone() }
+    }
+
+    /// The surface where one input varies by this factor more.
+    pub(super) fn scaled(&self, input: usize, by: f64) -> Self {
+        let mut scaled = self.clone();
+        scaled.parts[input].iter_mut().enumerate().for_each(|(k, c)| *c *= by.powi(k as i32));
+        for &(other, _) in &self.neighbours[input] {
+            for (j, k) in [(input, other), (other, input)] {
+                scaled.neighbours[j].iter_mut().filter(|(at, _)| *at == k).for_each(|(_, b)| *b *= by);
+            }
+        }
+        scaled
+    }
+
+    /// The range of what other inputs than these add to the centre; products among them are not bounded.
+    pub(super) fn range_without(&self, members: &[usize]) -> [f64; 2] {
+        let others = (0..self.len()).filter(|j| members.binary_search(j).is_err());
+        others.fold([0.0; 2], |[low, high], j| match self.neighbours[j].is_empty() {
+            true => {
+                let [least, most] = range(&self.parts[j], self.inputs[j].support);
+                [low + least, high + most]
+            }
+            false => [f64::NEG_INFINITY, f64::INFINITY],
+        })
+    }
+
+    /// An interval that no value of the surface leaves: exact without products, wider than needed with them.
+    pub(super) fn range(&self) -> [f64; 2] {
+        let mut total = [self.centre; 2];
+        for (part, input) in self.parts.iter().zip(&self.inputs) {
+            let [low, high] = range(part, input.support);
+            total = [total[0] + low, total[1] + high];
+        }
+        for (j, k, b) in self.products() {
+            let (u, v) = (self.inputs[j].support, self.inputs[k].support);
+            let corners = [u[0] * v[0], u[0] * v[1], u[1] * v[0], u[1] * v[1]].map(|product| b * product);
+            total[0] += corners.iter().copied().fold(f64::INFINITY, f64::min);
+            total[1] += corners.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        }
+        // Infinite of both signs: no bound.
+        let low = if total[0].is_nan() { f64::NEG_INFINITY } else { total[0] };
+        let high = if total[1].is_nan() { f64::INFINITY } else { total[1] };
+        // What the sums may have lost by rounding is no part of a proof.
+        let slack = |end: f64| 4.0 * f64::EPSILON * (self.len() + 1) as f64 * end.abs().max(self.centre.abs());
+        [low - slack(low), high + slack(high)]
+    }
+}
+
+impl Correlated {
+    fn of(correlation: &Correlation, places: &[Option<usize>]) -> Option<Self> {
+        let kept: Vec<(usize, usize)> = (correlation.members().iter().enumerate())
+            .filter_map(|(member, &position)| Some((places.get(position).copied().flatten()?, member)))
+            .collect();
+        let normal = correlation.normal();
+        let linked = |&&(_, a): &&(usize, usize)| kept.iter().any(|&(_, b)| a != b && normal[(a, b)] != 0.0);
+        let kept: Vec<(usize, usize)> = kept.iter().filter(linked).copied().collect();
+        if kept.is_empty() {
+            return None;
+        }
+        let normal = Mat::from_fn(kept.len(), kept.len(), |a, b| normal[(kept[a].1, kept[b].1)]);
+        Some(Self { members: kept.iter().map(|&(place, _)| place).collect(), normal })
+    }
+}

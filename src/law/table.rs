@@ -1,0 +1,131 @@
+//! The tails of an exact law, tabulated once: they take the place of a direction's distribution function where the rest of a
+//! surface is sampled.
+
+use super::Tail;
+use super::derivative::exact_derivatives;
+use super::inversion::Inversion;
+use super::surface::Surface;
+
+/// Places per sigma.
+const PER_SIGMA: f64 = 24.0;
+/// A tail below this ends the table on its side.
+const LEAST: f64 = 1e-40;
+/// Places to either side of the mean at most.
+const MOST: usize = 1200;
+
+/// Logarithms of both tails and their slopes, at equal distances.
+#[derive(Debug)]
+pub(super) struct Table {
+    from: f64,
+    step: f64,
+    /// Logarithm and slope of the lower tail and of the upper one.
+    lower: Vec<[f64; 2]>,
+    upper: Vec<[f64; 2]>,
+    density: Vec<f64>,
+}
+
+impl Table {
+    pub(super) fn of(law: &Inversion, range: [f64; 2]) -> Self {
+        let (mean, step) = (law.mean(), law.sigma() / PER_SIGMA);
+        let reach = |tail: Tail, end: f64| {
+            let beyond = |place: usize| {
+                let y = mean + tail.sign() * step * place as f64;
+                tail.sign() * (y - end) >= 0.0 || law.tail(y, tail).value < LEAST
+            };
+            // The tail falls all the way.
+            let (mut low, mut high) = (0, MOST);
+            while high - low > 1 {
+                let middle = (low + high) / 2;
+                if beyond(middle) { high = middle } else { low = middle }
+            }
+            low
+        };
+        let (left, right) = (reach(Tail::Lower, range[0]), reach(Tail::Upper, range[1]));
+        let from = mean - step * left as f64;
+        let (mut lower, mut upper, mut density) = (Vec::new(), Vec::new(), Vec::new());
+        for place in 0..=left + right {
+            let y = from + step * place as f64;
+            let at = law.density(y).value;
+            for (tail, into) in [(Tail::Lower, &mut lower), (Tail::Upper, &mut upper)] {
+                let value = law.tail(y, tail).value.max(1e-300);
+                into.push([libm::log(value), -tail.sign() * at / value]);
+            }
+            density.push(at);
+        }
+        Self { from, step, lower, upper, density }
+    }
+
+    /// Probability beyond a limit, by Hermite's cubic of the logarithm: 1e-8 relative where the density is smooth.
+    pub(super) fn tail(&self, y: f64, tail: Tail) -> f64 {
+        let values = if tail == Tail::Lower { &self.lower } else { &self.upper };
+        let last = values.len() - 1;
+        let place = (y - self.from) / self.step;
+        if place <= 0.0 || place >= last as f64 {
+            let outside = (place <= 0.0) == (tail == Tail::Lower);
+            // Beyond the table the tail goes on as an exponential function does.
+            let [log, slope] = if place <= 0.0 { values[0] } else { values[last] };
+            let off = if place <= 0.0 { y - self.from } else { y - self.from - self.step * last as f64 };
+            return if outside { libm::exp(log + slope * off) } else { 1.0 };
+        }
+        let at = place as usize;
+        let t = place - at as f64;
+        let ([a, da], [b, db]) = (values[at], values[(at + 1).min(last)]);
+        libm::exp(hermite(t, a, da * self.step, b, db * self.step)).min(1.0)
+    }
+
+    /// Density at a place, by a line between the places of the table's tails.
+    pub(super) fn density(&self, y: f64) -> f64 {
+        let place = (y - self.from) / self.step;
+        let last = self.density.len() - 1;
+        if place <= 0.0 || place >= last as f64 {
+            return 0.0;
+        }
+        let at = place as usize;
+        let t = place - at as f64;
+        let d = |at: usize| self.density[at.min(last)];
+        let slope = |at: usize| 0.5 * (d(at + 1) - d(at.saturating_sub(1)));
+        hermite(t, d(at), slope(at), d(at + 1), slope(at + 1)).max(0.0)
+    }
+}
+
+/// Derivatives of a tail by the tolerances of the inputs of an exact law.
+#[derive(Debug)]
+pub(super) struct Slopes {
+    from: f64,
+    step: f64,
+    /// By place: of every input of the surface.
+    values: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// The derivatives of a tail at every fourth place of the table.
+    pub(super) fn slopes(&self, law: &Inversion, surface: &Surface, tail: Tail) -> Slopes {
+        const EVERY: usize = 4;
+        let step = self.step * EVERY as f64;
+        let places = self.lower.len().div_ceil(EVERY);
+        let at = |place: usize| {
+            let found = exact_derivatives(law, surface, self.from + step * place as f64, tail);
+            found.into_iter().map(|figure| figure.value).collect()
+        };
+        Slopes { from: self.from, step, values: (0..=places).map(at).collect() }
+    }
+}
+
+impl Slopes {
+    /// At a limit, by a cubic through four places; 0 beyond the table.
+    pub(super) fn at(&self, input: usize, y: f64) -> f64 {
+        let place = (y - self.from) / self.step;
+        if place < 0.0 || place >= (self.values.len() - 1) as f64 {
+            return 0.0;
+        }
+        let at = place as usize;
+        let d = |at: usize| self.values[at.min(self.values.len() - 1)][input];
+        let slope = |at: usize| 0.5 * (d(at + 1) - d(at.saturating_sub(1)));
+        hermite(place - at as f64, d(at), slope(at), d(at + 1), slope(at + 1))
+    }
+}
+
+fn hermite(t: f64, a: f64, da: f64, b: f64, db: f64) -> f64 {
+    let s = 1.0 - t;
+    a * s * s * (1.0 + 2.0 * t) + b * t * t * (3.0 - 2.0 * t) + t * s * (da * s - db * t)
+}

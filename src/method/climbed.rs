@@ -1,0 +1,56 @@
+//! How `auto` came to its result.
+
+use super::Accuracies;
+use super::check::SurrogateCheck;
+
+/// How a climb ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub enum ClimbEnd {
+    /// Every characteristic is known as well as it was wanted, by the estimate.
+    Reached,
+    /// The budget does not allow what would be next.
+    Budget,
+    /// Nothing that could be bought is expected to help.
+    Exhausted,
+    /// It was stopped before any of that.
+    Stopped,
+}
+
+/// How `auto` came to its result.
+#[derive(Debug, Clone)]
+pub struct Climbed {
+    /// The relative error of sigma that was wanted.
+    pub accuracy: f64,
+    /// What was wanted of other results.
+    pub accuracies: Accuracies,
+    /// Why it ended.
+    pub rest: ClimbEnd,
+    /// Positions of varying dimensions with five points.
+    pub refined: Vec<usize>,
+    /// Pairs bought for themselves.
+    pub direct: usize,
+    /// Probes that moved all dimensions, of two evaluations each.
+    pub probes: usize,
+    /// Points that checked.
+    pub checks: usize,
+    /// Whether every pair was examined.
+    pub all_pairs: bool,
+    /// For every characteristic what the check says; None where it has no surrogate, or nothing was checked.
+    pub checked: Vec<Option<SurrogateCheck>>,
+    /// What answers next to the means scatter by.
+    pub noise: Vec<Option<f64>>,
+    /// How many sigmas model and surrogate differ by three sigma out along the steepest line, infinite where the model has no
+    /// value there; None where nobody looked.
+    pub tails: Vec<Option<f64>>,
+    /// The share of the variance that interactions have which the screening did not find, where it was needed.
+    pub unscreened: Vec<Option<f64>>,
+}
+
+impl Climbed {
+    /// The variance that the surrogate of a characteristic does not have, by the check; None where nothing was checked.
+    pub fn unexplained(&self, c: usize) -> Option<f64> {
+        self.checked[c].as_ref().filter(|check| check.points > 1).map(|check| check.variance)
+    }
+}

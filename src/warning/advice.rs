@@ -1,0 +1,177 @@
+//! What to do about a warning or an error.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::method_kind::Method;
+
+/// Something to do about a warning or an error.
+///
+/// Every front end shows it in its own words: the command line as options, a page as sentences, JSON as `{ "action": ... }` with the fields.
+/// `Display` writes a plain sentence without the name of any option.
+///
+/// ```
+/// use sensitol::{Method, warning::Advice};
+/// let advice = Advice::UseMethod { methods: vec![Method::Full] };
+/// assert_eq!(advice.to_string(), "Use the method `full`.");
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(tag = "action", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Advice {
+    /// Analyse with one of these methods, the best first.
+    UseMethod {
+        /// The methods.
+        #[cfg_attr(feature = "cli", schemars(with = "Vec<String>"))]
+        methods: Vec<Method>,
+    },
+    /// Allow more evaluations.
+    RaiseBudget,
+    /// Allow more time.
+    RaiseTimeLimit,
+    /// Limit the time.
+    LimitTime,
+    /// Sample the model itself (Monte Carlo).
+    Sample {
+        /// With this many points; None where the usual number will do.
+        points: Option<u64>,
+    },
+    /// Sample the model by importance sampling, for small probabilities.
+    SampleRareEvents,
+    /// Sample the model without importance sampling.
+    SamplePlainly,
+    /// Draw more points.
+    MorePoints,
+    /// Take differences over a shorter step.
+    SmallerStep {
+        /// Along this dimension; None for all.
+        dimension: Option<String>,
+    },
+    /// Take derivatives from differences of evaluated points.
+    UseDifferences,
+    /// Examine dimensions without tolerance too.
+    IncludeFixedDimensions,
+    /// Leave the correlation of dimensions out of the study.
+    LeaveOutCorrelation,
+    /// Replace the model by a formula.
+    UseFormula,
+
+    /// Look for wrong names in the formulas, or leave the unused ones out.
+    CheckNames,
+    /// Check the nominal dimensions.
+    CheckNominal,
+    /// Check whether the mechanism is at a dead centre.
+    CheckPosition,
+    /// Check that the model uses its inputs.
+    CheckInputs,
+    /// Check whether the model changes its configuration.
+    CheckConfiguration,
+    /// Check the moments that the study gives for a dimension.
+    CheckMoments,
+    /// Check column and unit of measured values.
+    CheckColumn,
+    /// Find out why values are missing.
+    FindMissingValues,
+    /// Remove values that were measured wrongly.
+    RemoveWrongValues,
+    /// Measure more parts.
+    MeasureMore {
+        /// So many in all.
+        values: usize,
+    },
+    /// Measure with a finer resolution.
+    MeasureFiner,
+    /// Give the model a value at the points where it has none, or count such assemblies as rejects.
+    RepairModel,
+    /// Keep the model defined around the means.
+    KeepDefined,
+    /// Reset the external model before every point.
+    ResetModel,
+    /// Let the model return a signed measure.
+    SignedMeasure,
+    /// Measure from a nearer datum.
+    NearerDatum,
+    /// Solve the model with a tighter tolerance.
+    TightenSolver,
+    /// Give each branch of the model a characteristic of its own.
+    SplitBranches,
+
+    /// Choose the nearest class of ISO 286, and write classes as processes.
+    NearestFit,
+    /// Require a higher yield, or a Cpk.
+    RequireMore,
+    /// Analyse the study that the allocation writes.
+    AnalyzeWrittenStudy,
+    /// Write costs into the study.
+    WriteCosts,
+    /// Name dimensions whose nominal values may move.
+    NameMovableDimensions,
+
+    /// Write the points without an answer into a file.
+    WriteMissingPoints,
+    /// Add the answers of the written points to the table of answers, and run again.
+    AppendAnswers {
+        /// The file of the written points.
+        file: String,
+    },
+    /// Analyse with the answers of the first stage, which gives the points of the next.
+    AnalyzeStages,
+    /// Change the table of tolerances in the study by hand.
+    EditStudy,
+}
+
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::UseMethod { methods } => {
+                let names: Vec<String> = methods.iter().map(|method| format!("`{method}`")).collect();
+                return write!(f, "Use the method {}.", names.join(" or "));
+            }
+            Self::Sample { points: Some(points) } => return write!(f, "Sample the model at {points} points."),
+            Self::SmallerStep { dimension: Some(name) } => return write!(f, "Give `{name}` a smaller step."),
+            Self::MeasureMore { values } => return write!(f, "Measure at least {values} parts."),
+            Self::AppendAnswers { file } => {
+                return write!(f, "Append the answers to the points of {file}, and run again.");
+            }
+            Self::RaiseBudget => "Allow more evaluations.",
+            Self::RaiseTimeLimit => "Allow more time.",
+            Self::LimitTime => "Set a time limit.",
+            Self::Sample { points: None } => "Sample the model itself (Monte Carlo).",
+            Self::SampleRareEvents => "Sample the model by importance sampling.",
+            Self::SamplePlainly => "Sample without importance sampling.",
+            Self::MorePoints => "Draw more points.",
+            Self::SmallerStep { dimension: None } => "Use a smaller step.",
+            Self::UseDifferences => "Take derivatives from differences.",
+            Self::IncludeFixedDimensions => "Ask for the sensitivities of all dimensions.",
+            Self::LeaveOutCorrelation => "Leave `[[correlation]]` out to see the interval.",
+            Self::UseFormula => "Replace the model by a formula.",
+            Self::CheckNames => "Look for a wrong name in the formulas, or leave the unused ones out.",
+            Self::CheckNominal => "Check the nominal dimensions.",
+            Self::CheckPosition => "Check whether the mechanism is at a dead centre.",
+            Self::CheckInputs => "Check that the model uses the dimensions.",
+            Self::CheckConfiguration => "Check whether the model changes its configuration.",
+            Self::CheckMoments => "Check for rounded `moments` of a dimension.",
+            Self::CheckColumn => "Check column and unit.",
+            Self::FindMissingValues => "Find out why they are missing: these may be the bad parts.",
+            Self::RemoveWrongValues => "Remove values that were measured wrongly, and keep the others.",
+            Self::MeasureFiner => "Measure with a finer resolution.",
+            Self::RepairModel => "Let the model return a value there, or find out whether such assemblies are rejects.",
+            Self::KeepDefined => "Keep the model defined around the means.",
+            Self::ResetModel => "Reset the model before every point.",
+            Self::SignedMeasure => "Let the model return a signed measure.",
+            Self::NearerDatum => "Measure the characteristic from a nearer datum.",
+            Self::TightenSolver => "Solve the model with a tighter tolerance.",
+            Self::SplitBranches => "Give each branch a characteristic of its own.",
+            Self::NearestFit => "Choose the nearest class, and write classes as processes where one is required.",
+            Self::RequireMore => "Require a higher yield or a Cpk, and confirm again.",
+            Self::AnalyzeWrittenStudy => "Analyse the study with the new tolerances.",
+            Self::WriteCosts => "Write the costs of tolerances below `[costs]`.",
+            Self::NameMovableDimensions => "Name dimensions whose nominal values may move.",
+            Self::WriteMissingPoints => "Write the missing points into a file.",
+            Self::AnalyzeStages => "Analyse with the answers to these points to get the next ones.",
+            Self::EditStudy => "Change the tolerances in the study by hand.",
+        })
+    }
+}

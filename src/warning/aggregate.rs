@@ -1,0 +1,94 @@
+//! One warning for many dimensions.
+
+use super::{Loss, Warning};
+
+/// Joins warnings of one code and one characteristic that differ in their dimension.
+///
+/// The worst of them stays, with its numbers; its `others` names the dimensions of the rest. A study of a thousand dimensions has one such
+/// warning for a characteristic, not a thousand. The order is that of the first of each kind.
+///
+/// ```
+/// use sensitol::Warning;
+/// use sensitol::warning::aggregated;
+/// let edge = |dimension: &str, to| {
+///     Warning::SupportEdge { dimension: dimension.into(), from: -1.5, to, others: Vec::new() }
+/// };
+/// let Warning::SupportEdge { dimension, others, .. } = &aggregated(vec![edge("a", -1.4), edge("b", -1.0)])[0] else { panic!() };
+/// assert_eq!((dimension.as_str(), &others[..]), ("b", &["a".to_owned()][..]));
+/// ```
+pub fn aggregated(warnings: Vec<Warning>) -> Vec<Warning> {
+    let mut kinds: Vec<Warning> = Vec::new();
+    for mut warning in warnings {
+        let known =
+            if warning.others().is_some() { kinds.iter_mut().find(|known| known.alike(&warning)) } else { None };
+        match known {
+            None => kinds.push(warning),
+            Some(known) => {
+                if warning.weight() > known.weight() {
+                    std::mem::swap(known, &mut warning);
+                }
+                let (place, mut more) = (warning.place(), warning.others().map(std::mem::take).unwrap_or_default());
+                if let Some(others) = known.others() {
+                    others.push(place);
+                    others.append(&mut more);
+                }
+            }
+        }
+    }
+    kinds
+}
+
+impl Warning {
+    /// Where the names of further dimensions are kept.
+    fn others(&mut self) -> Option<&mut Vec<String>> {
+        match self {
+            Self::SmallSample { others, .. }
+            | Self::CoarseResolution { others, .. }
+            | Self::LostDerivative { others, .. }
+            | Self::DomainEdge { others, .. }
+            | Self::SupportEdge { others, .. }
+            | Self::LongTail { others, .. }
+            | Self::HigherOrder { others, .. }
+            | Self::Kink { others, .. }
+            | Self::Discontinuity { others, .. } => Some(others),
+            _ => None,
+        }
+    }
+
+    /// Whether one sentence can tell of both.
+    fn alike(&self, other: &Self) -> bool {
+        let (a, b) = (self.loss(), other.loss());
+        let held = |one: &Self| matches!(one, Self::HigherOrder { held: true, .. });
+        self.code() == other.code()
+            && self.characteristic() == other.characteristic()
+            && a == b
+            && held(self) == held(other)
+    }
+
+    fn loss(&self) -> Option<Loss> {
+        if let Self::LostDerivative { loss, .. } = self { Some(*loss) } else { None }
+    }
+
+    /// The dimension, or the pair.
+    fn place(&self) -> String {
+        match self {
+            Self::LostDerivative { dimensions, .. } => dimensions.join(":"),
+            _ => self.dimension().unwrap_or_default().to_owned(),
+        }
+    }
+
+    /// How bad it is beside others of its kind.
+    fn weight(&self) -> f64 {
+        match self {
+            Self::SmallSample { values, .. } => -(*values as f64),
+            Self::CoarseResolution { resolution, sigma, .. } => resolution / sigma,
+            Self::DomainEdge { failed, .. } => -failed.abs(),
+            Self::SupportEdge { from, to, .. } => (from - to).abs(),
+            Self::LongTail { share, .. } => *share,
+            Self::HigherOrder { coefficients: [third, fourth], .. } => third.abs().max(fourth.abs()),
+            Self::Kink { slopes: [left, right], .. } => (right - left).abs(),
+            Self::Discontinuity { by, .. } => by.abs(),
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Warnings about extremes and allocated tolerances.
+
+use super::text::{Text, names, say};
+use super::{Advice, Ended};
+
+pub(super) fn not_proven(
+    characteristic: &str,
+    evaluations: &usize,
+    ended: &Ended,
+    failed: &usize,
+    failure: &Option<String>,
+    bounds: &Option<([f64; 2], usize)>,
+) -> Text {
+    let doubt = match bounds {
+        Some(([lower, upper], boxes)) => {
+            format!(
+                "Interval arithmetic on {boxes} boxes proves only that no assembly lies outside {lower} .. {upper}."
+            )
+        }
+        None => "Assemblies beyond them cannot be ruled out, as they can for formulas.".to_owned(),
+    };
+    let cut = match ended {
+        Ended::Converged => "",
+        Ended::Budget => " The budget ended the search.",
+        Ended::Stopped => " The search was stopped before its end.",
+    };
+    let lost = match failure {
+        Some(error) => format!(" {failed} of its points have no value and were left out: {error}."),
+        None => String::new(),
+    };
+    let text = say(format!(
+        "The extremes of `{characteristic}` are the best of {evaluations} evaluations and are not proven. {doubt}{cut}{lost}"
+    ));
+    match (ended, bounds) {
+        (Ended::Budget, _) => text.advise(Advice::RaiseBudget),
+        (Ended::Stopped, _) => text.advise(Advice::RaiseTimeLimit),
+        (Ended::Converged, None) => text.advise(Advice::UseFormula),
+        (Ended::Converged, Some(_)) => text,
+    }
+}
+
+pub(super) fn fit_replaced(dimensions: &[String]) -> Text {
+    let (was, now) = match dimensions {
+        [_] => ("was a fit", "It is a plain tolerance now."),
+        _ => ("were fits", "They are plain tolerances now."),
+    };
+    say(format!("{} {was} of ISO 286. {now}", names(dimensions))).advise(Advice::NearestFit)
+}
+
+pub(super) fn not_confirmed() -> Text {
+    say("Budget or time did not allow to evaluate the model at the tolerances found. They depend on derivatives taken at the present ones.")
+        .advise(Advice::RaiseBudget)
+        .advise(Advice::AnalyzeWrittenStudy)
+}
+
+pub(super) fn confirmation_misses(characteristic: &str, required: &f64, [low, high]: &[f64; 2]) -> Text {
+    say(format!(
+        "A sample of the model refutes the yield of `{characteristic}`: its 95 % interval is {:.4} .. {:.4} %, and {:.4} % are required. Four \
+         moments do not describe its tails well enough.",
+        100.0 * low,
+        100.0 * high,
+        100.0 * required
+    ))
+    .advise(Advice::RequireMore)
+}
+
+pub(super) fn nothing_to_write() -> Text {
+    say("No tolerances were found. The file to be written stays as it was.")
+}
+
+pub(super) fn not_written(reason: &str) -> Text {
+    say(format!("The study cannot be written with the new tolerances: {reason}.")).advise(Advice::EditStudy)
+}

@@ -1,0 +1,99 @@
+//! From the list of warnings to the enumeration, and to everything that follows from the list alone.
+
+/// Defines the enumeration, and everything that follows from the list alone.
+macro_rules! warnings {
+    ($(
+        $(#[$doc:meta])*
+        $variant:ident = $code:literal by $theme:ident :: $text:ident $({
+            $( $(#[$field_doc:meta])* $field:ident : $type:ty, )*
+        })?;
+    )*) => {
+        /// Something that a reader of the results must know.
+        ///
+        /// It serialises as `{ code, characteristic, dimension, message, data, advice }`, with its fields in `data`.
+        ///
+        /// ```
+        /// use sensitol::{Method, Warning, warning::Advice};
+        /// let warning = Warning::PairsNotExamined { examined: 10, possible: 45 };
+        /// assert_eq!(warning.code(), "pairs-not-examined");
+        /// assert_eq!(warning.advice(), [Advice::UseMethod { methods: vec![Method::Full, Method::Auto] }]);
+        /// let json = serde_json::to_value(&warning).unwrap();
+        /// assert_eq!(json["data"]["possible"], 45);
+        /// assert_eq!(json["advice"][0], serde_json::json!({ "action": "use-method", "methods": ["full", "auto"] }));
+        /// ```
+        #[derive(Debug, Clone, PartialEq)]
+        #[non_exhaustive]
+        pub enum Warning {
+            $( $(#[$doc])* $variant $({ $( $(#[$field_doc])* $field: $type, )* })?, )*
+        }
+
+        impl Warning {
+            /// The codes of all warnings.
+            pub const CODES: &[&str] = &[$($code),*];
+
+            /// The code of this kind of warning, which stays the same between versions.
+            pub fn code(&self) -> &'static str {
+                match self {
+                    $( Self::$variant { .. } => $code, )*
+                }
+            }
+
+            /// The fields by name; numbers that are not finite are null.
+            pub fn data(&self) -> Map<String, Value> {
+                match self {
+                    $( Self::$variant { $($($field),*)? } => Map::from_iter([
+                        $($( (stringify!($field).to_owned(), value($field)), )*)?
+                    ]), )*
+                }
+            }
+
+            /// The characteristic that it concerns; None where it concerns none or all.
+            #[allow(unused_variables, unused_mut, unused_assignments)]
+            pub fn characteristic(&self) -> Option<&str> {
+                let mut found = None;
+                match self {
+                    $( Self::$variant { $($($field),*)? } => { $($( characteristic!($field $field found); )*)? } )*
+                }
+                found
+            }
+
+            /// The dimension that it concerns, the worst where there are several; None where it concerns none or many alike.
+            #[allow(unused_variables, unused_mut, unused_assignments)]
+            pub fn dimension(&self) -> Option<&str> {
+                let mut found = None;
+                match self {
+                    $( Self::$variant { $($($field),*)? } => { $($( dimension!($field $field found); )*)? } )*
+                }
+                found
+            }
+
+            fn text(&self) -> Text {
+                match self {
+                    $( Self::$variant { $($($field),*)? } => $theme::$text($($($field),*)?), )*
+                }
+            }
+        }
+    };
+}
+
+macro_rules! characteristic {
+    (characteristic $name:ident $found:ident) => {
+        $found = Some($name.as_str())
+    };
+    (output $name:ident $found:ident) => {
+        $found = Some($name.as_str())
+    };
+    ($other:ident $name:ident $found:ident) => {};
+}
+
+macro_rules! dimension {
+    (dimension $name:ident $found:ident) => {
+        $found = Some($name.as_str())
+    };
+    (dimensions $names:ident $found:ident) => {
+        if let [only] = &$names[..] {
+            $found = Some(only.as_str())
+        }
+    };
+    ($other:ident $name:ident $found:ident) => {};
+}

@@ -1,0 +1,76 @@
+//! Warnings about measured values.
+
+use super::Advice;
+use super::text::{Text, likewise, lines, names, say, values_and_lines};
+
+pub(super) fn missing_values(dimension: &str, file: &str, missing: &usize, rows: &usize, first: &[u64]) -> Text {
+    let are = if *missing == 1 { "is" } else { "are" };
+    let (of, first) = (format!("{missing} of {rows} values of `{dimension}`"), lines(first, *missing));
+    say(format!("{of} {are} missing in {file} ({first}). The result assumes that the others represent all parts."))
+        .advise(Advice::FindMissingValues)
+}
+
+pub(super) fn outliers(dimension: &str, file: &str, count: &usize, values: &usize, first: &[(f64, u64)]) -> Text {
+    let (lie, which) = if *count == 1 { ("lies", "It is") } else { ("lie", "They are") };
+    let first = values_and_lines(first, *count);
+    say(format!(
+        "{count} of {values} values of `{dimension}` in {file} {lie} farther out than a normal sample of this size reaches: {first}. \
+         {which} part of the result and can decide skewness, kurtosis and yield."
+    ))
+    .advise(Advice::RemoveWrongValues)
+}
+
+pub(super) fn small_sample(dimension: &str, values: &usize, enough: &usize, others: &[String]) -> Text {
+    let others = likewise(others);
+    say(format!(
+        "The sample of `{dimension}` has {values} values, fewer than {enough}. Its skewness and kurtosis are unreliable: mind the sampling \
+         intervals.{others}"
+    ))
+    .advise(Advice::MeasureMore { values: *enough })
+}
+
+pub(super) fn no_sampling_interval(dimensions: &[String], correlated: &bool) -> Text {
+    use crate::method_kind::Method;
+    let samples = if dimensions.len() == 1 { "sample" } else { "samples" };
+    let (why, advice) = match correlated {
+        true => ("dimensions are correlated", Advice::LeaveOutCorrelation),
+        false => ("the method has no surrogate", Advice::UseMethod { methods: vec![Method::SixN] }),
+    };
+    say(format!(
+        "The uncertainty from the size of the {samples} of {} is not computed: {why}. The result has no sampling interval.",
+        names(dimensions)
+    ))
+    .advise(advice)
+}
+
+pub(super) fn coarse_resolution(
+    dimension: &str,
+    resolution: &f64,
+    sigma: &f64,
+    distinct: &usize,
+    others: &[String],
+) -> Text {
+    say(format!(
+        "The {distinct} different values of `{dimension}` lie {:.2} sigma apart or more. Rounding is part of its sigma.{}",
+        resolution / sigma,
+        likewise(others)
+    ))
+    .advise(Advice::MeasureFiner)
+}
+
+pub(super) fn outside_band(
+    dimension: &str,
+    count: &usize,
+    values: &usize,
+    first: &[(f64, u64)],
+    mean_too: &bool,
+) -> Text {
+    let lie = if *count == 1 { "lies" } else { "lie" };
+    let mean = if *mean_too { " Their mean lies outside too." } else { "" };
+    let text = say(format!(
+        "{count} of {values} measured values of `{dimension}` {lie} outside its tolerance: {}.{mean} Moments use the values; worst case and rss \
+         use the tolerance.",
+        values_and_lines(first, *count)
+    ));
+    if *mean_too { text.advise(Advice::CheckColumn) } else { text }
+}

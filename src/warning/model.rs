@@ -1,0 +1,98 @@
+//! Warnings about the answers of the model.
+
+use super::Advice;
+use super::text::{Text, say};
+use crate::method_kind::Method;
+
+pub(super) fn failed_points(characteristic: &str, failed: &usize, points: &usize, point: &str, error: &str) -> Text {
+    say(format!(
+        "`{characteristic}` has no value at {failed} of {points} points. The first is at {point}: {error}. The share of assemblies without a \
+         value is unknown."
+    ))
+    .advise(Advice::RepairModel)
+}
+
+pub(super) fn failed_samples(characteristic: &str, failed: &u64, samples: &u64, error: &str) -> Text {
+    say(format!(
+        "`{characteristic}` has no value at {failed} of {samples} sampled points. The first error: {error}. The results are those of the other \
+         points."
+    ))
+    .advise(Advice::RepairModel)
+}
+
+pub(super) fn not_repeatable(
+    output: &str,
+    expected: &Option<f64>,
+    found: &Option<f64>,
+    times: &usize,
+    points: &usize,
+    suspects: &[String],
+) -> Text {
+    let cause = "Its answers depend on the points evaluated before.";
+    nominal(output, [expected, found], *times, cause, *points, suspects).advise(Advice::ResetModel)
+}
+
+pub(super) fn branch_flip(
+    output: &str,
+    expected: &Option<f64>,
+    found: &Option<f64>,
+    times: &usize,
+    points: &usize,
+    suspects: &[String],
+) -> Text {
+    let cause = "The model has settled in another solution.";
+    nominal(output, [expected, found], *times, cause, *points, suspects)
+        .advise(Advice::ResetModel)
+        .advise(Advice::SignedMeasure)
+}
+
+/// What became of answers that depend on the points before.
+fn nominal(
+    output: &str,
+    [expected, found]: [&Option<f64>; 2],
+    times: usize,
+    cause: &str,
+    points: usize,
+    suspects: &[String],
+) -> Text {
+    let value = |value: &Option<f64>| value.map_or("no value".to_owned(), |value| value.to_string());
+    let times = if times == 1 { "once".to_owned() } else { format!("{times} times") };
+    let among = if suspects.is_empty() { String::new() } else { format!(", among them {}", suspects.join("; ")) };
+    let points = if points == 1 { "1 point".to_owned() } else { format!("{points} points") };
+    say(format!(
+        "`{output}` at the nominal dimensions was {} at first and {} later ({times}). {cause} A fresh process evaluated {points} again{among}.",
+        value(expected),
+        value(found)
+    ))
+}
+
+pub(super) fn no_reaction(characteristic: &str) -> Text {
+    say(format!("`{characteristic}` is the same at every evaluated point. Its sigma is 0, unless an interaction that was not examined moves it."))
+        .advise(Advice::CheckInputs)
+        .advise(Advice::UseMethod { methods: vec![Method::Full] })
+}
+
+pub(super) fn atom(characteristic: &str, points: &usize) -> Text {
+    say(format!(
+        "`{characteristic}` is exactly 0 at {points} points. A distance that ends at contact hides interference, so the lower tail is missing."
+    ))
+    .advise(Advice::SignedMeasure)
+}
+
+pub(super) fn noise(characteristic: &str, rounding: &f64) -> Text {
+    say(format!("One rounding error of `{characteristic}` is {rounding:.1e} of its sigma. Derivatives are no more accurate than that."))
+        .advise(Advice::NearerDatum)
+}
+
+pub(super) fn scatter(characteristic: &str, scatter: &f64, drowned: &usize) -> Text {
+    let drowned = match drowned {
+        0 => String::new(),
+        1 => " It hides the curvature along one dimension.".to_owned(),
+        many => format!(" It hides the curvature along {many} dimensions."),
+    };
+    say(format!(
+        "Answers of `{characteristic}` next to the means scatter by {scatter:.1e} of its sigma.{drowned} The result is no more accurate than \
+         the scatter."
+    ))
+    .advise(Advice::TightenSolver)
+}

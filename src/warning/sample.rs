@@ -1,0 +1,34 @@
+//! Warnings about samples and rare events.
+
+use super::Advice;
+use super::text::{Text, say};
+use crate::method_kind::Method;
+
+pub(super) fn heavy_point(characteristic: &str, limit: &f64, part: &f64) -> Text {
+    say(format!(
+        "One point carries {:.0} % of the estimated probability of `{characteristic}` beyond {limit}. The surrogate does not show where rejects \
+         lie. The probability may be above its interval.",
+        100.0 * part
+    ))
+    .advise(Advice::MorePoints)
+    .advise(Advice::UseMethod { methods: vec![Method::Full] })
+}
+
+pub(super) fn nothing_beyond(characteristic: &str, limit: &f64, points: &u64, most: &f64) -> Text {
+    say(format!(
+        "None of {points} points of `{characteristic}` lies beyond {limit}. The probability has no estimate, only the upper bound {most:.1e}."
+    ))
+    .advise(Advice::MorePoints)
+}
+
+pub(super) fn plain_sampling(characteristic: &str, limit: &f64, plain: &f64, evaluations: &u64) -> Text {
+    say(format!(
+        "`{characteristic}` is often beyond {limit}: a plain sample of {plain:.0} points has the same standard error as these {evaluations} \
+         evaluations. The result is right."
+    ))
+    .advise(Advice::SamplePlainly)
+}
+
+pub(super) fn target_error_missed(points: &u64) -> Text {
+    say(format!("The standard errors are larger than wanted after {points} points.")).advise(Advice::MorePoints)
+}

@@ -1,0 +1,30 @@
+//! Warnings about the study itself.
+
+use super::text::{Text, names, say};
+use super::{Advice, NameKind};
+
+pub(super) fn unused_dimension(dimensions: &[String]) -> Text {
+    let (which, they, part) = match dimensions {
+        [_] => ("dimension".to_owned(), "It takes", "costs"),
+        many => (format!("{} dimensions:", many.len()), "They take", "cost"),
+    };
+    say(format!(
+        "No analysed characteristic depends on {which} {}. {they} no part in the result and {part} no evaluation.",
+        names(dimensions)
+    ))
+    .advise(Advice::CheckNames)
+}
+
+pub(super) fn unused_name(kind: &NameKind, unused: &[String]) -> Text {
+    let message = format!("No characteristic uses the {} {}.", kind.noun(unused.len()), names(unused));
+    say(message).advise(Advice::CheckNames)
+}
+
+pub(super) fn near_singular(unknown: &str, condition: &f64) -> Text {
+    say(format!(
+        "The nominal position is nearly singular: the closure conditions hardly determine `{unknown}` (condition number {condition:.1e}). \
+         Small deviations move it far, and some assemblies may not close."
+    ))
+    .advise(Advice::CheckPosition)
+    .advise(Advice::Sample { points: None })
+}

@@ -1,0 +1,187 @@
+//! Warnings about the second-order surface.
+
+use super::text::{Text, likewise, places, say};
+use super::{Advice, Change, Figure};
+use crate::method_kind::Method;
+
+pub(super) fn rss_invalid(characteristic: &str, mean_shift: &f64, variance: &f64) -> Text {
+    say(format!(
+        "`{characteristic}` is curved: second order moves its mean by {mean_shift:+.2} sigma and adds {:.1} % to its variance. Mean and sigma \
+         of first order are wrong by that much.",
+        100.0 * variance
+    ))
+    .advise(Advice::UseMethod { methods: vec![Method::SecondOrder] })
+}
+
+pub(super) fn higher_order(
+    characteristic: &str,
+    dimension: &str,
+    [third, fourth]: &[f64; 2],
+    held: &bool,
+    others: &[String],
+) -> Text {
+    let text = say(format!(
+        "`{characteristic}` is more than a parabola along `{dimension}`: {third:+.2e} u^3 {fourth:+.2e} u^4 sigma.{} {}",
+        likewise(others),
+        match held {
+            true => "The moments include these powers. The error estimate covers higher ones.",
+            false => "The method leaves these powers out.",
+        }
+    ));
+    if *held { text } else { text.advise(Advice::UseMethod { methods: vec![Method::SixN, Method::Auto] }) }
+}
+
+pub(super) fn shallow_rules(characteristic: &str, share: &f64) -> Text {
+    let methods = vec![Method::DimensionReduction, Method::BivariateDimensionReduction];
+    say(format!(
+        "Curvature adds {:.1} % of the variance of `{characteristic}`. Rules of three nodes do not integrate its third and fourth powers. \
+         Skewness, kurtosis and yield are unreliable.",
+        100.0 * share
+    ))
+    .advise(Advice::UseMethod { methods })
+}
+
+pub(super) fn poor_fit(characteristic: &str, residual: &f64) -> Text {
+    say(format!(
+        "The fitted surface misses the values of `{characteristic}` by {:.1} % of sigma (residual standard error). A quadratic does not \
+         describe it, so the moments are unreliable.",
+        100.0 * residual
+    ))
+    .advise(Advice::UseMethod { methods: vec![Method::SixN, Method::BivariateDimensionReduction] })
+}
+
+pub(super) fn kink(
+    characteristic: &str,
+    dimension: &str,
+    [left, right]: &[f64; 2],
+    between: &[f64; 2],
+    others: &[String],
+) -> Text {
+    say(format!(
+        "`{characteristic}` has a kink along `{dimension}` {}: its slope changes from {left:.3} to {right:.3} sigma per sigma.{} No polynomial \
+         follows a kink, so the moments are wrong.",
+        places(*between),
+        likewise(others)
+    ))
+    .advise(Advice::Sample { points: None })
+    .advise(Advice::SplitBranches)
+}
+
+pub(super) fn discontinuity(
+    characteristic: &str,
+    dimension: &str,
+    by: &f64,
+    between: &[f64; 2],
+    others: &[String],
+) -> Text {
+    say(format!(
+        "`{characteristic}` jumps along `{dimension}` {} by {by:.2} sigma.{} Derivatives mean nothing there, so the moments are wrong.",
+        places(*between),
+        likewise(others)
+    ))
+    .advise(Advice::CheckConfiguration)
+    .advise(Advice::Sample { points: None })
+}
+
+pub(super) fn interactions_left_out(characteristic: &str, share: &f64) -> Text {
+    say(format!(
+        "{:.2} % of the variance of `{characteristic}` comes from terms that were not examined, by comparison with the model. Sigma includes \
+         this part; skewness and kurtosis do not.",
+        100.0 * share
+    ))
+    .advise(Advice::RaiseBudget)
+    .advise(Advice::UseMethod { methods: vec![Method::Full] })
+}
+
+pub(super) fn untrusted_surrogate(characteristic: &str, share: &f64, sampled: &Option<u64>) -> Text {
+    let text = |result: &str| {
+        say(format!(
+            "The surface through the evaluated points leaves {:.1} % of the variance of `{characteristic}` unexplained. {result}",
+            100.0 * share
+        ))
+    };
+    match sampled {
+        Some(points) => text(&format!(
+            "The moments come from {points} points of the model, with the surface as control variate, and carry standard errors."
+        )),
+        None => text("The moments are unreliable.").advise(Advice::RaiseBudget).advise(Advice::Sample { points: None }),
+    }
+}
+
+pub(super) fn under_resolved(
+    characteristic: &str,
+    figure: &Figure,
+    error: &Option<f64>,
+    wanted: &f64,
+    budget: &bool,
+) -> Text {
+    let shown = |value: f64| match figure {
+        Figure::Sigma => format!("{:.2} %", 100.0 * value),
+        Figure::Yield => format!("{:.2e} %", 100.0 * value),
+        Figure::Skewness | Figure::Kurtosis => format!("{value:.2e}"),
+    };
+    let (name, wanted) = (figure.name(), shown(*wanted));
+    let known = match error {
+        Some(error) => format!(
+            "The estimated error of the {name} of `{characteristic}` is {}, and {wanted} was wanted.",
+            shown(*error)
+        ),
+        None => format!("The error of the {name} of `{characteristic}` is unknown, and {wanted} was wanted."),
+    };
+    let why = match budget {
+        true => "The budget was spent before.",
+        false => "Further derivatives would not reduce it.",
+    };
+    say(format!("{known} {why}")).advise(Advice::RaiseBudget).advise(Advice::Sample { points: None })
+}
+
+pub(super) fn switch(characteristic: &str, switch: &str, change: &Change, probability: &f64) -> Text {
+    let (does, means) = match change {
+        Change::Kink => ("bends", "No polynomial follows a kink."),
+        Change::Jump => ("jumps", "No polynomial follows a jump."),
+        Change::Edge => ("has no value beyond a limit", "Every figure is of the assemblies that have a value."),
+    };
+    let text = say(format!(
+        "`{characteristic}` {does} at {switch}, with {} of the assemblies beyond. {means}",
+        part(*probability)
+    ));
+    if *change == Change::Edge { text } else { text.advise(Advice::Sample { points: None }) }
+}
+
+pub(super) fn pole(characteristic: &str, switch: &str, probability: &f64) -> Text {
+    say(format!(
+        "`{characteristic}` grows without bound at {switch}, with {} of the assemblies beyond. It has no moments. Those printed are of the \
+         assemblies within eight sigma, and change with every sample.",
+        part(*probability)
+    ))
+}
+
+pub(super) fn figure_off(characteristic: &str, figure: &&'static str, value: &f64, model: &f64, error: &f64) -> Text {
+    let [value, model, error] = [(value, 5), (model, 5), (error, 2)].map(|(of, digits)| significant(*of, digits));
+    say(format!(
+        "The {figure} of `{characteristic}` is {value} by the method, and {model} by the model itself, with an error of {error}."
+    ))
+    .advise(Advice::UseMethod { methods: vec![Method::Auto] })
+}
+
+/// A share as percent, or as parts per million where it is small.
+fn part(share: f64) -> String {
+    if share < 1e-3 {
+        format!("{} ppm", significant(1e6 * share, 2))
+    } else {
+        format!("{} %", significant(100.0 * share, 2))
+    }
+}
+
+/// So many digits that count.
+fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    match digits - 1 - exponent {
+        places @ 0..=9 => format!("{value:.*}", places as usize),
+        places if places < 0 && exponent < 9 => format!("{value:.0}"),
+        _ => format!("{value:.*e}", (digits - 1) as usize),
+    }
+}

@@ -1,0 +1,83 @@
+//! What the sentences of warnings are made of.
+
+use super::Advice;
+
+/// Names that a sentence shows before it counts the rest.
+const SHOWN: usize = 5;
+
+/// The words of a warning, and what to do.
+pub(super) struct Text {
+    pub(super) message: String,
+    pub(super) advice: Vec<Advice>,
+}
+
+/// A message without advice.
+pub(super) fn say(message: impl Into<String>) -> Text {
+    Text { message: message.into(), advice: Vec::new() }
+}
+
+impl Text {
+    /// With this to do, after what was advised before.
+    pub(super) fn advise(mut self, advice: Advice) -> Self {
+        self.advice.push(advice);
+        self
+    }
+}
+
+/// Names in backquotes, the first few of many, and how many more there are.
+pub(super) fn names(all: &[String]) -> String {
+    let shown = if all.len() == SHOWN + 1 { SHOWN + 1 } else { SHOWN };
+    let quoted: Vec<String> = all.iter().take(shown).map(|name| format!("`{name}`")).collect();
+    match (all.len().saturating_sub(shown), &quoted[..]) {
+        (0, [most @ .., last]) if !most.is_empty() => format!("{} and {last}", most.join(", ")),
+        (0, _) => quoted.join(", "),
+        (more, _) => format!("{} and {more} more", quoted.join(", ")),
+    }
+}
+
+/// A sentence for further dimensions of which the same is true, with the blank before it.
+pub(super) fn likewise(others: &[String]) -> String {
+    match others {
+        [] => String::new(),
+        [one] => format!(" The same is true of `{one}`."),
+        many => format!(" The same is true of {} others: {}.", many.len(), names(many)),
+    }
+}
+
+/// Values with their lines, and how many more there are.
+pub(super) fn values_and_lines(first: &[(f64, u64)], count: usize) -> String {
+    let named: Vec<String> = first.iter().map(|(value, line)| format!("{value} (line {line})")).collect();
+    format!("{}{}", named.join(", "), more(first.len(), count))
+}
+
+/// Line numbers, and how many more there are.
+pub(super) fn lines<N: ToString>(first: &[N], count: usize) -> String {
+    let named: Vec<String> = first.iter().map(N::to_string).collect();
+    let word = if count == 1 { "line" } else { "lines" };
+    format!("{word} {}{}", named.join(", "), more(first.len(), count))
+}
+
+fn more(shown: usize, count: usize) -> String {
+    match count.saturating_sub(shown) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    }
+}
+
+pub(super) fn places([from, to]: [f64; 2]) -> String {
+    format!("between {from:+.2} and {to:+.2} sigma")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::names;
+
+    #[test]
+    fn long_lists_are_counted() {
+        let all: Vec<String> = ('a'..='i').map(String::from).collect();
+        assert_eq!(names(&all[..1]), "`a`");
+        assert_eq!(names(&all[..2]), "`a` and `b`");
+        assert_eq!(names(&all[..6]), "`a`, `b`, `c`, `d`, `e` and `f`");
+        assert_eq!(names(&all), "`a`, `b`, `c`, `d`, `e` and 4 more");
+    }
+}

@@ -1,0 +1,53 @@
+//! Names of public types: each stands for one thing, and says which.
+
+use std::collections::BTreeMap;
+
+use super::support::repository;
+
+/// Names that say nothing by themselves. Those in the second list are still there; it may only get shorter.
+const EMPTY: [&str; 9] = ["One", "Found", "Known", "At", "Own", "Rest", "Ask", "Given", "Bought"];
+const LEFT: [&str; 3] = ["Ask", "At", "Known"];
+
+/// The public types and traits of the library by name, with the files that define them.
+fn types() -> BTreeMap<String, Vec<String>> {
+    let root = repository("src");
+    let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut folders = vec![root.clone()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let file = path.strip_prefix(&root).unwrap().display().to_string().replace('\\', "/");
+            if file == "cli" {
+                continue;
+            }
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).unwrap();
+            for line in text.lines().filter(|_| file.ends_with(".rs")) {
+                let starts = ["pub struct ", "pub enum ", "pub trait "];
+                let Some(rest) = starts.iter().find_map(|start| line.strip_prefix(start)) else { continue };
+                let name = rest.chars().take_while(|c| c.is_alphanumeric()).collect();
+                found.entry(name).or_default().push(file.clone());
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn no_two_public_types_have_one_name() {
+    let all = types();
+    assert!(all.len() > 100, "the sources were read");
+    let twice: Vec<_> = all.iter().filter(|(_, files)| files.len() > 1).collect();
+    assert!(twice.is_empty(), "names of several types: {twice:#?}");
+}
+
+#[test]
+fn no_public_type_has_a_name_that_says_nothing() {
+    let all = types();
+    let mut there: Vec<&str> = EMPTY.into_iter().filter(|name| all.contains_key(*name)).collect();
+    there.sort_unstable();
+    assert_eq!(there, LEFT, "rename new ones; take those that are gone out of the list");
+}
