@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::Tail;
+use super::LawTail;
 use super::complex::Complex;
 use super::single_sum::BLOCK;
 use super::transform::Transform;
@@ -25,7 +25,7 @@ const ROOM: f64 = 80.0;
 /// One side's tilts, and what has been computed on them.
 #[derive(Debug)]
 pub(super) struct Side {
-    tail: Tail,
+    tail: LawTail,
     least: f64,
     most: f64,
     rungs: Mutex<Vec<Rung>>,
@@ -66,10 +66,10 @@ struct Values {
 }
 
 impl Side {
-    pub(super) fn new(tail: Tail, transform: &Transform) -> Self {
+    pub(super) fn new(tail: LawTail, transform: &Transform) -> Self {
         let end = match tail {
-            Tail::Upper => transform.domain[1],
-            Tail::Lower => -transform.domain[0],
+            LawTail::Upper => transform.domain[1],
+            LawTail::Lower => -transform.domain[0],
         };
         let kind = match (transform.is_closed(), transform.trees.is_empty()) {
             (true, _) => 0,
@@ -112,8 +112,8 @@ impl Side {
         let (place, rung) = self.rung(transform, y);
         let (theta, [log, _, spread]) = (rung.theta, rung.cumulants);
         let end = match self.tail {
-            Tail::Upper => transform.domain[1],
-            Tail::Lower => -transform.domain[0],
+            LawTail::Upper => transform.domain[1],
+            LawTail::Lower => -transform.domain[0],
         };
         let room = end - theta.abs();
         // By Poisson's formula the sum is sum_m exp(theta m D) sf(y + m D): far enough from both neighbours.

@@ -11,16 +11,16 @@ use super::polynomial::{derivative, value};
 use super::single_sum::BLOCK;
 use super::surface::Surface;
 use super::tree::Tree;
-use super::{Figure, Kind, SurfaceLaw, Tail};
+use super::{Kind, LawFigure, LawTail, SurfaceLaw};
 
 /// Of all inputs of the surrogate, 0 for one without a part in the surface; None where the law is a step function.
-pub(super) fn tail_derivatives(law: &SurfaceLaw, y: f64, tail: Tail) -> Option<Vec<Figure>> {
+pub(super) fn tail_derivatives(law: &SurfaceLaw, y: f64, tail: LawTail) -> Option<Vec<LawFigure>> {
     let [least, most] = law.range;
     if y.is_nan() || law.step {
         return None;
     }
-    let nothing = Figure::new(0.0, 0.0);
-    let own: Vec<Figure> = match &law.kind {
+    let nothing = LawFigure::new(0.0, 0.0);
+    let own: Vec<LawFigure> = match &law.kind {
         _ if y <= least || y >= most => vec![nothing; law.surface.len()],
         Kind::Point(_) | Kind::Steps(_) => return None,
         Kind::Exact(inversion) => exact_derivatives(inversion, &law.surface, y, tail),
@@ -31,7 +31,7 @@ pub(super) fn tail_derivatives(law: &SurfaceLaw, y: f64, tail: Tail) -> Option<V
 }
 
 /// Of all inputs of a surface that an exact law has taken; 0 for the others.
-pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail: Tail) -> Vec<Figure> {
+pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail: LawTail) -> Vec<LawFigure> {
     law.derivatives(y, tail, |contour, count| {
         let mut changes = vec![vec![Complex::ZERO; count]; surface.len()];
         let transform = &law.transform;
@@ -50,7 +50,7 @@ pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail
                 let last = count.min(first + BLOCK);
                 let top = contour.s(last).abs();
                 let tilted = single.tilted(contour.theta, top);
-                for at in first..last {
+                for (at, change) in changes[single.input].iter_mut().enumerate().take(last).skip(first) {
                     let s = contour.s(at);
                     let (mut mass, mut moved) = (Complex::ZERO, Complex::ZERO);
                     for ((z, g), w) in tilted.z.iter().zip(&tilted.values).zip(&tilted.weights) {
@@ -58,7 +58,7 @@ pub(super) fn exact_derivatives(law: &Inversion, surface: &Surface, y: f64, tail
                         mass += weight;
                         moved += weight * (z * value(&slope, *z));
                     }
-                    changes[single.input][at] = s * moved / mass;
+                    *change = s * moved / mass;
                 }
             }
         }
@@ -84,6 +84,7 @@ fn x_coth_x_less_one(x: Complex) -> Complex {
 }
 
 /// `s (b_j mu_j + 2 (mu_j (H mu)_j + (Sigma H)_jj))` with the tilted mean `mu` and covariance `Sigma` of the form.
+#[expect(clippy::needless_range_loop, reason = "every input has its own list of points")]
 fn of_block(block: &Block, contour: &Contour, changes: &mut [Vec<Complex>]) {
     let m = block.members.len();
     let axis = |j: usize, i: usize| block.axes.as_ref().map_or(1.0, |axes| axes[(j, i)]);

@@ -119,11 +119,6 @@ impl Forms {
         self.curved.is_empty()
     }
 
-    /// Variance of what has no curvature.
-    pub(super) fn straight(&self) -> f64 {
-        self.straight
-    }
-
     pub(super) fn mean(&self) -> f64 {
         self.curved.iter().map(|[a, _]| a).sum()
     }

@@ -19,7 +19,6 @@ pub(super) struct Hat {
     pub(super) input: usize,
     /// Half widths in sigmas of the input, times its slope.
     pub(super) halves: Vec<f64>,
-    pub(super) slope: f64,
 }
 
 /// Below this the quotient is summed as a series, which loses nothing.
@@ -33,7 +32,7 @@ impl Hat {
         }
         let slope = part[1];
         let halves = law.uniform_halves()?.into_iter().map(|half| (half * slope).abs()).collect();
-        Some(Self { input, halves, slope })
+        Some(Self { input, halves })
     }
 }
 

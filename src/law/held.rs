@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use super::inversion::Line;
 use super::sampled::Held;
-use super::{Figure, Kind, SurfaceLaw, Tail};
+use super::{Kind, LawFigure, LawTail, SurfaceLaw};
 
 /// The contour, or the direction, points and proposal, of one tail.
 ///
 /// Choose it again where an optimisation ends: it stays right for other coefficients, but not as accurate.
 #[derive(Debug, Clone)]
 pub struct HeldTail {
-    tail: Tail,
+    tail: LawTail,
     kind: HeldKind,
 }
 
@@ -25,7 +25,7 @@ enum HeldKind {
 }
 
 impl HeldTail {
-    pub(super) fn of(law: &SurfaceLaw, y: f64, tail: Tail) -> Self {
+    pub(super) fn of(law: &SurfaceLaw, y: f64, tail: LawTail) -> Self {
         let kind = match &law.kind {
             Kind::Exact(inversion) if !inversion.is_normal() => HeldKind::Line(inversion.held(y, tail)),
             Kind::Sampled(sampled) => HeldKind::Points(Arc::new(sampled.held(y, tail, law.mean))),
@@ -36,7 +36,7 @@ impl HeldTail {
 
     /// The tail of a law beyond a limit, along this contour or at these points; the law's own where its structure is another
     /// one.
-    pub fn tail(&self, law: &SurfaceLaw, y: f64) -> Figure {
+    pub fn tail(&self, law: &SurfaceLaw, y: f64) -> LawFigure {
         let [least, most] = law.range;
         let own = || law.tail(y, self.tail);
         if y.is_nan() || y <= least || y >= most {

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use super::Tail;
+use super::LawTail;
 use super::polynomial::{Quartic, derivative, roots, value};
 use crate::distribution::{Distribution, Normal, Probability, Uniform, standard_normal};
 
@@ -171,7 +171,7 @@ impl Input {
     }
 
     /// Probability that a polynomial of the input lies strictly beyond 0.
-    pub(super) fn beyond(&self, polynomial: &Quartic, tail: Tail) -> f64 {
+    pub(super) fn beyond(&self, polynomial: &Quartic, tail: LawTail) -> f64 {
         let counts = |z: f64| value(polynomial, z) * tail.sign() > 0.0;
         let places = roots(polynomial, self.ends);
         let [low, high] = self.ends;

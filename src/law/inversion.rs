@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 use super::complex::Complex;
 use super::contour::{Contour, Side};
 use super::transform::Transform;
-use super::{Figure, Tail};
+use super::{LawFigure, LawTail};
 use crate::distribution::standard_normal;
 
 /// Points of the first window.
@@ -46,13 +46,13 @@ pub(super) struct Inversion {
 /// What is summed along a contour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Quantity {
-    Tail(Tail),
+    LawTail(LawTail),
     Density,
 }
 
 impl Inversion {
     pub(super) fn new(transform: Transform, centre: f64) -> Self {
-        let sides = [Tail::Lower, Tail::Upper].map(|tail| Side::new(tail, &transform));
+        let sides = [LawTail::Lower, LawTail::Upper].map(|tail| Side::new(tail, &transform));
         Self { transform, centre, sides }
     }
 
@@ -71,27 +71,27 @@ impl Inversion {
     }
 
     /// Probability beyond `y` on this side.
-    pub(super) fn tail(&self, y: f64, tail: Tail) -> Figure {
+    pub(super) fn tail(&self, y: f64, tail: LawTail) -> LawFigure {
         let y = y - self.centre;
         if let Some(z) = self.normal(y) {
-            let value = if tail == Tail::Lower { standard_normal::cdf(z) } else { standard_normal::sf(z) };
-            return Figure::new(value, 4.0 * f64::EPSILON * value * (1.0 + z * z));
+            let value = if tail == LawTail::Lower { standard_normal::cdf(z) } else { standard_normal::sf(z) };
+            return LawFigure::new(value, 4.0 * f64::EPSILON * value * (1.0 + z * z));
         }
         let outward = tail.sign() * (y - self.transform.mean) / self.sigma();
         match outward < -CENTRAL {
-            true => self.sum(y, tail.other(), Quantity::Tail(tail.other())).complement(),
-            false => self.sum(y, tail, Quantity::Tail(tail)),
+            true => self.sum(y, tail.other(), Quantity::LawTail(tail.other())).complement(),
+            false => self.sum(y, tail, Quantity::LawTail(tail)),
         }
     }
 
     /// Density per unit of `y`.
-    pub(super) fn density(&self, y: f64) -> Figure {
+    pub(super) fn density(&self, y: f64) -> LawFigure {
         let y = y - self.centre;
         if let Some(z) = self.normal(y) {
             let value = standard_normal::density(z) / self.sigma();
-            return Figure::new(value, 4.0 * f64::EPSILON * value * (1.0 + z * z));
+            return LawFigure::new(value, 4.0 * f64::EPSILON * value * (1.0 + z * z));
         }
-        let tail = if y < self.transform.mean { Tail::Lower } else { Tail::Upper };
+        let tail = if y < self.transform.mean { LawTail::Lower } else { LawTail::Upper };
         self.sum(y, tail, Quantity::Density)
     }
 
@@ -105,18 +105,18 @@ impl Inversion {
         self.is_normal().then(|| (y - self.transform.mean) / self.sigma())
     }
 
-    fn side(&self, tail: Tail) -> &Side {
-        &self.sides[usize::from(tail == Tail::Upper)]
+    fn side(&self, tail: LawTail) -> &Side {
+        &self.sides[usize::from(tail == LawTail::Upper)]
     }
 
     /// Of a limit that is counted from the centre.
-    fn sum(&self, y: f64, tail: Tail, quantity: Quantity) -> Figure {
+    fn sum(&self, y: f64, tail: LawTail, quantity: Quantity) -> LawFigure {
         let contour = self.side(tail).contour(&self.transform, y);
         self.along(&contour, y, quantity, None).0
     }
 
     /// The sum along a contour, over as many points as it takes or as many as it is told; and how many these were.
-    fn along(&self, contour: &Contour, y: f64, quantity: Quantity, fixed: Option<Window>) -> (Figure, Window) {
+    fn along(&self, contour: &Contour, y: f64, quantity: Quantity, fixed: Option<Window>) -> (LawFigure, Window) {
         let transform = &self.transform;
         let most = LAST[usize::from(transform.is_cheap())];
         let (mut count, mut before) = (fixed.map_or(FIRST, |window| window.points), f64::NAN);
@@ -124,7 +124,7 @@ impl Inversion {
             let terms = terms(contour, transform, y, quantity, count);
             if terms.is_empty() {
                 // The tables of a tree are too large: nothing is known.
-                return (Figure::new(f64::NAN, f64::INFINITY), Window { points: FIRST, smooth: true });
+                return (LawFigure::new(f64::NAN, f64::INFINITY), Window { points: FIRST, smooth: true });
             }
             let largest = terms.iter().map(|term| term.abs()).fold(0.0, f64::max);
             let last = terms[terms.len() - terms.len() / 4..].iter().map(|term| term.abs()).fold(0.0, f64::max);
@@ -151,16 +151,16 @@ impl Inversion {
         let level = libm::exp(contour.log - contour.theta * y) * contour.step / PI;
         let value = level * sum;
         let value = if quantity == Quantity::Density { value.max(0.0) } else { value.clamp(0.0, 1.0) };
-        (Figure::new(value, level * (off + rounding) + RELATIVE * value), window)
+        (LawFigure::new(value, level * (off + rounding) + RELATIVE * value), window)
     }
 
     /// The contour and the window of a tail, and whether it is computed as the complement of the other one.
-    pub(super) fn held(&self, y: f64, tail: Tail) -> Line {
+    pub(super) fn held(&self, y: f64, tail: LawTail) -> Line {
         let y = y - self.centre;
         let outward = tail.sign() * (y - self.transform.mean) / self.sigma();
         let own = if outward < -CENTRAL { tail.other() } else { tail };
         let contour = self.side(own).contour(&self.transform, y);
-        let (_, window) = self.along(&contour, y, Quantity::Tail(own), None);
+        let (_, window) = self.along(&contour, y, Quantity::LawTail(own), None);
         Line {
             tail: own,
             complement: own != tail,
@@ -172,14 +172,14 @@ impl Inversion {
     }
 
     /// The tail of this law along the contour of another one; None where its transform does not exist there.
-    pub(super) fn tail_along(&self, y: f64, line: &Line) -> Option<Figure> {
+    pub(super) fn tail_along(&self, y: f64, line: &Line) -> Option<LawFigure> {
         let [low, high] = self.transform.domain;
         if !(low < line.theta && line.theta < high) {
             return None;
         }
         let y = y - self.centre;
         let contour = Contour::fixed(&self.transform, line.theta, line.step, line.bend);
-        let (found, _) = self.along(&contour, y, Quantity::Tail(line.tail), Some(line.window));
+        let (found, _) = self.along(&contour, y, Quantity::LawTail(line.tail), Some(line.window));
         Some(if line.complement { found.complement() } else { found })
     }
 
@@ -187,15 +187,15 @@ impl Inversion {
     pub(super) fn derivatives(
         &self,
         y: f64,
-        tail: Tail,
+        tail: LawTail,
         changes: impl Fn(&Contour, usize) -> Vec<Vec<Complex>>,
-    ) -> Vec<Figure> {
+    ) -> Vec<LawFigure> {
         let line = self.held(y, tail);
         let y = y - self.centre;
         let contour = self.side(line.tail).contour(&self.transform, y);
         // A derivative decays more slowly than what it is of.
         let count = 2 * line.window.points;
-        let terms = terms(&contour, &self.transform, y, Quantity::Tail(line.tail), count);
+        let terms = terms(&contour, &self.transform, y, Quantity::LawTail(line.tail), count);
         let sign = if line.complement { -1.0 } else { 1.0 };
         let level = sign * libm::exp(contour.log - contour.theta * y) * contour.step / PI;
         let of = |change: &Vec<Complex>| {
@@ -203,7 +203,7 @@ impl Inversion {
                 terms.iter().zip(change).take(count).map(|(term, change)| *term * *change).collect()
             };
             let (whole, half) = (windowed(&product(count)), windowed(&product(count / 2)));
-            Figure::new(level * whole, level.abs() * ((whole - half).abs() + 1e-11 * whole.abs()))
+            LawFigure::new(level * whole, level.abs() * ((whole - half).abs() + 1e-11 * whole.abs()))
         };
         changes(&contour, terms.len()).iter().map(of).collect()
     }
@@ -219,7 +219,7 @@ pub(super) struct Window {
 /// A contour with the points on it that give a tail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Line {
-    tail: Tail,
+    tail: LawTail,
     complement: bool,
     theta: f64,
     step: f64,
@@ -232,7 +232,7 @@ fn terms(contour: &Contour, transform: &Transform, y: f64, quantity: Quantity, c
     let mut terms = contour.integrand(transform, y, count);
     for (index, term) in terms.iter_mut().enumerate() {
         let s = contour.s(index);
-        if let Quantity::Tail(tail) = quantity {
+        if let Quantity::LawTail(tail) = quantity {
             *term = *term / (s * tail.sign());
         }
         if contour.bend != 0.0 {

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::input::Input;
 use super::points::{REPLICATES, mixed};
-use super::{Figure, SurfaceLaw};
+use super::{LawFigure, SurfaceLaw};
 use crate::characteristic::SpecLimits;
 use crate::distribution::standard_normal;
 use crate::sampling::{SOBOL_DIMENSIONS, Sobol};
@@ -52,17 +52,17 @@ const SEED: u64 = 1;
 /// assert!((both.value - one * one).abs() <= both.error && both.error < 1e-3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn joint_yield(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> Figure {
-    let mut tails = Figure::new(0.0, 0.0);
+pub fn joint_yield(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> LawFigure {
+    let mut tails = LawFigure::new(0.0, 0.0);
     for (law, limits) in characteristics {
         for tail in [limits.lower().map(|y| law.below(y)), limits.upper().map(|y| law.above(y))].into_iter().flatten() {
-            tails = Figure::new(tails.value + tail.value, tails.error + tail.error);
+            tails = LawFigure::new(tails.value + tail.value, tails.error + tail.error);
         }
     }
     let limited: Vec<&(&SurfaceLaw, SpecLimits)> =
         characteristics.iter().filter(|(_, limits)| limits.exist()).collect();
     if limited.len() < 2 {
-        return Figure::new((1.0 - tails.value).clamp(0.0, 1.0), tails.error);
+        return LawFigure::new((1.0 - tails.value).clamp(0.0, 1.0), tails.error);
     }
     let inputs = Inputs::of(&limited);
     let several: Vec<f64> =
@@ -73,7 +73,7 @@ pub fn joint_yield(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> Figure {
     // As for every other sampled figure; and no point with two broken limits is no proof that there is none.
     let fewest = if mean == 0.0 { (3.0 / (n * POINTS as f64)).min(tails.value) } else { 0.0 };
     let error = 2.95 * (variance / n).sqrt();
-    Figure::new((1.0 - tails.value + mean).clamp(0.0, 1.0), tails.error + error.max(fewest))
+    LawFigure::new((1.0 - tails.value + mean).clamp(0.0, 1.0), tails.error + error.max(fewest))
 }
 
 /// All inputs that count for any of the laws, by their positions.
@@ -112,6 +112,7 @@ impl Inputs {
     }
 
     /// The mean of the broken limits beyond the first over the points of a replicate.
+    #[expect(clippy::needless_range_loop, reason = "a point is a row over all columns")]
     fn several(&self, characteristics: &[&(&SurfaceLaw, SpecLimits)], replicate: usize) -> f64 {
         let sobol = Sobol::new(self.laws.len().min(SOBOL_DIMENSIONS));
         let columns: Vec<Vec<f64>> = (0..self.laws.len())

@@ -60,7 +60,7 @@ use transform::Transform;
 
 /// A number and what its computation leaves uncertain.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figure {
+pub struct LawFigure {
     /// The number.
     pub value: f64,
     /// Estimated largest numerical error, in the unit of the number; 0 where it is exact.
@@ -69,7 +69,7 @@ pub struct Figure {
     pub proven: bool,
 }
 
-impl Figure {
+impl LawFigure {
     const fn new(value: f64, error: f64) -> Self {
         Self { value, error, proven: false }
     }
@@ -89,14 +89,14 @@ impl Figure {
 
 /// One end of a distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Tail {
+pub enum LawTail {
     /// Below a limit.
     Lower,
     /// Above a limit.
     Upper,
 }
 
-impl Tail {
+impl LawTail {
     /// 1 above, -1 below.
     fn sign(self) -> f64 {
         match self {
@@ -268,32 +268,32 @@ impl SurfaceLaw {
     }
 
     /// Probability strictly below a limit, so that a limit itself is kept.
-    pub fn below(&self, y: f64) -> Figure {
-        self.tail(y, Tail::Lower)
+    pub fn below(&self, y: f64) -> LawFigure {
+        self.tail(y, LawTail::Lower)
     }
 
     /// Probability strictly above a limit.
-    pub fn above(&self, y: f64) -> Figure {
-        self.tail(y, Tail::Upper)
+    pub fn above(&self, y: f64) -> LawFigure {
+        self.tail(y, LawTail::Upper)
     }
 
     /// Probability strictly beyond a limit, computed as what it is and not as a complement.
     ///
     /// Exactly 0 or 1, and said to be proven, where the limit lies outside of the range. NaN gives NaN.
-    pub fn tail(&self, y: f64, tail: Tail) -> Figure {
+    pub fn tail(&self, y: f64, tail: LawTail) -> LawFigure {
         if y.is_nan() {
-            return Figure::new(f64::NAN, f64::INFINITY);
+            return LawFigure::new(f64::NAN, f64::INFINITY);
         }
         let [least, most] = self.range;
         let (outside, whole) = match tail {
-            Tail::Lower => (y <= least, y > most),
-            Tail::Upper => (y >= most, y < least),
+            LawTail::Lower => (y <= least, y > most),
+            LawTail::Upper => (y >= most, y < least),
         };
         if outside || whole {
-            return Figure::proven(f64::from(u8::from(whole)));
+            return LawFigure::proven(f64::from(u8::from(whole)));
         }
         match &self.kind {
-            Kind::Point(_) => Figure::proven(0.0),
+            Kind::Point(_) => LawFigure::proven(0.0),
             Kind::Steps(steps) => steps.tail(y, tail),
             Kind::Exact(inversion) => inversion.tail(y, tail),
             Kind::Single(single) => single.tail(y, tail),
@@ -302,16 +302,16 @@ impl SurfaceLaw {
     }
 
     /// Density per unit of `y`; 0 where the law is a step function.
-    pub fn density(&self, y: f64) -> Figure {
+    pub fn density(&self, y: f64) -> LawFigure {
         let [least, most] = self.range;
         if y.is_nan() {
-            return Figure::new(f64::NAN, f64::INFINITY);
+            return LawFigure::new(f64::NAN, f64::INFINITY);
         }
         if self.step || y < least || y > most {
-            return Figure::proven(0.0);
+            return LawFigure::proven(0.0);
         }
         match &self.kind {
-            Kind::Point(_) | Kind::Steps(_) => Figure::proven(0.0),
+            Kind::Point(_) | Kind::Steps(_) => LawFigure::proven(0.0),
             Kind::Exact(inversion) => inversion.density(y),
             Kind::Single(single) => single.density(y),
             Kind::Sampled(sampled) => sampled.density(y, self.mean),
@@ -321,20 +321,20 @@ impl SurfaceLaw {
     /// The limit beyond which this tail has the probability `p`; NaN where `p` is no probability.
     ///
     /// At 0 the end of the range that the tail points to, which may be infinite; at 1 the other one.
-    pub fn quantile(&self, tail: Tail, p: f64) -> Figure {
+    pub fn quantile(&self, tail: LawTail, p: f64) -> LawFigure {
         if !(0.0..=1.0).contains(&p) {
-            return Figure::new(f64::NAN, f64::INFINITY);
+            return LawFigure::new(f64::NAN, f64::INFINITY);
         }
         if let Kind::Point(at) = self.kind {
-            return Figure::new(at, 0.0);
+            return LawFigure::new(at, 0.0);
         }
         if let Kind::Steps(steps) = &self.kind {
-            return Figure::new(steps.quantile(tail, p), 0.0);
+            return LawFigure::new(steps.quantile(tail, p), 0.0);
         }
         let [least, most] = self.range;
         if p == 0.0 || p == 1.0 {
-            let upper = (tail == Tail::Upper) == (p == 0.0);
-            return Figure::new(if upper { most } else { least }, 0.0);
+            let upper = (tail == LawTail::Upper) == (p == 0.0);
+            return LawFigure::new(if upper { most } else { least }, 0.0);
         }
         match p <= 0.5 {
             true => quantile::quantile(self, tail, p),
@@ -352,13 +352,13 @@ impl SurfaceLaw {
     ///
     /// Shapes: as many as the surrogate has parts; 0 for an input that does not count. Cost: about that of one limit for each
     /// input of the exact branch, one sample for all of them in the others.
-    pub fn tail_derivatives(&self, y: f64, tail: Tail) -> Option<Vec<Figure>> {
+    pub fn tail_derivatives(&self, y: f64, tail: LawTail) -> Option<Vec<LawFigure>> {
         derivative::tail_derivatives(self, y, tail)
     }
 
     /// The contour, points and proposals with which this tail is computed, to compute those of other laws of the same
     /// structure with them: their figures then are smooth in the coefficients.
-    pub fn hold(&self, y: f64, tail: Tail) -> HeldTail {
+    pub fn hold(&self, y: f64, tail: LawTail) -> HeldTail {
         HeldTail::of(self, y, tail)
     }
 

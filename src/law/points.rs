@@ -44,6 +44,7 @@ impl Sample {
 }
 
 /// A function of the inputs and the weight at every point, replicate after replicate; the direction is at 0.
+#[expect(clippy::needless_range_loop, reason = "a point is a row over all columns")]
 pub(super) fn visit<T: Send>(
     direction: &Direction,
     tilts: &Tilts,

@@ -1,6 +1,6 @@
 //! Quantiles: the limit beyond which a tail has a given probability, by its logarithm.
 
-use super::{Figure, SurfaceLaw, Tail};
+use super::{LawFigure, LawTail, SurfaceLaw};
 
 /// Steps at most: a dozen when all is well.
 const STEPS: usize = 200;
@@ -8,7 +8,7 @@ const STEPS: usize = 200;
 const SAME: f64 = 1e-14;
 
 /// The limit at which a tail of the law has the probability `p`, above 0 and at most one half.
-pub(super) fn quantile(law: &SurfaceLaw, tail: Tail, p: f64) -> Figure {
+pub(super) fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64) -> LawFigure {
     let (mean, sigma) = (law.mean(), law.sigma());
     let sign = tail.sign();
     // Outward from the mean; positive while the tail is too heavy.
@@ -17,8 +17,8 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: Tail, p: f64) -> Figure {
         libm::log(value.max(1e-305) / p)
     };
     let [least, most] = law.range();
-    let end = if tail == Tail::Upper { most - mean } else { mean - least };
-    let other = if tail == Tail::Upper { mean - least } else { most - mean };
+    let end = if tail == LawTail::Upper { most - mean } else { mean - least };
+    let other = if tail == LawTail::Upper { mean - least } else { most - mean };
     let (mut low, mut at_low) = (0.0, gap(0.0));
     let mut width = sigma;
     while at_low < 0.0 && -low < other {
@@ -63,7 +63,7 @@ pub(super) fn quantile(law: &SurfaceLaw, tail: Tail, p: f64) -> Figure {
     let y = mean + sign * best;
     let (off, density) = (law.tail(y, tail).error, law.density(y).value);
     let error = if density > 0.0 { off / density } else { f64::INFINITY };
-    Figure::new(y, error.max(scale))
+    LawFigure::new(y, error.max(scale))
 }
 
 fn weight(now: f64, before: f64) -> f64 {

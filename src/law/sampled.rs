@@ -18,7 +18,7 @@ use super::surface::Surface;
 use super::table::Table;
 use super::tilt::{Proposal, Tilts};
 use super::transform::Transform;
-use super::{Figure, LawOptions, Tail};
+use super::{LawFigure, LawOptions, LawTail};
 
 /// Standard errors of the mean of 16 replicates that bound the error: Student's distribution with 15 degrees of freedom leaves
 /// 1 % beyond.
@@ -45,13 +45,13 @@ pub(super) struct Sampled {
     points: usize,
     seed: u64,
     plain: Mutex<Option<Arc<Sample>>>,
-    tilted: Mutex<BTreeMap<(Tail, usize), Arc<Sample>>>,
+    tilted: Mutex<BTreeMap<(LawTail, usize), Arc<Sample>>>,
 }
 
 /// What is averaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Quantity {
-    Tail(Tail),
+    LawTail(LawTail),
     Density,
 }
 
@@ -101,18 +101,18 @@ impl Sampled {
     }
 
     /// Of the smaller tail what it is, of the larger one the complement: no point may lie in the smaller one.
-    pub(super) fn tail(&self, y: f64, tail: Tail, mean: f64) -> Figure {
-        let nearer = if y < mean { Tail::Lower } else { Tail::Upper };
-        let found = self.figure(y, nearer, Quantity::Tail(nearer)).clamped();
+    pub(super) fn tail(&self, y: f64, tail: LawTail, mean: f64) -> LawFigure {
+        let nearer = if y < mean { LawTail::Lower } else { LawTail::Upper };
+        let found = self.figure(y, nearer, Quantity::LawTail(nearer)).clamped();
         if nearer == tail { found } else { found.complement() }
     }
 
-    pub(super) fn density(&self, y: f64, mean: f64) -> Figure {
-        let tail = if y < mean { Tail::Lower } else { Tail::Upper };
+    pub(super) fn density(&self, y: f64, mean: f64) -> LawFigure {
+        let tail = if y < mean { LawTail::Lower } else { LawTail::Upper };
         self.figure(y, tail, Quantity::Density)
     }
 
-    fn sample(&self, tilted: Option<(Tail, usize, &Proposal)>) -> Arc<Sample> {
+    fn sample(&self, tilted: Option<(LawTail, usize, &Proposal)>) -> Arc<Sample> {
         let control = self.control.as_ref().map(|(terms, _)| terms);
         let along = Along { direction: &self.direction, full: &self.full, control };
         match tilted {
@@ -137,7 +137,7 @@ impl Sampled {
         }
     }
 
-    fn figure(&self, y: f64, tail: Tail, quantity: Quantity) -> Figure {
+    fn figure(&self, y: f64, tail: LawTail, quantity: Quantity) -> LawFigure {
         if let Some(coordinate) = self.only() {
             return self.convolved(coordinate, y, quantity);
         }
@@ -146,20 +146,20 @@ impl Sampled {
         // No point beyond the limit: the rule of three.
         let fewest = 3.0 / (REPLICATES * self.points) as f64;
         match quantity {
-            Quantity::Tail(_) if found.value <= 0.0 => Figure::new(0.0, found.error.max(fewest)),
+            Quantity::LawTail(_) if found.value <= 0.0 => LawFigure::new(0.0, found.error.max(fewest)),
             _ => found,
         }
     }
 
-    fn exact(&self, y: f64, quantity: Quantity) -> Option<Figure> {
+    fn exact(&self, y: f64, quantity: Quantity) -> Option<LawFigure> {
         self.control.as_ref().map(|(_, law)| match quantity {
-            Quantity::Tail(tail) => law.tail(y, tail),
+            Quantity::LawTail(tail) => law.tail(y, tail),
             Quantity::Density => law.density(y),
         })
     }
 
     /// The estimate that rules: the proposal, None for the own law; whether beside the control; and the estimates.
-    fn chosen(&self, y: f64, tail: Tail, quantity: Quantity) -> (Option<Arc<Proposal>>, bool, Estimates) {
+    fn chosen(&self, y: f64, tail: LawTail, quantity: Quantity) -> (Option<Arc<Proposal>>, bool, Estimates) {
         let off = y - self.surface.centre;
         let exact = self.exact(y, quantity);
         let plain = self.estimates(&self.direction, &self.sample(None), off, quantity, exact);
@@ -184,9 +184,9 @@ impl Sampled {
     }
 
     /// The points and the estimate that rules a tail.
-    pub(super) fn held(&self, y: f64, tail: Tail, mean: f64) -> Held {
-        let nearer = if y < mean { Tail::Lower } else { Tail::Upper };
-        let quantity = Quantity::Tail(nearer);
+    pub(super) fn held(&self, y: f64, tail: LawTail, mean: f64) -> Held {
+        let nearer = if y < mean { LawTail::Lower } else { LawTail::Upper };
+        let quantity = Quantity::LawTail(nearer);
         let (proposal, beside) = match self.only() {
             Some(_) => (None, false),
             None => {
@@ -199,14 +199,14 @@ impl Sampled {
     }
 
     /// The tail of this law at the points of another one; None where the structure differs.
-    pub(super) fn tail_held(&self, y: f64, held: &Held) -> Option<Figure> {
+    pub(super) fn tail_held(&self, y: f64, held: &Held) -> Option<LawFigure> {
         let same = self.surface.len() == held.direction.surface().len()
             && self.direction.members() == held.direction.members()
             && self.others.is_some() == held.direction.coordinate().is_none();
         if !same || self.only().is_some() {
             return None;
         }
-        let quantity = Quantity::Tail(held.nearer);
+        let quantity = Quantity::LawTail(held.nearer);
         let direction = held.direction.over(&self.surface);
         let (full, simple) = (direction.terms(&self.surface), direction.terms(&self.simple));
         let control = held.beside.then_some(&simple);
@@ -219,11 +219,11 @@ impl Sampled {
     }
 
     /// The derivatives of a tail by the logarithms of the tolerances of all inputs, by their places.
-    pub(super) fn derivatives(&self, y: f64, tail: Tail, mean: f64) -> Vec<Figure> {
-        let nearer = if y < mean { Tail::Lower } else { Tail::Upper };
+    pub(super) fn derivatives(&self, y: f64, tail: LawTail, mean: f64) -> Vec<LawFigure> {
+        let nearer = if y < mean { LawTail::Lower } else { LawTail::Upper };
         let sign = if nearer == tail { 1.0 } else { -1.0 };
         let off = y - self.surface.centre;
-        let (proposal, ..) = self.chosen(y, nearer, Quantity::Tail(nearer));
+        let (proposal, ..) = self.chosen(y, nearer, Quantity::LawTail(nearer));
         let exact = self.others.as_ref().map(|(table, law)| {
             let places =
                 (0..self.surface.len()).filter(|j| self.direction.members().binary_search(j).is_err()).collect();
@@ -253,25 +253,25 @@ impl Sampled {
                 let mean = |rows: &[Vec<f64>]| rows.iter().map(|row| row[j]).sum::<f64>() / rows.len() as f64;
                 let means: Vec<f64> = rows.chunks(self.points).map(mean).collect();
                 let (value, error) = of_replicates(&means);
-                Figure::new(sign * value, error)
+                LawFigure::new(sign * value, error)
             })
             .collect()
     }
 
     /// One coordinate beside an exact law: panels.
-    fn convolved(&self, coordinate: usize, y: f64, quantity: Quantity) -> Figure {
+    fn convolved(&self, coordinate: usize, y: f64, quantity: Quantity) -> LawFigure {
         let off = y - self.surface.centre;
         let part = &self.surface.parts[coordinate];
         let found = expectation(&self.surface.inputs[coordinate], &[], |z| self.beside(off - value(part, z), quantity));
-        Figure::new(found.value, found.error + TABULATED * found.value)
+        LawFigure::new(found.value, found.error + TABULATED * found.value)
     }
 
     /// The exact law of the other components at what is left of a limit.
     fn beside(&self, y: f64, quantity: Quantity) -> f64 {
         match (&self.others, quantity) {
-            (Some((table, _)), Quantity::Tail(tail)) => table.tail(y, tail),
+            (Some((table, _)), Quantity::LawTail(tail)) => table.tail(y, tail),
             (Some((table, _)), Quantity::Density) => table.density(y),
-            (None, Quantity::Tail(tail)) => f64::from(u8::from(tail.sign() * -y > 0.0)),
+            (None, Quantity::LawTail(tail)) => f64::from(u8::from(tail.sign() * -y > 0.0)),
             (None, Quantity::Density) => 0.0,
         }
     }
@@ -283,7 +283,7 @@ impl Sampled {
         sample: &Sample,
         off: f64,
         quantity: Quantity,
-        exact: Option<Figure>,
+        exact: Option<LawFigure>,
     ) -> Estimates {
         let inner = |polynomial: &Quartic| match direction.input() {
             None => self.beside(off - polynomial[0], quantity),
@@ -291,7 +291,7 @@ impl Sampled {
                 let mut polynomial = *polynomial;
                 polynomial[0] -= off;
                 match quantity {
-                    Quantity::Tail(tail) => input.beyond(&polynomial, tail),
+                    Quantity::LawTail(tail) => input.beyond(&polynomial, tail),
                     Quantity::Density => input.density_of(&polynomial),
                 }
             }
@@ -304,12 +304,12 @@ impl Sampled {
         let values: Vec<f64> = sample.full.iter().map(inner).collect();
         let (mean, error) = of_replicates(&means(&|at| weight(at) * values[at]));
         let tabulated = if self.others.is_some() { TABULATED } else { 1e-12 };
-        let alone = Figure::new(mean, error + tabulated * mean.abs());
+        let alone = LawFigure::new(mean, error + tabulated * mean.abs());
         let exact = exact.filter(|_| sample.control.len() == values.len());
         let beside = exact.map(|exact| {
             let control: Vec<f64> = sample.control.iter().map(inner).collect();
             let (mean, error) = of_replicates(&means(&|at| weight(at) * (values[at] - control[at])));
-            Figure::new(exact.value + mean, error + exact.error + tabulated * exact.value)
+            LawFigure::new(exact.value + mean, error + exact.error + tabulated * exact.value)
         });
         Estimates { alone, beside }
     }
@@ -318,8 +318,8 @@ impl Sampled {
 /// The mean over a sample by itself, and beside the control where there is one.
 #[derive(Debug, Clone, Copy)]
 struct Estimates {
-    alone: Figure,
-    beside: Option<Figure>,
+    alone: LawFigure,
+    beside: Option<LawFigure>,
 }
 
 impl Estimates {
@@ -328,7 +328,7 @@ impl Estimates {
     }
 
     /// Whichever scatters less.
-    fn best(&self) -> Figure {
+    fn best(&self) -> LawFigure {
         if self.is_beside() { self.beside.unwrap_or(self.alone) } else { self.alone }
     }
 }
@@ -340,8 +340,8 @@ pub(super) struct Held {
     tilts: Arc<Tilts>,
     proposal: Option<Arc<Proposal>>,
     beside: bool,
-    nearer: Tail,
-    tail: Tail,
+    nearer: LawTail,
+    tail: LawTail,
     points: usize,
     seed: u64,
 }

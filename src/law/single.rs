@@ -5,7 +5,7 @@ use super::input::Input;
 use super::panels::expectation;
 use super::polynomial::{Quartic, range, roots, value};
 use super::sampled::pathwise;
-use super::{Figure, Tail};
+use super::{LawFigure, LawTail};
 
 /// Relative accuracy of the distribution functions of the inputs.
 const RELATIVE: f64 = 2e-12;
@@ -29,12 +29,12 @@ impl Single {
         }
     }
 
-    pub(super) fn tail(&self, y: f64, tail: Tail) -> Figure {
+    pub(super) fn tail(&self, y: f64, tail: LawTail) -> LawFigure {
         self.figure(y, |input, polynomial| input.beyond(polynomial, tail)).clamped()
     }
 
     /// The derivatives of a tail by the logarithms of the tolerances of the inputs.
-    pub(super) fn derivatives(&self, y: f64, tail: Tail) -> Vec<Figure> {
+    pub(super) fn derivatives(&self, y: f64, tail: LawTail) -> Vec<LawFigure> {
         let surface = self.direction.surface();
         let n = surface.len();
         let terms = self.direction.terms(surface);
@@ -51,16 +51,16 @@ impl Single {
             sums[j]
         };
         let of = |j: usize| match self.outer {
-            None => Figure::new(at(None, j), RELATIVE * at(None, j).abs()),
+            None => LawFigure::new(at(None, j), RELATIVE * at(None, j).abs()),
             Some(outer) => {
                 let found = expectation(&surface.inputs[outer], &self.splits(y, outer), |z| at(Some((outer, z)), j));
-                Figure::new(found.value, found.error + RELATIVE * found.value.abs())
+                LawFigure::new(found.value, found.error + RELATIVE * found.value.abs())
             }
         };
         (0..n).map(of).collect()
     }
 
-    pub(super) fn density(&self, y: f64) -> Figure {
+    pub(super) fn density(&self, y: f64) -> LawFigure {
         self.figure(y, |input, polynomial| input.density_of(polynomial))
     }
 
@@ -92,12 +92,12 @@ impl Single {
                 splits.extend_from_slice(roots(&part, law.ends).as_slice());
             }
         }
-        for tail in [Tail::Lower, Tail::Upper] {
+        for tail in [LawTail::Lower, LawTail::Upper] {
             // Where all or nothing of the inner law is beyond the limit, also in a small part of the outer one: the farthest
             // value that the inner input reaches.
             let reach = |z: f64| match (tail, range(&self.along(&terms, Some((outer, z)), off), inner.ends)) {
-                (Tail::Lower, [least, _]) => -least,
-                (Tail::Upper, [_, most]) => most,
+                (LawTail::Lower, [least, _]) => -least,
+                (LawTail::Upper, [_, most]) => most,
             };
             splits.extend(crossings(law, reach));
         }
@@ -105,17 +105,17 @@ impl Single {
     }
 
     /// The expectation over the outer input of something that the inner one does at the limit.
-    fn figure(&self, y: f64, f: impl Fn(&Input, &Quartic) -> f64) -> Figure {
-        let Some(inner) = self.direction.input() else { return Figure::new(f64::NAN, f64::INFINITY) };
+    fn figure(&self, y: f64, f: impl Fn(&Input, &Quartic) -> f64) -> LawFigure {
+        let Some(inner) = self.direction.input() else { return LawFigure::new(f64::NAN, f64::INFINITY) };
         let surface = self.direction.surface();
         let (off, terms) = (surface.centre - y, self.direction.terms(surface));
         let Some(outer) = self.outer else {
             let value = f(inner, &self.along(&terms, None, off));
-            return Figure::new(value, RELATIVE * value);
+            return LawFigure::new(value, RELATIVE * value);
         };
         let integrand = |z: f64| f(inner, &self.along(&terms, Some((outer, z)), off));
         let found = expectation(&surface.inputs[outer], &self.splits(y, outer), integrand);
-        Figure::new(found.value, found.error + RELATIVE * found.value)
+        LawFigure::new(found.value, found.error + RELATIVE * found.value)
     }
 }
 

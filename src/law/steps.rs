@@ -1,7 +1,7 @@
 //! A surface of atoms only: a step function, by the list of its values.
 
 use super::surface::Surface;
-use super::{Figure, Tail};
+use super::{LawFigure, LawTail};
 
 /// Combinations that are listed at most.
 const MOST: usize = 1 << 20;
@@ -79,28 +79,28 @@ impl Steps {
     }
 
     /// Probability strictly beyond a limit; a value that only rounding separates from the limit keeps it.
-    pub(super) fn tail(&self, y: f64, tail: Tail) -> Figure {
+    pub(super) fn tail(&self, y: f64, tail: LawTail) -> LawFigure {
         let value = match tail {
-            Tail::Lower => match self.values.partition_point(|value| *value < y - self.same) {
+            LawTail::Lower => match self.values.partition_point(|value| *value < y - self.same) {
                 0 => 0.0,
                 count => self.up[count - 1],
             },
-            Tail::Upper => {
+            LawTail::Upper => {
                 let first = self.values.partition_point(|value| *value <= y + self.same);
                 self.down.get(first).copied().unwrap_or(0.0)
             }
         };
-        Figure::new(value.min(1.0), 4.0 * f64::EPSILON * value)
+        LawFigure::new(value.min(1.0), 4.0 * f64::EPSILON * value)
     }
 
     /// The least value with at least this probability at and below it, or above it no more than `p`.
-    pub(super) fn quantile(&self, tail: Tail, p: f64) -> f64 {
+    pub(super) fn quantile(&self, tail: LawTail, p: f64) -> f64 {
         /// Sums of shares are rounded.
         const ROUNDING: f64 = 1e-14;
         let last = self.values.len() - 1;
         let place = match tail {
-            Tail::Lower => self.up.partition_point(|&up| up < p * (1.0 - ROUNDING)),
-            Tail::Upper => {
+            LawTail::Lower => self.up.partition_point(|&up| up < p * (1.0 - ROUNDING)),
+            LawTail::Upper => {
                 let above = |place: usize| self.down.get(place + 1).copied().unwrap_or(0.0);
                 (0..=last).find(|&place| above(place) <= p * (1.0 + ROUNDING)).unwrap_or(last)
             }

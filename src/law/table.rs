@@ -1,7 +1,7 @@
 //! The tails of an exact law, tabulated once: they take the place of a direction's distribution function where the rest of a
 //! surface is sampled.
 
-use super::Tail;
+use super::LawTail;
 use super::derivative::exact_derivatives;
 use super::inversion::Inversion;
 use super::surface::Surface;
@@ -27,7 +27,7 @@ pub(super) struct Table {
 impl Table {
     pub(super) fn of(law: &Inversion, range: [f64; 2]) -> Self {
         let (mean, step) = (law.mean(), law.sigma() / PER_SIGMA);
-        let reach = |tail: Tail, end: f64| {
+        let reach = |tail: LawTail, end: f64| {
             let beyond = |place: usize| {
                 let y = mean + tail.sign() * step * place as f64;
                 tail.sign() * (y - end) >= 0.0 || law.tail(y, tail).value < LEAST
@@ -40,13 +40,13 @@ impl Table {
             }
             low
         };
-        let (left, right) = (reach(Tail::Lower, range[0]), reach(Tail::Upper, range[1]));
+        let (left, right) = (reach(LawTail::Lower, range[0]), reach(LawTail::Upper, range[1]));
         let from = mean - step * left as f64;
         let (mut lower, mut upper, mut density) = (Vec::new(), Vec::new(), Vec::new());
         for place in 0..=left + right {
             let y = from + step * place as f64;
             let at = law.density(y).value;
-            for (tail, into) in [(Tail::Lower, &mut lower), (Tail::Upper, &mut upper)] {
+            for (tail, into) in [(LawTail::Lower, &mut lower), (LawTail::Upper, &mut upper)] {
                 let value = law.tail(y, tail).value.max(1e-300);
                 into.push([libm::log(value), -tail.sign() * at / value]);
             }
@@ -56,12 +56,12 @@ impl Table {
     }
 
     /// Probability beyond a limit, by Hermite's cubic of the logarithm: 1e-8 relative where the density is smooth.
-    pub(super) fn tail(&self, y: f64, tail: Tail) -> f64 {
-        let values = if tail == Tail::Lower { &self.lower } else { &self.upper };
+    pub(super) fn tail(&self, y: f64, tail: LawTail) -> f64 {
+        let values = if tail == LawTail::Lower { &self.lower } else { &self.upper };
         let last = values.len() - 1;
         let place = (y - self.from) / self.step;
         if place <= 0.0 || place >= last as f64 {
-            let outside = (place <= 0.0) == (tail == Tail::Lower);
+            let outside = (place <= 0.0) == (tail == LawTail::Lower);
             // Beyond the table the tail goes on as an exponential function does.
             let [log, slope] = if place <= 0.0 { values[0] } else { values[last] };
             let off = if place <= 0.0 { y - self.from } else { y - self.from - self.step * last as f64 };
@@ -99,7 +99,7 @@ pub(super) struct Slopes {
 
 impl Table {
     /// The derivatives of a tail at every fourth place of the table.
-    pub(super) fn slopes(&self, law: &Inversion, surface: &Surface, tail: Tail) -> Slopes {
+    pub(super) fn slopes(&self, law: &Inversion, surface: &Surface, tail: LawTail) -> Slopes {
         const EVERY: usize = 4;
         let step = self.step * EVERY as f64;
         let places = self.lower.len().div_ceil(EVERY);

@@ -12,12 +12,13 @@ use std::sync::{Mutex, PoisonError};
 
 use faer::{Mat, Side};
 
-use super::Tail;
+use super::LawTail;
 use super::direction::{Direction, shifted};
 use super::input::Input;
 use super::polynomial::{Quartic, value};
 use super::surface::Surface;
 use crate::distribution::standard_normal;
+use crate::elementary::{Elementary, Exp};
 
 /// Cells of a coordinate.
 const CELLS: usize = 96;
@@ -41,6 +42,8 @@ pub(super) struct Cells {
     /// Edges, one more than masses; the atoms themselves where there is no density.
     edges: Vec<f64>,
     masses: Vec<f64>,
+    /// Their logarithms.
+    logs: Vec<f64>,
     /// Probability below each cell, and above it.
     below: Vec<f64>,
     above: Vec<f64>,
@@ -59,7 +62,8 @@ impl Cells {
         if let Some(input) = law.as_ref().filter(|law| law.is_discrete()) {
             let (edges, masses): (Vec<f64>, Vec<f64>) = input.atoms.iter().copied().unzip();
             let centres = edges.clone();
-            return Self { edges, masses, below: Vec::new(), above: Vec::new(), centres, law };
+            let logs = masses.iter().map(|&mass| libm::log(mass)).collect();
+            return Self { edges, masses, logs, below: Vec::new(), above: Vec::new(), centres, law };
         }
         let (low, high) = (quantile(OUTER), quantile(-OUTER));
         let mut edges: Vec<f64> = (0..=CELLS).map(|i| low + (high - low) * i as f64 / CELLS as f64).collect();
@@ -87,7 +91,8 @@ impl Cells {
         let mass = |c: usize| if edges[c] > 0.0 { above[c] - above[c + 1] } else { below[c + 1] - below[c] };
         let masses: Vec<f64> = (0..cells).map(mass).collect();
         let centre = |c: usize| 0.5 * (edges[c].max(low) + edges[c + 1].min(high));
-        Self { masses, centres: (0..cells).map(centre).collect(), edges, below, above, law }
+        let logs = masses.iter().map(|&mass| libm::log(mass)).collect();
+        Self { masses, logs, centres: (0..cells).map(centre).collect(), edges, below, above, law }
     }
 
     /// The place in a cell with this share of its mass below it.
@@ -133,7 +138,7 @@ pub(super) struct Proposal {
 /// The tilts of one side.
 #[derive(Debug)]
 struct Ladder {
-    tail: Tail,
+    tail: LawTail,
     starts: Vec<Vec<f64>>,
     rungs: Mutex<Vec<std::sync::Arc<Proposal>>>,
 }
@@ -176,9 +181,9 @@ impl Tilts {
         }
         let frozen = coordinates.iter().map(|&j| direction.is_behind(j)).collect();
         let starts = starts(&columns, &images);
-        let ladders = [Tail::Lower, Tail::Upper].map(|tail| {
+        let ladders = [LawTail::Lower, LawTail::Upper].map(|tail| {
             let [low, high] = &starts;
-            let starts = if tail == Tail::Lower { low } else { high };
+            let starts = if tail == LawTail::Lower { low } else { high };
             Ladder { tail, starts: starts.clone(), rungs: Mutex::default() }
         });
         Self { coordinates, sampled, cells, columns, images, squares, frozen, unit: 1.0 / sigma, ladders }
@@ -196,10 +201,10 @@ impl Tilts {
         &self,
         surface: &Surface,
         y: f64,
-        tail: Tail,
+        tail: LawTail,
         others: impl Fn(f64) -> f64,
     ) -> Option<(usize, std::sync::Arc<Proposal>)> {
-        let ladder = &self.ladders[usize::from(tail == Tail::Upper)];
+        let ladder = &self.ladders[usize::from(tail == LawTail::Upper)];
         let mut rungs = ladder.rungs.lock().unwrap_or_else(PoisonError::into_inner);
         for place in 0.. {
             let size = FIRST * STEP.powi(place as i32);
@@ -273,11 +278,10 @@ impl Tilts {
                 let h = self.along(surface, place, &z, &image);
                 let cells = &self.cells[place];
                 let values: Vec<f64> = cells.centres.iter().map(|&c| value(&h, c)).collect();
-                let exponents: Vec<f64> =
-                    values.iter().zip(&cells.masses).map(|(h, mass)| theta * h + libm::log(*mass)).collect();
+                let exponents: Vec<f64> = values.iter().zip(&cells.logs).map(|(h, log)| theta * h + log).collect();
                 let most = exponents.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 let own = &mut masses[place];
-                own.iter_mut().zip(&exponents).for_each(|(own, e)| *own = libm::exp(e - most));
+                own.iter_mut().zip(&exponents).for_each(|(own, e)| *own = Exp::of(e - most));
                 let sum: f64 = own.iter().sum();
                 own.iter_mut().for_each(|own| *own /= sum);
                 let mean: f64 = own.iter().zip(&cells.centres).map(|(q, c)| q * c).sum();

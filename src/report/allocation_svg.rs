@@ -59,7 +59,7 @@ fn scale(requirement: &str, required: f64) -> (f64, String) {
     match requirement {
         "yield" => {
             let rejected = (1.0 - required).max(f64::MIN_POSITIVE);
-            (-rejected.log10(), format!("{} %", super::limits::share(rejected).trim_end_matches(" %")))
+            (-rejected.log10(), format!("{} %", super::number::share(rejected).trim_end_matches(" %")))
         }
         _ => (required, significant(required, 3)),
     }

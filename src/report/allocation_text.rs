@@ -3,8 +3,7 @@
 use super::CharacteristicReport;
 use super::allocation::{AllocatedReport, AllocationReport, AttainableReport, KeptReport, PriceReport};
 use super::head;
-use super::limits::share;
-use super::number::{UNKNOWN, beside, plain, significant};
+use super::number::{UNKNOWN, beside, plain, share, significant};
 use super::page::{Grid, Page, Style, clean, short};
 use super::requirement::loud;
 

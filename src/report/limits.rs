@@ -1,7 +1,7 @@
 //! The part of the text report that is about distribution and limits.
 
 use super::distribution::{DistributionReport, Quantiles};
-use super::number::{beside, plain, significant};
+use super::number::{beside, plain, share, significant};
 use super::page::{Grid, Page, Style};
 use super::requirement::{RequirementReport, loud};
 use super::sketch::sketch;
@@ -122,21 +122,6 @@ fn outside(below: Option<f64>, above: Option<f64>) -> String {
     let side = |ppm: Option<f64>, name: &str| ppm.map(|ppm| format!("{} ppm {name}", significant(ppm, 4)));
     let sides: Vec<String> = [side(below, "below"), side(above, "above")].into_iter().flatten().collect();
     if sides.is_empty() { String::new() } else { format!(" ({})", sides.join(", ")) }
-}
-
-/// A yield in percent, with three digits of what is rejected.
-pub(super) fn share(rejected: f64) -> String {
-    let percent = 100.0 * rejected;
-    if percent <= 0.0 {
-        return "100 %".to_owned();
-    }
-    let decimals = (2.0 - percent.log10().floor()).clamp(2.0, 12.0) as usize;
-    let text = format!("{:.decimals$}", 100.0 - percent);
-    match text.trim_end_matches('0') {
-        "100." => "100 %".to_owned(),
-        "0." => "0 %".to_owned(),
-        _ => format!("{text} %"),
-    }
 }
 
 /// The yield of a characteristic for the table at the top, and whether that is enough.

@@ -8,6 +8,21 @@ pub(crate) fn plural(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
+/// A yield in percent, with three digits of what is rejected.
+pub(crate) fn share(rejected: f64) -> String {
+    let percent = 100.0 * rejected;
+    if percent <= 0.0 {
+        return "100 %".to_owned();
+    }
+    let decimals = (2.0 - percent.log10().floor()).clamp(2.0, 12.0) as usize;
+    let text = format!("{:.decimals$}", 100.0 - percent);
+    match text.trim_end_matches('0') {
+        "100." => "100 %".to_owned(),
+        "0." => "0 %".to_owned(),
+        _ => format!("{text} %"),
+    }
+}
+
 /// As many decimals as show `digits` significant digits of `scale`; None where that takes an exponent.
 pub(crate) fn decimals(scale: f64, digits: i32) -> Option<usize> {
     if scale == 0.0 || !scale.is_finite() {

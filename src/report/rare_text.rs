@@ -1,8 +1,7 @@
 //! The report of rare events for people.
 
 use super::head;
-use super::limits::share;
-use super::number::{UNKNOWN, plain, significant};
+use super::number::{UNKNOWN, plain, share, significant};
 use super::page::{Grid, Page, Style, clean, short};
 use super::rare::{BeyondReport, RareCharacteristicReport, RareReport};
 use super::requirement::RequirementReport;

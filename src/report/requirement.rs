@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::limits::share;
-use super::number::{UNKNOWN, significant};
+use super::number::{UNKNOWN, share, significant};
 use crate::requirement::Requirement;
 use crate::verdict::{Judged, Verdict};
 

@@ -3,8 +3,7 @@
 use serde::Serialize;
 
 use super::CharacteristicReport;
-use super::limits::share;
-use super::number::{beside, unsigned_zero};
+use super::number::{beside, share, unsigned_zero};
 use super::page::{Grid, Page, clean, short};
 use crate::analysis::SamplingInterval;
 

@@ -1,8 +1,7 @@
 //! The report of a simulation for people.
 
 use super::head;
-use super::limits::share;
-use super::number::{UNKNOWN, beside, plain, significant};
+use super::number::{UNKNOWN, beside, plain, share, significant};
 use super::page::{Grid, Page, Style, clean, short};
 use super::requirement::{RequirementReport, loud};
 use super::simulation::{SimulatedReport, SimulationReport};

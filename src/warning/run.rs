@@ -14,7 +14,9 @@ pub(super) fn stopped(cause: &StopCause, done: &u64, planned: &Option<u64>, coun
             say(format!("The time limit of {limit_s} s ended the run after {amount}. {rest}"))
                 .advise(Advice::RaiseTimeLimit)
         }
-        StopCause::Budget => say(format!("The budget ended the run after {amount}. {rest}")).advise(Advice::RaiseBudget),
+        StopCause::Budget => {
+            say(format!("The budget ended the run after {amount}. {rest}")).advise(Advice::RaiseBudget)
+        }
         StopCause::Interrupted => say(format!("The run was interrupted after {amount}. {rest}")),
         StopCause::Requested => say(format!("The calling program ended the run after {amount}. {rest}")),
     }

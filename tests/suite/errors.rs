@@ -43,6 +43,7 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::distribution::DistributionError,
         sensitol::fits::FitError,
         sensitol::journal::JournalError,
+        sensitol::law::LawError,
         sensitol::names::UnknownName,
         sensitol::pearson::PearsonError,
         sensitol::rare::RareError,

@@ -10,7 +10,7 @@ use sensitol::distribution::{
     Beta, Distribution, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rule, Trapezoidal, Triangular, Uniform,
     Weibull,
 };
-use sensitol::law::{Branch, Figure, LawError, LawOptions, SurfaceLaw, Tail, joint_yield};
+use sensitol::law::{Branch, LawError, LawFigure, LawOptions, LawTail, SurfaceLaw, joint_yield};
 use sensitol::moments::Interactions;
 use sensitol::surrogate::{Inputs, Surrogate, Univariate, shapes};
 use serde_json::Value;
@@ -128,7 +128,7 @@ impl Worst {
         }
     }
 
-    fn of(found: Figure, expected: f64, own: f64) -> Self {
+    fn of(found: LawFigure, expected: f64, own: f64) -> Self {
         let off = (found.value - expected).abs();
         assert!(!off.is_nan(), "{found:?} for {expected}");
         let excess = (off - own).max(0.0);
@@ -145,7 +145,7 @@ fn limits(oracle: &Value, law: &SurfaceLaw) -> Worst {
     let relative = number(&oracle["relative"]);
     let of = |limit: &Value| {
         let y = number(&limit["y"]);
-        [("cdf", Tail::Lower), ("sf", Tail::Upper)].map(|(key, tail)| {
+        [("cdf", LawTail::Lower), ("sf", LawTail::Upper)].map(|(key, tail)| {
             let (found, expected) = (law.tail(y, tail), number(&limit[key]));
             // Limits stand in the file with 10 digits as they were used; probabilities to a double's last digit.
             let worst = Worst::of(found, expected, (relative + 3e-16) * expected);
@@ -158,6 +158,7 @@ fn limits(oracle: &Value, law: &SurfaceLaw) -> Worst {
     list(&oracle["limits"]).iter().flat_map(of).fold(Worst::default(), Worst::with)
 }
 
+/// Of all oracles of a group; with SENSITOL_LAW_TABLE set the table of accuracies is printed.
 fn worst(group_of: Group, covered: f64) -> Worst {
     let mut all = Worst::default();
     for oracle in ORACLES.iter().filter(|oracle| group(oracle) == group_of) {
@@ -218,7 +219,7 @@ fn quantiles_agree_with_those_of_the_other_routes() {
         let law = law_of(&surface(&oracle["surface"]));
         for quantile in list(&oracle["quantiles"]) {
             let p = number(&quantile["p"]);
-            let tail = if quantile["upper"].as_bool().unwrap() { Tail::Upper } else { Tail::Lower };
+            let tail = if quantile["upper"].as_bool().unwrap() { LawTail::Upper } else { LawTail::Lower };
             let (found, expected) = (law.quantile(tail, p), number(&quantile["y"]));
             let density = law.density(expected).value;
             // Quantiles of the file are good to 1e-12 sigma or to what their probabilities allow, where these are known to
@@ -312,7 +313,7 @@ fn a_quantile_inverts_its_tail() {
     for (surrogate, inputs) in exact_laws() {
         let law = made(&surrogate, &inputs);
         for p in [0.5, 0.3, 1e-2, 1e-5, 1e-8] {
-            for tail in [Tail::Lower, Tail::Upper] {
+            for tail in [LawTail::Lower, LawTail::Upper] {
                 let y = law.quantile(tail, p).value;
                 // A limit is a double: its rounding by the density, which near an end of the support is large in parts of p.
                 let rounding = 4e-16 * (y.abs() + law.sigma()) * law.density(y).value;
@@ -321,7 +322,7 @@ fn a_quantile_inverts_its_tail() {
             }
         }
         // A probability above one half is the other tail's.
-        let (a, b) = (law.quantile(Tail::Lower, 0.75).value, law.quantile(Tail::Upper, 0.25).value);
+        let (a, b) = (law.quantile(LawTail::Lower, 0.75).value, law.quantile(LawTail::Upper, 0.25).value);
         assert_eq!(a, b);
     }
 }
@@ -380,10 +381,13 @@ fn the_order_of_inputs_changes_nothing() {
 /// Moments of the law by panels over its density agree with the exact moments of the surface.
 #[test]
 fn moments_of_the_law_are_those_of_the_surface() {
-    // Without the two that take long, whose transforms are summed from panels at many points.
-    for (surrogate, inputs) in
-        exact_laws().into_iter().enumerate().filter(|(at, _)| ![2, 3].contains(at)).map(|(_, law)| law)
-    {
+    // The last two have a normal input with a slope alone, so that the density is smooth; a form by itself has a corner at its
+    // vertex, and uniform inputs have theirs, which cost these panels digits.
+    let [form, uniforms, _, _, mixed] = <[(Surrogate, Vec<Law>); 5]>::try_from(exact_laws()).unwrap();
+    let pairs = [(0, 1, 0.3), (1, 2, -0.2), (0, 2, 0.4)];
+    let smooth = of(1.0, &[&[1.0, 0.2], &[0.5, -0.1], &[0.3], &[0.8]], &pairs);
+    let smooth = (smooth, vec![normal(), normal(), normal(), normal()]);
+    for ((surrogate, inputs), allowed) in [(form, 1e-8), (uniforms, 1e-5), (smooth, 1e-9), (mixed, 1e-9)] {
         let law = made(&surrogate, &inputs);
         let shapes = Inputs::independent(shapes(inputs.iter().map(|law| law.as_ref())));
         let moments = surrogate.contributions(&shapes).unwrap().moments;
@@ -391,7 +395,7 @@ fn moments_of_the_law_are_those_of_the_surface() {
         assert!((law.mean() - mean).abs() < 1e-12 * sigma && (law.sigma() / sigma - 1.0).abs() < 1e-12);
         let expected = [1.0, 0.0, 1.0, moments.skewness().unwrap(), moments.kurtosis().unwrap()];
         // By parts, E u^k = k int u^(k-1) sf(u) - k int u^(k-1) (-1)^k cdf(-u), Gauss panels of a quarter sigma.
-        let gauss = Rule::of(&Uniform::about(0.0, 1.0).unwrap(), 8);
+        let gauss = Rule::of(&Uniform::about(0.0, 1.0).unwrap(), 12);
         let mut found = [1.0, 0.0, 0.0, 0.0, 0.0];
         for panel in 0..160 {
             for (node, weight) in gauss.nodes.iter().zip(&gauss.weights) {
@@ -404,10 +408,7 @@ fn moments_of_the_law_are_those_of_the_surface() {
             }
         }
         for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
-            // Panels that a corner of a law lies in leave 1e-7; where there is a normal input there is none.
-            let smooth = inputs.iter().any(|input| input.name() == "normal");
-            let allowed = if smooth { 1e-9 } else { 1e-5 };
-            assert!((found - expected).abs() < allowed, "moment {k}: {found} for {expected}");
+            assert!((found - expected).abs() < allowed, "moment {k} of {surrogate:?}: {found} for {expected}");
         }
     }
 }
@@ -438,7 +439,7 @@ fn derivatives_are_those_of_differences() {
     all.push((of(0.0, &[&[1.0, 0.1], &[0.6]], &[(0, 1, 0.2)]), vec![uniform(), triangular()]));
     for (surrogate, inputs) in all {
         let law = made(&surrogate, &inputs);
-        for (k, tail) in [(-2.0, Tail::Lower), (0.7, Tail::Lower), (2.2, Tail::Upper)] {
+        for (k, tail) in [(-2.0, LawTail::Lower), (0.7, LawTail::Lower), (2.2, LawTail::Upper)] {
             let y = law.mean() + k * law.sigma();
             let found = law.tail_derivatives(y, tail).unwrap();
             for (j, found) in found.iter().enumerate() {
@@ -489,7 +490,7 @@ fn sampled_derivatives(slope: f64) {
     let (surrogate, inputs) = cycle_with(slope);
     let law = made(&surrogate, &inputs);
     assert_eq!(law.branch(), Branch::Sampled);
-    for (k, tail) in [(-2.0, Tail::Lower), (2.2, Tail::Upper)] {
+    for (k, tail) in [(-2.0, LawTail::Lower), (2.2, LawTail::Upper)] {
         let y = law.mean() + k * law.sigma();
         let held = law.hold(y, tail);
         for (j, found) in law.tail_derivatives(y, tail).unwrap().iter().enumerate() {
@@ -515,7 +516,7 @@ fn held_figures_are_smooth_in_a_tolerance() {
     for (surrogate, inputs, allowed) in all {
         let law = made(&surrogate, &inputs);
         let y = law.mean() + 2.0 * law.sigma();
-        let held = law.hold(y, Tail::Upper);
+        let held = law.hold(y, LawTail::Upper);
         let own = law.above(y);
         assert!((held.tail(&law, y).value - own.value).abs() < 1e-13, "{:?} {own:?}", held.tail(&law, y));
         let values: Vec<f64> = (0..21)
@@ -561,7 +562,7 @@ fn a_symmetric_product_is_tilted_to_both_sides() {
     for y in [1.0, 2.0, 2.9, 2.99] {
         let c: f64 = y / 3.0;
         let exact = 0.5 * (1.0 - c + c * c.ln());
-        for tail in [Tail::Upper, Tail::Lower] {
+        for tail in [LawTail::Upper, LawTail::Lower] {
             let found = law.tail(tail_sign(tail) * y, tail);
             assert!((found.value - exact).abs() <= 1.5 * found.error, "{y}: {found:?} for {exact:e}");
             assert!(found.error < 0.05 * exact, "{y}: {found:?} for {exact:e}");
@@ -569,8 +570,8 @@ fn a_symmetric_product_is_tilted_to_both_sides() {
     }
 }
 
-fn tail_sign(tail: Tail) -> f64 {
-    if tail == Tail::Upper { 1.0 } else { -1.0 }
+fn tail_sign(tail: LawTail) -> f64 {
+    if tail == LawTail::Upper { 1.0 } else { -1.0 }
 }
 
 #[test]
@@ -582,11 +583,11 @@ fn atoms_make_a_step_function() {
     assert_eq!([law.below(9.0).value, law.below(9.1).value, law.above(9.0).value], [0.25, 0.5, 0.5]);
     assert_eq!([law.above(13.0).value, law.below(7.0).value], [0.0, 0.0]);
     assert!(law.above(13.0).proven);
-    assert_eq!(law.quantile(Tail::Lower, 0.3).value, 9.0);
-    assert_eq!(law.quantile(Tail::Upper, 0.3).value, 11.0);
+    assert_eq!(law.quantile(LawTail::Lower, 0.3).value, 9.0);
+    assert_eq!(law.quantile(LawTail::Upper, 0.3).value, 11.0);
     assert_eq!(law.density(9.0).value, 0.0);
     assert_eq!((law.mean(), law.sigma()), (10.0, 5f64.sqrt()));
-    assert!(law.tail_derivatives(9.0, Tail::Lower).is_none());
+    assert!(law.tail_derivatives(9.0, LawTail::Lower).is_none());
 }
 
 /// 20 and 30 measured values and a narrow normal input: the law of the sum is 600 narrow peaks, whose masses are counted.
@@ -620,8 +621,8 @@ fn one_input_none_and_limits_beyond_the_support() {
     assert!(law.above(5.8).proven && law.above(5.8).value == 0.0);
     let point = made(&of(3.0, &[&[]], &[]), &[uniform()]);
     assert_eq!((point.sigma(), point.below(3.0).value, point.above(2.9).value), (0.0, 0.0, 1.0));
-    assert_eq!(point.quantile(Tail::Lower, 0.1).value, 3.0);
-    assert!(law.below(f64::NAN).value.is_nan() && law.quantile(Tail::Upper, 2.0).value.is_nan());
+    assert_eq!(point.quantile(LawTail::Lower, 0.1).value, 3.0);
+    assert!(law.below(f64::NAN).value.is_nan() && law.quantile(LawTail::Upper, 2.0).value.is_nan());
     let wrong = SurfaceLaw::of(&of(f64::NAN, &[&[1.0]], &[]), &[uniform()], None, &LawOptions::default());
     assert_eq!(wrong.unwrap_err(), LawError::NotFinite);
     let wrong = SurfaceLaw::of(&of(0.0, &[&[1.0]], &[]), &[], None, &LawOptions::default());

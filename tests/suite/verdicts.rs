@@ -51,7 +51,8 @@ fn a_stopped_run_says_so_and_meets_nothing() {
     assert!(done["stopped"].is_null());
     // 60 x 0.1 x 0.1 and 0.1.
     relative(done["characteristics"][0]["sigma"].as_f64().unwrap(), 0.37f64.sqrt(), 1e-9);
-    assert_eq!(done["characteristics"][0]["verdict"], "missed");
+    // The law and the surface differ by 7 % of all assemblies, so that two errors of the yield reach the target.
+    assert_eq!(done["characteristics"][0]["verdict"], "inconclusive");
 
     // Six points of two seconds, and three seconds for all: however fast the machine is, it is not done.
     slow(folder.path(), 2.0);
@@ -59,7 +60,7 @@ fn a_stopped_run_says_so_and_meets_nothing() {
     let report: Value = serde_json::from_slice(&short.stdout).unwrap();
     assert_eq!((short.status.code(), &report["stopped"]), (Some(3), &"time-limit".into()));
     assert_ne!(report["characteristics"][0]["met"], true);
-    assert!(String::from_utf8(short.stderr).unwrap().contains("warning[stopped]: stopped by the time limit"));
+    assert!(String::from_utf8(short.stderr).unwrap().contains("warning[stopped]: The time limit of 3 s ended the run"));
     assert!(std::fs::read_to_string(page).unwrap().contains("the time limit"));
     let text = sensitol(&["analyze", &study, "--time", "0.001"]).args(more).output().unwrap();
     assert!(String::from_utf8(text.stdout).unwrap().contains(", stopped by the time limit"));
@@ -81,7 +82,7 @@ fn what_was_not_evaluated_is_no_failure() {
     let y = y.with_requirement(Requirement::Cpk(1.0)).unwrap();
     let problem = Problem::new(dimensions, model).unwrap().asking([y]).unwrap();
     let whole = analyze(&problem, &Method::Full.into()).unwrap();
-    assert_eq!(whole.characteristics[0].verdict(), Some(Verdict::Missed));
+    assert_eq!((whole.run.stopped, whole.characteristics[0].unfinished), (None, false));
     // Cheap models are asked block by block: the strongest pairs come in a second stage, after the first look at `stop`.
     asked.store(0, order);
     let stop = || (asked.load(order) >= 7).then_some(StopReason::TimeLimit);
@@ -153,7 +154,9 @@ fn allocate_analyze_and_simulate_say_the_same() {
         let simulated = verdicts(&simulated);
         for one in &found {
             assert!(analyzed.contains(one), "{study}: {one:?} of {analyzed:?}");
-            assert!(simulated.contains(one), "{study}: {one:?} of {simulated:?}");
+            // A sample may decide what the errors of an analysis leave open; it never refutes what was decided.
+            let sampled = simulated.iter().find(|other| (&other.0, &other.1) == (&one.0, &one.1)).unwrap();
+            assert!(one.2 == "inconclusive" || sampled.2 == one.2, "{study}: {one:?}, sampled {sampled:?}");
         }
         let worst = if analyzed.iter().all(|(.., verdict)| verdict == "met") { 0 } else { 1 };
         assert_eq!(json(&["analyze", written, "--json", "--check"]).0, worst, "{study}");

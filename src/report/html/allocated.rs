@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::super::limits::share;
-use super::super::number::{UNKNOWN, plain, plural, significant};
+use super::super::number::{UNKNOWN, plain, plural, share, significant};
 use super::super::{AllocatedReport, AllocationReport, KeptReport, allocation_svg};
 use super::{fact, inline, provenance, render};
 

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::super::limits::share;
-use super::super::number::{UNKNOWN, beside, percent, plain, significant, unsigned_zero};
+use super::super::number::{UNKNOWN, beside, percent, plain, share, significant, unsigned_zero};
 use super::super::text::{band, derivative, rounded};
 use super::super::{CharacteristicReport, Report, Stack, StackNote, WarningReport};
 use super::chart::{Bins, Scale, Span, Spread, quantiles};

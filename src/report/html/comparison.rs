@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::super::limits::share;
-use super::super::number::{UNKNOWN, significant};
+use super::super::number::{UNKNOWN, share, significant};
 use super::super::{CompareReport, ComparedReport, MethodReport, compare_svg};
 use super::{fact, inline, provenance, render};
 

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::super::limits::share;
-use super::super::number::{UNKNOWN, plain, significant};
+use super::super::number::{UNKNOWN, plain, share, significant};
 use super::super::{SimulatedReport, SimulationReport};
 use super::analysis::{Verdict, limits};
 use super::chart::{Bins, Spread};

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::super::limits::share;
-use super::super::number::{UNKNOWN, beside, plain, plural, unsigned_zero};
+use super::super::number::{UNKNOWN, beside, plain, plural, share, unsigned_zero};
 use super::super::{SweepReport, SweptPointReport, SweptReport, sweep_svg};
 use super::analysis::limits;
 use super::warned::Warned;
