@@ -38,6 +38,7 @@ pub mod summary;
 pub mod surrogate;
 pub mod sweep;
 pub mod verdict;
+pub mod verification;
 pub mod warning;
 
 pub use analysis::{Analysis, CharacteristicAnalysis, analyze, analyze_within};

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::errors::of_yield;
 use super::linear::Linear;
 use super::shares::Shares;
-use super::{SampledModel, SamplingInterval, Tails};
+use super::{SampledModel, SamplingInterval, Tails, Verification, VerificationKind};
 use crate::capability::{Capability, Law};
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::Extremes;
@@ -30,6 +30,8 @@ pub struct CharacteristicAnalysis {
     pub sampled: Option<Sampled>,
     /// Points of the model that the moments rest on, in place of a surrogate that was not trusted.
     pub model_sampled: Option<SampledModel>,
+    /// What the model itself says of these results; None where they were not verified.
+    pub verification: Option<Verification>,
     /// What law and surface reject; None without limits, or where the surface is plainly normal.
     pub tails: Option<Tails>,
     /// Whether planned points were not evaluated because the run was stopped: no verdict follows from the others.
@@ -148,7 +150,13 @@ impl CharacteristicAnalysis {
         let tails = self.tails.filter(Tails::misses);
         let around = tails.map_or(around, |tails| verdict::including(around, 1.0 - tails.surface));
         // How many assemblies have no value, only samples tell.
+        let counted =
+            self.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample).and_then(|of| of.valid);
         let lost = match &self.model_sampled {
+            _ if let Some(valid) = counted => Some(match valid.value < 1.0 {
+                true => (1.0 - valid.value + verdict::ERRORS * valid.error).min(1.0),
+                false => 0.0,
+            }),
             _ if self.without_value == 0 => Some(0.0),
             Some(sampled) => Some(sampled.failed as f64 / (sampled.failed + sampled.samples) as f64),
             None => None,
@@ -271,6 +279,7 @@ impl CharacteristicAnalysis {
             left_out_share,
             error_estimate,
             model_sampled: None,
+            verification: None,
             tails: None,
             unfinished: false,
             constant: plan.varying().iter().all(|&d| !plan.depends(c, d)),

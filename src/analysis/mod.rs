@@ -12,6 +12,7 @@ mod shares;
 mod surface;
 mod tails;
 mod trust;
+mod verification;
 mod warnings;
 
 pub use account::Account;
@@ -20,6 +21,7 @@ pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivi
 pub use fallback::SampledModel;
 pub use surface::{Fit, NoFit, Surface};
 pub use tails::Tails;
+pub use verification::{Verification, VerificationKind};
 
 use std::time::Instant;
 
@@ -93,13 +95,20 @@ pub(crate) fn analyze_keeping(
     outcome.evaluated.doubts.extend(found.spent.doubts);
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
-    let fallback = fallback::fall_back(problem, &outcome, left, &mut characteristics, run);
+    // A cheap model that is verified is sampled anyway, and by points that need no surface.
+    let sampled = options.verify.unwrap_or(Options::VERIFY) > 0 && !problem.function().signature().costly;
+    let fallback = match sampled {
+        true => fallback::Spent::default(),
+        false => fallback::fall_back(problem, &outcome, left, &mut characteristics, run),
+    };
     tails::look(problem, &outcome, &mut characteristics);
     outcome.evaluated.doubts.extend(fallback.doubts);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
-    let spent = spent(&outcome, options).and(&fallback.run);
+    let left = left.map(|left| left.saturating_sub(fallback.run.evaluations as usize));
+    let verified = verification::verify(problem, &outcome, options, left, &mut characteristics, run);
+    let spent = spent(&outcome, options).and(&fallback.run).and(&verified);
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics);

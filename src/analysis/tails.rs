@@ -51,7 +51,7 @@ impl Tails {
 
     /// What the law is off by the points: all of a difference that is seen, and of others what two standard errors leave of it;
     /// less than one point is not seen.
-    fn off(&self) -> f64 {
+    pub(super) fn off(&self) -> f64 {
         let n = self.points as f64;
         let chance = (self.surface * n).max(1.0).sqrt() / n;
         let open = (self.surface - self.law).abs() - 2.0 * chance;

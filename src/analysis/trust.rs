@@ -24,12 +24,28 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &Char
         return Vec::new();
     };
     let mut warnings = axes(problem, outcome, c, sigma);
+    // The formula names its own switches, and where.
+    if analysis.verification.as_ref().is_some_and(|verification| verification.switches.is_some()) {
+        let seen = |warning: &Warning| matches!(warning, Warning::Kink { .. } | Warning::Discontinuity { .. });
+        warnings.retain(|warning| !seen(warning));
+    }
     if let Some(Tails { law, surface, points }) = analysis.tails.filter(Tails::misses) {
         let characteristic = problem.characteristics()[c].name().to_owned();
         warnings.push(Warning::TailsMissed { characteristic, law, surface, points });
     }
     if let Some(climbed) = &outcome.climbed {
-        warnings.extend(climb(outcome, climbed, c, (analysis, sigma)));
+        let mut found = climb(outcome, climbed, c, (analysis, sigma));
+        // What a formula answers next to the means does not scatter: that is a kink, or a root that is not smooth.
+        let formula = problem.function().switches(problem.outputs()[c]).is_some_and(|switches| switches.complete);
+        if analysis.verification.is_some() {
+            found.retain(|warning| match warning {
+                Warning::Scatter { .. } => !formula,
+                // The sample says what is left out, and how far that is off.
+                Warning::UntrustedSurrogate { .. } | Warning::InteractionsLeftOut { .. } => false,
+                _ => true,
+            });
+        }
+        warnings.extend(found);
     }
     warnings
 }

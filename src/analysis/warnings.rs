@@ -57,6 +57,8 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         warnings.extend(long_tails(problem, outcome, analysis));
         warnings.extend(doubtful(outcome, c, analysis));
         warnings.extend(trust::of(problem, outcome, c, analysis));
+        let wanted = outcome.climbed.as_ref().map(|climbed| climbed.accuracy);
+        warnings.extend(super::verification::warnings(analysis, wanted));
         warnings.extend(not_proven(analysis));
     }
     let possible = outcome.plan.possible_pairs();

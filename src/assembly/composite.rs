@@ -2,6 +2,7 @@
 //! closure conditions.
 
 mod exact;
+mod switches;
 
 use std::sync::Arc;
 
@@ -11,7 +12,7 @@ use super::process::Adapter;
 use super::responses::all_finite;
 use super::{
     Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, Output, Points, Responses, Run,
-    Signature, in_blocks,
+    Signature, Switches, in_blocks,
 };
 use crate::warning::Warning;
 
@@ -456,6 +457,18 @@ impl AssemblyFunction for Composite {
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         self.exact(outputs, directions)
+    }
+
+    fn switches(&self, output: usize) -> Option<Switches> {
+        self.switches_of(output)
+    }
+
+    fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
+        self.margins_of(output, points)
+    }
+
+    fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
+        self.degree_of(output, varying)
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

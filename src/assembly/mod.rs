@@ -22,6 +22,7 @@ pub mod process;
 mod responses;
 mod run;
 mod signature;
+mod switch;
 
 pub use ask::{Ask, Points};
 pub use blocks::in_blocks;
@@ -34,6 +35,7 @@ pub use given::{GivenAnswers, Table};
 pub use responses::Responses;
 pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};
+pub use switch::{Switch, SwitchKind, Switches};
 
 use crate::warning::Warning;
 
@@ -74,6 +76,28 @@ pub trait AssemblyFunction: Send + Sync {
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         let _ = directions;
         vec![None; outputs.len()]
+    }
+
+    /// The places at which an output changes its form; None from a black box.
+    fn switches(&self, output: usize) -> Option<Switches> {
+        let _ = output;
+        None
+    }
+
+    /// How far points are from each of an output's [`switches`](Self::switches), in the order of their list: a margin changes its sign
+    /// where the output changes its form, and is NaN where the switch has no part in the value. None where there are none to tell.
+    ///
+    /// Shapes: a column for every switch, a value for every point. This is no evaluation of a costly model: such a one answers None.
+    fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
+        let _ = (output, points);
+        None
+    }
+
+    /// The degree of an output as a polynomial in the inputs that `varying` flags, the others fixed; None where it is no polynomial,
+    /// or that is not known. A certainty, which no evaluation gives.
+    fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
+        let _ = (output, varying);
+        None
     }
 
     /// What the function itself has to say of its answers for `outputs`, once some are given.

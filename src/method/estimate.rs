@@ -78,6 +78,11 @@ pub enum ErrorSource {
     Scatter,
     /// A derivative that could not be had.
     Lost,
+    /// A formula that is a polynomial, which the surface holds exactly.
+    Proven {
+        /// The degree.
+        degree: u32,
+    },
     /// Standard errors of points of the model.
     Sampled {
         /// How many.
@@ -99,6 +104,7 @@ impl ErrorSource {
             Self::Triples => "interactions of three, extrapolated".to_owned(),
             Self::Scatter => "scatter of the answers".to_owned(),
             Self::Lost => "a derivative is lost".to_owned(),
+            Self::Proven { degree } => format!("rounding alone: the formula is a polynomial of degree {degree}"),
             Self::Sampled { points } => format!("standard errors of {points} points of the model"),
         }
     }

@@ -42,6 +42,9 @@ pub struct Options {
     /// Where derivatives come from. Unless said otherwise the reported sensitivities are exact where the assembly function
     /// knows its derivatives, and moments come from differences at nodes that suit each distribution.
     pub derivatives: Option<DerivativeSource>,
+    /// Whether the result is verified by the model itself ([`crate::verification`]): a cheap model is sampled unless this is 0, a
+    /// costly one evaluated at no more check points than this, 18 at most. [`Options::VERIFY`] unless said otherwise.
+    pub verify: Option<usize>,
 }
 
 /// The errors that are wanted beside that of sigma, absolute; None where nothing is.
@@ -129,6 +132,8 @@ impl FromStr for Pairs {
 }
 
 impl Options {
+    /// Check points of a costly model where [`verify`](Self::verify) does not say: none, and no sample of a cheap one either.
+    pub const VERIFY: usize = 0;
     /// The seed where none is given: the same study gives the same numbers.
     pub const SEED: u64 = 1;
 }
@@ -148,6 +153,7 @@ impl Default for Options {
             extremes: false,
             seed: None,
             derivatives: None,
+            verify: None,
         }
     }
 }

@@ -56,6 +56,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
         extremes: "/worst_case/extremes", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
         mean_shift_rss: "/mean_shift_rss", sensitivities: "/sensitivities/1", interactions: "/interactions/0",
         possible_interactions: "/possible_interactions", left_out_share: "/left_out_share", constant: "/constant",
+        verification: "/verification",
     });
     let sensitivity = json.pointer("/sensitivities/0").unwrap();
     complete!(sensitivity, &one.sensitivities[0] => Sensitivity {

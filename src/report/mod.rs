@@ -41,6 +41,7 @@ mod sweep_svg;
 mod sweep_text;
 mod table;
 mod text;
+mod verification;
 
 pub use allocation::{
     AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, BeforeAfter, ConfirmationReport,
@@ -75,6 +76,7 @@ pub use sweep_csv::sweep_csv;
 pub use sweep_svg::sweep_svg;
 pub use sweep_text::sweep_text;
 pub use text::text;
+pub use verification::{FigureReport, SwitchReport, VarianceShareReport, VerificationReport, VerifiedFiguresReport};
 
 use serde::Serialize;
 
@@ -209,6 +211,8 @@ pub struct CharacteristicReport {
     pub error_estimate: Option<ErrorEstimateReport>,
     /// Points of the model that the moments rest on, where `auto` did not trust its surrogate.
     pub model_sampling: Option<ModelSamplingReport>,
+    /// What the model itself says of them; null where they were not verified.
+    pub verification: Option<VerificationReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
     /// What law and surface reject; null without limits, or where the surface is plainly normal.
@@ -490,6 +494,7 @@ impl CharacteristicReport {
             }),
             error_estimate: analysis.error_estimate.as_ref().map(ErrorEstimateReport::of),
             model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
+            verification: VerificationReport::of(analysis),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
             tails: analysis.tails,
             unfinished: analysis.unfinished,

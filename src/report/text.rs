@@ -6,6 +6,7 @@ use super::limits::{distribution, verdict};
 use super::number::{UNKNOWN, beside, percent, plain, plural, significant, unsigned_zero};
 use super::page::{Detail, Grid, Page, Style, clean, short};
 use super::sampling::sampling;
+use super::verification::verification;
 use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
 use crate::method::Basis;
 
@@ -109,6 +110,7 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
         ));
     }
     estimate(page, one);
+    verification(page, one.verification.as_ref());
     if let Some(sampled) = &one.surrogate_sampling {
         page.line(&format!(
             "  sampled from the surrogate, {} points: standard error of sigma {}, skewness {}, kurtosis {}",

@@ -163,8 +163,7 @@ impl<'a> Draws<'a> {
     fn own(&self, place: usize, law: &dyn Probability, portion: Portion, digits: &mut [u64], out: &mut [f64]) {
         let Some(sobol) = &self.sobol else { return law.fill(&mut self.generator(portion, place), out) };
         sobol.digits(place, portion.first, digits);
-        let key = self.key(portion.replicate, place);
-        on_this_processor(Tails { digits, key, out: &mut *out });
+        tails(digits, self.key(portion.replicate, place), out);
         law.quantiles(out);
     }
 
@@ -181,7 +180,7 @@ impl<'a> Draws<'a> {
                     sobol.digits(place, portion.first, digits);
                     let key = self.key(portion.replicate, place);
                     let mut normals = vec![0.0; portion.rows];
-                    on_this_processor(Tails { digits, key, out: &mut normals });
+                    tails(digits, key, &mut normals);
                     standard_normal::quantiles(&mut normals);
                     normals
                 }
@@ -206,6 +205,10 @@ impl<'a> Draws<'a> {
 }
 
 /// Scrambled digits as probabilities, each the middle of its cell, counted from the nearer end and negative from above.
+pub(super) fn tails(digits: &[u64], key: u64, out: &mut [f64]) {
+    on_this_processor(Tails { digits, key, out });
+}
+
 struct Tails<'a> {
     digits: &'a [u64],
     key: u64,

@@ -4,6 +4,7 @@ mod draws;
 mod estimate;
 mod fine;
 mod joint;
+mod normals;
 mod sobol;
 mod summary;
 
@@ -12,5 +13,6 @@ pub use estimate::{Estimate, wilson};
 pub(crate) use estimate::{FEWEST, of_moments};
 pub use fine::{Fine, Scale};
 pub(crate) use joint::Joint;
+pub(crate) use normals::Normals;
 pub use sobol::{SOBOL_DIMENSIONS, Sobol};
 pub use summary::Summary;

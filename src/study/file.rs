@@ -316,6 +316,10 @@ pub(super) struct AnalysisEntry {
     /// Seed of random numbers, for what draws some.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::SEED)))]
     pub(super) seed: Option<Spanned<u64>>,
+    /// Verifies every figure by the model itself: a cheap model is sampled, a costly one evaluated at this many check points, 18 at
+    /// most; 0 for no verification.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = Options::VERIFY)))]
+    pub(super) verify: Option<u64>,
 }
 
 /// `"strongest"`, `"adjacent"` or `[["a", "b"], ["c", "d"]]`.

@@ -35,6 +35,7 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
         step: positive(&entry.step, "step")?,
         seed: entry.seed.as_ref().map(|seed| *seed.get_ref()),
         extremes: entry.extremes.unwrap_or(false),
+        verify: entry.verify.map(|points| usize::try_from(points).unwrap_or(usize::MAX)),
         budget: entry.budget.as_ref().map(|budget| usize::try_from(*budget.get_ref()).unwrap_or(usize::MAX)),
         ..Options::default()
     };

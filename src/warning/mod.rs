@@ -28,7 +28,7 @@ mod text;
 
 pub use advice::Advice;
 pub use aggregate::aggregated;
-pub use terms::{Counted, Ended, Figure, Loss, NameKind, StopCause};
+pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind, StopCause};
 
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
@@ -362,6 +362,39 @@ warnings! {
         share: f64,
         /// Points of the model from which the moments come instead; None where the budget did not allow any.
         sampled: Option<u64>,
+    };
+    /// A formula changes its form within the assemblies, by its own tree.
+    Switch = "switch" by surface::switch {
+        /// The characteristic.
+        characteristic: String,
+        /// The part of the formula that does it.
+        switch: String,
+        /// What happens there.
+        change: Change,
+        /// The probability of the smaller side.
+        probability: f64,
+    };
+    /// A divisor passes through 0 within the assemblies.
+    Pole = "pole" by surface::pole {
+        /// The characteristic.
+        characteristic: String,
+        /// The part of the formula that grows without bound.
+        switch: String,
+        /// The probability of the smaller side.
+        probability: f64,
+    };
+    /// A figure lies beyond three errors of the model's own.
+    FigureOff = "figure-off" by surface::figure_off {
+        /// The characteristic.
+        characteristic: String,
+        /// Mean, sigma, skewness or kurtosis.
+        figure: &'static str,
+        /// As the method has it.
+        value: f64,
+        /// As the model has it.
+        model: f64,
+        /// The error of that.
+        error: f64,
     };
     /// The estimated error is larger than the wanted accuracy.
     UnderResolved = "under-resolved" by surface::under_resolved {

@@ -1,7 +1,7 @@
 //! Warnings about the second-order surface.
 
 use super::text::{Text, likewise, places, say};
-use super::{Advice, Figure};
+use super::{Advice, Change, Figure};
 use crate::method_kind::Method;
 
 pub(super) fn rss_invalid(characteristic: &str, mean_shift: &f64, variance: &f64) -> Text {
@@ -133,4 +133,55 @@ pub(super) fn under_resolved(
         false => "Further derivatives would not reduce it.",
     };
     say(format!("{known} {why}")).advise(Advice::RaiseBudget).advise(Advice::Sample { points: None })
+}
+
+pub(super) fn switch(characteristic: &str, switch: &str, change: &Change, probability: &f64) -> Text {
+    let (does, means) = match change {
+        Change::Kink => ("bends", "No polynomial follows a kink."),
+        Change::Jump => ("jumps", "No polynomial follows a jump."),
+        Change::Edge => ("has no value beyond a limit", "Every figure is of the assemblies that have a value."),
+    };
+    let text = say(format!(
+        "`{characteristic}` {does} at {switch}, with {} of the assemblies beyond. {means}",
+        part(*probability)
+    ));
+    if *change == Change::Edge { text } else { text.advise(Advice::Sample { points: None }) }
+}
+
+pub(super) fn pole(characteristic: &str, switch: &str, probability: &f64) -> Text {
+    say(format!(
+        "`{characteristic}` grows without bound at {switch}, with {} of the assemblies beyond. It has no moments. Those printed are of the \
+         assemblies within eight sigma, and change with every sample.",
+        part(*probability)
+    ))
+}
+
+pub(super) fn figure_off(characteristic: &str, figure: &&'static str, value: &f64, model: &f64, error: &f64) -> Text {
+    let [value, model, error] = [(value, 5), (model, 5), (error, 2)].map(|(of, digits)| significant(*of, digits));
+    say(format!(
+        "The {figure} of `{characteristic}` is {value} by the method, and {model} by the model itself, with an error of {error}."
+    ))
+    .advise(Advice::UseMethod { methods: vec![Method::Auto] })
+}
+
+/// A share as percent, or as parts per million where it is small.
+fn part(share: f64) -> String {
+    if share < 1e-3 {
+        format!("{} ppm", significant(1e6 * share, 2))
+    } else {
+        format!("{} %", significant(100.0 * share, 2))
+    }
+}
+
+/// So many digits that count.
+fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    match digits - 1 - exponent {
+        places @ 0..=9 => format!("{value:.*}", places as usize),
+        places if places < 0 && exponent < 9 => format!("{value:.0}"),
+        _ => format!("{value:.*e}", (digits - 1) as usize),
+    }
 }

@@ -14,6 +14,18 @@ pub enum Ended {
     Stopped,
 }
 
+/// What happens to a characteristic at a switch of its formula.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Change {
+    /// Its slope changes.
+    Kink,
+    /// Its value jumps.
+    Jump,
+    /// It has no value beyond.
+    Edge,
+}
+
 /// The part of a derivative that is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

@@ -16,6 +16,7 @@ const LAYERS: &[&[&str]] = &[
     &["extremes"],
     &["method"],
     &["evaluation"],
+    &["verification"],
     &["problem"],
     &["plan"],
     &["law"],

@@ -52,6 +52,7 @@ mod studies;
 mod support;
 mod sweep;
 mod tolerances;
+mod trust;
 mod type_names;
 mod verdicts;
 mod warnings;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use sensitol::warning::{Advice, Counted, Ended, Figure, Loss, NameKind, StopCause, Warning, aggregated};
+use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, StopCause, Warning, aggregated};
 use sensitol::{Method, Study, analyze};
 
 fn text(text: &str) -> String {
@@ -172,6 +172,32 @@ fn every() -> Vec<Warning> {
         Warning::NearInfeasibleMoments { characteristic: characteristic(), skewness: 0.0, kurtosis: 1.02 },
         Warning::TailsMissed { characteristic: characteristic(), law: 1017e-6, surface: 3372e-6, points: 65_536 },
         Warning::SeveralModes { characteristic: characteristic(), coefficient: 0.8 },
+        Warning::Switch {
+            characteristic: characteristic(),
+            switch: text("`abs(a)`"),
+            change: Change::Kink,
+            probability: 0.3,
+        },
+        Warning::Switch {
+            characteristic: characteristic(),
+            switch: text("`sign(a)`"),
+            change: Change::Jump,
+            probability: 3e-6,
+        },
+        Warning::Switch {
+            characteristic: characteristic(),
+            switch: text("`ln(a)`"),
+            change: Change::Edge,
+            probability: 0.01,
+        },
+        Warning::Pole { characteristic: characteristic(), switch: text("`1/a`"), probability: 1e-5 },
+        Warning::FigureOff {
+            characteristic: characteristic(),
+            figure: "sigma",
+            value: 0.057,
+            model: 0.0467,
+            error: 1e-4,
+        },
         Warning::HeavyPoint { characteristic: characteristic(), limit: 3.5, part: 0.7 },
         Warning::NothingBeyond { characteristic: characteristic(), limit: 3.5, points: 10_000, most: 3e-4 },
         Warning::PlainSampling { characteristic: characteristic(), limit: 3.5, plain: 312.4, evaluations: 1000 },

@@ -26,6 +26,7 @@ mod program;
 mod scalar;
 mod set;
 mod slopes;
+mod switches;
 
 pub use error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
 pub(crate) use functions::{Binary, Unary};

@@ -42,6 +42,24 @@ struct Region {
     parent: usize,
     depth: usize,
     nodes: Vec<NodeId>,
+    /// The condition of its `if`, and whether this is the branch taken where it holds; None for the program itself.
+    entry: Option<(NodeId, bool)>,
+}
+
+/// For every node that `roots` need the conditions under which its value counts: those of the `if`s around it, with what they must
+/// come to. None for a node that is not needed.
+pub(super) fn guards(graph: &Graph, roots: &[NodeId]) -> Vec<Option<Vec<(NodeId, bool)>>> {
+    let layout = Layout::of(graph, roots);
+    let conditions = |&region: &Option<usize>| {
+        let mut region = region?;
+        let mut conditions = Vec::new();
+        while let Some(entry) = layout.regions[region].entry {
+            conditions.push(entry);
+            region = layout.regions[region].parent;
+        }
+        Some(conditions)
+    };
+    layout.region_of.iter().map(conditions).collect()
 }
 
 impl Program {
@@ -65,13 +83,15 @@ struct Layout {
     regions: Vec<Region>,
     /// The regions of the two branches of an `if`.
     branches: Vec<Option<(usize, usize)>>,
+    /// The region of every node that is needed.
+    region_of: Vec<Option<usize>>,
 }
 
 impl Layout {
     fn of(graph: &Graph, roots: &[NodeId]) -> Self {
         let count = graph.nodes().len();
-        let mut layout =
-            Self { regions: vec![Region { parent: 0, depth: 0, nodes: Vec::new() }], branches: vec![None; count] };
+        let program = Region { parent: 0, depth: 0, nodes: Vec::new(), entry: None };
+        let mut layout = Self { regions: vec![program], branches: vec![None; count], region_of: Vec::new() };
         let mut region_of: Vec<Option<usize>> = vec![None; count];
         for &root in roots {
             region_of[root as usize] = Some(0);
@@ -83,7 +103,7 @@ impl Layout {
             match node {
                 GraphNode::Constant(_) | GraphNode::Variable(_) => continue,
                 GraphNode::If(condition, then, otherwise) => {
-                    let (of_then, of_otherwise) = layout.open_branches(region);
+                    let (of_then, of_otherwise) = layout.open_branches(region, condition);
                     layout.branches[id] = Some((of_then, of_otherwise));
                     layout.use_in(&mut region_of, condition, region);
                     layout.use_in(&mut region_of, then, of_then);
@@ -98,16 +118,18 @@ impl Layout {
         for region in &mut layout.regions {
             region.nodes.reverse();
         }
+        layout.region_of = region_of;
         layout
     }
 
-    fn open_branches(&mut self, region: usize) -> (usize, usize) {
+    fn open_branches(&mut self, region: usize, condition: NodeId) -> (usize, usize) {
         let depth = self.regions[region].depth + 1;
         if depth > DEEPEST {
             return (region, region);
         }
         let first = self.regions.len();
-        self.regions.extend((0..2).map(|_| Region { parent: region, depth, nodes: Vec::new() }));
+        let branch = |taken| Region { parent: region, depth, nodes: Vec::new(), entry: Some((condition, taken)) };
+        self.regions.extend([true, false].map(branch));
         (first, first + 1)
     }
 

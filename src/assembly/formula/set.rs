@@ -13,6 +13,7 @@ use super::parser::{Formula, Node};
 use super::program::Program;
 use super::scalar::Scalar;
 use super::slopes::Sloped;
+use super::switches::Margins;
 use crate::assembly::Bounds;
 use crate::names::nearest;
 
@@ -52,11 +53,15 @@ enum Reference {
 /// ```
 #[derive(Debug)]
 pub struct FormulaSet {
-    formulas: Vec<Entry>,
+    pub(super) formulas: Vec<Entry>,
     /// Formulas before those that use them.
-    order: Vec<usize>,
-    graph: Graph,
-    roots: Vec<NodeId>,
+    pub(super) order: Vec<usize>,
+    pub(super) graph: Graph,
+    pub(super) roots: Vec<NodeId>,
+    /// For every formula the node of the graph that each of its own nodes became.
+    pub(super) places: Vec<Vec<NodeId>>,
+    /// Where some formulas change their form, kept for the same reason as the program.
+    pub(super) margins: Mutex<Option<(Vec<usize>, Arc<Margins>)>>,
     /// The last program, since the same outputs are asked again and again.
     program: Mutex<Option<(Vec<usize>, Arc<Program>)>>,
 }
@@ -73,9 +78,9 @@ impl Routine {
 }
 
 #[derive(Debug)]
-struct Entry {
-    name: String,
-    formula: Formula,
+pub(super) struct Entry {
+    pub(super) name: String,
+    pub(super) formula: Formula,
     /// What the names among the formula's nodes stand for.
     references: HashMap<usize, Reference>,
 }
@@ -115,10 +120,13 @@ impl FormulaSet {
         let order = order(&entries)?;
         let mut graph = Graph::default();
         let mut roots = vec![0; entries.len()];
+        let mut places = vec![Vec::new(); entries.len()];
         for &index in &order {
-            roots[index] = entries[index].add_to(&mut graph, &roots);
+            places[index] = entries[index].add_to(&mut graph, &roots);
+            roots[index] = *places[index].last().expect("a formula is never empty");
         }
-        Ok(Self { formulas: entries, order, graph, roots, program: Mutex::new(None) })
+        let (margins, program) = (Mutex::new(None), Mutex::new(None));
+        Ok(Self { formulas: entries, order, graph, roots, places, margins, program })
     }
 
     /// Number of formulas.
@@ -360,7 +368,8 @@ impl Entry {
         uses.into_iter()
     }
 
-    fn add_to(&self, graph: &mut Graph, roots: &[NodeId]) -> NodeId {
+    /// The node of the graph for each of its own.
+    fn add_to(&self, graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
         let mut ids: Vec<NodeId> = Vec::with_capacity(self.formula.nodes.len());
         for (index, (node, _)) in self.formula.nodes.iter().enumerate() {
             let id = match *node {
@@ -376,7 +385,7 @@ impl Entry {
             };
             ids.push(id);
         }
-        *ids.last().expect("a formula is never empty")
+        ids
     }
 
     /// The value of every node at one point, branches not taken included.

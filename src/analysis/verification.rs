@@ -1,0 +1,384 @@
+//! The stage after any method: the model itself says how far every figure is off.
+//!
+//! `../verification` computes it; here it becomes the error estimate of each figure, and warnings. The figures of a method that was
+//! asked for by name stay what they are, with the model's beside them. `auto` takes the model's where its own lies beyond two
+//! standard errors of it; within them both agree, and the figures of one surface stay together.
+
+use super::CharacteristicAnalysis;
+use super::errors::of_yield;
+use crate::assembly::{EvaluationError, Run};
+use crate::capability::{Capability, Law};
+use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome};
+use crate::moments::Moments;
+use crate::problem::Problem;
+use crate::summary::RunSummary;
+use crate::verification::{
+    Checked, CheckedFigures, Crossing, FoundSwitch, SampledFigures, Share, Target, Verified, unexplained,
+    variance_shares, verify_by_checks, verify_characteristic,
+};
+use crate::warning::{Change, Warning};
+
+/// A sample that leaves more open than this part of what is wanted is drawn again, four times as large,
+const PART: f64 = 0.5;
+/// up to so many points in its core.
+const MOST: usize = 1 << 19;
+const MORE: usize = 4;
+/// From this many errors on a figure contradicts the model, and from this part of sigma on, or this share, it matters.
+const OFF: f64 = 3.0;
+const MATTERS: f64 = 0.01;
+/// Beyond so many standard errors `auto` takes the model's figure.
+const AGREES: f64 = 2.0;
+/// A surface that leaves more of the variance unexplained has no shares to show.
+const UNTRUSTED: f64 = 0.05;
+/// An error of sigma above this part of it says that the surface is no surface.
+const UNKNOWN: f64 = 0.1;
+/// A switch is worth a warning from one assembly in ten million on.
+const SELDOM: f64 = 1e-7;
+/// What differences may make of one rounding of the value at the means.
+const ROUNDINGS: f64 = 8.0;
+
+/// How figures were verified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VerificationKind {
+    /// By points of a cheap model.
+    Sample,
+    /// By check points of a costly model.
+    Checks,
+    /// By the formula itself, a polynomial of this degree that the surface holds exactly.
+    Exact {
+        /// The degree.
+        degree: u32,
+    },
+}
+
+/// What the model itself says of a characteristic.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verification {
+    /// How.
+    pub kind: VerificationKind,
+    /// Points of the model that were evaluated for it.
+    pub points: usize,
+    /// The share of the assemblies that have a value; None where points do not tell.
+    pub valid: Option<Verified>,
+    /// The share of the variance that the surface leaves unexplained.
+    pub left: Option<f64>,
+    /// Mean, sigma, skewness and kurtosis by the model; None without a sample of it.
+    pub figures: [Option<Verified>; 4],
+    /// The share within the limits: by the model, or by the surface with the error that checks give it.
+    pub yield_: Option<Verified>,
+    /// The shares beyond the lower and the upper limit.
+    pub beyond: [Option<Verified>; 2],
+    /// The switches that are met; None where the model does not tell where it changes its form.
+    pub switches: Option<Vec<FoundSwitch>>,
+    /// The share of the assemblies that may do anything else where all points agree, at 95 %; None where points are many.
+    pub unseen: Option<f64>,
+    /// First-order and total shares of the variance from the model, by the dimension's place, where the surface is not trusted.
+    pub shares: Option<Vec<(usize, [Share; 2])>>,
+    /// Whether figures of the characteristic are the model's, in place of the surface's.
+    pub replaced: bool,
+}
+
+/// Verifies every characteristic, unless that is switched off: see [`Options::verify`].
+pub(super) fn verify(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    left: Option<usize>,
+    characteristics: &mut [CharacteristicAnalysis],
+    run: &Run<'_>,
+) -> RunSummary {
+    let most = options.verify.unwrap_or(Options::VERIFY);
+    if most == 0 || outcome.evaluated.stopped.is_some() || run.stopped() {
+        return RunSummary::default();
+    }
+    let open: Vec<usize> =
+        (0..characteristics.len()).filter(|&c| !proven(problem, outcome, c, &mut characteristics[c])).collect();
+    if open.is_empty() {
+        return RunSummary::default();
+    }
+    if problem.function().signature().costly {
+        return check(problem, outcome, options, most.min(left.unwrap_or(usize::MAX)), (&open, characteristics), run);
+    }
+    let seed = options.seed.unwrap_or(Options::SEED);
+    for c in open {
+        sample(problem, outcome, options, c, &mut characteristics[c], seed);
+    }
+    RunSummary::default()
+}
+
+/// Whether the formula's own degree proves that the surface is the function; then its errors are roundings.
+fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut CharacteristicAnalysis) -> bool {
+    let varying: Vec<bool> = problem.dimensions().iter().map(|dimension| dimension.sigma() > 0.0).collect();
+    let Some(degree) = problem.function().degree(problem.outputs()[c], &varying).filter(|&degree| degree <= 2) else {
+        return false;
+    };
+    let (fitted, plan) = (&outcome.fitted[c], &outcome.plan);
+    let surrogate = fitted.surrogate.as_ref().filter(|surrogate| surrogate.parts.iter().all(Option::is_some));
+    let (Some(surrogate), Some(moments)) = (surrogate, one.moments) else { return false };
+    let exact = fitted.integrated.is_none() && one.sampled.is_none() && one.model_sampled.is_none();
+    let order = if outcome.order == Order::First { 1 } else { 2 };
+    let parts = plan.varying().iter().filter(|&&d| plan.depends(c, d));
+    let bent = |&d: &usize| fitted.parts[d].is_some_and(|part| part.degree() >= 2);
+    let pairs = one.interactions.len() == one.possible_interactions
+        && one.interactions.iter().all(|interaction| interaction.mixed.is_some());
+    let complete = degree < 2 || order == 2 && pairs && parts.clone().all(bent);
+    if !exact || !complete || one.without_value > 0 {
+        return false;
+    }
+    let rounding = ROUNDINGS * f64::EPSILON * surrogate.centre.abs() * (surrogate.parts.len() as f64 + 1.0).sqrt();
+    let part = if moments.sigma() > 0.0 { rounding / moments.sigma() } else { 0.0 };
+    let known = |error: f64| moments.skewness().is_some().then_some(error);
+    let estimate = ErrorEstimate {
+        mean: Some(rounding),
+        sigma: Some(rounding),
+        skewness: known(4.0 * part),
+        kurtosis: known(8.0 * part),
+        yield_: None,
+        sources: vec![ErrorSource::Proven { degree }],
+    };
+    let yield_ = of_yield(&estimate, &moments, one.characteristic.limits());
+    // What the law of four moments is off the surface was seen before: it is all that is left.
+    let law = one.tails.map(|tails| tails.off());
+    one.error_estimate = Some(ErrorEstimate { yield_: yield_.map(|error| error + law.unwrap_or(0.0)), ..estimate });
+    one.verification = Some(Verification {
+        kind: VerificationKind::Exact { degree },
+        points: 0,
+        valid: None,
+        left: Some(0.0),
+        figures: [None; 4],
+        yield_: None,
+        beyond: [None; 2],
+        switches: Some(Vec::new()),
+        unseen: None,
+        shares: None,
+        replaced: false,
+    });
+    true
+}
+
+fn sample(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    c: usize,
+    one: &mut CharacteristicAnalysis,
+    seed: u64,
+) {
+    let mut core = crate::verification::CORE;
+    let mut found = verify_characteristic(problem, c, seed, core);
+    let climbed = outcome.climbed.as_ref();
+    let wanted = climbed.map(|climbed| climbed.accuracy);
+    while let Some(wanted) = wanted
+        && core < MOST
+        && found.sigma.is_some_and(|sigma| sigma.error > PART * wanted * sigma.value)
+    {
+        core *= MORE;
+        found = verify_characteristic(problem, c, seed, core);
+    }
+    let surrogate = outcome.fitted[c].surrogate.as_ref();
+    let left = surrogate.and_then(|surrogate| unexplained(problem, c, outcome.plan.varying(), surrogate, seed));
+    let shares = left.filter(|&left| left > UNTRUSTED).and_then(|_| variance_shares(problem, c, seed));
+    let replaced = options.method == Method::Auto && replace(one, &found);
+    let Some(moments) = one.moments else { return };
+    let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
+    let law = one.capability.and_then(|capability| capability.yield_());
+    one.error_estimate = Some(ErrorEstimate {
+        mean: error(found.mean, Some(moments.mean())),
+        sigma: error(found.sigma, Some(moments.sigma())),
+        skewness: error(found.skewness, moments.skewness()),
+        kurtosis: error(found.kurtosis, moments.kurtosis()),
+        yield_: error(found.yield_, law),
+        sources: vec![ErrorSource::Sampled { points: found.points as u64 }],
+    });
+    one.verification = Some(Verification {
+        kind: VerificationKind::Sample,
+        points: found.points,
+        valid: Some(found.valid),
+        left,
+        figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
+        yield_: found.yield_,
+        beyond: found.beyond,
+        switches: found.switches.filter(|found| {
+            !found.is_empty() || problem.function().switches(problem.outputs()[c]).is_some_and(|of| of.complete)
+        }),
+        unseen: None,
+        shares,
+        replaced,
+    });
+}
+
+/// Takes the model's figures where those at hand contradict them; whether any was taken.
+fn replace(one: &mut CharacteristicAnalysis, found: &SampledFigures) -> bool {
+    let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return false };
+    let sampled = |of: Verified| Some(of.value);
+    let Some(moments) = one.moments else { return false };
+    let apart = |of: Option<Verified>, value: Option<f64>| {
+        of.zip(value).is_some_and(|(of, value)| (value - of.value).abs() > AGREES * of.error)
+    };
+    let off = [
+        apart(Some(mean), Some(moments.mean())),
+        apart(Some(sigma), Some(moments.sigma())),
+        apart(found.skewness, moments.skewness()),
+        apart(found.kurtosis, moments.kurtosis()),
+    ];
+    if !off.contains(&true) {
+        return false;
+    }
+    let own = [Some(moments.mean()), Some(moments.sigma()), moments.skewness(), moments.kurtosis()];
+    let other = [sampled(mean), sampled(sigma), found.skewness.and_then(sampled), found.kurtosis.and_then(sampled)];
+    let pick = |take: &dyn Fn(usize) -> bool| -> Option<Moments> {
+        let of = |i: usize| if take(i) { other[i] } else { own[i] };
+        Some(Moments::new(of(0)?, of(1)?, of(2)?, of(3)? - 3.0))
+    };
+    // Figures of two origins need not belong to any distribution: then all are the sample's.
+    let mixed = pick(&|i| off[i]).filter(|mixed| Law::fit(mixed).is_ok());
+    let Some(moments) = mixed.or_else(|| pick(&|_| true)) else { return false };
+    let limits = one.characteristic.limits();
+    let capability = |law: &Law| Capability::of(law, moments.mean(), moments.sigma(), limits);
+    let law = Law::fit(&moments);
+    one.capability = law.as_ref().ok().map(capability);
+    one.normal = Law::normal(&moments).ok().map(|law| capability(&law));
+    one.law = Some(law);
+    one.moments = Some(moments);
+    one.sampled = None;
+    true
+}
+
+fn check(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    budget: usize,
+    (open, characteristics): (&[usize], &mut [CharacteristicAnalysis]),
+    run: &Run<'_>,
+) -> RunSummary {
+    let varying = outcome.plan.varying();
+    let begun = std::time::Instant::now();
+    let shares: Vec<Vec<f64>> =
+        characteristics.iter().map(|one| varying.iter().map(|&d| one.share(d).unwrap_or(0.0)).collect()).collect();
+    let targets: Vec<Target<'_>> = (outcome.fitted.iter().zip(&shares).enumerate())
+        .map(|(c, (fitted, shares))| {
+            let surrogate = fitted.surrogate.as_ref().filter(|_| open.contains(&c));
+            Target { surrogate, shares }
+        })
+        .collect();
+    let seed = options.seed.unwrap_or(Options::SEED);
+    let Some(checked) = verify_by_checks(problem, varying, &targets, seed, budget, run) else {
+        return RunSummary::default();
+    };
+    let Checked { answers, .. } = &checked;
+    let answered = |row: &usize| (0..answers.outputs()).any(|output| !answers.is_open(*row, output));
+    let spent = (0..answers.rows()).filter(answered).count();
+    let not_given = |c: usize| {
+        let given = |row: usize| !matches!(answers.error(row, c), Some(EvaluationError::NotGiven));
+        (0..answers.rows()).any(|row| !given(row) || answers.is_open(row, c))
+    };
+    for &c in open {
+        // Points that nobody answered say nothing.
+        if !not_given(c) {
+            let surrogate = outcome.fitted[c].surrogate.as_ref();
+            let exact = surrogate.and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
+            judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
+        }
+    }
+    RunSummary {
+        evaluations: (spent as i64 + answers.extra()).max(0) as u64,
+        cached: answers.count_reused() as u64,
+        retried: answers.count_retried() as u64,
+        failed: answers.failed_among(&(0..answers.rows()).collect::<Vec<_>>()) as u64,
+        stages: 1,
+        in_model: begun.elapsed(),
+        ..RunSummary::default()
+    }
+}
+
+/// The errors of a method's figures: those of the surface, and what the method has beside the surface.
+fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFigures, surface: Option<Moments>) {
+    let Some(moments) = one.moments else { return };
+    let errors = found.errors;
+    let error = |index: usize, own: Option<f64>, surface: Option<f64>| Some((own? - surface?).hypot(errors?[index]));
+    let of = |part: fn(&Moments) -> Option<f64>| (part(&moments), surface.as_ref().and_then(part));
+    let (mean, sigma) = (of(|m| Some(m.mean())), of(|m| Some(m.sigma())));
+    let (skewness, kurtosis) = (of(Moments::skewness), of(Moments::kurtosis));
+    let law = one.capability.and_then(|capability| capability.yield_());
+    one.error_estimate = Some(ErrorEstimate {
+        mean: error(0, mean.0, mean.1),
+        sigma: error(1, sigma.0, sigma.1),
+        skewness: error(2, skewness.0, skewness.1),
+        kurtosis: error(3, kurtosis.0, kurtosis.1),
+        yield_: found.yield_.zip(law).map(|(share, law)| share.error_of(law)),
+        sources: vec![ErrorSource::Checked { points: checked.count() }],
+    });
+    one.without_value += found.failed;
+    one.verification = Some(Verification {
+        kind: VerificationKind::Checks,
+        points: checked.count(),
+        valid: None,
+        left: found.left,
+        figures: [None; 4],
+        yield_: found.yield_,
+        beyond: found.beyond,
+        switches: None,
+        unseen: Some(checked.unseen()),
+        shares: None,
+        replaced: false,
+    });
+}
+
+impl Verification {
+    /// In one line.
+    pub fn words(&self) -> String {
+        match self.kind {
+            VerificationKind::Sample => format!("verified at {} points of the model", self.points),
+            VerificationKind::Checks => {
+                let unseen = 100.0 * self.unseen.unwrap_or(1.0);
+                format!("verified at {} check points; up to {unseen:.0} % of the assemblies unseen", self.points)
+            }
+            VerificationKind::Exact { degree } => format!("exact: the formula is a polynomial of degree {degree}"),
+        }
+    }
+}
+
+/// What the verification of one characteristic warns of.
+pub(super) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec<Warning> {
+    let Some(verification) = &one.verification else { return Vec::new() };
+    let characteristic = || one.characteristic.name().to_owned();
+    let mut warnings = Vec::new();
+    for found in verification.switches.iter().flatten().filter(|found| found.probability >= SELDOM) {
+        let (switch, probability) = (found.switch.name(one.characteristic.name()), found.probability);
+        let change = match found.crossing {
+            Crossing::Kink => Change::Kink,
+            Crossing::Jump => Change::Jump,
+            Crossing::Edge => Change::Edge,
+            Crossing::Pole => {
+                warnings.push(Warning::Pole { characteristic: characteristic(), switch, probability });
+                continue;
+            }
+        };
+        warnings.push(Warning::Switch { characteristic: characteristic(), switch, change, probability });
+    }
+    let Some(moments) = one.moments else { return warnings };
+    let sigma = moments.sigma();
+    let error = one.error_estimate.as_ref().and_then(|estimate| estimate.sigma);
+    if sigma > 0.0
+        && error.is_some_and(|error| error > UNKNOWN * sigma)
+        && !verification.replaced
+        && let Some(share) = verification.left.map(|left| left.min(1.0))
+    {
+        warnings.push(Warning::UntrustedSurrogate { characteristic: characteristic(), share, sampled: None });
+    }
+    let matters = wanted.unwrap_or(0.0).max(MATTERS);
+    let values = [Some(moments.mean()), Some(sigma), moments.skewness(), moments.kurtosis()];
+    let units = |model: f64| [sigma, sigma, model.abs().max(1.0), model.abs().max(1.0)];
+    let names = ["mean", "sigma", "skewness", "kurtosis"];
+    for (index, figure) in names.into_iter().enumerate() {
+        let Some((value, model)) = values[index].zip(verification.figures[index]) else { continue };
+        let unit = units(model.value)[index];
+        let off = (value - model.value).abs();
+        if off > OFF * model.error && off > matters * unit {
+            let (characteristic, error, model) = (characteristic(), model.error, model.value);
+            warnings.push(Warning::FigureOff { characteristic, figure, value, model, error });
+        }
+    }
+    warnings
+}

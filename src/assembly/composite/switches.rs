@@ -1,0 +1,123 @@
+//! Where the outputs of a composition change their form, and their degree.
+
+use rayon::prelude::*;
+
+use super::{Composite, Found, Origin, Source};
+use crate::assembly::{Points, Run, Switch, SwitchKind, Switches};
+
+/// Rows whose unknowns one task finds.
+const ROWS: usize = 128;
+/// The margin of a solver: it has found the state, or has not.
+const SOLVED: [f64; 2] = [-1.0, 1.0];
+
+impl Composite {
+    /// The formulas on which an output depends directly: itself, and the conditions where it needs the unknowns.
+    fn switching(&self, origin: Origin) -> Vec<usize> {
+        let own = match origin {
+            Origin::Formula(formula) => vec![formula],
+            Origin::Model(_) | Origin::Unknown(_) => Vec::new(),
+        };
+        let conditions = if self.needs(origin).unknowns { self.named..self.formulas.len() } else { 0..0 };
+        own.into_iter().chain(conditions).collect()
+    }
+
+    pub(super) fn switches_of(&self, output: usize) -> Option<Switches> {
+        let origin = self.outputs[output];
+        let needs = self.needs(origin);
+        let mut switches = Switches { list: self.formulas.switches(&self.switching(origin)), complete: true };
+        if needs.unknowns {
+            let text = "the solution of the closure conditions".to_owned();
+            switches.list.push(Switch { kind: SwitchKind::Edge, text, formula: None, span: 0..0 });
+        }
+        for answer in needs.answers {
+            match self.model.as_ref().and_then(|model| model.function.switches(answer)) {
+                Some(more) => {
+                    switches.complete &= more.complete;
+                    switches.list.extend(more.list);
+                }
+                None => switches.complete = false,
+            }
+        }
+        (switches.complete || !switches.list.is_empty()).then_some(switches)
+    }
+
+    pub(super) fn margins_of(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
+        let origin = self.outputs[output];
+        let needs = self.needs(origin);
+        if self.signature.costly && !needs.answers.is_empty() {
+            return None;
+        }
+        let (rows, dimensions, given) = (points.rows(), self.signature.inputs.len(), self.given());
+        let answers = self.ask_model(points, &Run::to_the_end(), &needs.answers);
+        let column = |index: usize| -> &[f64] {
+            match index.checked_sub(dimensions) {
+                None => points.column(index),
+                Some(output) => answers.column(needs.answers.binary_search(&output).expect("the model was asked")),
+            }
+        };
+        let mut unknowns = vec![Vec::with_capacity(rows); self.assembler.as_ref().map_or(0, |of| of.len())];
+        let mut solved: Vec<f64> = Vec::new();
+        if let (true, Some(assembler)) = (needs.unknowns, &self.assembler) {
+            match self.anchor(&Run::to_the_end()).0 {
+                Some(Ok(anchor)) => {
+                    let block = |first: usize| {
+                        let rows = ROWS.min(rows - first);
+                        let variable = |index: usize, row: usize| column(index)[first + row];
+                        Found::of((assembler, &self.formulas), &anchor, rows, given, variable)
+                    };
+                    let starts: Vec<usize> = (0..rows).step_by(ROWS).collect();
+                    let blocks: Vec<Found> = starts.into_par_iter().map(block).collect();
+                    for found in blocks {
+                        unknowns.iter_mut().zip(found.columns).for_each(|(all, block)| all.extend(block));
+                        solved.extend(found.errors.iter().map(|error| SOLVED[usize::from(error.is_none())]));
+                    }
+                }
+                _ => {
+                    unknowns.iter_mut().for_each(|column| column.resize(rows, f64::NAN));
+                    solved = vec![SOLVED[0]; rows];
+                }
+            }
+        }
+        let variable = |index: usize| match index.checked_sub(given) {
+            None => column(index),
+            Some(unknown) => &unknowns[unknown],
+        };
+        let mut margins = self.formulas.margins(&self.switching(origin), rows, variable);
+        if needs.unknowns {
+            margins.push(solved);
+        }
+        if let Some(model) = &self.model {
+            let inputs: Vec<Vec<f64>> = (model.inputs.iter())
+                .map(|source| match *source {
+                    Source::Dimension(dimension) => points.column(dimension).to_vec(),
+                    Source::Fixed(value) => vec![value; rows],
+                })
+                .collect();
+            for &answer in &needs.answers {
+                if model.function.switches(answer).is_some() {
+                    margins.extend(model.function.margins(answer, &Points::from_columns(rows, &inputs))?);
+                }
+            }
+        }
+        Some(margins)
+    }
+
+    pub(super) fn degree_of(&self, output: usize, varying: &[bool]) -> Option<u32> {
+        let of_answer = |output: usize| {
+            let model = self.model.as_ref()?;
+            let varying = |source: &Source| matches!(*source, Source::Dimension(dimension) if varying[dimension]);
+            model.function.degree(output, &model.inputs.iter().map(varying).collect::<Vec<_>>())
+        };
+        let (dimensions, given) = (self.signature.inputs.len(), self.given());
+        let variable = |index: usize| match index.checked_sub(dimensions) {
+            None => Some(u32::from(varying[index])),
+            Some(output) if index < given => of_answer(output),
+            Some(_) => None,
+        };
+        match self.outputs[output] {
+            Origin::Formula(formula) => self.formulas.degree(formula, variable),
+            Origin::Model(output) => of_answer(output),
+            Origin::Unknown(_) => None,
+        }
+    }
+}

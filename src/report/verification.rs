@@ -1,0 +1,142 @@
+//! What the model itself says of a characteristic, as reports show it.
+
+use serde::Serialize;
+
+use super::page::Page;
+use crate::analysis::{CharacteristicAnalysis, VerificationKind};
+use crate::verification::{Crossing, Verified};
+
+/// A figure and its error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct FigureReport {
+    /// The value.
+    pub value: f64,
+    /// Its estimated error, of which three reach the truth.
+    pub error: f64,
+}
+
+/// How results were verified, and by what.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct VerificationReport {
+    /// `sample`, `checks` or `exact`.
+    pub kind: &'static str,
+    /// Points of the model.
+    pub points: usize,
+    /// The share of the assemblies that have a value; null where points do not tell.
+    pub valid_share: Option<FigureReport>,
+    /// The share of the variance that the surface leaves unexplained.
+    pub left: Option<f64>,
+    /// By the model itself; null without a sample of it.
+    pub figures: VerifiedFiguresReport,
+    /// Where the formula changes its form; null where the model does not tell.
+    pub switches: Option<Vec<SwitchReport>>,
+    /// The share of the assemblies that may do anything else where all points agree, at 95 %; null where points are many.
+    pub unseen: Option<f64>,
+    /// Shares of the variance by the model, where the surface is not trusted; null elsewhere.
+    pub shares: Option<Vec<VarianceShareReport>>,
+    /// Whether figures of the report are the model's, in place of the method's.
+    pub replaced: bool,
+    /// In one line.
+    #[serde(skip)]
+    pub words: String,
+}
+
+/// The figures of a verification.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct VerifiedFiguresReport {
+    /// First moment.
+    pub mean: Option<FigureReport>,
+    /// Standard deviation.
+    pub sigma: Option<FigureReport>,
+    /// Third standardised moment.
+    pub skewness: Option<FigureReport>,
+    /// Fourth standardised moment.
+    pub kurtosis: Option<FigureReport>,
+    /// The share within the limits; by the surface with the error that checks give it, where there is no sample.
+    #[serde(rename = "yield")]
+    pub yield_: Option<FigureReport>,
+    /// The share below the lower limit.
+    pub below: Option<FigureReport>,
+    /// The share above the upper limit.
+    pub above: Option<FigureReport>,
+}
+
+/// A place at which a formula changes its form.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct SwitchReport {
+    /// The part of the formula that does it.
+    pub name: String,
+    /// `kink`, `jump`, `edge` or `pole`.
+    pub kind: &'static str,
+    /// The probability of its smaller side.
+    pub probability: f64,
+}
+
+/// What a dimension explains of the variance.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct VarianceShareReport {
+    /// The dimension.
+    pub dimension: String,
+    /// By itself.
+    pub first: FigureReport,
+    /// With all interactions in which it has a part.
+    pub total: FigureReport,
+}
+
+impl FigureReport {
+    fn of(figure: Verified) -> Self {
+        Self { value: figure.value, error: figure.error }
+    }
+}
+
+impl VerificationReport {
+    pub(super) fn of(one: &CharacteristicAnalysis) -> Option<Self> {
+        let of = one.verification.as_ref()?;
+        let figure = |figure: Option<Verified>| figure.map(FigureReport::of);
+        let [mean, sigma, skewness, kurtosis] = of.figures.map(figure);
+        let [below, above] = of.beyond.map(figure);
+        let switch = |found: &crate::verification::FoundSwitch| SwitchReport {
+            name: found.switch.name(one.characteristic.name()),
+            kind: match found.crossing {
+                Crossing::Kink => "kink",
+                Crossing::Jump => "jump",
+                Crossing::Edge => "edge",
+                Crossing::Pole => "pole",
+            },
+            probability: found.probability,
+        };
+        let share = |(d, [first, total]): &(usize, [Verified; 2])| VarianceShareReport {
+            dimension: one.sensitivities[*d].dimension.clone(),
+            first: FigureReport::of(*first),
+            total: FigureReport::of(*total),
+        };
+        Some(Self {
+            kind: match of.kind {
+                VerificationKind::Sample => "sample",
+                VerificationKind::Checks => "checks",
+                VerificationKind::Exact { .. } => "exact",
+            },
+            points: of.points,
+            valid_share: figure(of.valid),
+            left: of.left,
+            figures: VerifiedFiguresReport { mean, sigma, skewness, kurtosis, yield_: figure(of.yield_), below, above },
+            switches: of.switches.as_ref().map(|found| found.iter().map(switch).collect()),
+            unseen: of.unseen,
+            shares: of.shares.as_ref().map(|shares| shares.iter().map(share).collect()),
+            replaced: of.replaced,
+            words: of.words(),
+        })
+    }
+}
+
+/// One line of the text report.
+pub(super) fn verification(page: &mut Page, found: Option<&VerificationReport>) {
+    if let Some(found) = found {
+        page.line(&format!("  {}", found.words));
+    }
+}

@@ -1,0 +1,47 @@
+//! Columns of independent standard normal variables.
+
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::draws::tails;
+use super::sobol::{Sobol, mixed};
+use crate::distribution::{standard_normal, ziggurat};
+
+/// Up to so many variables the points are Sobol's: beyond, a few thousand of them are no more even than random ones.
+const QUASI: usize = 256;
+
+/// Points of independent standard normal variables: Sobol's, scrambled anew in every stream, or random ones for many variables.
+///
+/// Every stream can be had at any time and is always the same.
+pub(crate) struct Normals {
+    dimensions: usize,
+    sobol: Option<Sobol>,
+    seed: u64,
+}
+
+impl Normals {
+    pub(crate) fn new(dimensions: usize, seed: u64) -> Self {
+        let sobol = if dimensions <= QUASI { Sobol::new(dimensions) } else { None };
+        Self { dimensions, sobol, seed }
+    }
+
+    /// The first `rows` points of a stream: a column for every variable.
+    pub(crate) fn columns(&self, stream: u64, rows: usize) -> Vec<Vec<f64>> {
+        let mut digits = vec![0; if self.sobol.is_some() { rows } else { 0 }];
+        (0..self.dimensions)
+            .map(|place| {
+                let key = mixed(mixed(mixed(self.seed).wrapping_add(stream)).wrapping_add(place as u64));
+                let mut column = vec![0.0; rows];
+                match &self.sobol {
+                    Some(sobol) => {
+                        sobol.digits(place, 0, &mut digits);
+                        tails(&digits, key, &mut column);
+                        standard_normal::quantiles(&mut column);
+                    }
+                    None => ziggurat::normals(&mut Xoshiro256PlusPlus::seed_from_u64(key), &mut column),
+                }
+                column
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,206 @@
+//! One verification for every method: an error estimate for each figure, that comes from the model itself.
+//!
+//! The rule: no figure is printed without an error estimate, and three estimates reach the truth. It belongs to no method: whatever
+//! computed a figure `m`, the model is asked again.
+//!
+//! - A cheap model is [sampled](verify_by_sampling) at some 45 000 points in strata. A figure's error is `hypot(m - s, se)` with the
+//!   sample's `s` and its standard error `se`.
+//! - A costly model is evaluated at 12 to 18 points that the method has not seen.
+//! - A formula whose own tree proves that the method's surface is the function needs neither.
+
+mod checks;
+mod costly;
+mod figures;
+mod model;
+mod residual;
+mod sample;
+mod shares;
+mod sides;
+mod space;
+mod strata;
+
+pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
+pub use shares::Share;
+pub use sides::{Crossing, FoundSwitch};
+
+use crate::problem::Problem;
+use crate::sampling::Normals;
+use crate::surrogate::Surrogate;
+use figures::moments;
+use model::Model;
+use sample::Sample;
+
+/// Points of the core of a sample.
+pub(crate) const CORE: usize = 1 << 15;
+
+/// A figure as the model itself gives it, and its error: three of it reach the truth whenever three standard errors do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Verified {
+    /// The value.
+    pub value: f64,
+    /// Its estimated error.
+    pub error: f64,
+}
+
+/// What sampling the model says of one characteristic.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledFigures {
+    /// Points evaluated.
+    pub points: usize,
+    /// The mean; None where no point has a value.
+    pub mean: Option<Verified>,
+    /// Standard deviation.
+    pub sigma: Option<Verified>,
+    /// Skewness; None where nothing varies.
+    pub skewness: Option<Verified>,
+    /// Kurtosis; None where nothing varies.
+    pub kurtosis: Option<Verified>,
+    /// The share within the limits of those assemblies that have a value; None without limits.
+    pub yield_: Option<Verified>,
+    /// The share below the lower limit, and above the upper one.
+    pub beyond: [Option<Verified>; 2],
+    /// The share of the assemblies that have a value.
+    pub valid: Verified,
+    /// The switches that are met; None where the model does not tell where it changes its form.
+    pub switches: Option<Vec<FoundSwitch>>,
+    /// Whether the model told all of its switches.
+    pub switches_complete: bool,
+}
+
+impl Verified {
+    /// The error of another value for the same figure: `hypot(value - own, error)`. Three of it reach the truth whenever three of
+    /// the own error do.
+    ///
+    /// ```
+    /// use sensitol::verification::Verified;
+    /// assert_eq!(Verified { value: 1.0, error: 0.3 }.error_of(1.4), 0.5);
+    /// ```
+    pub fn error_of(&self, value: f64) -> f64 {
+        (value - self.value).hypot(self.error)
+    }
+}
+
+/// Samples a cheap model: every figure of every characteristic from the model itself, with its error.
+///
+/// Pure in problem and seed; the number of threads does not matter.
+///
+/// Evaluations: for every characteristic 1024 points to find the tails, up to 24 576 in half-spaces of seldom sides of switches,
+/// 8192 in the two tails and 32 768 in the core; fewer for more than 30 dimensions, of which a stratum has a million numbers at most.
+///
+/// Accuracy: sigma to 4e-4 of it in the median of 88 characteristics. Points without a value are left out of numerator and
+/// denominator alike.
+///
+/// ```
+/// use sensitol::{Closure, Dimension, Problem, verification::verify_by_sampling};
+/// let dimensions = [Dimension::normal("a", 0.0, 3.0)?, Dimension::normal("b", 0.0, 3.0)?];
+/// let problem = Problem::new(dimensions, Closure::scalar("larger", |x| x[0].max(x[1])))?;
+/// let mean = verify_by_sampling(&problem, 1)[0].mean.unwrap();
+/// let exact = 1.0 / std::f64::consts::PI.sqrt(); // Clark 1961
+/// assert!((mean.value - exact).abs() < 3.0 * mean.error && mean.error < 1e-3);
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+pub fn verify_by_sampling(problem: &Problem, seed: u64) -> Vec<SampledFigures> {
+    (0..problem.characteristics().len()).map(|c| verify_characteristic(problem, c, seed, CORE)).collect()
+}
+
+/// The share of a characteristic's variance that a surface over the dimensions at `varying` leaves unexplained, by 1024 points of the
+/// model; None where the surface has no value, or the model none at any point.
+pub(crate) fn unexplained(
+    problem: &Problem,
+    c: usize,
+    varying: &[usize],
+    surrogate: &Surrogate,
+    seed: u64,
+) -> Option<f64> {
+    const POINTS: usize = 1 << 10;
+    let model = Model::over(problem, c, varying);
+    let z = Normals::new(varying.len(), seed).columns(1 << 35, POINTS);
+    let rises = surrogate.rises(&model.standardised(&z))?;
+    let y = model.values(&z);
+    let (valid, off): (Vec<f64>, Vec<f64>) = (y.iter().zip(&rises))
+        .filter(|(y, _)| y.is_finite())
+        .map(|(y, rise)| (*y, y - surrogate.centre - rise))
+        .unzip();
+    let variance = moments(&valid, &vec![1.0; valid.len()])[1].powi(2);
+    let square = off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64;
+    (variance > 0.0).then_some(square / variance)
+}
+
+/// What a sampled model says of its inputs: for every dimension on which a characteristic depends first-order and total share of the
+/// variance, by exchanging inputs on the model itself.
+///
+/// None with correlated dimensions, of which shares add up in another way, with more than 256 of them, and where nothing varies.
+/// Evaluations: 65 536, for more than 126 inputs 512 for each. Accuracy: 311 of 312 shares of six functions with closed forms lay
+/// within three errors, the largest error 0.026.
+///
+/// ```
+/// use sensitol::{Closure, Dimension, Problem, verification::variance_shares};
+/// let dimensions = [Dimension::normal("a", 0.0, 3.0)?, Dimension::normal("b", 0.0, 3.0)?];
+/// let problem = Problem::new(dimensions, Closure::scalar("y", |x| x[0] + x[0] * x[1]))?;
+/// let shares = variance_shares(&problem, 0, 1).unwrap();
+/// let [(0, [first, total]), (1, _)] = shares[..] else { panic!("two dimensions") };
+/// assert!((first.value - 0.5).abs() < 0.02 && (total.value - 1.0).abs() < 0.02); // a alone, and with b
+/// # Ok::<(), sensitol::Error>(())
+/// ```
+pub fn variance_shares(problem: &Problem, characteristic: usize, seed: u64) -> Option<Vec<(usize, [Share; 2])>> {
+    if problem.correlation().is_some() {
+        return None;
+    }
+    let model = Model::new(problem, characteristic);
+    Some(model.dimensions().zip(shares::shares(&model, seed)?).collect())
+}
+
+/// One characteristic, by so many points in the core.
+pub(crate) fn verify_characteristic(problem: &Problem, c: usize, seed: u64, core: usize) -> SampledFigures {
+    let model = Model::new(problem, c);
+    let limits = problem.characteristics()[c].limits();
+    let [low, high] = [limits.lower().unwrap_or(f64::NEG_INFINITY), limits.upper().unwrap_or(f64::INFINITY)];
+    if model.len() == 0 {
+        return constant(&model, [low, high]);
+    }
+    let sample = Sample::draw(&model, seed, core);
+    let sides = sample.sides.clone();
+    let beyond = [[f64::NEG_INFINITY, low.next_down()], [high.next_up(), f64::INFINITY]];
+    let figures = sample.figures(&[[low, high], beyond[0], beyond[1]]);
+    let known = |index: usize| {
+        let (value, error) = (figures.values[index], figures.errors[index]);
+        (!sample.is_void() && value.is_finite()).then_some(Verified { value, error })
+    };
+    let varies = known(1).is_some_and(|sigma| sigma.value > 0.0);
+    SampledFigures {
+        points: sample.points,
+        mean: known(0),
+        sigma: known(1),
+        skewness: known(2).filter(|_| varies),
+        kurtosis: known(3).filter(|_| varies),
+        yield_: known(4).filter(|_| limits.exist()),
+        beyond: [known(5).filter(|_| limits.lower().is_some()), known(6).filter(|_| limits.upper().is_some())],
+        valid: Verified { value: figures.valid.0, error: figures.valid.1 },
+        switches: sides.switches,
+        switches_complete: sides.complete,
+    }
+}
+
+/// One point of a characteristic that does not vary says all.
+fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
+    let value = model.values(&Vec::new())[0];
+    let exact = |value: f64| Some(Verified { value, error: 0.0 });
+    let share = |holds: bool| Some(Verified { value: f64::from(u8::from(holds)), error: 0.0 });
+    let known = value.is_finite();
+    let limited = [low.is_finite(), high.is_finite()];
+    SampledFigures {
+        points: 1,
+        mean: exact(value).filter(|_| known),
+        sigma: exact(0.0).filter(|_| known),
+        skewness: None,
+        kurtosis: None,
+        yield_: share(low <= value && value <= high).filter(|_| known && (limited[0] || limited[1])),
+        beyond: [
+            share(value < low).filter(|_| known && limited[0]),
+            share(value > high).filter(|_| known && limited[1]),
+        ],
+        valid: Verified { value: f64::from(u8::from(known)), error: 0.0 },
+        switches: None,
+        switches_complete: true,
+    }
+}

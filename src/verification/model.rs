@@ -1,0 +1,63 @@
+//! One characteristic of a cheap model as a function of independent normal variables.
+
+use super::space::{Columns, Space};
+use crate::assembly::{Ask, Responses, Run};
+use crate::problem::Problem;
+
+pub(super) struct Model<'p> {
+    problem: &'p Problem,
+    output: usize,
+    space: Space<'p>,
+}
+
+impl<'p> Model<'p> {
+    /// A characteristic over the varying dimensions on which it can depend.
+    pub(super) fn new(problem: &'p Problem, characteristic: usize) -> Self {
+        let dependence = problem.dependence().swap_remove(characteristic);
+        let varies = |&d: &usize| dependence[d] && problem.dimensions()[d].sigma() > 0.0;
+        let dimensions: Vec<usize> = (0..problem.dimensions().len()).filter(varies).collect();
+        Self::over(problem, characteristic, &dimensions)
+    }
+
+    /// A characteristic over these dimensions.
+    pub(super) fn over(problem: &'p Problem, characteristic: usize, dimensions: &[usize]) -> Self {
+        let space = Space::new(problem, dimensions);
+        Self { problem, output: problem.outputs()[characteristic], space }
+    }
+
+    /// The inputs in sigmas off their means.
+    pub(super) fn standardised(&self, z: &Columns) -> Columns {
+        self.space.standardised(z)
+    }
+
+    /// How many variables there are.
+    pub(super) fn len(&self) -> usize {
+        self.space.len()
+    }
+
+    /// The dimension behind every variable.
+    pub(super) fn dimensions(&self) -> impl Iterator<Item = usize> + '_ {
+        self.space.dimensions()
+    }
+
+    /// The values at some points, NaN where there is none.
+    pub(super) fn values(&self, z: &Columns) -> Vec<f64> {
+        let (points, outputs) = (self.space.points(z), [self.output]);
+        let mut out = Responses::open(points.rows(), 1);
+        self.problem.function().evaluate(&Ask::values(&points, &outputs), &Run::to_the_end(), &mut out);
+        out.column(0).to_vec()
+    }
+
+    /// The margins of the switches at some points; None where the function does not tell.
+    pub(super) fn margins(&self, z: &Columns) -> Option<Vec<Vec<f64>>> {
+        self.problem.function().margins(self.output, &self.space.points(z))
+    }
+
+    pub(super) fn problem(&self) -> &'p Problem {
+        self.problem
+    }
+
+    pub(super) fn output(&self) -> usize {
+        self.output
+    }
+}

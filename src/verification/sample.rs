@@ -1,0 +1,173 @@
+//! Points of a cheap model in strata, and the figures that they give with their errors.
+//!
+//! ```text
+//! E f = sum_s mean over stratum s of w f [in no earlier stratum]
+//!   1. sides of switches that are seldom met       half-spaces, 4096 points each
+//!   2. two tails, +-a.z > 2.5                      4096 points each
+//!   3. the core, |a.z| <= 2.5                      32 768 points
+//! ```
+//!
+//! Every point counts in the first stratum that holds it, so that the sum is unbiased whatever the strata are worth. The points are
+//! Sobol's in 16 scramblings (Owen 1997), from which the jackknife takes the errors; these grow by `1 + 5/sqrt(n)` with `n` the
+//! number of points that carry the variance of a power (Kish 1965), by Student's quantile, and for a share by the weight of one
+//! point: that none was seen does not mean that there is none.
+
+use rayon::prelude::*;
+
+use super::figures::{MOMENTS, effective, jackknife, moments, standard, student, totals};
+use super::model::Model;
+use super::sides::{Sides, sides};
+use super::space::Columns;
+use super::strata::{HalfSpace, between, unit};
+use crate::sampling::Normals;
+
+/// Randomisations.
+pub(super) const REPLICATES: usize = 16;
+/// Points of a half-space in all randomisations together.
+const TAIL: usize = 1 << 12;
+/// Numbers that the points of one stratum may take at most.
+const NUMBERS: usize = 1_000_000;
+/// Points from which the tails' direction is taken, and how far a value counts for it, in sigmas.
+const PILOT: usize = 1 << 10;
+const WINSORISED: f64 = 4.0;
+/// Where the tails begin, in sigmas along their direction.
+const FAR: f64 = 2.5;
+/// Standard errors grow by `1 + FEW/sqrt(n)`. Without it and with random tails the kurtosis of `exp(0.8 a + 0.3 b)` was off by more
+/// than three of them in 4 of 20 runs; with it in none.
+const FEW: f64 = 5.0;
+
+/// The points of one stratum in one randomisation that no earlier stratum holds.
+struct Part {
+    replicate: usize,
+    values: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+/// The points of one characteristic.
+pub(super) struct Sample {
+    parts: Vec<Part>,
+    /// The weight of one point of the core.
+    one: f64,
+    /// How many points were evaluated, those that looked for strata included.
+    pub(super) points: usize,
+    pub(super) sides: Sides,
+}
+
+/// Figures of a sample with their errors: mean, sigma, skewness, kurtosis, then a share for every interval asked for.
+pub(super) struct Figures {
+    pub(super) values: Vec<f64>,
+    pub(super) errors: Vec<f64>,
+    /// The share of the assemblies that have a value, and its error.
+    pub(super) valid: (f64, f64),
+}
+
+impl Sample {
+    /// Of so many points in the core.
+    pub(super) fn draw(model: &Model<'_>, seed: u64, core: usize) -> Self {
+        let normals = Normals::new(model.len(), seed);
+        let pilot = normals.columns(1 << 33, PILOT);
+        let known = model.values(&pilot);
+        let direction = steepest(&pilot, &known);
+        let valid: Vec<f64> = known.iter().copied().filter(|y| y.is_finite()).collect();
+        let spread = moments(&valid, &vec![1.0; valid.len()])[1];
+        let sides = sides(model, &normals, if spread > 0.0 { spread } else { 1.0 });
+        let opposite = direction.iter().map(|part| -part).collect();
+        let tails = [direction.clone(), opposite].map(|direction| HalfSpace { direction, from: FAR });
+        let spaces: Vec<&HalfSpace> = sides.half_spaces.iter().chain(&tails).collect();
+        let strata = spaces.len() + 1;
+        let most = (NUMBERS / model.len().max(1) / REPLICATES).max(1);
+        let rows = |stratum: usize| (if stratum + 1 < strata { TAIL } else { core } / REPLICATES).min(most);
+        let part = |index: usize| -> Part {
+            let (replicate, stratum) = (index / strata, index % strata);
+            let rows = rows(stratum);
+            let mut z = normals.columns((replicate * 64 + stratum) as u64, rows);
+            let weights = match spaces.get(stratum) {
+                Some(space) => space.enter(&mut z),
+                None => vec![between(&mut z, &direction, FAR); rows],
+            };
+            let mut own = vec![true; rows];
+            for earlier in &spaces[..stratum] {
+                own.iter_mut().zip(earlier.holds(&z)).for_each(|(own, held)| *own &= !held);
+            }
+            let kept = |column: &[f64]| -> Vec<f64> {
+                column.iter().zip(&own).filter(|(_, own)| **own).map(|(value, _)| *value).collect()
+            };
+            let z: Columns = z.iter().map(|column| kept(column)).collect();
+            let weights = kept(&weights).into_iter().map(|weight| weight / rows as f64).collect();
+            Part { replicate, values: model.values(&z), weights }
+        };
+        let parts: Vec<Part> = (0..REPLICATES * strata).into_par_iter().map(part).collect();
+        let core = rows(strata - 1);
+        let one = between(&mut vec![vec![0.0]], &[1.0], FAR) / (core * REPLICATES) as f64;
+        let drawn: usize = parts.iter().map(|part| part.values.len()).sum();
+        Self { parts, one, points: drawn + PILOT, sides }
+    }
+
+    /// The figures, with the shares of the assemblies within these intervals, ends included.
+    ///
+    /// Points without a value leave numerator and denominator alike: every figure is of the assemblies that have one.
+    pub(super) fn figures(&self, intervals: &[[f64; 2]]) -> Figures {
+        let all = || self.parts.iter().flat_map(|part| part.values.iter().zip(&part.weights));
+        let (values, weights): (Vec<f64>, Vec<f64>) = all().filter(|(y, _)| y.is_finite()).unzip();
+        let total: f64 = all().map(|(_, weight)| weight).sum();
+        let [origin, spread, ..] = moments(&values, &weights);
+        let scale = if spread > 0.0 { spread } else { 1.0 };
+        // Sums of the valid, of powers 1 to 4, of every interval, and of all points.
+        let count = 1 + MOMENTS + intervals.len();
+        let mut sums = vec![vec![0.0; REPLICATES]; count + 1];
+        for part in &self.parts {
+            let mut row = vec![0.0; count + 1];
+            for (&y, &weight) in part.values.iter().zip(&part.weights) {
+                row[count] += weight;
+                if !y.is_finite() {
+                    continue;
+                }
+                let v = (y - origin) / scale;
+                let mut term = weight;
+                for sum in &mut row[..=MOMENTS] {
+                    *sum += term;
+                    term *= v;
+                }
+                for (sum, [low, high]) in row[1 + MOMENTS..].iter_mut().zip(intervals) {
+                    *sum += if *low <= y && y <= *high { weight } else { 0.0 };
+                }
+            }
+            sums.iter_mut().zip(row).for_each(|(sums, more)| sums[part.replicate] += more);
+        }
+        let of = |total: &[f64]| {
+            let raw: Vec<f64> = total[1..count].iter().map(|sum| sum / total[0]).collect();
+            standard(&raw, origin, scale)
+        };
+        let mut errors = jackknife(of, &sums);
+        for (power, error) in errors.iter_mut().enumerate().take(MOMENTS) {
+            let terms = values.iter().zip(&weights);
+            let carried = terms.map(|(y, weight)| weight * ((y - origin) / scale).abs().powi(power as i32 + 1));
+            *error *= 1.0 + FEW / effective(carried).sqrt();
+        }
+        let student = student(REPLICATES);
+        errors.iter_mut().for_each(|error| *error *= student);
+        errors[MOMENTS..].iter_mut().for_each(|error| *error = error.hypot(self.one));
+        let share = |total: &[f64]| vec![total[0] / total[count]];
+        let failed = total > 0.0 && values.len() < all().count();
+        let off = if failed { (student * jackknife(share, &sums)[0]).hypot(self.one) } else { self.one };
+        Figures { values: of(&totals(&sums)), errors, valid: (weights.iter().sum::<f64>() / total, off) }
+    }
+
+    /// Whether no point has a value.
+    pub(super) fn is_void(&self) -> bool {
+        !self.parts.iter().flat_map(|part| &part.values).any(|y| y.is_finite())
+    }
+}
+
+/// Where the tails are: `E[z d^3]` with `d` the standardised values, winsorised; along `R b` for a function that is nearly linear.
+pub(super) fn steepest(z: &Columns, y: &[f64]) -> Vec<f64> {
+    let valid: Vec<f64> = y.iter().copied().filter(|y| y.is_finite()).collect();
+    let [mean, sigma, ..] = moments(&valid, &vec![1.0; valid.len()]);
+    let cubes: Vec<f64> = (y.iter())
+        .map(|y| match y.is_finite() && sigma > 0.0 {
+            true => ((y - mean) / sigma).clamp(-WINSORISED, WINSORISED).powi(3),
+            false => 0.0,
+        })
+        .collect();
+    unit(z.iter().map(|column| column.iter().zip(&cubes).map(|(z, cube)| z * cube).sum()).collect())
+}

@@ -1,0 +1,69 @@
+//! Shares of the variance from the model itself, by exchanging single inputs between two sets of points.
+//!
+//! ```text
+//! first-order  S_j = E[(b - m)(c_j - a)] / V          Saltelli and others 2010, table 2 (b), about the mean
+//! total        T_j = E[(c_j - a)^2] / (2 V)           Jansen 1999
+//! ```
+//!
+//! with the model's values `a` and `b` at two independent sets of points and `c_j` at the points of the first whose input j is that of
+//! the second. `S_j` is what the input explains by itself, `T_j` adds every interaction in which it has a part. Errors by the
+//! jackknife over 8 scramblings, widened by Student's quantile.
+
+use rayon::prelude::*;
+
+use super::figures::{jackknife, student, totals};
+use super::model::Model;
+use super::space::Columns;
+use crate::sampling::Normals;
+
+/// Evaluations, and the scramblings that share them.
+const EVALUATIONS: usize = 1 << 16;
+const REPLICATES: usize = 8;
+/// The fewest points of a scrambling.
+const FEWEST: usize = 64;
+/// For more inputs the numbers would be too many.
+const MOST: usize = 256;
+
+/// A share of the variance with its error.
+pub type Share = super::Verified;
+
+/// First-order and total shares of every variable; None for too many of them, and where nothing varies.
+pub(super) fn shares(model: &Model<'_>, seed: u64) -> Option<Vec<[Share; 2]>> {
+    let n = model.len();
+    if n == 0 || n > MOST {
+        return None;
+    }
+    let rows = (EVALUATIONS / (REPLICATES * (n + 2))).max(FEWEST);
+    let rows = if rows.is_power_of_two() { rows } else { rows.next_power_of_two() / 2 };
+    let normals = Normals::new(2 * n, seed);
+    let sums: Vec<Vec<f64>> =
+        (0..REPLICATES).into_par_iter().map(|r| exchanged(model, &normals, r as u64, rows)).collect();
+    let rows: Vec<Vec<f64>> = (0..1 + 2 * n).map(|sum| sums.iter().map(|of| of[sum]).collect()).collect();
+    let of = |total: &[f64]| total[1..].iter().map(|sum| sum / total[0]).collect::<Vec<f64>>();
+    let (values, errors, wide) = (of(&totals(&rows)), jackknife(of, &rows), student(REPLICATES));
+    let share = |index: usize| Share { value: values[index], error: wide * errors[index] };
+    values.iter().all(|value| value.is_finite()).then(|| (0..n).map(|j| [share(j), share(n + j)]).collect())
+}
+
+/// The variance, then for every variable the covariance of what it makes by itself, then half the mean square of what it changes.
+fn exchanged(model: &Model<'_>, normals: &Normals, replicate: u64, rows: usize) -> Vec<f64> {
+    let n = model.len();
+    let mut first: Columns = normals.columns((1 << 34) + replicate, rows);
+    let second: Columns = first.split_off(n);
+    let (a, b) = (model.values(&first), model.values(&second));
+    let both = || a.iter().chain(&b).filter(|y| y.is_finite());
+    let count = both().count() as f64;
+    let mean = both().sum::<f64>() / count;
+    let variance = both().map(|y| (y - mean).powi(2)).sum::<f64>() / count;
+    let mut sums = vec![variance; 1 + 2 * n];
+    for j in 0..n {
+        let kept = std::mem::replace(&mut first[j], second[j].clone());
+        let c = model.values(&first);
+        first[j] = kept;
+        let valid = || a.iter().zip(&b).zip(&c).filter(|((a, b), c)| a.is_finite() && b.is_finite() && c.is_finite());
+        let count = valid().count() as f64;
+        sums[1 + j] = valid().map(|((a, b), c)| (b - mean) * (c - a)).sum::<f64>() / count;
+        sums[1 + n + j] = valid().map(|((a, _), c)| 0.5 * (c - a).powi(2)).sum::<f64>() / count;
+    }
+    sums
+}

@@ -1,0 +1,292 @@
+//! What the switches of a model do seldom, as half-spaces, and how probable it is.
+//!
+//! A switch whose smaller side holds less than a hundredth of all assemblies is met by few points of a sample or by none. Its margin is
+//! known, so that it is sought: from the nearest of some points two and three times as wide as the assemblies, steps of Hasofer and
+//! Lind (1974; Rackwitz and Fiessler 1978) lead to the likeliest point beyond, the design point `z*` at the distance `beta`. The
+//! half-space `z*/beta . z > beta - 0.5` holds nearly all of that side, and a stratum of its own makes it known as well as the rest.
+
+use super::model::Model;
+use super::space::Columns;
+use super::strata::{HalfSpace, REACH, length};
+use crate::assembly::Switch;
+use crate::sampling::Normals;
+
+/// Points at which margins are read, plain, twice and three times as wide.
+const POINTS: usize = 1 << 11;
+const WIDE: [f64; 2] = [2.0, 3.0];
+/// A side that is less than this part of all assemblies, 256 of 32 768 points, is sought;
+const SELDOM: f64 = 1.0 / 128.0;
+/// so many places of one switch, as `abs(x) > c` has two, and of all switches.
+const PLACES: usize = 4;
+const MOST: usize = 6;
+/// How far a half-space begins before its design point, in sigmas.
+const BEFORE: f64 = 0.5;
+/// Steps of Hasofer and Lind, the step of their differences, and where the line is searched about each.
+const STEPS: usize = 12;
+const STEP: f64 = 1e-3;
+const LINE: [f64; 2] = [0.9, 1.1];
+/// Points of a half-space by which its probability is known to a percent.
+const WITHIN: usize = 1 << 12;
+/// Halvings by which a border is found.
+const HALVINGS: usize = 40;
+/// From which part of sigma on two values are apart, and from which change of the slope by a sigma two slopes are;
+const APART: f64 = 1e-6;
+const BENT: f64 = 1e-3;
+/// the distances over which slopes are taken, of which the longer would show a curvature.
+const NEAR: [f64; 2] = [1e-5, 1e-4];
+/// So many sigmas off the mean beside a border, a value grows without bound.
+const WITHOUT_BOUND: f64 = 1e6;
+
+/// What an output does at a switch, as its values show it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Crossing {
+    /// Its slope changes.
+    Kink,
+    /// Its value jumps.
+    Jump,
+    /// It has no value beyond.
+    Edge,
+    /// It grows without bound: no moments exist.
+    Pole,
+}
+
+/// A switch on both sides of which there are assemblies within eight sigmas.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundSwitch {
+    /// Where it stands.
+    pub switch: Switch,
+    /// What the output does there.
+    pub crossing: Crossing,
+    /// The probability of its smaller side.
+    pub probability: f64,
+}
+
+/// What was found of the switches of one output.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Sides {
+    /// Strata for what is seldom.
+    pub(super) half_spaces: Vec<HalfSpace>,
+    /// The switches that are met; None where the model does not tell.
+    pub(super) switches: Option<Vec<FoundSwitch>>,
+    /// Whether the model told all of its switches.
+    pub(super) complete: bool,
+}
+
+/// The margins of all switches at some points, without what is not a number.
+struct Margins(Vec<Vec<f64>>);
+
+impl Margins {
+    fn read(model: &Model<'_>, z: &Columns) -> Option<Self> {
+        let mut columns = model.margins(z)?;
+        for margin in columns.iter_mut().flatten() {
+            *margin = if margin.is_nan() { 0.0 } else { margin.clamp(-1e9, 1e9) };
+        }
+        Some(Self(columns))
+    }
+
+    fn share(&self, switch: usize, sign: f64) -> f64 {
+        let column = &self.0[switch];
+        column.iter().filter(|&&margin| margin * sign > 0.0).count() as f64 / column.len().max(1) as f64
+    }
+}
+
+/// Looks for the sides that are seldom met.
+///
+/// `scale` is the spread of the output, for what is a jump. Cost: 6144 points, and `12 (N + 22)` for every place looked at.
+pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
+    let Some(known) = model.problem().function().switches(model.output()) else { return Sides::default() };
+    let plain_points = normals.columns(stream(0), POINTS);
+    let mut wide: Columns = vec![Vec::with_capacity(2 * POINTS); model.len()];
+    for (index, factor) in WIDE.iter().enumerate() {
+        for (all, more) in wide.iter_mut().zip(normals.columns(stream(1 + index), POINTS)) {
+            all.extend(more.into_iter().map(|z| factor * z));
+        }
+    }
+    let margins = Margins::read(model, &plain_points).zip(Margins::read(model, &wide));
+    let Some((plain, far)) = margins.filter(|(plain, _)| plain.0.len() == known.list.len()) else {
+        return Sides::default();
+    };
+    let mut found = Search { model, normals, half_spaces: Vec::new(), scale };
+    let mut switches = Vec::new();
+    for (k, switch) in known.list.into_iter().enumerate() {
+        let sign = if plain.share(k, -1.0) <= plain.share(k, 1.0) { -1.0 } else { 1.0 };
+        let first = found.half_spaces.len();
+        if plain.share(k, sign) < SELDOM {
+            found.seek(k, sign, &wide, &far.0[k]);
+        }
+        let own = first..found.half_spaces.len();
+        let Some(probability) = found.probability(k, sign, own, (&plain_points, &plain.0[k])) else { continue };
+        // A point of the smaller side nearest to the middle, whose way from there crosses the border.
+        let beyond = nearest(&plain_points, &plain.0[k], sign).or_else(|| nearest(&wide, &far.0[k], sign));
+        let Some(crossing) = beyond.and_then(|point| found.crossing(k, sign, &switch, &point)) else { continue };
+        switches.push(FoundSwitch { switch, crossing, probability });
+    }
+    Sides { half_spaces: found.half_spaces, switches: Some(switches), complete: known.complete }
+}
+
+fn stream(index: usize) -> u64 {
+    (1 << 32) + index as u64
+}
+
+fn row(z: &Columns, row: usize) -> Vec<f64> {
+    z.iter().map(|column| column[row]).collect()
+}
+
+fn nearest(z: &Columns, margins: &[f64], sign: f64) -> Option<Vec<f64>> {
+    let square = |at: usize| z.iter().map(|column| column[at] * column[at]).sum::<f64>();
+    let beyond = (0..margins.len()).filter(|&at| margins[at] * sign > 0.0);
+    beyond.min_by(|&a, &b| square(a).total_cmp(&square(b))).map(|at| row(z, at))
+}
+
+struct Search<'a, 'p> {
+    model: &'a Model<'p>,
+    normals: &'a Normals,
+    half_spaces: Vec<HalfSpace>,
+    scale: f64,
+}
+
+impl Search<'_, '_> {
+    /// Looks for the places of one side of a switch.
+    fn seek(&mut self, switch: usize, sign: f64, wide: &Columns, margins: &[f64]) {
+        let mut open: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();
+        for space in &self.half_spaces {
+            open.iter_mut().zip(space.holds(wide)).for_each(|(open, held)| *open &= !held);
+        }
+        for _ in 0..PLACES {
+            let left: Vec<f64> = open.iter().map(|&open| if open { 1.0 } else { 0.0 }).collect();
+            let Some(start) = nearest(wide, &left, 1.0).filter(|_| self.half_spaces.len() < MOST) else { return };
+            let point = self.design_point(switch, sign, start);
+            let distance = length(&point);
+            if !(distance > 1.0 && distance < REACH) {
+                return;
+            }
+            let direction = point.iter().map(|part| part / distance).collect();
+            let space = HalfSpace { direction, from: distance - BEFORE };
+            open.iter_mut().zip(space.holds(wide)).for_each(|(open, held)| *open &= !held);
+            self.half_spaces.push(space);
+        }
+    }
+
+    fn margin(&self, switch: usize, z: &Columns) -> Vec<f64> {
+        Margins::read(self.model, z).map_or_else(Vec::new, |mut margins| margins.0.swap_remove(switch))
+    }
+
+    /// The likeliest point at which the margin has this sign: steps from `z`, a search of the line about each, then bisection from
+    /// the middle.
+    fn design_point(&self, switch: usize, sign: f64, mut z: Vec<f64>) -> Vec<f64> {
+        const ON_LINE: usize = 21;
+        let n = z.len();
+        let mut best = z.clone();
+        for _ in 0..STEPS {
+            let column = |j: usize| (0..=n).map(|row| z[j] + if row == j + 1 { STEP } else { 0.0 }).collect();
+            let margins = self.margin(switch, &(0..n).map(column).collect());
+            let slopes: Vec<f64> = margins[1..].iter().map(|margin| (margin - margins[0]) / STEP).collect();
+            let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+            if !(square > 0.0 && square.is_finite()) {
+                break;
+            }
+            let along: f64 = slopes.iter().zip(&z).map(|(slope, z)| slope * z).sum();
+            let factor = (along - margins[0]) / square;
+            z = slopes.iter().map(|slope| factor * slope).collect();
+            let part = |step: usize| LINE[0] + (LINE[1] - LINE[0]) * step as f64 / (ON_LINE - 1) as f64;
+            let line: Columns = z.iter().map(|z| (0..ON_LINE).map(|step| part(step) * z).collect()).collect();
+            let hit = self.margin(switch, &line).iter().position(|margin| margin * sign > 0.0);
+            if let Some(point) = hit.map(|step| row(&line, step)).filter(|point| length(point) < length(&best)) {
+                best = point;
+            }
+        }
+        let at = |part: f64| -> Vec<f64> { best.iter().map(|z| part * z).collect() };
+        let (_, high) = self.halved(switch, sign, &|part| at(part), 20);
+        at(high)
+    }
+
+    /// Two parts of a way, of which the second has the sign and the first has not.
+    fn halved(&self, switch: usize, sign: f64, at: &dyn Fn(f64) -> Vec<f64>, times: usize) -> (f64, f64) {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..times {
+            let middle = 0.5 * (low + high);
+            let point: Columns = at(middle).into_iter().map(|z| vec![z]).collect();
+            if self.margin(switch, &point).first().is_some_and(|margin| margin * sign > 0.0) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        (low, high)
+    }
+
+    /// The probability of a side: by the plain points outside its half-spaces, and by points within each that no earlier one holds.
+    /// None where none of them lies there.
+    fn probability(
+        &self,
+        switch: usize,
+        sign: f64,
+        own: std::ops::Range<usize>,
+        (plain, margins): (&Columns, &[f64]),
+    ) -> Option<f64> {
+        let mut outside: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();
+        let mut sum = 0.0;
+        for index in own.clone() {
+            let space = &self.half_spaces[index];
+            outside.iter_mut().zip(space.holds(plain)).for_each(|(outside, held)| *outside &= !held);
+            let mut z = self.normals.columns(stream(8 + index), WITHIN);
+            let weights = space.enter(&mut z);
+            let mut counts = vec![true; WITHIN];
+            for earlier in &self.half_spaces[own.start..index] {
+                counts.iter_mut().zip(earlier.holds(&z)).for_each(|(counts, held)| *counts &= !held);
+            }
+            let margins = self.margin(switch, &z);
+            let inside = weights.iter().zip(&margins).zip(&counts);
+            let held = inside.filter(|((_, margin), counts)| **counts && *margin * sign > 0.0);
+            sum += held.map(|((weight, _), _)| weight).sum::<f64>() / WITHIN as f64;
+        }
+        sum += outside.iter().filter(|&&outside| outside).count() as f64 / outside.len() as f64;
+        (sum > 0.0).then_some(sum)
+    }
+
+    /// What the output does where the way from the middle to a point beyond crosses the border; None where it does nothing.
+    fn crossing(&self, switch: usize, sign: f64, of: &Switch, beyond: &[f64]) -> Option<Crossing> {
+        use crate::assembly::SwitchKind;
+        if of.kind == SwitchKind::Edge {
+            return Some(Crossing::Edge);
+        }
+        let start = self.start(switch, sign, beyond);
+        let at = |part: f64| -> Vec<f64> { start.iter().zip(beyond).map(|(a, b)| a + part * (b - a)).collect() };
+        let way: Vec<f64> = start.iter().zip(beyond).map(|(a, b)| b - a).collect();
+        let (low, high) = self.halved(switch, sign, &at, HALVINGS);
+        let step = |by: f64| by / length(&way);
+        let [near, far] = NEAR.map(step);
+        let parts = [low, high, low - near, low, low + near, low - far, low, low + far];
+        let points: Vec<Vec<f64>> = parts.iter().map(|&part| at(part)).collect();
+        let columns = (0..beyond.len()).map(|j| points.iter().map(|point| point[j]).collect()).collect();
+        let y = self.model.values(&columns);
+        let size = |value: f64| value.abs() / self.scale;
+        if of.kind == SwitchKind::Pole {
+            let middle = y[2].min(y[4]);
+            let grows = [y[0], y[1]].iter().any(|y| y.is_nan() || size(y - middle) > WITHOUT_BOUND);
+            return (grows && size(y[4] - y[7]) > 1.0).then_some(Crossing::Pole);
+        }
+        if size(y[1] - y[0]) > APART {
+            return Some(Crossing::Jump);
+        }
+        let bend = |i: usize, by: f64| size(y[i] - 2.0 * y[i + 1] + y[i + 2]) / by;
+        let [near, far] = [bend(2, NEAR[0]), bend(5, NEAR[1])];
+        (near > BENT && near > 0.5 * far).then_some(Crossing::Kink)
+    }
+
+    /// A point on the other side: the middle, unless it lies beyond itself.
+    fn start(&self, switch: usize, sign: f64, beyond: &[f64]) -> Vec<f64> {
+        let n = beyond.len();
+        let other = |point: &[f64]| {
+            let margin = self.margin(switch, &point.iter().map(|&z| vec![z]).collect());
+            margin.first().is_some_and(|margin| margin * sign < 0.0)
+        };
+        let middle = vec![0.0; n];
+        if other(&middle) {
+            return middle;
+        }
+        let plain = self.normals.columns(stream(0), POINTS);
+        let margins = self.margin(switch, &plain);
+        nearest(&plain, &margins, -sign).unwrap_or(middle)
+    }
+}
