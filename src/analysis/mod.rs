@@ -13,6 +13,7 @@ mod surface;
 mod tails;
 mod trust;
 mod verification;
+mod verified;
 mod warnings;
 
 pub use account::Account;
@@ -21,7 +22,7 @@ pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivi
 pub use fallback::SampledModel;
 pub use surface::{Fit, NoFit, Surface};
 pub use tails::Tails;
-pub use verification::{Verification, VerificationKind};
+pub use verified::{Verification, VerificationKind};
 
 use std::time::Instant;
 

@@ -429,6 +429,6 @@ fn a_seldom_switch_is_warned_of() {
     let truths = truths();
     let truth = truths.iter().find(|truth| truth.name == "wrap-far").unwrap();
     let found = analyze(&truth.study.problem, &verified(Method::Full, 18)).unwrap();
-    let warning = found.warnings.iter().find(|warning| warning.code() == "discontinuity").unwrap().message();
+    let warning = found.warnings.iter().find(|warning| warning.code() == "switch").unwrap().message();
     assert!(warning.contains("`atan2(q, p)`") && warning.contains("13 ppm"), "{warning}");
 }

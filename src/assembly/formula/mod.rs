@@ -21,6 +21,7 @@ mod graph;
 mod interval;
 mod jet;
 mod lexer;
+mod margins;
 mod parser;
 mod program;
 mod scalar;

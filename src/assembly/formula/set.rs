@@ -9,11 +9,11 @@ use super::functions::{Binary, select};
 use super::graph::{Graph, NodeId};
 use super::interval::Interval;
 use super::jet::Jet;
+use super::margins::Margins;
 use super::parser::{Formula, Node};
 use super::program::Program;
 use super::scalar::Scalar;
 use super::slopes::Sloped;
-use super::switches::Margins;
 use crate::assembly::Bounds;
 use crate::names::nearest;
 

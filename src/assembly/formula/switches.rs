@@ -19,16 +19,10 @@ use std::sync::{Arc, PoisonError};
 use super::batch::{LANES, Machine};
 use super::functions::{Binary, Unary};
 use super::graph::{Graph, GraphNode, NodeId};
+use super::margins::Margins;
 use super::program::{Program, guards};
 use super::set::FormulaSet;
 use crate::assembly::{Switch, SwitchKind};
-
-/// The switches of some formulas, and the program of their margins.
-#[derive(Debug)]
-pub(super) struct Margins {
-    switches: Vec<Switch>,
-    program: Program,
-}
 
 impl FormulaSet {
     /// The places at which some formulas change their form, those of the formulas that they use included, each once.
