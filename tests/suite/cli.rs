@@ -195,7 +195,8 @@ fn wrong_input() {
 fn probe_answers_by_the_exit_code() {
     let output = sensitol(&["probe", "examples/external-python/study.toml", "--json"]).output().unwrap();
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((output.status.code(), &report["passed"], &report["evaluations"]), (Some(0), &true.into(), &47.into()));
+    // 2N + 55 with eight dimensions.
+    assert_eq!((output.status.code(), &report["passed"], &report["evaluations"]), (Some(0), &true.into(), &71.into()));
     assert_eq!((&report["adapter"]["name"], &report["adapter"]["window"]), (&"gap".into(), &64.into()));
     let folder = tempfile::tempdir().unwrap();
     let study = folder.path().join("study.toml");
