@@ -104,6 +104,7 @@ mod tests {
         square += weight * inner.iter().map(|t| t * t).sum::<f64>() / rows as f64;
         // Quasi-random points of 4096 in three dimensions are off by about 1/4096 of a smooth function's spread, which is below 1.
         assert!((total - 1.0).abs() < 1.0 / 4096.0, "{total}");
-        assert!((square - 1.0).abs() < 1e-3, "{square}");
+        // A square grows without bound: a quarter of the standard error of as many plain points, sqrt(2/4096).
+        assert!((square - 1.0).abs() < 0.25 * (2.0 / 4096f64).sqrt(), "{square}");
     }
 }
