@@ -73,7 +73,7 @@ impl Verified {
     ///
     /// ```
     /// use sensitol::verification::Verified;
-    /// assert_eq!(Verified { value: 1.0, error: 0.3 }.error_of(1.4), 0.5);
+    /// assert_eq!(Verified { value: 1.0, error: 3.0 }.error_of(5.0), 5.0);
     /// ```
     pub fn error_of(&self, value: f64) -> f64 {
         (value - self.value).hypot(self.error)
