@@ -102,6 +102,11 @@ pub(super) enum Command {
     /// Checks an external model: protocol, names, repeatability, noise, speed, least step
     #[command(after_help = "Examples:\n  sensitol probe examples/external-python/study.toml")]
     Probe(ProbeArgs),
+    /// Offers a study as an external model: a program that speaks the adapter protocol on stdin and stdout
+    ///
+    /// Its characteristics then are the model of another study, of a UM-Bridge client or of workers on a cluster.
+    #[command(after_help = "Examples:\n  sensitol serve examples/stacked-blocks/study.toml")]
+    Serve(ServeArgs),
     /// What is kept of external models: show, export or forget it
     #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
     Journal(JournalArgs),
@@ -494,6 +499,12 @@ pub(super) struct ProbeArgs {
 
     #[command(flatten)]
     pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ServeArgs {
+    /// The study, a .toml or .json file
+    pub(super) study: PathBuf,
 }
 
 #[derive(Debug, Args)]
