@@ -27,12 +27,12 @@ class Fault(Exception):
 
 
 class Study:
-    """`sensitol serve` as a long-lived process. Requests of several threads share it, and every answer wakes its own."""
+    """`sensitol evaluate` as a long-lived process. Requests of several threads share it, and every answer wakes its own."""
 
     def __init__(self, path):
         program = os.environ.get("SENSITOL", "sensitol")
         try:
-            self.process = subprocess.Popen([program, "serve", str(path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+            self.process = subprocess.Popen([program, "evaluate", str(path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         except OSError as error:
             raise SystemExit(f"error: {program} cannot be started: {error}") from None
         self.writing = threading.Lock()

@@ -102,11 +102,12 @@ pub(super) enum Command {
     /// Checks an external model: protocol, names, repeatability, noise, speed, least step
     #[command(after_help = "Examples:\n  sensitol probe examples/external-python/study.toml")]
     Probe(ProbeArgs),
-    /// Offers a study as an external model: a program that speaks the adapter protocol on stdin and stdout
+    /// Answers points of a study over the adapter protocol, as an external model does
     ///
-    /// Its characteristics then are the model of another study, of a UM-Bridge client or of workers on a cluster.
-    #[command(after_help = "Examples:\n  sensitol serve examples/stacked-blocks/study.toml")]
-    Serve(ServeArgs),
+    /// Reads requests from stdin and writes the values of the characteristics to stdout. The study then is the model of another
+    /// study, of a UM-Bridge client or of workers on a cluster.
+    #[command(after_help = "Examples:\n  sensitol evaluate examples/stacked-blocks/study.toml")]
+    Evaluate(EvaluateArgs),
     /// What is kept of external models: show, export or forget it
     #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
     Journal(JournalArgs),
@@ -502,7 +503,7 @@ pub(super) struct ProbeArgs {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct ServeArgs {
+pub(super) struct EvaluateArgs {
     /// The study, a .toml or .json file
     pub(super) study: PathBuf,
 }

@@ -1,11 +1,11 @@
-//! `sensitol serve`: a study as a program that speaks the protocol of external models.
+//! `sensitol evaluate`: a study as a program that speaks the protocol of external models.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};
 
 use serde::{Deserialize, Serialize};
 
-use super::args::ServeArgs;
+use super::args::EvaluateArgs;
 use super::failure::{Exit, Failure};
 use super::interrupt;
 use super::output::Look;
@@ -80,7 +80,7 @@ struct Session {
     columns: Vec<Option<usize>>,
 }
 
-pub(super) fn run(asked: &ServeArgs, look: Look) -> Result<Exit, Failure> {
+pub(super) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
     // The engine that asks keeps the answers, and sends the nominal point as often as it wants to.
     let externals =
         Externals { journal: JournalPlace::Nowhere, listener: listener(look), points: None, sentinels: false };
