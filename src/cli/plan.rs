@@ -13,6 +13,7 @@ use super::{points, study};
 use crate::method::DerivativeSource;
 use crate::plan::{Known, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
+use crate::report::number::plural;
 use crate::study::Externals;
 use crate::warning::Warning;
 
@@ -28,6 +29,10 @@ pub(super) struct PlanReport {
     evaluations: usize,
     /// The fewest and the most, of a method that chooses as it goes.
     range: Option<[usize; 2]>,
+    /// Batches that wait for each other, the fewest; with `range` or `extremes` more may follow.
+    rounds: usize,
+    /// Points of the largest batch: so many workers can be busy at a time.
+    largest_batch: usize,
     stages: Vec<StageReport>,
     /// Whether a search of the extremes follows, whose points nobody knows beforehand.
     extremes: bool,
@@ -78,6 +83,8 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         varying: plan.varying().len(),
         evaluations,
         range: procedure.range(&study.problem, &study.options),
+        rounds: stages,
+        largest_batch: first.points.len().max(evaluations.saturating_sub(first.points.len())),
         stages: vec![of_stage(&first)],
         extremes: study.options.extremes,
         dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &*plan, d)).collect(),
@@ -120,10 +127,21 @@ fn axis(problem: &Problem, plan: &dyn Plan, d: usize) -> AxisReport {
     }
 }
 
+/// How many batches wait for each other, and how many workers can be busy.
+fn rounds(report: &PlanReport) -> String {
+    let (rounds, points) = (plural(report.rounds, "round", "rounds"), plural(report.largest_batch, "point", "points"));
+    match report.range.is_some() || report.extremes {
+        true => format!("{rounds} or more, the largest of {points}"),
+        false if report.rounds == 1 => format!("{rounds} of {points}"),
+        false => format!("{rounds}, the largest of {points}"),
+    }
+}
+
 fn text(report: &PlanReport) -> String {
     let mut lines = vec![
         format!("{}: {}", report.method, report.about),
         format!("{} evaluations for {} varying dimensions ({})", report.evaluations, report.varying, report.count),
+        rounds(report),
     ];
     for (index, stage) in report.stages.iter().enumerate() {
         let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };

@@ -12,13 +12,14 @@ pub fn repository(path: &str) -> PathBuf {
 }
 
 /// Examples that need more than the repository has; `tests/adapters/run` runs their console blocks where that is installed.
-pub const INSTALLED: [&str; 6] = [
+pub const INSTALLED: [&str; 7] = [
     "stacked-blocks-freecad",
     "stack-up-workbook",
     "spot-weld-opencascade",
     "cantilever-umbridge",
     "four-bar-octave",
     "oscillator-fmi",
+    "stacked-blocks-dask",
 ];
 
 /// The studies of all examples, with the folder's name; what an adapter wants to know of its document is no study.

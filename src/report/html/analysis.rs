@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::super::number::{UNKNOWN, beside, percent, plain, share, significant, unsigned_zero};
+use super::super::number::{UNKNOWN, beside, percent, plain, plural, share, significant, unsigned_zero};
 use super::super::text::{band, derivative, rounded};
 use super::super::{CharacteristicReport, Report, Stack, StackNote, WarningReport};
 use super::chart::{Bins, Scale, Span, Spread, quantiles};
@@ -11,6 +11,7 @@ use super::what_if::WhatIf;
 use super::{Fact, fact, json, provenance, render};
 use crate::capability::Law;
 use crate::method::ALL;
+use crate::summary::RunSummary;
 
 /// Bars of a Pareto diagram, and interactions in a table.
 const BARS: usize = 24;
@@ -123,6 +124,12 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     render("analysis.html", &report.head, facts(report), warnings, possible.map(json), analysed)
 }
 
+/// How many there were, and how often the next ones waited for the last.
+fn evaluations(run: &RunSummary) -> String {
+    let rounds = plural(run.stages as usize, "round", "rounds");
+    format!("{} in {rounds}, {} of them failed", run.evaluations, run.failed)
+}
+
 fn facts(report: &Report) -> Vec<Fact> {
     let procedure = ALL.iter().find(|procedure| procedure.name() == report.method);
     let method = match procedure {
@@ -132,7 +139,7 @@ fn facts(report: &Report) -> Vec<Fact> {
     let mut facts = vec![fact("method", method)];
     facts.extend(report.account.as_ref().map(|account| fact("what its points went to", account.to_string())));
     facts.push(fact("varying dimensions", report.varying.to_string()));
-    facts.push(fact("evaluations", format!("{}, {} of them failed", report.run.evaluations, report.run.failed)));
+    facts.push(fact("evaluations", evaluations(&report.run)));
     let derivatives = match report.derivatives {
         Some("exact") => "exact",
         Some(_) => "differences",
