@@ -6,8 +6,7 @@ pub(crate) use history::history;
 
 use std::time::{Duration, Instant};
 
-use crate::assembly::process::Doubt;
-use crate::assembly::{Ask, Points, Responses, Run};
+use crate::assembly::{Ask, NonRepeatable, Points, Responses, Run};
 use crate::plan::{Known, Plan, Stage};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
@@ -25,7 +24,7 @@ pub struct Evaluated {
     /// Points whose answers were known from an earlier run.
     pub reused: usize,
     /// Where the model answered the nominal point otherwise than before.
-    pub doubts: Vec<Doubt>,
+    pub non_repeatable: Vec<NonRepeatable>,
     /// In how many stages.
     pub stages: usize,
     /// Points sent again.
@@ -57,7 +56,7 @@ impl Evaluated {
             known: Known::nothing(problem.characteristics().len()),
             evaluations: 0,
             reused: 0,
-            doubts: Vec::new(),
+            non_repeatable: Vec::new(),
             stages: 0,
             retried: 0,
             stopped: None,
@@ -102,7 +101,7 @@ impl Evaluated {
             self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
             self.reused += out.count_reused();
             self.retried += out.count_retried();
-            self.doubts.extend(out.doubts().iter().cloned());
+            self.non_repeatable.extend(out.non_repeatable().iter().cloned());
             if self.stopped.is_some() {
                 return;
             }

@@ -7,8 +7,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::assembly::process::Adapter;
-use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
+use crate::assembly::{Ask, EvaluationError, ModelInfo, Points, Responses, Run};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 
@@ -34,7 +33,7 @@ const MANY: usize = 5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
     /// What an external program says of itself.
-    pub adapter: Option<Adapter>,
+    pub adapter: Option<ModelInfo>,
     /// What it came to in points and time.
     pub run: RunSummary,
     /// From nothing to ready.

@@ -9,9 +9,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use crate::analysis::{Analysis, analyze_within};
-use crate::assembly::process::Adapter;
 use crate::assembly::{
-    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Points, Responses, Run, Signature,
+    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, Responses, Run,
+    Signature,
 };
 use crate::dimension::DimensionError;
 use crate::evaluation::BATCH;
@@ -269,7 +269,7 @@ impl AssemblyFunction for Gatherer {
         self.function().signature()
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
         self.function().prepare(outputs)
     }
 

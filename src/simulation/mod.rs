@@ -12,8 +12,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use crate::assembly::process::Doubt;
-use crate::assembly::{Ask, EvaluationError, Responses, Run};
+use crate::assembly::{Ask, EvaluationError, NonRepeatable, Responses, Run};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
@@ -82,7 +81,7 @@ pub struct Simulation {
     /// Whether what was wanted was reached; None where nothing was.
     pub reached: Option<bool>,
     /// Where the model answered the nominal point otherwise than before.
-    pub doubts: Vec<Doubt>,
+    pub non_repeatable: Vec<NonRepeatable>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<SimulatedCharacteristic>,
     /// Where points have no value, and where the model contradicted itself.

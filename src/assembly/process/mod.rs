@@ -25,14 +25,12 @@ mod worker;
 pub use account::EvaluatorAccount;
 pub use child::Listener;
 pub use error::{Exit, ProcessError, ProcessFault, Quoted, StderrTail};
-pub use protocol::Adapter;
-pub use sentinel::Doubt;
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use super::{Ask, AssemblyFunction, EvaluationError, Responses, Run, Signature};
+use super::{Ask, AssemblyFunction, EvaluationError, ModelInfo, Responses, Run, Signature};
 use pool::Pool;
 use protocol::{Hello, VERSION};
 
@@ -115,7 +113,7 @@ impl Process {
     ///
     /// # Errors
     /// When it does not start, or does not serve the study.
-    pub fn adapter(&self, outputs: &[usize]) -> Result<Adapter, ProcessError> {
+    pub fn adapter(&self, outputs: &[usize]) -> Result<ModelInfo, ProcessError> {
         self.with_pool(outputs, |pool| pool.prepare().cloned())
     }
 
@@ -167,7 +165,7 @@ impl AssemblyFunction for Process {
         &self.signature
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
         self.adapter(outputs).map(Some).map_err(|error| Box::new(error).into())
     }
 
