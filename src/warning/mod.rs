@@ -28,11 +28,13 @@ mod text;
 
 pub use advice::Advice;
 pub use aggregate::aggregated;
-pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind, StopCause};
+pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
 
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
+
+use crate::summary::StopReason;
 
 use text::Text;
 
@@ -524,7 +526,9 @@ warnings! {
     /// The run was stopped before its end.
     Stopped = "stopped" by run::stopped {
         /// What stopped it.
-        cause: StopCause,
+        cause: StopReason,
+        /// The time limit in seconds, where that stopped it and is known.
+        limit_s: Option<f64>,
         /// How much was done until then.
         done: u64,
         /// How much there was to do, where that is known.

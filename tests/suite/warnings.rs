@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, StopCause, Warning, aggregated};
-use sensitol::{Method, Study, analyze};
+use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, Warning, aggregated};
+use sensitol::{Method, StopReason, Study, analyze};
 
 fn text(text: &str) -> String {
     text.to_owned()
@@ -30,7 +30,10 @@ fn every() -> Vec<Warning> {
         failure: failure.map(text),
         bounds,
     };
-    let stopped = |cause, done, planned| Warning::Stopped { cause, done, planned, counted: Counted::Points };
+    let stopped = |cause, limit_s, done, planned| {
+        let counted = Counted::Points;
+        Warning::Stopped { cause, limit_s, done, planned, counted }
+    };
     let resolved = |figure, error, budget| Warning::UnderResolved {
         characteristic: characteristic(),
         figure,
@@ -216,9 +219,10 @@ fn every() -> Vec<Warning> {
         },
         Warning::NothingToWrite,
         Warning::NotWritten { reason: text("`a` has its tolerance in a list") },
-        stopped(StopCause::TimeLimit { limit_s: 2.6 }, 11, None),
-        stopped(StopCause::TimeLimit { limit_s: 1.0 }, 1, Some(7)),
-        stopped(StopCause::Interrupted, 0, None),
+        stopped(StopReason::TimeLimit, Some(2.6), 11, None),
+        stopped(StopReason::TimeLimit, Some(1.0), 1, Some(7)),
+        stopped(StopReason::TimeLimit, None, 3, None),
+        stopped(StopReason::Interrupted, None, 0, None),
         Warning::Long { expected_s: 7200.0 },
         Warning::MissingPoints { count: 1, written: None },
         Warning::MissingPoints { count: 12, written: Some(text("next.csv")) },
@@ -294,13 +298,14 @@ fn the_fields_are_data() {
     let data = serde_json::json!({ "characteristic": "gap", "law": 1e-3, "surface": 3e-3, "points": 65_536 });
     assert_eq!(serde_json::Value::Object(tails.data()), data);
     let stopped = Warning::Stopped {
-        cause: StopCause::TimeLimit { limit_s: 2.5 },
+        cause: StopReason::TimeLimit,
+        limit_s: Some(2.5),
         done: 11,
         planned: None,
         counted: Counted::Evaluations,
     };
     let data = serde_json::json!({
-        "cause": { "kind": "time-limit", "limit_s": 2.5 }, "done": 11, "planned": null, "counted": "evaluations"
+        "cause": "time-limit", "limit_s": 2.5, "done": 11, "planned": null, "counted": "evaluations"
     });
     assert_eq!(serde_json::Value::Object(stopped.data()), data);
     assert_eq!(serde_json::to_value(Advice::SmallerStep { dimension: None }).unwrap()["action"], "smaller-step");
