@@ -30,9 +30,8 @@ pub use advice::Advice;
 pub use aggregate::aggregated;
 pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
 
-use serde::ser::SerializeStruct;
+use serde::ser::{SerializeMap, SerializeStruct};
 use serde::{Serialize, Serializer};
-use serde_json::{Map, Value};
 
 use crate::summary::StopReason;
 
@@ -585,7 +584,14 @@ impl Serialize for Warning {
     }
 }
 
-/// As `data` has it.
-fn value(of: &impl Serialize) -> Value {
-    serde_json::to_value(of).expect("the fields of warnings are plain data")
+/// The fields of a warning by name; it serialises as a map.
+#[derive(Debug, Clone, Copy)]
+pub struct WarningData<'a>(&'a Warning);
+
+impl Serialize for WarningData<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        self.0.fields(&mut map)?;
+        map.end()
+    }
 }

@@ -3,13 +3,13 @@
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use super::Settings;
 use super::account::EvaluatorAccount;
 use super::batch::Batch;
 use super::child::{Child, Event, What};
 use super::error::{ProcessError, ProcessFault, Quoted, StderrTail};
 use super::protocol::{Hello, Line, VERSION, request};
 use super::sentinel::{Reference, SENTINEL, interval, values};
+use super::settings::Settings;
 use super::suspicion::Answers;
 use super::worker::{Sent, Worker};
 use crate::assembly::{ModelInfo, Points, Responses, Run};
