@@ -4,12 +4,13 @@ mod history;
 
 pub(crate) use history::history;
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::assembly::{Ask, NonRepeatable, Points, Responses, Run};
 use crate::plan::{Known, Plan, Stage};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
 
 /// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
 pub(crate) const BATCH: usize = 1 << 23;

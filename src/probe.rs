@@ -5,11 +5,12 @@
 //! Source of the noise level: Moré and Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), algorithm
 //! ECnoise: the standard deviation of differences of order k of values at equal distances, where it no longer depends on k.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::assembly::{Ask, EvaluationError, ModelInfo, Points, Responses, Run};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
+use crate::time::Instant;
 
 /// Points in the two passes that must agree.
 const SCATTERED: usize = 8;

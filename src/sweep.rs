@@ -6,7 +6,6 @@
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 use crate::analysis::{Analysis, analyze_within};
 use crate::assembly::{
@@ -19,6 +18,7 @@ use crate::method::{MethodError, Options};
 use crate::names::nearest;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::warning::Warning;
 
 /// A problem along one of its dimensions.

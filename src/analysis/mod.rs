@@ -24,13 +24,12 @@ pub use surface::{Fit, NoFit, Surface};
 pub use tails::Tails;
 pub use verified::{Verification, VerificationKind};
 
-use std::time::Instant;
-
 use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, search};
 use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
 use crate::warning::Warning;
 
 /// What an analysis found out.

@@ -2,12 +2,12 @@
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
-use std::time::Instant;
 
 use crate::assembly::{Ask, EvaluationError, NonRepeatable, Points, Responses, Run};
 use crate::evaluation::BATCH;
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
 
 /// Every point known so far, with what asking came to.
 pub(super) struct Answers<'a> {

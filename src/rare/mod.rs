@@ -24,8 +24,6 @@ mod target;
 mod warnings;
 mod within;
 
-use std::time::Instant;
-
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::characteristic::Characteristic;
 use crate::evaluation::history;
@@ -34,6 +32,7 @@ use crate::problem::Problem;
 use crate::sampling::{Estimate, SamplingError};
 use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::warning::Warning;
 use model::Model;
 use place::{Place, places};

@@ -1,10 +1,11 @@
 //! The model, asked at points of normal variables, and what was spent on it.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::space::{Columns, Space};
 use crate::assembly::{Ask, EvaluationError, NonRepeatable, Points, Responses, Run};
 use crate::problem::Problem;
+use crate::time::Instant;
 
 /// Points that are evaluated between two looks at the clock.
 const BATCH: usize = 1 << 14;

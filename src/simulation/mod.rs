@@ -8,7 +8,7 @@ mod tally;
 
 pub use characteristic::{Histogram, QUANTILES, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rayon::prelude::*;
 
@@ -17,6 +17,7 @@ use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::warning::{Advice, Warning};
 use control::Control;
 pub(crate) use surrogates::{Surrogates, chosen};
