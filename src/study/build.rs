@@ -45,7 +45,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     let program = matches!(evaluated, Some(ModelOf::Program(_)));
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     names(file, model)?;
-    let mut data = Data::of(&source.folder);
+    let mut data = Data::of(&source.place);
     let dimensions = dimensions(file, model, &mut data)?;
     let formulas = formulas(file, source)?;
     for (what, empty) in [("dimension", dimensions.is_empty()), ("characteristic", file.characteristics.0.is_empty())] {
@@ -70,7 +70,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     let requirements = requirements(file, &problem)?;
     let problem = requiring(problem, &requirements)?;
     let mut files = data.files();
-    files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), &source.folder)));
+    files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), source.place.path())));
     Ok(Built { problem, options, costs, requirements, warnings, data: data.bytes(), files })
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::data::DataFault;
-use super::file::CORRELATIONS;
+use super::words::CORRELATIONS;
 use crate::allocation::{CostError, RequirementError};
 use crate::assembly::NoColumn;
 use crate::assembly::formula::FormulaFault;
@@ -22,6 +22,7 @@ use crate::warning::Advice;
 /// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}{}{}", self.place(), self.fault, self.help().map(|help| format!(" ({help})")).unwrap_or_default())]
+#[non_exhaustive]
 pub struct StudyError {
     /// The file's name as it was given.
     pub file: String,

@@ -51,6 +51,7 @@ mod stack;
 mod studies;
 mod support;
 mod sweep;
+mod texts;
 mod tolerances;
 mod trust;
 mod type_names;
