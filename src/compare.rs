@@ -46,7 +46,7 @@ const SAMPLES: [u64; 4] = [100, 1000, 10_000, 100_000];
 /// Points of the quasi-random ones: 16 replicates of a power of two.
 const QUASI: [u64; 3] = [256, 4096, 65_536];
 /// An error is told from the reference's own when it is larger than so many of its standard errors.
-pub const RESOLVED: f64 = 2.0;
+pub(crate) const RESOLVED: f64 = 2.0;
 
 /// A method as it was run: a derivative method, or so many points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,6 +72,7 @@ impl Contender {
 
 /// What a method says of one characteristic. What is unknown is None.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Figures {
     /// First moment.
     pub mean: Option<f64>,
@@ -87,6 +88,7 @@ pub struct Figures {
 
 /// How far a method is off the reference: the mean in sigmas, sigma relative, the others as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Errors {
     /// How far.
     pub off: Figures,
@@ -114,6 +116,7 @@ impl Errors {
 
 /// One method, as it was run.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Ran {
     /// Which.
     pub contender: Contender,
@@ -137,6 +140,7 @@ pub struct Ran {
 
 /// One method that was not run.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NotRun {
     /// Which.
     pub contender: Contender,
@@ -186,6 +190,7 @@ impl fmt::Display for NotRunReason {
 
 /// What a comparison found out.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Comparison {
     /// What all are measured by.
     pub reference: Simulation,

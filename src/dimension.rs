@@ -32,6 +32,7 @@ pub struct Dimension {
 /// Why a dimension cannot be.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("dimension `{name}`: {fault}")]
+#[non_exhaustive]
 pub struct DimensionError {
     /// The dimension's name.
     pub name: String,

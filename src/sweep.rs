@@ -23,6 +23,7 @@ use crate::warning::Warning;
 
 /// A problem along one of its dimensions.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Sweep {
     /// The place of the dimension among the problem's.
     pub dimension: usize,

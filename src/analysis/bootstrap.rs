@@ -59,6 +59,7 @@ type Figures = [f64; FIGURES];
 /// Of skewness and kurtosis the intervals are too narrow by far in samples of this size: a sample seldom has the rare values
 /// that decide them.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SamplingInterval {
     /// Of the mean.
     pub mean: Option<[f64; 2]>,

@@ -19,6 +19,7 @@ use crate::verdict::{self, Judged, Verdict};
 
 /// Moments, sensitivities and contributions of one characteristic. What is unknown is None.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CharacteristicAnalysis {
     /// The characteristic, with its limits.
     pub characteristic: Characteristic,
@@ -80,6 +81,7 @@ pub struct CharacteristicAnalysis {
 
 /// What one dimension does to a characteristic.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Sensitivity {
     /// The dimension.
     pub dimension: String,
@@ -105,6 +107,7 @@ pub struct Sensitivity {
 
 /// What two dimensions do together.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Interaction {
     /// The two dimensions.
     pub dimensions: [String; 2],

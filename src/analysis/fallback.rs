@@ -25,6 +25,7 @@ const MORE: u64 = 4;
 
 /// Points of the model in place of a surrogate that was not trusted.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SampledModel {
     /// Points.
     pub samples: u64,

@@ -34,6 +34,7 @@ use crate::warning::Warning;
 
 /// What an analysis found out.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Analysis {
     /// The method that was run: for `auto`, what it stands for.
     pub method: Method,

@@ -31,6 +31,7 @@ const STRAIGHT: f64 = 1e-12;
 /// What law and surface reject.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Tails {
     /// The share beyond the limits by the law of four moments.
     pub law: f64,

@@ -18,6 +18,7 @@ pub enum VerificationKind {
 
 /// What the model itself says of a characteristic.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Verification {
     /// How.
     pub kind: VerificationKind,

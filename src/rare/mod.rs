@@ -61,6 +61,7 @@ impl Default for RareOptions {
 
 /// What was found out about rare events.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RareEvents {
     /// The method of the surrogate.
     pub method: Method,
@@ -83,6 +84,7 @@ pub struct RareEvents {
 
 /// What is known of one characteristic.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RareCharacteristic {
     /// The characteristic, with its limits.
     pub characteristic: Characteristic,
@@ -104,6 +106,7 @@ pub struct RareCharacteristic {
 
 /// What is known of what lies beyond one limit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Beyond {
     /// The limit.
     pub limit: f64,
@@ -128,6 +131,7 @@ pub struct Beyond {
 
 /// The most likely assembly at a limit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct DesignPoint {
     /// How far it is from the middle, in standard deviations of independent normal variables.
     pub distance: f64,

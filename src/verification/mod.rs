@@ -44,6 +44,7 @@ pub struct Verified {
 
 /// What sampling the model says of one characteristic.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SampledFigures {
     /// Points evaluated.
     pub points: usize,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
-use sensitol::plan::Stencil;
+use sensitol::method::Stencil;
 use sensitol::{Method, Options, Study, analyze};
 
 use super::figures::says;

@@ -5,6 +5,7 @@ use std::ops::Range;
 /// A formula that cannot be read, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}")]
+#[non_exhaustive]
 pub struct FormulaError {
     /// Byte range in the formula's text.
     pub span: Range<usize>,
@@ -145,6 +146,7 @@ impl FormulaFault {
 /// A formula that has no value at one point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("`{}` in formula `{name}`: {reason}", &.text[.span.clone()])]
+#[non_exhaustive]
 pub struct FormulaFailure {
     /// The name of the formula or characteristic.
     pub name: String,
