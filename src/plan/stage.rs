@@ -43,6 +43,7 @@ pub enum Purpose {
 
 impl Purpose {
     /// In words.
+    #[cfg(feature = "cli")]
     pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Centre => "all dimensions at their means",
