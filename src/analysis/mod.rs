@@ -3,6 +3,7 @@
 mod account;
 mod bootstrap;
 mod characteristic;
+mod counted;
 mod errors;
 mod fallback;
 mod interval;
@@ -10,19 +11,21 @@ mod linear;
 mod shapes;
 mod shares;
 mod surface;
-mod tails;
+mod surface_law;
 mod trust;
 mod verification;
 mod verified;
 mod warnings;
+mod yield_source;
 
 pub use account::Account;
 pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
 pub use fallback::SampledModel;
 pub use surface::{Fit, NoFit, Surface};
-pub use tails::Tails;
+pub use surface_law::{QUANTILES, SurfaceShares};
 pub use verified::{Verification, VerificationKind};
+pub use yield_source::YieldSource;
 
 use std::time::Instant;
 
@@ -102,13 +105,13 @@ pub(crate) fn analyze_keeping(
         true => fallback::Spent::default(),
         false => fallback::fall_back(problem, &outcome, left, &mut characteristics, run),
     };
-    tails::look(problem, &outcome, &mut characteristics);
     outcome.evaluated.doubts.extend(fallback.doubts);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
     let left = left.map(|left| left.saturating_sub(fallback.run.evaluations as usize));
     let verified = verification::verify(problem, &outcome, options, left, &mut characteristics, run);
+    yield_source::settle(problem, &outcome, &mut characteristics);
     let spent = spent(&outcome, options).and(&fallback.run).and(&verified);
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());

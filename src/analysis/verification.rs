@@ -97,9 +97,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
         sources: vec![ErrorSource::Proven { degree }],
     };
     let yield_ = of_yield(&estimate, &moments, one.characteristic.limits());
-    // What the law of four moments is off the surface was seen before: it is all that is left.
-    let law = one.tails.map(|tails| tails.off());
-    one.error_estimate = Some(ErrorEstimate { yield_: yield_.map(|error| error + law.unwrap_or(0.0)), ..estimate });
+    one.error_estimate = Some(ErrorEstimate { yield_, ..estimate });
     one.verification = Some(Verification {
         kind: VerificationKind::Exact { degree },
         points: 0,
@@ -108,6 +106,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
         figures: [None; 4],
         yield_: None,
         beyond: [None; 2],
+        difference: None,
         switches: Some(Vec::new()),
         unseen: None,
         shares: None,
@@ -125,7 +124,9 @@ fn sample(
     seed: u64,
 ) {
     let mut core = crate::verification::CORE;
-    let mut found = verify_characteristic(problem, c, seed, core);
+    let surrogate = outcome.fitted[c].surrogate.as_ref();
+    let beside = surrogate.map(|surrogate| (outcome.plan.varying(), surrogate));
+    let mut found = verify_characteristic(problem, c, seed, core, beside);
     let climbed = outcome.climbed.as_ref();
     let wanted = climbed.map(|climbed| climbed.accuracy);
     while let Some(wanted) = wanted
@@ -133,9 +134,8 @@ fn sample(
         && found.sigma.is_some_and(|sigma| sigma.error > PART * wanted * sigma.value)
     {
         core *= MORE;
-        found = verify_characteristic(problem, c, seed, core);
+        found = verify_characteristic(problem, c, seed, core, beside);
     }
-    let surrogate = outcome.fitted[c].surrogate.as_ref();
     let left = surrogate.and_then(|surrogate| unexplained(problem, c, outcome.plan.varying(), surrogate, seed));
     let shares = left.filter(|&left| left > UNTRUSTED).and_then(|_| variance_shares(problem, c, seed));
     let replaced = options.method == Method::Auto && replace(one, &found);
@@ -158,6 +158,7 @@ fn sample(
         figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
         yield_: found.yield_,
         beyond: found.beyond,
+        difference: found.difference,
         switches: found.switches.filter(|found| {
             !found.is_empty() || problem.function().switches(problem.outputs()[c]).is_some_and(|of| of.complete)
         }),
@@ -278,6 +279,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         figures: [None; 4],
         yield_: found.yield_,
         beyond: found.beyond,
+        difference: None,
         switches: None,
         unseen: Some(checked.unseen()),
         shares: None,
