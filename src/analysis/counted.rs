@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::surface_law::SurfaceShares;
-use crate::law::{Branch, LawFigure};
+use crate::law::LawFigure;
 use crate::method::{Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, SOBOL_DIMENSIONS, Sampler};
@@ -17,8 +16,8 @@ const FEWEST: usize = 1 << 13;
 /// Rule of three: of a share that no point shows, 3/n is the 95 % bound.
 const UNSEEN: f64 = 3.0;
 
-/// Of one characteristic; None where its inputs cannot be drawn, or a part of its surface is unknown.
-pub(super) fn counted(problem: &Problem, outcome: &Outcome, c: usize) -> Option<SurfaceShares> {
+/// Below and above the limits of one characteristic; None where its inputs cannot be drawn, or a part of its surface is unknown.
+pub(super) fn counted(problem: &Problem, outcome: &Outcome, c: usize) -> Option<[Option<LawFigure>; 2]> {
     let surrogate = outcome.fitted[c].surrogate.as_ref()?;
     let varying = outcome.plan.varying();
     let sampler = if varying.len() <= SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
@@ -40,10 +39,5 @@ pub(super) fn counted(problem: &Problem, outcome: &Outcome, c: usize) -> Option<
         let value = found.iter().map(|one| one[side]).sum::<usize>() as f64 / n;
         LawFigure { value, error: (value * (1.0 - value) / n).sqrt().max(UNSEEN / n), proven: false }
     };
-    Some(SurfaceShares {
-        branch: Branch::Sampled,
-        below: limits.lower().map(|_| share(0)),
-        above: limits.upper().map(|_| share(1)),
-        quantiles: None,
-    })
+    Some([limits.lower().map(|_| share(0)), limits.upper().map(|_| share(1))])
 }

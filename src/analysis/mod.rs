@@ -8,6 +8,7 @@ mod errors;
 mod fallback;
 mod interval;
 mod linear;
+mod settle;
 mod shapes;
 mod shares;
 mod surface;
@@ -24,6 +25,7 @@ pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivi
 pub use fallback::SampledModel;
 pub use surface::{Fit, NoFit, Surface};
 pub use surface_law::{QUANTILES, SurfaceShares};
+pub(crate) use surface_law::{law_over, surface_law};
 pub use verified::{Verification, VerificationKind};
 pub use yield_source::YieldSource;
 
@@ -34,6 +36,7 @@ use crate::extremes::{SearchedExtremes, search};
 use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::verification::Verified;
 use crate::warning::Warning;
 
 /// What an analysis found out.
@@ -47,6 +50,9 @@ pub struct Analysis {
     pub run: RunSummary,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<CharacteristicAnalysis>,
+    /// The share of assemblies that keep the limits of all characteristics at once, and its error; None with fewer than two that have
+    /// limits, and where it is not known.
+    pub joint: Option<Verified>,
     /// What `auto` found, and what its points went to; None for any other method.
     pub account: Option<Account>,
     /// What the moments rest on.
@@ -111,7 +117,7 @@ pub(crate) fn analyze_keeping(
     }
     let left = left.map(|left| left.saturating_sub(fallback.run.evaluations as usize));
     let verified = verification::verify(problem, &outcome, options, left, &mut characteristics, run);
-    yield_source::settle(problem, &outcome, &mut characteristics);
+    let joint = settle::settle(problem, &outcome, &mut characteristics);
     let spent = spent(&outcome, options).and(&fallback.run).and(&verified);
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
@@ -131,6 +137,7 @@ pub(crate) fn analyze_keeping(
         basis: outcome.basis,
         surface: Surface::of(&outcome, &characteristics),
         characteristics,
+        joint,
         warnings,
     };
     Ok((analysis, outcome))

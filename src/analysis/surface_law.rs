@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::CharacteristicAnalysis;
 use super::counted::counted;
 use crate::capability::{Law, TAIL};
 use crate::correlation::Correlation;
@@ -28,8 +27,6 @@ const OUTER: [usize; 3] = [0, 3, 6];
 
 /// Variance that a surface leaves out, by its own: below this part it moves no probability by more than 1e-10.
 const IDLE: f64 = 1e-10;
-/// Of the variance: a surface that the model's figures have replaced still has the law of the model where it leaves no more out.
-const TRUSTED: f64 = 0.01;
 /// Points of a limit, in the sampled branch, and of quantiles, which are printed to a hundredth of sigma;
 const POINTS: usize = 1 << 13;
 const FEW: usize = 1 << 10;
@@ -55,38 +52,45 @@ pub struct SurfaceShares {
 }
 
 impl SurfaceShares {
-    /// None where the moments do not follow from a surface, or nothing but moments is known of an input.
-    pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Option<Self> {
+    /// None where the moments do not follow from a surface, or nothing but moments is known of an input. Quantiles are sought from
+    /// those of `fit`. With the law itself, where it answers.
+    pub(super) fn of(
+        problem: &Problem,
+        outcome: &Outcome,
+        c: usize,
+        fit: Option<&Law>,
+    ) -> Option<(Self, Option<SurfaceLaw>)> {
         let fitted = &outcome.fitted[c];
-        let replaced = one.verification.as_ref().is_some_and(|of| of.replaced && of.left.is_none_or(|left| left > TRUSTED));
-        if fitted.integrated.is_some() || one.model_sampled.is_some() || replaced {
+        if fitted.integrated.is_some() {
             return None;
         }
-        let own = fitted.surrogate.as_ref()?;
-        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
-        let inputs: Vec<Arc<dyn Distribution>> =
-            outcome.plan.varying().iter().map(|&d| problem.dimensions()[d].law().cloned()).collect::<Option<_>>()?;
-        let (surrogate, inputs) = with(own, inputs, unexplained);
+        let (surrogate, inputs) = surface(problem, outcome, c)?;
         let correlation = outcome.plan.inputs().correlation();
-        let terms = surrogate.parts.len() + surrogate.interactions.pairs().len();
-        let points = (POINTS * TERMS / terms.max(TERMS)).max(FEWEST);
+        let points = points(&surrogate);
         let whole = match law(&surrogate, &inputs, correlation, points) {
             Ok(law) => law,
-            Err(LawError::NoVariance | LawError::NoEigenvalues) => return counted(problem, outcome, c),
+            Err(LawError::NoVariance | LawError::NoEigenvalues) => {
+                return Some((Self::counted(problem, outcome, c)?, None));
+            }
             Err(_) => return None,
         };
-        let limits = one.characteristic.limits();
+        let limits = problem.characteristics()[c].limits();
         let (below, above) = (limits.lower().map(|y| whole.below(y)), limits.upper().map(|y| whole.above(y)));
         let known = |figure: &LawFigure| figure.value.is_finite() && figure.error.is_finite();
         if ![below, above].iter().flatten().all(known) {
-            return counted(problem, outcome, c);
+            return Some((Self::counted(problem, outcome, c)?, None));
         }
         let quick = match whole.branch() {
             Branch::Sampled => law(&surrogate, &inputs, correlation, points.min(FEW)).ok(),
             _ => None,
         };
-        let quantiles = quantiles(quick.as_ref().unwrap_or(&whole), one.law.as_ref().and_then(|law| law.as_ref().ok()));
-        Some(Self { branch: whole.branch(), below, above, quantiles })
+        let quantiles = quantiles(quick.as_ref().unwrap_or(&whole), fit);
+        Some((Self { branch: whole.branch(), below, above, quantiles }, Some(whole)))
+    }
+
+    fn counted(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Self> {
+        let [below, above] = counted(problem, outcome, c)?;
+        Some(Self { branch: Branch::Sampled, below, above, quantiles: None })
     }
 
     /// The numerical error of the share within the limits.
@@ -94,16 +98,49 @@ impl SurfaceShares {
         [self.below, self.above].iter().flatten().map(|figure| figure.error).fold(0.0, f64::hypot)
     }
 
+    /// The share beyond the limits; None without any.
+    pub fn rejected(&self) -> Option<f64> {
+        let beyond = [self.below, self.above];
+        beyond.iter().any(Option::is_some).then(|| beyond.iter().flatten().map(|figure| figure.value).sum::<f64>())
+    }
+
     /// The share within the limits; None without any.
     pub fn yield_(&self) -> Option<f64> {
-        let beyond = [self.below, self.above];
-        beyond.iter().any(Option::is_some).then(|| 1.0 - beyond.iter().flatten().map(|figure| figure.value).sum::<f64>())
+        self.rejected().map(|rejected| 1.0 - rejected)
     }
 
     /// The lower, the middle and the upper quantile by which a process is judged.
     pub(super) fn capability_quantiles(&self) -> Option<[f64; 3]> {
         self.quantiles.map(|all| OUTER.map(|index| all[index].value))
     }
+}
+
+/// The law of a characteristic's surface; None where there is no surface, or nothing but moments is known of an input.
+pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
+    let (surrogate, inputs) = surface(problem, outcome, c)?;
+    Some(law(&surrogate, &inputs, outcome.plan.inputs().correlation(), points(&surrogate)))
+}
+
+/// The law of a surface over these inputs, beside a variance that it leaves out, with as many points as reports take.
+pub(crate) fn law_over(
+    surrogate: &Surrogate,
+    inputs: Vec<Arc<dyn Distribution>>,
+    correlation: Option<&Correlation>,
+    unexplained: Option<f64>,
+) -> Result<SurfaceLaw, LawError> {
+    let (surrogate, inputs) = with(surrogate, inputs, unexplained);
+    law(&surrogate, &inputs, correlation, points(&surrogate))
+}
+
+fn surface(problem: &Problem, outcome: &Outcome, c: usize) -> Option<(Surrogate, Vec<Arc<dyn Distribution>>)> {
+    let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+    let inputs = outcome.plan.varying().iter().map(|&d| problem.dimensions()[d].law().cloned());
+    Some(with(outcome.fitted[c].surrogate.as_ref()?, inputs.collect::<Option<_>>()?, unexplained))
+}
+
+fn points(surrogate: &Surrogate) -> usize {
+    let terms = surrogate.parts.len() + surrogate.interactions.pairs().len();
+    (POINTS * TERMS / terms.max(TERMS)).max(FEWEST)
 }
 
 /// The surface beside what it leaves out, as a normal input of its own.

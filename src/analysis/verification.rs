@@ -21,6 +21,8 @@ use crate::warning::{Change, Warning};
 
 /// A sample that leaves more open than this part of what is wanted is drawn again, four times as large,
 const PART: f64 = 0.5;
+/// or more of a share than this part of what a target lets be rejected,
+const TARGET: f64 = 0.1;
 /// up to so many points in its core.
 const MOST: usize = 1 << 19;
 const MORE: usize = 4;
@@ -129,10 +131,14 @@ fn sample(
     let mut found = verify_characteristic(problem, c, seed, core, beside);
     let climbed = outcome.climbed.as_ref();
     let wanted = climbed.map(|climbed| climbed.accuracy);
-    while let Some(wanted) = wanted
-        && core < MOST
-        && found.sigma.is_some_and(|sigma| sigma.error > PART * wanted * sigma.value)
-    {
+    // Of a target that leaves little to be rejected, the weight of one point may be all.
+    let rejected = one.characteristic.target_yield().map(|target| 1.0 - target);
+    let coarse = |found: &SampledFigures| {
+        let sigma = wanted.zip(found.sigma).is_some_and(|(wanted, sigma)| sigma.error > PART * wanted * sigma.value);
+        let error = found.difference.map(|[within, ..]| within.error).or(found.yield_.map(|share| share.error));
+        sigma || rejected.zip(error).is_some_and(|(rejected, error)| error > TARGET * rejected)
+    };
+    while core < MOST && coarse(&found) {
         core *= MORE;
         found = verify_characteristic(problem, c, seed, core, beside);
     }

@@ -71,8 +71,8 @@ pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
 pub use simulation_csv::simulation_csv;
 pub use simulation_text::simulation_text;
-pub use surface_law::SurfaceLawReport;
 pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_markdown, stack_text};
+pub use surface_law::SurfaceLawReport;
 pub use sweep::{ParameterReport, SweepReport, SweptPointReport, SweptReport};
 pub use sweep_csv::sweep_csv;
 pub use sweep_svg::sweep_svg;
@@ -121,6 +121,9 @@ pub struct Report {
     pub correlation: Vec<CorrelationReport>,
     /// What was asked.
     pub characteristics: Vec<CharacteristicReport>,
+    /// The share of assemblies that keep the limits of all characteristics at once; null with fewer than two that have limits, and
+    /// where it is not known.
+    pub joint_yield: Option<FigureReport>,
     /// Where an assumption fails.
     pub warnings: Vec<WarningReport>,
 }
@@ -437,6 +440,7 @@ impl Report {
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             correlation: correlation(problem),
             characteristics: analysis.characteristics.iter().map(CharacteristicReport::of).collect(),
+            joint_yield: analysis.joint.map(FigureReport::of),
             warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
         }
     }

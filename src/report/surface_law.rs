@@ -43,9 +43,9 @@ impl SurfaceLawReport {
             ppm_below: ppm(law.below),
             ppm_above: ppm(law.above),
             yield_error: law.yield_().map(|_| law.error()),
-            quantiles: law.quantiles.map(|all| {
-                Quantiles(NAMES.iter().zip(all).map(|(name, figure)| (*name, figure.value)).collect())
-            }),
+            quantiles: law
+                .quantiles
+                .map(|all| Quantiles(NAMES.iter().zip(all).map(|(name, figure)| (*name, figure.value)).collect())),
         }
     }
 }

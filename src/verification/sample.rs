@@ -14,8 +14,8 @@
 
 use rayon::prelude::*;
 
-use super::figures::{MOMENTS, effective, jackknife, moments, standard, student, totals};
 use super::Verified;
+use super::figures::{MOMENTS, effective, jackknife, moments, standard, student, totals};
 use super::model::Model;
 use super::sides::{Sides, sides};
 use super::space::Columns;
@@ -67,12 +67,7 @@ pub(super) struct Figures {
 
 impl Sample {
     /// Of so many points in the core.
-    pub(super) fn draw(
-        model: &Model<'_>,
-        seed: u64,
-        core: usize,
-        beside: Option<(&[usize], &Surrogate)>,
-    ) -> Self {
+    pub(super) fn draw(model: &Model<'_>, seed: u64, core: usize, beside: Option<(&[usize], &Surrogate)>) -> Self {
         let normals = Normals::new(model.len(), seed);
         let pilot = normals.columns(1 << 33, PILOT);
         let known = model.values(&pilot);
