@@ -29,13 +29,12 @@ pub(crate) use surface_law::{law_over, surface_law};
 pub use verified::{Verification, VerificationKind};
 pub use yield_source::YieldSource;
 
-use std::time::Instant;
-
 use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, search};
 use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
 use crate::verification::Verified;
 use crate::warning::Warning;
 
@@ -102,7 +101,7 @@ pub(crate) fn analyze_keeping(
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
     let found = if options.extremes { search(problem, &outcome, left, run) } else { SearchedExtremes::default() };
-    outcome.evaluated.doubts.extend(found.spent.doubts);
+    outcome.evaluated.non_repeatable.extend(found.spent.non_repeatable);
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
     // A cheap model that is verified is sampled anyway, and by points that need no surface.
@@ -111,7 +110,7 @@ pub(crate) fn analyze_keeping(
         true => fallback::Spent::default(),
         false => fallback::fall_back(problem, &outcome, left, &mut characteristics, run),
     };
-    outcome.evaluated.doubts.extend(fallback.doubts);
+    outcome.evaluated.non_repeatable.extend(fallback.non_repeatable);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
