@@ -289,7 +289,8 @@ impl Comparer<'_> {
     /// Unless the budget allows it, nothing that is costly is evaluated more often than the `reference`.
     fn method(&mut self, method: Method, reference: Option<u64>) {
         let contender = Contender::Method(method);
-        let options = Options { budget: self.options.budget, ..Options::from(method) };
+        // Compared are the methods themselves, by a reference of their own.
+        let options = Options { budget: self.options.budget, verify: Some(0), ..Options::from(method) };
         let cost = match method.procedure().fits(self.problem, &options) {
             Ok(cost) => Some(cost.evaluations as u64),
             Err(error) => return self.refuse(contender, error.needed(), impossible(&error)),

@@ -243,6 +243,11 @@ impl Dimension {
         self.distribution.as_deref()
     }
 
+    /// The same, to be shared.
+    pub(crate) fn law(&self) -> Option<&Arc<dyn Distribution>> {
+        self.distribution.as_ref()
+    }
+
     /// Its step in sigmas, where one was given.
     pub fn step(&self) -> Option<f64> {
         self.step

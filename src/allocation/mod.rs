@@ -23,6 +23,7 @@ mod branch;
 mod choose;
 mod closed_form;
 mod constraint;
+mod correction;
 mod cost;
 mod front;
 mod joint;

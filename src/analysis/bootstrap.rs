@@ -144,7 +144,8 @@ pub(super) fn intervals(
         let analysis = &mut characteristics[target.index];
         let estimate = {
             let moments = analysis.moments.expect("a target has moments");
-            figures(&moments, analysis.capability.as_ref(), target.limits)
+            // As the resamples: by the Pearson fit.
+            figures(&moments, analysis.pearson.as_ref(), target.limits)
         };
         let interval = |figure: usize| {
             let mut values: Vec<f64> = resampled.iter().map(|of| of[t][figure]).collect();

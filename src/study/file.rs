@@ -314,8 +314,8 @@ pub(super) struct AnalysisEntry {
     /// Seed of random numbers, for what draws some.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::SEED)))]
     pub(super) seed: Option<Spanned<u64>>,
-    /// Verifies every figure by the model itself: a cheap model is sampled, a costly one evaluated at this many check points, 18 at
-    /// most; 0 for no verification.
+    /// How many check points of a costly model verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
+    /// verification.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::VERIFY)))]
     pub(super) verify: Option<u64>,
 }
