@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::failure::{Exit, Failure};
 use super::interrupt;
-use super::output::Look;
+use super::output::{self, Look};
 use crate::assembly::Table;
 use crate::assembly::process::Listener;
 use crate::report::About;
@@ -66,7 +66,7 @@ pub(super) fn externals(journal: Option<&Path>, look: Look, points: Option<Arc<T
 
 /// Who shows what an external program writes to stderr: somebody, when all details are asked for.
 pub(super) fn listener(look: Look) -> Option<Listener> {
-    look.verbose.then(|| Arc::new(|line: &str| anstream::eprintln!("model: {line}")) as Listener)
+    look.verbose.then(|| Arc::new(|line: &str| output::model_line(line)) as Listener)
 }
 
 /// Does the work with as many threads as were asked for.

@@ -34,6 +34,17 @@ pub(super) struct Key {
 }
 
 impl Tree {
+    /// Leaves out what stands at this path, with a list that it stands in; whether there was such a thing.
+    pub(super) fn remove(&mut self, path: &[String]) -> bool {
+        let Some((first, rest)) = path.split_first() else { return false };
+        let Value::Table(entries) = &mut self.value else { return false };
+        let Some(place) = entries.iter().position(|(key, _)| key.name == *first) else { return false };
+        if rest.is_empty() || !entries[place].1.remove(rest) {
+            entries.remove(place);
+        }
+        true
+    }
+
     pub(super) fn of_toml(text: &str) -> Result<Self, Fault> {
         let table = DeTable::parse(text).map_err(|error| {
             let key = error.span().map(|span| text[span].trim_matches(['"', '\'']).to_owned());
