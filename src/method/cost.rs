@@ -47,7 +47,9 @@ pub(super) fn affordable(
     }
     let fitting = fitting(problem, most);
     match (options.budget, usize::try_from(needed)) {
-        (Some(budget), Ok(needed)) if budget == most => Err(MethodError::OverBudget { method, needed, budget, fitting }),
+        (Some(budget), Ok(needed)) if budget == most => {
+            Err(MethodError::OverBudget { method, needed, budget, fitting })
+        }
         _ => Err(MethodError::TooMany { method, dimensions, needed, limit, fitting }),
     }
 }

@@ -28,8 +28,8 @@ use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
 use super::{
-    Basis, Cost, EvaluationLimit, ExactDerivatives, Fitted, Lacking, Method, MethodError, Options, Order, Outcome, Procedure, Residual,
-    cost,
+    Basis, Cost, EvaluationLimit, ExactDerivatives, Fitted, Lacking, Method, MethodError, Options, Order, Outcome,
+    Procedure, Residual, cost,
 };
 use crate::assembly::Run;
 use crate::evaluation::evaluate;

@@ -173,10 +173,11 @@ fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, 
     let of_characteristics = file.characteristics.0.iter().filter_map(|(name, entry)| {
         Some((name, entry.get_ref().formula.as_ref()?, format!("characteristics.{}.formula", name.get_ref())))
     });
-    let parsed = |(name, text, key): (&Spanned<String>, &'f Spanned<String>, String)| match Formula::parse(text.get_ref()) {
-        Ok(formula) => Ok(Named { name: name.get_ref().clone(), text, key, formula }),
-        Err(error) => Err(in_formula(source, text.span(), key, error)),
-    };
+    let parsed =
+        |(name, text, key): (&Spanned<String>, &'f Spanned<String>, String)| match Formula::parse(text.get_ref()) {
+            Ok(formula) => Ok(Named { name: name.get_ref().clone(), text, key, formula }),
+            Err(error) => Err(in_formula(source, text.span(), key, error)),
+        };
     let parsed: Vec<Named<'f>> = own.chain(of_characteristics).filter_map(|one| faults.take(parsed(one))).collect();
     faults.none().map(|()| parsed)
 }

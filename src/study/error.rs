@@ -42,8 +42,13 @@ impl StudyError {
     pub(super) fn of(faults: Vec<Fault>, file: &str, text: &Arc<str>) -> Option<Self> {
         let mut faults = faults;
         faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
-        let error = |Fault { span, key, fault }| {
-            Self { file: file.to_owned(), text: Arc::clone(text), span, key, fault, more: Vec::new() }
+        let error = |Fault { span, key, fault }| Self {
+            file: file.to_owned(),
+            text: Arc::clone(text),
+            span,
+            key,
+            fault,
+            more: Vec::new(),
         };
         let mut errors = faults.into_iter().map(error).take(super::Study::MOST_FAULTS);
         let first = errors.next()?;
