@@ -15,7 +15,7 @@ use super::model::{ModelOf, model, process};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use crate::allocation::Priced;
-use crate::assembly::formula::{Formula, is_reserved};
+use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
@@ -176,7 +176,7 @@ fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, 
     let parsed =
         |(name, text, key): (&Spanned<String>, &'f Spanned<String>, String)| match Formula::parse(text.get_ref()) {
             Ok(formula) => Ok(Named { name: name.get_ref().clone(), text, key, formula }),
-            Err(error) => Err(in_formula(source, text.span(), key, error)),
+            Err(error) => Err(in_formula(source, text.span(), key, of_several_words(file, text.get_ref(), error))),
         };
     let parsed: Vec<Named<'f>> = own.chain(of_characteristics).filter_map(|one| faults.take(parsed(one))).collect();
     faults.none().map(|()| parsed)
@@ -354,9 +354,25 @@ fn compose(
                 None => (written.formulas[index].text.span(), written.formulas[index].key.clone()),
                 Some(index) => written.implicit.as_ref().expect("the formula came from here").places[index].clone(),
             };
-            in_formula(source, text, key, error)
+            let formula = written.formulas.get(index).map_or("", |named| named.text.get_ref());
+            in_formula(source, text, key, of_several_words(file, formula, error))
         }
     })
+}
+
+/// The fault of a formula, or that a name in it which reads as several needs backquotes.
+fn of_several_words(file: &StudyFile, formula: &str, error: FormulaError) -> FormulaError {
+    let dimensions = dimension::names(&file.dimensions);
+    let others = [file.constants.names(), file.formulas.names(), file.unknowns.names()].concat();
+    let names = dimensions.iter().chain(others).map(Spanned::get_ref);
+    let meant = names.filter(|name| !is_plain(name)).find_map(|name| {
+        let mut places = formula.match_indices(name.as_str()).map(|(at, _)| at..at + name.len());
+        places.find(|place| place.contains(&error.span.start)).map(|place| (name.clone(), place))
+    });
+    match meant {
+        Some((name, span)) => FormulaError { span, fault: FormulaFault::NeedsBackquotes { name } },
+        None => error,
+    }
 }
 
 /// Where the inputs of a built-in model come from: a dimension, a constant, or its own nominal value.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::data::DataFault;
 use super::file::CORRELATIONS;
+use super::slip::{Slip, percent};
 use crate::allocation::{CostError, RequirementError};
 use crate::assembly::NoColumn;
 use crate::assembly::formula::FormulaFault;
@@ -126,6 +127,8 @@ pub enum StudyFault {
     Syntax {
         /// The parser's words.
         message: String,
+        /// What was probably meant.
+        slip: Option<Slip>,
     },
     /// A key that means nothing here.
     #[error("there is no key `{key}` here")]
@@ -338,6 +341,8 @@ impl StudyFault {
             Self::WrongType { expected, .. } if expected == CORRELATIONS => {
                 Some("write three lines for each pair:\n[[correlation]]\nbetween = [\"a\", \"b\"]\nvalue = 0.9".into())
             }
+            Self::Syntax { slip, .. } => slip.as_ref().map(ToString::to_string),
+            Self::WrongType { expected, found } => Slip::of_value(expected, found).map(|slip| slip.to_string()),
             Self::IsFolder { within: None } => Some("name the study file in it".into()),
             Self::UnknownKey { nearest: Some(name), .. } | Self::UnknownWord { nearest: Some(name), .. } => {
                 Some(meant(name))
@@ -365,6 +370,9 @@ impl StudyFault {
                 DistributionError::InfiniteMoment { .. } | DistributionError::Pearson(_),
             )) => Some("leave model out: the values themselves have all moments".into()),
             Self::Data(fault) => fault.problem.help(),
+            Self::Limits(LimitsError::ImpossibleYield { value }) if *value > 1.0 && *value <= 100.0 => {
+                Some(format!("write {} for {value} %", percent(*value)))
+            }
             Self::Limits(LimitsError::Swapped { .. }) | Self::Cost(CostError::Swapped { .. }) => {
                 Some("exchange them".into())
             }

@@ -53,6 +53,7 @@ mod options;
 mod rewrite;
 #[cfg(feature = "cli")]
 mod schema;
+mod slip;
 mod source;
 mod spanned;
 mod sweep;
@@ -66,6 +67,7 @@ pub use files::{FileRole, NamedFile};
 pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "cli")]
 pub use schema::schema;
+pub use slip::Slip;
 pub use source::Format;
 
 use std::path::{Path, PathBuf};

@@ -31,12 +31,19 @@ type Scan<T> = Result<T, ContextError>;
 const OPERATORS: [&str; 11] = ["<=", ">=", "==", "!=", "<", ">", "+", "-", "*", "/", "^"];
 
 /// What people write by habit, and what formulas write instead.
-const HABITS: [(&str, &str); 5] = [
+const HABITS: [(&str, &str); 12] = [
     ("**", "powers are written with `^`"),
     ("&&", "write `if(a, b, 0)` for a and b"),
     ("||", "write `if(a, 1, b)` for a or b"),
     ("=", "equality is written with `==`"),
     ("!", "write `if(a, 0, 1)` for not a"),
+    ("\u{2212}", "minus is the sign `-` of the keyboard"),
+    ("\u{2013}", "minus is the sign `-` of the keyboard"),
+    ("\u{d7}", "multiplication is written with `*`"),
+    ("\u{b7}", "multiplication is written with `*`"),
+    ("\u{22c5}", "multiplication is written with `*`"),
+    ("\u{f7}", "division is written with `/`"),
+    (".", "functions have no prefix: write `sin(x)`, not `math.sin(x)`"),
 ];
 
 /// All tokens with their byte ranges.
@@ -51,7 +58,8 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Range<usize>)>, FormulaEr
         }
         let habit = HABITS
             .iter()
-            .find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="));
+            .find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="))
+            .filter(|(sign, _)| *sign != "." || matches!(tokens.last(), Some((Token::Name(..), _))));
         if let Some(&(sign, instead)) = habit {
             return Err(FormulaError {
                 span: start..start + sign.len(),
