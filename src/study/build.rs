@@ -14,6 +14,7 @@ use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
+use super::values::NominalEntry;
 use crate::allocation::Priced;
 use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
 use crate::assembly::process::Greeting;
@@ -65,6 +66,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> 
     let (characteristics, outputs) = characteristics(file, model, program)?;
     let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
     let mut warnings = aggregated(std::mem::take(&mut data.warnings));
+    warnings.extend(outside_limits(file));
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
@@ -406,6 +408,17 @@ fn asked_of_program(
         }
     }
     asked
+}
+
+/// Dimensions whose nominal value lies outside the limits that they give themselves.
+fn outside_limits(file: &StudyFile) -> Option<Warning> {
+    let outside = file.dimensions.0.iter().filter_map(|(name, entry)| {
+        let (Some(nominal), Some(limits)) = (&entry.get_ref().nominal, &entry.get_ref().limits) else { return None };
+        let (NominalEntry::One(nominal), [lower, upper]) = (nominal.get_ref(), *limits.get_ref()) else { return None };
+        (*nominal < lower || *nominal > upper).then(|| name.get_ref().clone())
+    });
+    let dimensions: Vec<String> = outside.collect();
+    (!dimensions.is_empty()).then_some(Warning::NominalOutsideLimits { dimensions })
 }
 
 /// Constants, formulas and unknowns that no characteristic of the file needs.
