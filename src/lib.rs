@@ -29,14 +29,17 @@ pub mod plan;
 pub mod probe;
 pub mod problem;
 pub mod rare;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod requirement;
 pub mod sampling;
 pub mod simulation;
+#[cfg(feature = "study")]
 pub mod study;
 pub mod summary;
 pub mod surrogate;
 pub mod sweep;
+mod time;
 pub mod verdict;
 pub mod verification;
 pub mod warning;
@@ -50,6 +53,7 @@ pub use method::{DerivativeSource, Method, MethodError, Options};
 pub use moments::Moments;
 pub use problem::{Problem, ProblemError};
 pub use requirement::{Requirement, RequirementError};
+#[cfg(feature = "study")]
 pub use study::{Study, StudyError};
 pub use summary::{RunSummary, StopReason};
 pub use verdict::Verdict;
