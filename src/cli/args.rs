@@ -102,6 +102,12 @@ pub(super) enum Command {
     /// Checks an external model: protocol, names, repeatability, noise, speed, least step
     #[command(after_help = "Examples:\n  sensitol probe examples/external-python/study.toml")]
     Probe(ProbeArgs),
+    /// Answers points of a study over the adapter protocol, as an external model does
+    ///
+    /// Reads requests from stdin and writes the values of the characteristics to stdout. The study then is the model of another
+    /// study, of a UM-Bridge client or of workers on a cluster.
+    #[command(after_help = "Examples:\n  sensitol evaluate examples/stacked-blocks/study.toml")]
+    Evaluate(EvaluateArgs),
     /// What is kept of external models: show, export or forget it
     #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
     Journal(JournalArgs),
@@ -494,6 +500,12 @@ pub(super) struct ProbeArgs {
 
     #[command(flatten)]
     pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct EvaluateArgs {
+    /// The study, a .toml or .json file
+    pub(super) study: PathBuf,
 }
 
 #[derive(Debug, Args)]
