@@ -1,5 +1,17 @@
 //! Names that people type: which known one did they mean?
 
+/// Whether a character is not seen and moves what is: control characters, and those that turn the direction of text (Unicode 16,
+/// `Bidi_Control`).
+pub(crate) fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// Text on one line that cannot move the cursor, turn or break the line: hidden characters become U+FFFD.
+pub(crate) fn clean(text: &str) -> String {
+    text.chars().map(|c| if is_hidden(c) { '\u{fffd}' } else { c }).collect()
+}
+
 /// The known name most similar to `typed`, if any is similar enough to be meant.
 ///
 /// Differences in case, and between `-` and `_`, count little.

@@ -242,10 +242,15 @@ impl DifferencePlan {
 
     fn add_pairs(&self, stage: &mut Builder<'_>) {
         let nodes = self.pair_nodes(stage.known);
-        for (j, k) in self.pairs(Some(stage.known)) {
-            for &corner in self.layout.stencil.corners() {
-                if let Some(point) = self.corner(&nodes, j, k, corner) {
-                    stage.add(point, Purpose::Pair);
+        let (pairs, corners) = (self.pairs(Some(stage.known)), self.layout.stencil.corners());
+        if !stage.known.tried(&Point::Centre) {
+            stage.stage.points.reserve_exact(pairs.len() * corners.len());
+        }
+        for (j, k) in pairs {
+            for &corner in corners {
+                // No two pairs have a point in common; half a million of them need no set.
+                if let Some(point) = self.corner(&nodes, j, k, corner).filter(|point| *point != self.nominal) {
+                    stage.add_distinct(point, Purpose::Pair);
                 }
             }
         }
@@ -447,6 +452,13 @@ struct Builder<'k> {
 }
 
 impl Builder<'_> {
+    /// A point that cannot have been collected yet.
+    fn add_distinct(&mut self, point: Point, purpose: Purpose) {
+        if !self.known.tried(&point) {
+            self.stage.points.push((point, purpose));
+        }
+    }
+
     fn add(&mut self, point: Point, purpose: Purpose) {
         if !self.known.tried(&point) && self.seen.insert(point.clone()) {
             self.stage.points.push((point, purpose));

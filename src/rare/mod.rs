@@ -290,10 +290,12 @@ fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a Space<'
     for (c, characteristic) in problem.characteristics().iter().enumerate() {
         let Some(known) = surrogates.known.get(c).and_then(Option::as_ref) else { continue };
         let limits = characteristic.limits();
-        for (sign, limit) in [(-1.0, limits.lower()), (1.0, limits.upper())] {
+        for (side, limit) in [(-1.0, limits.lower()), (1.0, limits.upper())] {
             let Some(limit) = limit else { continue };
             let (surrogate, sigma) = (&known.surrogate, known.moments.sigma);
-            targets.push(Target { space, characteristic: c, sign, limit, surrogate, sigma });
+            let target = Target { space, characteristic: c, side, kept: false, limit, surrogate, sigma };
+            let middle = target.margins(&vec![vec![0.0]; space.len()]);
+            targets.push(Target { kept: middle.first().is_some_and(|&margin| margin > 0.0), ..target });
         }
     }
     targets

@@ -57,6 +57,7 @@ mod registry;
 mod rewrite;
 #[cfg(feature = "cli")]
 mod schema;
+mod slip;
 mod source;
 mod spanned;
 mod sweep;
@@ -73,11 +74,11 @@ pub use place::{Format, StudyText};
 pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "cli")]
 pub use schema::schema;
+pub use slip::Slip;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
 use crate::allocation::{AllocationTask, Priced, Requirement};
@@ -85,7 +86,7 @@ use crate::characteristic::Characteristic;
 use crate::method::Options;
 use crate::problem::Problem;
 use crate::warning::Warning;
-use error::Fault;
+use error::Faults;
 use place::Place;
 use source::Source;
 use tree::Tree;
@@ -122,6 +123,9 @@ pub struct Study {
 }
 
 impl Study {
+    /// Faults of a study that are told at once.
+    pub const MOST_FAULTS: usize = 20;
+
     /// Costs and requirements of the characteristics that its problem asks for.
     pub fn allocation_task(&self) -> AllocationTask {
         let of = |one: &Characteristic| {
@@ -136,7 +140,8 @@ impl Study {
     /// Reads a `.toml` or `.json` file.
     ///
     /// # Errors
-    /// The first fault, of the file, its syntax, its keys, its values, or of what they mean together.
+    /// What is wrong: with the file or its syntax, or else with its keys and values, or else with what they mean together. Faults
+    /// that do not follow from each other are told together.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         Self::read_with(path, Externals::default())
     }
@@ -166,6 +171,7 @@ impl Study {
             span: None,
             key: String::new(),
             fault: Box::new(fault),
+            more: Vec::new(),
         };
         if path.is_dir() {
             let within =
@@ -240,21 +246,17 @@ impl Study {
         parameter: Option<&str>,
     ) -> Result<Self, StudyError> {
         let source = Source { name: name.to_owned(), text: Arc::from(text), place, externals };
-        let failed = |Fault { span, key, fault }| StudyError {
-            file: source.name.clone(),
-            text: Arc::clone(&source.text),
-            span,
-            key,
-            fault,
+        let failed = |faults: Faults| {
+            StudyError::of(faults.0, &source.name, &source.text).expect("a study that fails has a fault")
         };
         let tree = match format {
             Format::Toml => Tree::of_toml(text),
             Format::Json => Tree::of_json(text),
         };
-        let tree = tree.map_err(failed)?;
-        let mut file = file::StudyFile::deserialize(&tree).map_err(|error| failed(error.into_fault()))?;
+        let tree = tree.map_err(|fault| failed(fault.into()))?;
+        let mut file: file::StudyFile = de::read(&tree).map_err(failed)?;
         if let Some(parameter) = parameter {
-            sweep::as_dimension(&mut file, parameter).map_err(failed)?;
+            sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
         }
         let built = build::build(&file, &source).map_err(failed)?;
         let mut hash = Sha256::new_with_prefix(text.as_bytes());

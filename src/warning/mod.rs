@@ -43,6 +43,11 @@ warnings! {
         /// The dimensions.
         dimensions: Vec<String>,
     };
+    /// Nominal values that lie outside the limits of their own dimensions.
+    NominalOutsideLimits = "nominal-outside-limits" by study::nominal_outside_limits {
+        /// The dimensions.
+        dimensions: Vec<String>,
+    };
     /// No characteristic of the study uses these constants, formulas or unknowns.
     UnusedName = "unused-name" by study::unused_name {
         /// What they are.

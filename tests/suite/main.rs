@@ -20,6 +20,7 @@ mod figures;
 mod fits;
 mod formulas;
 mod help;
+mod hostile;
 mod history;
 mod html;
 mod implicit;

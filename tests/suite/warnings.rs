@@ -46,6 +46,8 @@ fn every() -> Vec<Warning> {
     vec![
         Warning::UnusedDimension { dimensions: names(1) },
         Warning::UnusedDimension { dimensions: names(997) },
+        Warning::NominalOutsideLimits { dimensions: names(1) },
+        Warning::NominalOutsideLimits { dimensions: names(2) },
         Warning::UnusedName { kind: NameKind::Constant, names: names(1) },
         Warning::UnusedName { kind: NameKind::Formula, names: names(2) },
         Warning::UnusedName { kind: NameKind::Unknown, names: names(30) },
