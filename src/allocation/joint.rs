@@ -8,6 +8,7 @@ use crate::sampling::{Draws, Portion, Sampler, wilson};
 
 /// A share of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct JointYield {
     /// The share of assemblies within all limits.
     pub value: f64,

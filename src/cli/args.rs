@@ -211,7 +211,8 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", requires = "points", help_heading = OUTPUT)]
     pub(super) write_missing: Option<PathBuf>,
 
-    /// Verify every figure by the model itself: a sample of a cheap model, or at most N check points of an external one; 0 for none
+    /// Verify every figure by the model itself: a sample of a cheap model, or at most N check points of an external one, 12 unless said
+    /// otherwise; 0 for none
     #[arg(long, value_name = "N", value_parser = count, num_args = 0..=1, default_missing_value = "18")]
     pub(super) verify: Option<usize>,
 

@@ -10,6 +10,7 @@ use crate::surrogate::{Surrogate, Univariate};
 
 /// What a method found out.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Outcome {
     /// The method that was asked for.
     pub asked: Method,
@@ -33,6 +34,7 @@ pub struct Outcome {
 
 /// What is known of one characteristic.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Fitted {
     /// Its value at the nominal dimensions.
     pub nominal: Option<f64>,
@@ -56,6 +58,7 @@ pub struct Fitted {
 
 /// Moments that were integrated from values, and what they are made of.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Integrated {
     /// The moments.
     pub moments: Moments,
@@ -71,6 +74,7 @@ pub struct Integrated {
 
 /// What one dimension does by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct MainEffect {
     /// Share of the variance that the best straight line explains.
     pub linear: f64,
@@ -82,6 +86,7 @@ pub struct MainEffect {
 
 /// What two dimensions do together, beyond what each does by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct InteractionEffect {
     /// Share of the variance.
     pub share: f64,
@@ -110,6 +115,7 @@ pub enum Lacking {
 
 /// How far a surrogate misses the values that it was fitted to.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Residual {
     /// `sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None where there are no more points
     /// than coefficients.

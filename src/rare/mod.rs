@@ -24,10 +24,7 @@ mod target;
 mod warnings;
 mod within;
 
-use std::time::Instant;
-
-use crate::assembly::process::Doubt;
-use crate::assembly::{EvaluationError, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::characteristic::Characteristic;
 use crate::evaluation::history;
 use crate::method::{Method, MethodError, Options};
@@ -35,6 +32,7 @@ use crate::problem::Problem;
 use crate::sampling::{Estimate, SamplingError};
 use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::warning::Warning;
 use model::Model;
 use place::{Place, places};
@@ -63,6 +61,7 @@ impl Default for RareOptions {
 
 /// What was found out about rare events.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RareEvents {
     /// The method of the surrogate.
     pub method: Method,
@@ -76,7 +75,7 @@ pub struct RareEvents {
     /// Whether what was wanted was reached; None where nothing was.
     pub reached: Option<bool>,
     /// Where the model answered the nominal point otherwise than before.
-    pub doubts: Vec<Doubt>,
+    pub non_repeatable: Vec<NonRepeatable>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<RareCharacteristic>,
     /// Where the estimates rest on little, and where points have no value.
@@ -85,6 +84,7 @@ pub struct RareEvents {
 
 /// What is known of one characteristic.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RareCharacteristic {
     /// The characteristic, with its limits.
     pub characteristic: Characteristic,
@@ -106,6 +106,7 @@ pub struct RareCharacteristic {
 
 /// What is known of what lies beyond one limit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Beyond {
     /// The limit.
     pub limit: f64,
@@ -130,6 +131,7 @@ pub struct Beyond {
 
 /// The most likely assembly at a limit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct DesignPoint {
     /// How far it is from the middle, in standard deviations of independent normal variables.
     pub distance: f64,
@@ -264,7 +266,8 @@ pub fn rare_within(
     };
     let open = || reached != Some(true) && model.answered < options.samples && !targets.is_empty();
     let stopped = surrogate.stopped.or_else(|| open().then(|| run.why_open()));
-    let doubts: Vec<Doubt> = surrogate.doubts.iter().chain(&model.doubts).cloned().collect();
+    let non_repeatable: Vec<NonRepeatable> =
+        surrogate.non_repeatable.iter().chain(&model.non_repeatable).cloned().collect();
     let samples = search.points;
     let characteristics = search.characteristics(&model, stopped.is_some());
     let run = RunSummary { stopped, ..drawn.and(&spent) };
@@ -275,8 +278,8 @@ pub fn rare_within(
         samples,
         surrogate_evaluations: spent.evaluations,
         reached,
-        warnings: warnings.into_iter().chain(history(problem, &doubts)).collect(),
-        doubts,
+        warnings: warnings.into_iter().chain(history(problem, &non_repeatable)).collect(),
+        non_repeatable,
         characteristics,
     })
 }
@@ -287,10 +290,12 @@ fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a Space<'
     for (c, characteristic) in problem.characteristics().iter().enumerate() {
         let Some(known) = surrogates.known.get(c).and_then(Option::as_ref) else { continue };
         let limits = characteristic.limits();
-        for (sign, limit) in [(-1.0, limits.lower()), (1.0, limits.upper())] {
+        for (side, limit) in [(-1.0, limits.lower()), (1.0, limits.upper())] {
             let Some(limit) = limit else { continue };
             let (surrogate, sigma) = (&known.surrogate, known.moments.sigma);
-            targets.push(Target { space, characteristic: c, sign, limit, surrogate, sigma });
+            let target = Target { space, characteristic: c, side, kept: false, limit, surrogate, sigma };
+            let middle = target.margins(&vec![vec![0.0]; space.len()]);
+            targets.push(Target { kept: middle.first().is_some_and(|&margin| margin > 0.0), ..target });
         }
     }
     targets

@@ -229,7 +229,7 @@ fn interactions(report: &Report) -> String {
 fn quantiles(report: &Report) -> String {
     let mut table = Table::new("characteristic,probability,value");
     for one in &report.characteristics {
-        if let Some(DistributionReport::Pearson { quantiles, .. }) = &one.distribution {
+        if let Some(quantiles) = one.quantiles() {
             for (probability, value) in &quantiles.0 {
                 table.row([text(&one.name), text(probability), number(*value)]);
             }

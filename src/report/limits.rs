@@ -5,7 +5,8 @@ use super::number::{beside, plain, share, significant};
 use super::page::{Grid, Page, Style};
 use super::requirement::{RequirementReport, loud};
 use super::sketch::sketch;
-use super::{CharacteristicReport, NormalFitReport};
+use super::surface_law::source;
+use super::{CharacteristicReport, FitReport};
 use crate::capability::Law;
 use crate::pearson::Pearson;
 
@@ -28,7 +29,11 @@ pub(super) fn distribution(page: &mut Page, one: &CharacteristicReport) {
                 sketch(page, law, [one.lower, one.upper]);
             }
             page.line("");
-            quantile_table(page, kind, quantiles, one.sigma.unwrap_or(0.0));
+            let sigma = one.sigma.unwrap_or(0.0);
+            match one.surface_law.as_ref().and_then(|law| law.quantiles.as_ref()) {
+                Some(law) => quantile_table(page, "surface law", law, sigma),
+                None => quantile_table(page, &named(kind), quantiles, sigma),
+            }
         }
     }
     if one.lower.is_some() || one.upper.is_some() {
@@ -48,7 +53,7 @@ pub fn law_text(law: &Pearson, style: Style) -> String {
     page.line("");
     sketch(&mut page, law, [None, None]);
     page.line("");
-    quantile_table(&mut page, law.kind().name(), &Quantiles::of(law), law.sigma());
+    quantile_table(&mut page, &named(law.kind().name()), &Quantiles::of(law), law.sigma());
     page.finish()
 }
 
@@ -56,13 +61,13 @@ fn named(kind: &str) -> String {
     if kind == "normal" { kind.to_owned() } else { format!("Pearson {kind}") }
 }
 
-fn quantile_table(page: &mut Page, kind: &str, quantiles: &Quantiles, sigma: f64) {
+fn quantile_table(page: &mut Page, law: &str, quantiles: &Quantiles, sigma: f64) {
     let mut table = Grid::new([""; 8], "<>>>>>>>");
     let row = |name: String, cell: &dyn Fn(&(&'static str, f64)) -> String| {
         let mut cells = std::iter::once(name).chain(quantiles.0.iter().map(cell));
         std::array::from_fn(|_| cells.next().unwrap_or_default())
     };
-    table.row(row(named(kind), &|(p, _)| format!("{} %", significant_percent(p))));
+    table.row(row(law.to_owned(), &|(p, _)| format!("{} %", significant_percent(p))));
     table.row(row("quantiles".to_owned(), &|(_, value)| beside(*value, sigma)));
     page.print(&table);
 }
@@ -79,6 +84,7 @@ fn limits(page: &mut Page, one: &CharacteristicReport) {
         .map_or(String::new(), |(target, verdict)| format!(", target {}: {}", share(1.0 - target), loud(verdict)));
     let (below, above) = (one.ppm_below, one.ppm_above);
     page.line(&format!("  yield {}{}{target}", rejected(below, above), outside(below, above)));
+    source(one).into_iter().for_each(|line| page.line(&format!("  {line}")));
     let index = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {value:.3}"));
     let indices = [
         index("Cp", one.cp),
@@ -99,7 +105,7 @@ fn limits(page: &mut Page, one: &CharacteristicReport) {
 }
 
 /// Whether the normal fit rejects visibly more or fewer, on either side.
-fn differs(one: &CharacteristicReport, normal: &NormalFitReport) -> bool {
+fn differs(one: &CharacteristicReport, normal: &FitReport) -> bool {
     let far = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() > DIFFERENT * a.max(b),
         (None, None) => false,

@@ -34,6 +34,7 @@ mod simulation_csv;
 mod simulation_text;
 mod sketch;
 mod stack;
+mod surface_law;
 mod svg;
 mod sweep;
 mod sweep_csv;
@@ -71,6 +72,7 @@ pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, Simulati
 pub use simulation_csv::simulation_csv;
 pub use simulation_text::simulation_text;
 pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_markdown, stack_text};
+pub use surface_law::SurfaceLawReport;
 pub use sweep::{ParameterReport, SweepReport, SweptPointReport, SweptReport};
 pub use sweep_csv::sweep_csv;
 pub use sweep_svg::sweep_svg;
@@ -80,7 +82,7 @@ pub use verification::{FigureReport, SwitchReport, VarianceShareReport, Verifica
 
 use serde::Serialize;
 
-use crate::analysis::{Account, Analysis, CharacteristicAnalysis, Missing, Tails};
+use crate::analysis::{Account, Analysis, CharacteristicAnalysis, Missing, YieldSource};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
 use crate::extremes::{Extreme, Extremes};
@@ -119,6 +121,9 @@ pub struct Report {
     pub correlation: Vec<CorrelationReport>,
     /// What was asked.
     pub characteristics: Vec<CharacteristicReport>,
+    /// The share of assemblies that keep the limits of all characteristics at once; null with fewer than two that have limits, and
+    /// where it is not known.
+    pub joint_yield: Option<FigureReport>,
     /// Where an assumption fails.
     pub warnings: Vec<WarningReport>,
 }
@@ -215,8 +220,8 @@ pub struct CharacteristicReport {
     pub verification: Option<VerificationReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
-    /// What law and surface reject; null without limits, or where the surface is plainly normal.
-    pub tails: Option<Tails>,
+    /// What the law of its surface says; null where its moments follow from no surface.
+    pub surface_law: Option<SurfaceLawReport>,
     /// Whether planned points of it were not evaluated because the run was stopped.
     pub unfinished: bool,
     /// Evaluated points at which it has no value.
@@ -262,6 +267,8 @@ pub struct CharacteristicReport {
     pub requirements: Vec<RequirementReport>,
     /// Within which the share is known that does; null where that is not known.
     pub yield_interval: Option<[f64; 2]>,
+    /// What the yield comes from: `proof`, `samples` of the model, `surface-law` or `pearson`; null without a yield.
+    pub yield_source: Option<YieldSource>,
     /// The share that does.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
@@ -279,8 +286,10 @@ pub struct CharacteristicReport {
     pub cpk_percentile: Option<f64>,
     /// Sigmas of a normal beyond which, on one side, as many lie as are rejected.
     pub sigma_level: Option<f64>,
+    /// What the Pearson distribution with the same moments would make of the limits.
+    pub pearson_fit: Option<FitReport>,
     /// What a normal distribution with the same mean and sigma would make of the limits.
-    pub normal_fit: Option<NormalFitReport>,
+    pub normal_fit: Option<FitReport>,
 }
 
 /// Intervals that no assembly leaves.
@@ -324,10 +333,10 @@ impl Serialize for PointReport {
     }
 }
 
-/// What a normal distribution with the same mean and sigma would make of the limits.
+/// What a distribution with the same moments would make of the limits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct NormalFitReport {
+pub struct FitReport {
     /// The share of assemblies within them.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
@@ -431,6 +440,7 @@ impl Report {
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             correlation: correlation(problem),
             characteristics: analysis.characteristics.iter().map(CharacteristicReport::of).collect(),
+            joint_yield: analysis.joint.map(FigureReport::of),
             warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
         }
     }
@@ -496,7 +506,7 @@ impl CharacteristicReport {
             model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
             verification: VerificationReport::of(analysis),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
-            tails: analysis.tails,
+            surface_law: analysis.surface_law.as_ref().map(SurfaceLawReport::of),
             unfinished: analysis.unfinished,
             without_value: analysis.without_value,
             constant: analysis.constant,
@@ -541,6 +551,7 @@ impl CharacteristicReport {
             verdict: analysis.verdict(),
             requirements: analysis.requirements().iter().map(RequirementReport::of).collect(),
             yield_interval: analysis.yield_interval(),
+            yield_source: analysis.yield_source,
             yield_: of(|capability| capability.yield_()),
             ppm_below: of(|capability| capability.below.map(ppm)),
             ppm_above: of(|capability| capability.above.map(ppm)),
@@ -549,12 +560,16 @@ impl CharacteristicReport {
             cp_percentile: of(|capability| capability.cp_percentile),
             cpk_percentile: of(|capability| capability.cpk_percentile),
             sigma_level: of(|capability| capability.sigma_level()),
-            normal_fit: analysis.normal.map(|normal| NormalFitReport {
-                yield_: normal.yield_(),
-                ppm_below: normal.below.map(ppm),
-                ppm_above: normal.above.map(ppm),
-            }),
+            pearson_fit: analysis.pearson.as_ref().map(FitReport::of),
+            normal_fit: analysis.normal.as_ref().map(FitReport::of),
         }
+    }
+}
+
+impl FitReport {
+    fn of(fit: &Capability) -> Self {
+        let ppm = |share: Option<f64>| share.map(|share| 1e6 * share);
+        Self { yield_: fit.yield_(), ppm_below: ppm(fit.below), ppm_above: ppm(fit.above) }
     }
 }
 
@@ -581,9 +596,17 @@ impl WarningReport {
             characteristic: warning.characteristic().map(str::to_owned),
             dimension: warning.dimension().map(str::to_owned),
             message: warning.message(),
-            data: warning.data(),
+            data: fields(warning),
             advice: warning.advice(),
             at: Vec::new(),
         }
+    }
+}
+
+/// The fields of a warning.
+fn fields(warning: &Warning) -> serde_json::Map<String, serde_json::Value> {
+    match serde_json::to_value(warning.data()) {
+        Ok(serde_json::Value::Object(fields)) => fields,
+        other => unreachable!("the fields of warnings are plain data: {other:?}"),
     }
 }

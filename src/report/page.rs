@@ -224,5 +224,5 @@ fn shortened(name: &str, most: usize) -> String {
 
 /// What came from a file cannot move the cursor or break a line.
 pub(super) fn clean(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+    crate::names::clean(text)
 }

@@ -3,7 +3,7 @@
 use super::extremes::extremes;
 use super::head;
 use super::limits::{distribution, verdict};
-use super::number::{UNKNOWN, beside, percent, plain, plural, significant, unsigned_zero};
+use super::number::{UNKNOWN, beside, percent, plain, plural, share, significant, unsigned_zero};
 use super::page::{Detail, Grid, Page, Style, clean, short};
 use super::sampling::sampling;
 use super::verification::verification;
@@ -61,6 +61,10 @@ fn verdicts(page: &mut Page, report: &Report) {
         table.row([short(&one.name), mean, reach, unit, limits, verdict(one)]);
     }
     page.print(&table);
+    if let Some(joint) = &report.joint_yield {
+        let error = significant(100.0 * joint.error, 2);
+        page.line(&format!("  all limits at once: yield {}, ± {error} %", share(1.0 - joint.value)));
+    }
 }
 
 fn one(page: &mut Page, report: &Report, one: &CharacteristicReport) {
@@ -110,7 +114,7 @@ fn figures(page: &mut Page, one: &CharacteristicReport) {
         ));
     }
     estimate(page, one);
-    verification(page, one.verification.as_ref());
+    verification(page, one);
     if let Some(sampled) = &one.surrogate_sampling {
         page.line(&format!(
             "  sampled from the surrogate, {} points: standard error of sigma {}, skewness {}, kurtosis {}",

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::CharacteristicReport;
 use super::page::Page;
 use crate::analysis::{CharacteristicAnalysis, VerificationKind};
 use crate::verification::{Crossing, Verified};
@@ -89,7 +90,7 @@ pub struct VarianceShareReport {
 }
 
 impl FigureReport {
-    fn of(figure: Verified) -> Self {
+    pub(super) fn of(figure: Verified) -> Self {
         Self { value: figure.value, error: figure.error }
     }
 }
@@ -134,9 +135,11 @@ impl VerificationReport {
     }
 }
 
-/// One line of the text report.
-pub(super) fn verification(page: &mut Page, found: Option<&VerificationReport>) {
-    if let Some(found) = found {
-        page.line(&format!("  {}", found.words));
+/// One line of the text report; nothing is to be verified of what has no moments, or depends on nothing that varies.
+pub(super) fn verification(page: &mut Page, one: &CharacteristicReport) {
+    match &one.verification {
+        Some(found) => page.line(&format!("  {}", found.words)),
+        None if one.mean.is_some() && !one.constant => page.line("  not verified by the model"),
+        None => {}
     }
 }

@@ -14,6 +14,7 @@ use crate::warning::Warning;
 
 /// Estimates for one characteristic, each with its standard error. What is unknown is None.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct SimulatedCharacteristic {
     /// The characteristic, with its limits.
     pub characteristic: Characteristic,
@@ -56,6 +57,7 @@ pub struct SimulatedCharacteristic {
 
 /// What a surrogate as control variate has done.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SurrogateControl {
     /// The method that it comes from.
     pub method: Method,
@@ -69,6 +71,7 @@ pub struct SurrogateControl {
 
 /// The share of assemblies that keep the limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct YieldEstimate {
     /// Among the points that have a value.
     pub value: f64,
@@ -80,6 +83,7 @@ pub struct YieldEstimate {
 
 /// How many values lie in which interval.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Histogram {
     /// One more than there are intervals, ascending.
     pub edges: Vec<f64>,

@@ -212,13 +212,10 @@ fn characteristic<'r>(report: &'r Report, one: &'r CharacteristicReport, stack: 
         figures: figures(one),
         limits: kept(one),
         spread: Spread::of(law, bins, [one.lower, one.upper], &places),
-        quantiles: match &one.distribution {
-            Some(super::super::DistributionReport::Pearson { quantiles, .. }) => {
-                let sigma = one.sigma.unwrap_or(0.0);
-                quantiles.0.iter().map(|&(p, value)| [p.to_owned(), beside(value, sigma)]).collect()
-            }
-            _ => Vec::new(),
-        },
+        quantiles: one.quantiles().map_or(Vec::new(), |quantiles| {
+            let sigma = one.sigma.unwrap_or(0.0);
+            quantiles.0.iter().map(|&(p, value)| [p.to_owned(), beside(value, sigma)]).collect()
+        }),
         family: match (&one.distribution, one.sigma) {
             (Some(super::super::DistributionReport::Pearson { kind: "normal", .. }), _) => "normal".to_owned(),
             (Some(super::super::DistributionReport::Pearson { kind, .. }), _) => {
