@@ -11,6 +11,7 @@ pub mod compare;
 pub mod correlation;
 pub mod dimension;
 pub mod distribution;
+pub mod document;
 mod elementary;
 pub mod error;
 pub mod evaluation;

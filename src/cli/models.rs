@@ -7,7 +7,7 @@ use super::args::ModelsArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use crate::models::{ALL, Model};
-use crate::report::number::plain;
+use crate::document::number::plain;
 
 /// What `models --json` prints of one model.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -9,7 +9,8 @@ use tempfile::TempPath;
 use super::advice;
 use super::args::OutputArgs;
 use super::failure::Failure;
-use crate::report::{Detail, Style, WarningReport};
+use crate::document::{Detail, Style};
+use crate::report::WarningReport;
 use crate::warning::Warning;
 
 /// What the user wants to see.

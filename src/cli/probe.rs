@@ -13,7 +13,7 @@ use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
 use crate::method::MethodError;
 use crate::probe::{Finding, Probe, evaluations, probe};
-use crate::report::number::{plural, significant};
+use crate::document::number::{plural, significant};
 use crate::study::{Externals, JournalPlace};
 use crate::summary::RunSummary;
 

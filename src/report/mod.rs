@@ -1,46 +1,27 @@
-//! Reports: a versioned value with serde, and its text for people.
+//! Reports: a versioned value with serde, and the document that it is for people.
 
 mod allocation;
-mod allocation_csv;
-mod allocation_svg;
-mod allocation_text;
+mod allocation_document;
+mod analysis_document;
+mod bars;
 mod compare;
-mod compare_csv;
-mod compare_svg;
-mod compare_text;
 #[cfg(test)]
 mod complete;
 mod csv;
 mod distribution;
 mod estimate;
-mod extremes;
 mod head;
 #[cfg(feature = "html")]
 pub mod html;
-mod labels;
-mod limits;
-pub(crate) mod number;
-mod page;
 mod rare;
-mod rare_csv;
-mod rare_text;
 mod remainder;
 mod requirement;
 mod sampling;
 #[cfg(feature = "cli")]
 mod schema;
 mod simulation;
-mod simulation_csv;
-mod simulation_text;
-mod sketch;
 mod stack;
-mod svg;
 mod sweep;
-mod sweep_csv;
-mod sweep_svg;
-mod sweep_text;
-mod table;
-mod text;
 mod verification;
 
 pub use allocation::{
@@ -48,34 +29,19 @@ pub use allocation::{
     ContributionReport, FrontReport, FrontRequirement, JointReport, KeptReport, PriceReport, ProofReport,
     RecentredReport, WrittenAnew,
 };
-pub use allocation_csv::{allocation_csv, allocation_csv_names};
-pub use allocation_svg::allocation_svg;
-pub use allocation_text::allocation_text;
+pub use analysis_document::law_text;
 pub use compare::{CompareReport, ComparedReport, ErrorReport, FiguresReport, MethodReport, NotRunReport};
-pub use compare_csv::compare_csv;
-pub use compare_svg::compare_svg;
-pub use compare_text::compare_text;
-pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv, stack_csv_of_studies};
+pub use csv::{CsvFile, csv_file_names, csv_files, csv_tables, stack_csv, stack_csv_of_studies};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
 pub use estimate::{ErrorEstimateReport, ModelSamplingReport};
 pub use head::Head;
-pub use limits::law_text;
-pub use page::{Detail, Style};
 pub use rare::{BeyondReport, DesignPointReport, RareCharacteristicReport, RareReport};
-pub use rare_csv::rare_csv;
-pub use rare_text::rare_text;
 pub use remainder::RemainderReport;
 pub use requirement::RequirementReport;
 pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
-pub use simulation_csv::simulation_csv;
-pub use simulation_text::simulation_text;
-pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_markdown, stack_text};
+pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_document};
 pub use sweep::{ParameterReport, SweepReport, SweptPointReport, SweptReport};
-pub use sweep_csv::sweep_csv;
-pub use sweep_svg::sweep_svg;
-pub use sweep_text::sweep_text;
-pub use text::text;
 pub use verification::{FigureReport, SwitchReport, VarianceShareReport, VerificationReport, VerifiedFiguresReport};
 
 use serde::Serialize;
@@ -83,6 +49,7 @@ use serde::Serialize;
 use crate::analysis::{Account, Analysis, CharacteristicAnalysis, Missing, Tails};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
+use crate::document::number::{UNKNOWN, band, significant};
 use crate::extremes::{Extreme, Extremes};
 use crate::method::{Basis, DerivativeSource};
 use crate::problem::Problem;
@@ -459,6 +426,15 @@ impl DimensionReport {
             distribution: dimension.distribution().map(|distribution| distribution.name()),
             mean: dimension.mean(),
             sigma: dimension.sigma(),
+        }
+    }
+
+    /// Its tolerance as drawings have it.
+    fn tolerance(&self) -> String {
+        match self.tolerance {
+            Some(ends) => band(ends),
+            None if self.sigma > 0.0 => format!("sigma {}", significant(self.sigma, 4)),
+            None => UNKNOWN.to_owned(),
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use super::page::Page;
 use crate::analysis::{CharacteristicAnalysis, VerificationKind};
 use crate::verification::{Crossing, Verified};
 
@@ -131,12 +130,5 @@ impl VerificationReport {
             replaced: of.replaced,
             words: of.words(),
         })
-    }
-}
-
-/// One line of the text report.
-pub(super) fn verification(page: &mut Page, found: Option<&VerificationReport>) {
-    if let Some(found) = found {
-        page.line(&format!("  {}", found.words));
     }
 }

@@ -1,14 +1,13 @@
-//! Drawings as numbers: what the templates put into SVG.
+//! How a value is distributed, as SVG in a page: its style sheet has the colours.
 
 use std::fmt::Write;
 
-use serde::Serialize;
-
-use super::super::number::{beside, plain, unsigned_zero};
-use crate::pearson::Pearson;
+use super::chart::{Bins, Spread};
+use super::number::{beside, plain, unsigned_zero};
+use super::svg::escaped;
 
 /// Units of the drawing; the page scales it to its own width.
-pub(super) const WIDTH: f64 = 640.0;
+const WIDTH: f64 = 640.0;
 /// Below the axis there is room for its numbers.
 const BASE: f64 = 180.0;
 const POINTS: usize = 240;
@@ -16,15 +15,15 @@ const TICKS: usize = 6;
 
 /// A horizontal scale.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale {
-    pub(super) from: f64,
-    pub(super) to: f64,
+pub(crate) struct Extent {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
     width: f64,
 }
 
-impl Scale {
+impl Extent {
     /// Over all of these with a margin; None where there is no extent.
-    pub(super) fn over(values: impl Iterator<Item = f64>, margin: f64, width: f64) -> Option<Self> {
+    pub(crate) fn over(values: impl Iterator<Item = f64>, margin: f64, width: f64) -> Option<Self> {
         let (least, most) = values
             .filter(|value| value.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
@@ -36,13 +35,13 @@ impl Scale {
         })
     }
 
-    pub(super) fn at(&self, value: f64) -> f64 {
+    pub(crate) fn at(&self, value: f64) -> f64 {
         let share = (value - self.from) / (self.to - self.from);
         (1e3 * self.width * share).round() / 1e3
     }
 
     /// Round numbers along it.
-    pub(super) fn ticks(&self) -> Vec<Tick> {
+    fn ticks(&self) -> Vec<Tick> {
         let raw = (self.to - self.from) / TICKS as f64;
         let decade = 10f64.powf(raw.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade).into_iter().find(|&step| step >= raw);
@@ -65,55 +64,14 @@ impl Scale {
 }
 
 /// A number at the axis.
-#[derive(Debug, Serialize)]
-pub(super) struct Tick {
+struct Tick {
     x: f64,
     label: String,
     /// Left out where the page is narrow.
     odd: bool,
 }
 
-/// A vertical line.
-#[derive(Debug, Serialize)]
-pub(super) struct Mark {
-    pub(super) x: f64,
-    /// `limit`, `mean` or `quantile`.
-    pub(super) kind: &'static str,
-    pub(super) label: String,
-}
-
-/// A bar of a histogram with the standard error of its height.
-#[derive(Debug, Serialize)]
-struct Bar {
-    x: f64,
-    width: f64,
-    y: f64,
-    height: f64,
-    middle: f64,
-    error: [f64; 2],
-    /// Outside the limits.
-    beyond: bool,
-}
-
-/// A sample in intervals: their edges, ascending, and the counts between them.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Bins<'b> {
-    pub(super) edges: &'b [f64],
-    pub(super) counts: &'b [u64],
-}
-
-/// How values are distributed: a density, a histogram, or one over the other.
-#[derive(Debug, Serialize)]
-pub(super) struct Spread {
-    line: Option<String>,
-    /// Areas beyond the limits.
-    beyond: Vec<String>,
-    bars: Vec<Bar>,
-    marks: Vec<Mark>,
-    ticks: Vec<Tick>,
-}
-
-impl Bins<'_> {
+impl Bins {
     fn total(&self) -> f64 {
         self.counts.iter().sum::<u64>() as f64
     }
@@ -134,30 +92,16 @@ impl Bins<'_> {
     }
 }
 
-/// Places that the law itself names.
-pub(super) fn quantiles(law: &Pearson) -> Vec<(f64, &'static str, &'static str)> {
-    vec![
-        (law.quantile(0.00135), "quantile", "0.135 % quantile"),
-        (law.quantile(0.5), "quantile", "median"),
-        (law.upper_quantile(0.00135), "quantile", "99.865 % quantile"),
-    ]
-}
-
-impl Spread {
-    /// None where there is neither law nor sample, or no extent. `places` are marked where they lie within what is drawn.
-    pub(super) fn of(
-        law: Option<&Pearson>,
-        bins: Option<Bins<'_>>,
-        limits: [Option<f64>; 2],
-        places: &[(f64, &'static str, &str)],
-    ) -> Option<Self> {
-        let bins = bins.filter(|bins| bins.counts.len() > 1 && bins.total() > 0.0);
+/// A figure; nothing where there is neither density nor sample, or no extent. Places are marked where they lie within what is drawn.
+pub(super) fn figure(of: &Spread) -> Option<String> {
+    let (law, limits) = (of.law.as_ref(), of.limits);
+    let bins = of.bins.as_ref().filter(|bins| bins.counts.len() > 1 && bins.total() > 0.0);
         let of_law = law.map(|law| [law.quantile(1e-4), law.upper_quantile(1e-4)]);
         let of_bins = bins.map(|bins| [bins.edges[0], bins.edges[bins.counts.len()]]);
         let extents = || of_law.into_iter().chain(of_bins);
         let [low, high] = extents().reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
         let near = limits.into_iter().flatten().filter(|x| x - high < high - low && low - x < high - low);
-        let scale = Scale::over([low, high].into_iter().chain(near), 0.04, WIDTH)?;
+        let scale = Extent::over([low, high].into_iter().chain(near), 0.04, WIDTH)?;
         let place = |i: usize| scale.from + (scale.to - scale.from) * i as f64 / POINTS as f64;
         let points: Vec<(f64, f64)> =
             law.map_or(Vec::new(), |law| (0..=POINTS).map(|i| (place(i), law.pdf(place(i)))).collect());
@@ -183,53 +127,45 @@ impl Spread {
                 format!("{}L{:.2} {BASE}L{:.2} {BASE}Z", path(&inside), scale.at(to), scale.at(from))
             })
         };
-        let [lower, upper] = limits;
-        let beyond = [
-            lower.and_then(|lower| area(f64::NEG_INFINITY, lower)),
-            upper.and_then(|upper| area(upper, f64::INFINITY)),
-        ];
-        let bar = |bins: Bins<'_>, i: usize| {
-            let (x, to) = (scale.at(bins.edges[i]), scale.at(bins.edges[i + 1]));
-            let (count, error) = (bins.counts[i] as f64, bins.error(bins.counts[i]));
-            let tall = height(bins.density(i, count));
-            let ends = [-1.0, 1.0].map(|side| bins.density(i, (count + side * error).max(0.0)));
-            let middle = 0.5 * (bins.edges[i] + bins.edges[i + 1]);
-            Bar {
-                x,
-                width: (to - x).max(0.1),
-                y: BASE - tall,
-                height: tall,
-                middle: 0.5 * (x + to),
-                error: ends.map(|end| BASE - height(end)),
-                beyond: lower.is_some_and(|lower| middle < lower) || upper.is_some_and(|upper| middle > upper),
-            }
-        };
-        let of_limits = [(lower, "lower limit"), (upper, "upper limit")];
-        let of_limits = of_limits.into_iter().filter_map(|(limit, name)| Some((limit?, "limit", name)));
-        let marks = places.iter().copied().chain(of_limits).filter(|mark| mark.0 >= scale.from && mark.0 <= scale.to);
-        Some(Self {
-            line: law.map(|_| path(&points)),
-            beyond: beyond.into_iter().flatten().collect(),
-            bars: bins.map_or(Vec::new(), |bins| (0..bins.counts.len()).map(|i| bar(bins, i)).collect()),
-            marks: marks
-                .map(|(x, kind, name)| {
-                    let label = format!("{name} {}", beside(x, 0.1 * (high - low)));
-                    Mark { x: scale.at(x), kind, label }
-                })
-                .collect(),
-            ticks: scale.ticks(),
-        })
+    let mut svg = format!("<figure>\n<svg class=\"density\" viewBox=\"0 0 {WIDTH} 200\" role=\"img\" aria-label=\"{}\">\n", escaped(&of.label));
+    let line = law.map(|_| path(&points));
+    if let (Some(line), None) = (&line, bins) {
+        let _ = writeln!(svg, "<path class=\"area\" d=\"{line}L{WIDTH} {BASE}L0 {BASE}Z\"/>");
     }
-}
-
-/// An interval on a scale that it shares with others, 0 to 100.
-#[derive(Debug, Serialize)]
-pub(super) struct Span {
-    pub(super) name: String,
-    pub(super) x: f64,
-    pub(super) width: f64,
-    pub(super) from: String,
-    pub(super) to: String,
-    /// Whether it lies within the limits; null where that is unknown.
-    pub(super) kept: Option<bool>,
+    let [lower, upper] = limits;
+    let beyond = [lower.and_then(|lower| area(f64::NEG_INFINITY, lower)), upper.and_then(|upper| area(upper, f64::INFINITY))];
+    for area in beyond.into_iter().flatten() {
+        let _ = writeln!(svg, "<path class=\"beyond\" d=\"{area}\"/>");
+    }
+    let outside = |x: f64| lower.is_some_and(|lower| x < lower) || upper.is_some_and(|upper| x > upper);
+    for (bins, (i, &count)) in bins.iter().flat_map(|bins| bins.counts.iter().enumerate().map(move |bar| (bins, bar))) {
+        let (x, to) = (scale.at(bins.edges[i]), scale.at(bins.edges[i + 1]));
+        let (number, error) = (count as f64, bins.error(count));
+        let tall = height(bins.density(i, number));
+        let [low, high] = [-1.0, 1.0].map(|side| BASE - height(bins.density(i, (number + side * error).max(0.0))));
+        let class = if outside(0.5 * (bins.edges[i] + bins.edges[i + 1])) { "bin out" } else { "bin" };
+        let (y, wide, middle) = (BASE - tall, (to - x).max(0.1), 0.5 * (x + to));
+        let _ = write!(svg, "<rect class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{wide}\" height=\"{tall}\"/>");
+        let _ = writeln!(svg, "<path class=\"error\" d=\"M{middle} {low}V{high}\"/>");
+    }
+    let of_limits = [(lower, "lower limit"), (upper, "upper limit")];
+    let of_limits = of_limits.into_iter().filter_map(|(limit, name)| Some((limit?, "limit", name)));
+    let marks = of.places.iter().copied().chain(of_limits).filter(|mark| mark.0 >= scale.from && mark.0 <= scale.to);
+    let mut legend = String::new();
+    for (x, kind, name) in marks {
+        let (at, label) = (scale.at(x), format!("{name} {}", beside(x, 0.1 * (high - low))));
+        let _ = writeln!(svg, "<path class=\"{kind}\" d=\"M{at} 8V{BASE}\"><title>{label}</title></path>");
+        let _ = writeln!(legend, "<li class=\"{kind}\">{label}</li>");
+    }
+    if let Some(line) = &line {
+        let _ = writeln!(svg, "<path class=\"line\" d=\"{line}\"/>");
+    }
+    let _ = writeln!(svg, "<path class=\"axis\" d=\"M0 {BASE}H{WIDTH}\"/>");
+    for Tick { x, label, odd } in scale.ticks() {
+        let class = if odd { " class=\"odd\"" } else { "" };
+        let _ = write!(svg, "<path class=\"axis\" d=\"M{x} {BASE}v4\"/>");
+        let _ = writeln!(svg, "<text x=\"{x}\" y=\"197\" text-anchor=\"middle\"{class}>{label}</text>");
+    }
+    let words = escaped(&of.words);
+    Some(format!("{svg}</svg>\n<figcaption>{words} <ul class=\"legend\">\n{legend}</ul></figcaption>\n</figure>\n"))
 }
