@@ -1,7 +1,7 @@
 //! The trade of speed for accuracy, measured: every method on one problem, against a reference that states its own error.
 
 use std::fmt;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde::Serialize;
 
@@ -12,6 +12,7 @@ use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_within};
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::verdict::Verdict;
 
 /// What may be spent.

@@ -4,13 +4,13 @@ mod history;
 
 pub(crate) use history::history;
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use crate::assembly::process::Doubt;
-use crate::assembly::{Ask, Points, Responses, Run};
+use crate::assembly::{Ask, NonRepeatable, Points, Responses, Run};
 use crate::plan::{Known, Plan, Stage};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
 
 /// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
 pub(crate) const BATCH: usize = 1 << 23;
@@ -25,7 +25,7 @@ pub struct Evaluated {
     /// Points whose answers were known from an earlier run.
     pub reused: usize,
     /// Where the model answered the nominal point otherwise than before.
-    pub doubts: Vec<Doubt>,
+    pub non_repeatable: Vec<NonRepeatable>,
     /// In how many stages.
     pub stages: usize,
     /// Points sent again.
@@ -57,7 +57,7 @@ impl Evaluated {
             known: Known::nothing(problem.characteristics().len()),
             evaluations: 0,
             reused: 0,
-            doubts: Vec::new(),
+            non_repeatable: Vec::new(),
             stages: 0,
             retried: 0,
             stopped: None,
@@ -102,7 +102,7 @@ impl Evaluated {
             self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
             self.reused += out.count_reused();
             self.retried += out.count_retried();
-            self.doubts.extend(out.doubts().iter().cloned());
+            self.non_repeatable.extend(out.non_repeatable().iter().cloned());
             if self.stopped.is_some() {
                 return;
             }

@@ -11,6 +11,7 @@ pub mod compare;
 pub mod correlation;
 pub mod dimension;
 pub mod distribution;
+#[cfg(feature = "report")]
 pub mod document;
 mod elementary;
 pub mod error;
@@ -30,14 +31,17 @@ pub mod plan;
 pub mod probe;
 pub mod problem;
 pub mod rare;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod requirement;
 pub mod sampling;
 pub mod simulation;
+#[cfg(feature = "study")]
 pub mod study;
 pub mod summary;
 pub mod surrogate;
 pub mod sweep;
+mod time;
 pub mod verdict;
 pub mod verification;
 pub mod warning;
@@ -51,6 +55,7 @@ pub use method::{DerivativeSource, Method, MethodError, Options};
 pub use moments::Moments;
 pub use problem::{Problem, ProblemError};
 pub use requirement::{Requirement, RequirementError};
+#[cfg(feature = "study")]
 pub use study::{Study, StudyError};
 pub use summary::{RunSummary, StopReason};
 pub use verdict::Verdict;

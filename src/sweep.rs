@@ -6,12 +6,11 @@
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 use crate::analysis::{Analysis, analyze_within};
-use crate::assembly::process::Adapter;
 use crate::assembly::{
-    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Points, Responses, Run, Signature,
+    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, Responses, Run,
+    Signature,
 };
 use crate::dimension::DimensionError;
 use crate::evaluation::BATCH;
@@ -19,6 +18,7 @@ use crate::method::{MethodError, Options};
 use crate::names::nearest;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::warning::Warning;
 
 /// A problem along one of its dimensions.
@@ -269,7 +269,7 @@ impl AssemblyFunction for Gatherer {
         self.function().signature()
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
         self.function().prepare(outputs)
     }
 

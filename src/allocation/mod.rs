@@ -37,6 +37,7 @@ mod solve;
 mod station;
 mod steps;
 mod task;
+mod vector;
 
 pub use crate::requirement::{Requirement, RequirementError};
 pub use cost::{CostError, Curve, CurveKind, Offer, Priced};

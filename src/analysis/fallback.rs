@@ -2,8 +2,7 @@
 
 use super::CharacteristicAnalysis;
 use super::errors::{excess, of_yield};
-use crate::assembly::Run;
-use crate::assembly::process::Doubt;
+use crate::assembly::{NonRepeatable, Run};
 use crate::capability::{Capability, Law};
 use crate::method::{Climbed, ErrorEstimate, ErrorSource, Options, Outcome};
 use crate::moments::Moments;
@@ -47,7 +46,7 @@ pub struct SampledModel {
 #[derive(Debug, Default)]
 pub(super) struct Spent {
     pub(super) run: RunSummary,
-    pub(super) doubts: Vec<Doubt>,
+    pub(super) non_repeatable: Vec<NonRepeatable>,
 }
 
 /// Replaces moments that are not known as well as they were wanted, where that can be paid: `left` is what the budget, where
@@ -178,6 +177,6 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
 impl Spent {
     fn add(&mut self, found: &Simulation) {
         self.run = self.run.and(&found.run);
-        self.doubts.extend(found.doubts.iter().cloned());
+        self.non_repeatable.extend(found.non_repeatable.iter().cloned());
     }
 }

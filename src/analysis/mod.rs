@@ -24,13 +24,12 @@ pub use surface::{Fit, NoFit, Surface};
 pub use tails::Tails;
 pub use verified::{Verification, VerificationKind};
 
-use std::time::Instant;
-
 use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, search};
 use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
 use crate::warning::Warning;
 
 /// What an analysis found out.
@@ -93,7 +92,7 @@ pub(crate) fn analyze_keeping(
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
     let found = if options.extremes { search(problem, &outcome, left, run) } else { SearchedExtremes::default() };
-    outcome.evaluated.doubts.extend(found.spent.doubts);
+    outcome.evaluated.non_repeatable.extend(found.spent.non_repeatable);
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
     // A cheap model that is verified is sampled anyway, and by points that need no surface.
@@ -103,7 +102,7 @@ pub(crate) fn analyze_keeping(
         false => fallback::fall_back(problem, &outcome, left, &mut characteristics, run),
     };
     tails::look(problem, &outcome, &mut characteristics);
-    outcome.evaluated.doubts.extend(fallback.doubts);
+    outcome.evaluated.non_repeatable.extend(fallback.non_repeatable);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }

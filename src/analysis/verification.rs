@@ -13,6 +13,7 @@ use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome}
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::verification::{
     Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, unexplained, variance_shares,
     verify_by_checks, verify_characteristic,
@@ -213,7 +214,7 @@ fn check(
     run: &Run<'_>,
 ) -> RunSummary {
     let varying = outcome.plan.varying();
-    let begun = std::time::Instant::now();
+    let begun = Instant::now();
     let shares: Vec<Vec<f64>> =
         characteristics.iter().map(|one| varying.iter().map(|&d| one.share(d).unwrap_or(0.0)).collect()).collect();
     let targets: Vec<Target<'_>> = (outcome.fitted.iter().zip(&shares).enumerate())

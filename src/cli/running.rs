@@ -13,7 +13,7 @@ use crate::report::About;
 use crate::study::{Externals, JournalPlace, Study};
 use crate::summary::{RunSummary, StopReason};
 use crate::verdict::{self, Judged, Verdict};
-use crate::warning::{Counted, StopCause, Warning};
+use crate::warning::{Counted, Warning};
 
 /// Since when a command runs, and for how long it may.
 pub(super) struct Clock {
@@ -43,14 +43,9 @@ impl Clock {
     /// Warns of a run that ended early: why, and how much of what was planned it did.
     pub(super) fn stopped(&self, run: &RunSummary, (done, planned): (u64, Option<u64>), counted: Counted, look: Look) {
         // A run that was interrupted when all was done is reported as interrupted too.
-        let Some(reason) = interrupt::reason().or(run.stopped) else { return };
-        let cause = match (reason, self.limit) {
-            (StopReason::TimeLimit, Some(limit)) => StopCause::TimeLimit { limit_s: limit.as_secs_f64() },
-            (StopReason::Budget, _) => StopCause::Budget,
-            (StopReason::Interrupted, _) => StopCause::Interrupted,
-            _ => StopCause::Requested,
-        };
-        look.warn(&Warning::Stopped { cause, done, planned, counted });
+        let Some(cause) = interrupt::reason().or(run.stopped) else { return };
+        let limit_s = self.limit.filter(|_| cause == StopReason::TimeLimit).map(|limit| limit.as_secs_f64());
+        look.warn(&Warning::Stopped { cause, limit_s, done, planned, counted });
     }
 
     /// What a report says of the study beside the results.

@@ -24,10 +24,7 @@ mod target;
 mod warnings;
 mod within;
 
-use std::time::Instant;
-
-use crate::assembly::process::Doubt;
-use crate::assembly::{EvaluationError, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::characteristic::Characteristic;
 use crate::evaluation::history;
 use crate::method::{Method, MethodError, Options};
@@ -35,6 +32,7 @@ use crate::problem::Problem;
 use crate::sampling::{Estimate, SamplingError};
 use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::warning::Warning;
 use model::Model;
 use place::{Place, places};
@@ -76,7 +74,7 @@ pub struct RareEvents {
     /// Whether what was wanted was reached; None where nothing was.
     pub reached: Option<bool>,
     /// Where the model answered the nominal point otherwise than before.
-    pub doubts: Vec<Doubt>,
+    pub non_repeatable: Vec<NonRepeatable>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<RareCharacteristic>,
     /// Where the estimates rest on little, and where points have no value.
@@ -264,7 +262,8 @@ pub fn rare_within(
     };
     let open = || reached != Some(true) && model.answered < options.samples && !targets.is_empty();
     let stopped = surrogate.stopped.or_else(|| open().then(|| run.why_open()));
-    let doubts: Vec<Doubt> = surrogate.doubts.iter().chain(&model.doubts).cloned().collect();
+    let non_repeatable: Vec<NonRepeatable> =
+        surrogate.non_repeatable.iter().chain(&model.non_repeatable).cloned().collect();
     let samples = search.points;
     let characteristics = search.characteristics(&model, stopped.is_some());
     let run = RunSummary { stopped, ..drawn.and(&spent) };
@@ -275,8 +274,8 @@ pub fn rare_within(
         samples,
         surrogate_evaluations: spent.evaluations,
         reached,
-        warnings: warnings.into_iter().chain(history(problem, &doubts)).collect(),
-        doubts,
+        warnings: warnings.into_iter().chain(history(problem, &non_repeatable)).collect(),
+        non_repeatable,
         characteristics,
     })
 }

@@ -100,7 +100,7 @@ fn samples_are_all_in_their_reports() {
     // Doubts are told of as warnings.
     complete!(of, &found => Simulation {
         sampler: "/sampler", run: "/evaluations", samples: "/samples", surrogate_evaluations: "/surrogate_evaluations",
-        reached: "/reached", doubts: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
+        reached: "/reached", non_repeatable: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
     });
     simulated(of.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 
@@ -109,7 +109,7 @@ fn samples_are_all_in_their_reports() {
     run_of(&of, &found.run);
     complete!(of, &found => RareEvents {
         method: "/surrogate", run: "/evaluations", samples: "/samples", surrogate_evaluations: "/surrogate_evaluations",
-        reached: "/reached", doubts: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
+        reached: "/reached", non_repeatable: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
     });
     let one = of.pointer("/characteristics/0").unwrap();
     complete!(one, &found.characteristics[0] => RareCharacteristic {

@@ -557,9 +557,17 @@ impl WarningReport {
             characteristic: warning.characteristic().map(str::to_owned),
             dimension: warning.dimension().map(str::to_owned),
             message: warning.message(),
-            data: warning.data(),
+            data: fields(warning),
             advice: warning.advice(),
             at: Vec::new(),
         }
+    }
+}
+
+/// The fields of a warning.
+fn fields(warning: &Warning) -> serde_json::Map<String, serde_json::Value> {
+    match serde_json::to_value(warning.data()) {
+        Ok(serde_json::Value::Object(fields)) => fields,
+        other => unreachable!("the fields of warnings are plain data: {other:?}"),
     }
 }

@@ -241,6 +241,12 @@ pub enum StudyFault {
     /// Answers evaluated elsewhere, for a study that asks nobody.
     #[error("points that were evaluated elsewhere are the answers of a [model] command, and the study has none")]
     NothingExternal,
+    /// This build of the library runs no external programs.
+    #[error("`{program}` cannot be run: external programs are not part of this build")]
+    NoPrograms {
+        /// The program of the study.
+        program: String,
+    },
     /// There is nothing to evaluate.
     #[error("the study has no {what}")]
     Nothing {

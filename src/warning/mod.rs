@@ -28,11 +28,12 @@ mod text;
 
 pub use advice::Advice;
 pub use aggregate::aggregated;
-pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind, StopCause};
+pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
 
-use serde::ser::SerializeStruct;
+use serde::ser::{SerializeMap, SerializeStruct};
 use serde::{Serialize, Serializer};
-use serde_json::{Map, Value};
+
+use crate::summary::StopReason;
 
 use text::Text;
 
@@ -524,7 +525,9 @@ warnings! {
     /// The run was stopped before its end.
     Stopped = "stopped" by run::stopped {
         /// What stopped it.
-        cause: StopCause,
+        cause: StopReason,
+        /// The time limit in seconds, where that stopped it and is known.
+        limit_s: Option<f64>,
         /// How much was done until then.
         done: u64,
         /// How much there was to do, where that is known.
@@ -581,7 +584,14 @@ impl Serialize for Warning {
     }
 }
 
-/// As `data` has it.
-fn value(of: &impl Serialize) -> Value {
-    serde_json::to_value(of).expect("the fields of warnings are plain data")
+/// The fields of a warning by name; it serialises as a map.
+#[derive(Debug, Clone, Copy)]
+pub struct WarningData<'a>(&'a Warning);
+
+impl Serialize for WarningData<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        self.0.fields(&mut map)?;
+        map.end()
+    }
 }

@@ -13,6 +13,7 @@ use process_wrap::std::{ChildWrapper, CommandWrap};
 
 use super::error::{Exit, ProcessFault, Quoted, StderrTail};
 use super::protocol::Line;
+use super::settings::Listener;
 
 /// The longest line that is read: a hundred thousand characteristics fit into it.
 pub(super) const LONGEST: usize = 16 << 20;
@@ -36,9 +37,6 @@ pub(super) enum What {
     /// It closed its stdout; nothing comes any more.
     Closed,
 }
-
-/// Hears every line that a child writes to stderr.
-pub type Listener = Arc<dyn Fn(&str) + Send + Sync>;
 
 pub(super) struct Child {
     pub(super) number: u64,

@@ -162,6 +162,7 @@ impl fmt::Display for Exit {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Quoted(pub String);
 
+#[cfg(feature = "process")]
 impl Quoted {
     /// As many characters as an error message bears.
     const LENGTH: usize = 120;
