@@ -79,7 +79,8 @@ pub struct CharacteristicAnalysis {
 }
 
 /// What one dimension does to a characteristic.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Sensitivity {
     /// The dimension.
     pub dimension: String,
@@ -104,7 +105,8 @@ pub struct Sensitivity {
 }
 
 /// What two dimensions do together.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Interaction {
     /// The two dimensions.
     pub dimensions: [String; 2],

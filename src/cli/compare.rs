@@ -8,10 +8,10 @@ use super::running::{Clock, on_threads};
 use super::{interrupt, study};
 use crate::assembly::Run;
 use crate::compare::{CompareOptions, compare_within};
-use crate::method::Options;
-use crate::report::html::compare_html;
 use crate::document::svg::svg;
 use crate::document::terminal::text;
+use crate::method::Options;
+use crate::report::html::compare_html;
 use crate::report::{CompareReport, csv_tables};
 use crate::warning::{Counted, Warning};
 
@@ -35,11 +35,8 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let about = clock.about(&study);
     let report = CompareReport::of(&comparison, about);
     let document = report.document();
-    let written = destination.write(&if asked.output.json {
-        json(&report)
-    } else {
-        text(&document, look.style(&asked.output))
-    });
+    let written =
+        destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
     let written = written.and(table.map_or(Ok(()), |table| table.write(&csv_tables(&document, &["comparison"]))));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Evaluations against error"))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&compare_html(&report))));

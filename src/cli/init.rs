@@ -7,8 +7,8 @@ use super::args::InitArgs;
 use super::failure::{Exit, Failure};
 use super::models::known;
 use super::output::Destination;
-use crate::models::{Model, ModelInput};
 use crate::document::number::plain;
+use crate::models::{Model, ModelInput};
 
 /// The tolerance that a built-in model's inputs get, of their nominal value.
 const TOLERANCE: &str = "1%";

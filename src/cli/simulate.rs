@@ -11,9 +11,9 @@ use super::progress::Samples;
 use super::running::{Clock, checked, on_threads};
 use super::{interrupt, rare, study};
 use crate::assembly::Run;
+use crate::document::terminal::text;
 use crate::method::{Method, Options};
 use crate::report::html::simulate_html;
-use crate::document::terminal::text;
 use crate::report::{SimulationReport, csv_tables};
 use crate::sampling::Sampler;
 use crate::simulation::{Pace, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_within};
@@ -59,11 +59,8 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let about = clock.about(&study);
     let report = SimulationReport::of(&study.problem, &simulation, about);
     let document = report.document();
-    let written = destination.write(&if asked.output.json {
-        json(&report)
-    } else {
-        text(&document, look.style(&asked.output))
-    });
+    let written =
+        destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &TABLES))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
     for warning in &report.warnings {

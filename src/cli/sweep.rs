@@ -8,9 +8,9 @@ use super::progress::Bar;
 use super::running::{Clock, externals, on_threads};
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
-use crate::report::html::sweep_html;
 use crate::document::svg::svg;
 use crate::document::terminal::text;
+use crate::report::html::sweep_html;
 use crate::report::{SweepReport, csv_tables};
 use crate::study::Study;
 use crate::sweep::{Sweep, sweep_within};
@@ -30,11 +30,8 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let sweep = swept(&study, asked, &clock, look)?;
     let report = SweepReport::of(&study.problem, &sweep, clock.about(&study));
     let document = report.document();
-    let written = destination.write(&if asked.output.json {
-        json(&report)
-    } else {
-        text(&document, look.style(&asked.output))
-    });
+    let written =
+        destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
     let written = written.and(table.map_or(Ok(()), |table| table.write(&csv_tables(&document, &["sweep"]))));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Mean and quantile band"))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&sweep_html(&report))));

@@ -2,6 +2,7 @@
 
 use super::Line;
 use crate::pearson::Pearson;
+use crate::simulation::Histogram;
 
 /// A drawing.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +62,7 @@ pub struct Spread {
     /// The density.
     pub law: Option<Pearson>,
     /// The histogram.
-    pub bins: Option<Bins>,
+    pub bins: Option<Histogram>,
     /// Whether a terminal shows the histogram, rather than the density.
     pub sampled: bool,
     /// Lower and upper limit.
@@ -74,15 +75,6 @@ pub struct Spread {
     pub label: String,
     /// What stands below it.
     pub words: String,
-}
-
-/// A sample in intervals.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Bins {
-    /// Edges of the intervals, ascending: one more than there are intervals.
-    pub edges: Vec<f64>,
-    /// How many values lie in each.
-    pub counts: Vec<u64>,
 }
 
 /// Values over others.

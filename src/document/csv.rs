@@ -29,7 +29,8 @@ pub fn joined<'t>(tables: impl IntoIterator<Item = (Option<[&'t str; 2]>, &'t Ta
             text = row(lead.map(|[key, _]| quoted(key)), titles);
         }
         for cells in &table.rows {
-            text += &row(lead.map(|[_, of]| quoted(&guarded(of))), &mut places.iter().map(|&place| cell(&cells[place])));
+            text +=
+                &row(lead.map(|[_, of]| quoted(&guarded(of))), &mut places.iter().map(|&place| cell(&cells[place])));
         }
     }
     text

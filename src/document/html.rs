@@ -11,7 +11,10 @@ pub fn html(document: &Document) -> String {
 
 /// What is said before all others.
 pub fn head(document: &Document) -> String {
-    format!("<section aria-labelledby=\"summary\">\n<h2 id=\"summary\">Summary</h2>\n{}</section>\n", blocks(&document.head))
+    format!(
+        "<section aria-labelledby=\"summary\">\n<h2 id=\"summary\">Summary</h2>\n{}</section>\n",
+        blocks(&document.head)
+    )
 }
 
 /// A section for every section.
@@ -30,7 +33,9 @@ fn section(index: usize, section: &Section) -> String {
         "" => String::new(),
         remark => format!("<p class=\"note\">{}</p>\n", escaped(remark)),
     };
-    format!("<section id=\"kc-{index}\" class=\"kc\" aria-labelledby=\"kc-title-{index}\">\n{title}{remark}{body}</section>\n")
+    format!(
+        "<section id=\"kc-{index}\" class=\"kc\" aria-labelledby=\"kc-title-{index}\">\n{title}{remark}{body}</section>\n"
+    )
 }
 
 /// Bars in the rows of a table.
@@ -42,17 +47,28 @@ fn bars(bars: &Bars) -> String {
         Fill::Span => "span",
         Fill::Over => "over",
     };
+    // Amounts of several kinds fill the height; intervals leave room for the marks, and are remarked on.
+    let (kind, place) = match bars.legend.is_empty() {
+        true => ("spans", "y=\"2\" height=\"6\""),
+        false => ("pareto", "height=\"10\""),
+    };
     let mark = |at: &f64| format!("<path class=\"limit\" d=\"M{at} 0V10\"/>");
     let marks: String = bars.marks.iter().map(mark).collect();
-    let mut text = format!("<table class=\"pareto\"><caption class=\"sr\">{}</caption><tbody>\n", escaped(&bars.caption));
+    let caption = escaped(&bars.caption);
+    let mut text = format!("<table class=\"{kind}\"><caption class=\"sr\">{caption}</caption><tbody>\n");
     for Bar { name, parts, text: amount, remark } in &bars.rows {
         let part = |&(fill, [x, width]): &(Fill, [f64; 2])| {
-            format!("<rect class=\"{}\" x=\"{x}\" width=\"{width}\" height=\"10\"/>", class(fill))
+            format!("<rect class=\"{}\" x=\"{x}\" width=\"{width}\" {place}/>", class(fill))
         };
         let parts: String = parts.iter().map(part).collect();
-        let svg = format!("<svg class=\"bar\" viewBox=\"0 0 100 10\" preserveAspectRatio=\"none\" aria-hidden=\"true\">{parts}{marks}</svg>");
-        let (name, amount, remark) = (escaped(name), escaped(amount), toned(remark));
-        text += &format!("<tr><th scope=\"row\">{name}</th><td class=\"grow\">{svg}</td><td class=\"n\">{amount}</td><td>{remark}</td></tr>\n");
+        let svg = format!(
+            "<svg class=\"bar\" viewBox=\"0 0 100 10\" preserveAspectRatio=\"none\" aria-hidden=\"true\">{parts}{marks}</svg>"
+        );
+        let remark = if kind == "spans" { format!("<td>{}</td>", toned(remark)) } else { String::new() };
+        let (name, amount) = (escaped(name), escaped(amount));
+        text += &format!(
+            "<tr><th scope=\"row\">{name}</th><td class=\"grow\">{svg}</td><td class=\"n\">{amount}</td>{remark}</tr>\n"
+        );
     }
     text += "</tbody></table>\n";
     if !bars.legend.is_empty() {
@@ -98,7 +114,8 @@ fn block(block: &Block) -> String {
         Block::Chart(Chart::Bars(one)) => bars(one),
         Block::Chart(Chart::Spread(one)) => spread::figure(one).unwrap_or_default(),
         Block::Finding(one) => {
-            let actions: String = one.actions.iter().map(|action| format!(" <span>{}</span>", escaped(action))).collect();
+            let actions: String =
+                one.actions.iter().map(|action| format!(" <span>{}</span>", escaped(action))).collect();
             format!("<li><strong>{}</strong> {}{actions}</li>\n", one.code, escaped(&one.message))
         }
     }

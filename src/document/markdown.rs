@@ -30,7 +30,9 @@ fn shown(block: &Block) -> String {
         }
         Block::List(list) => format!("{}: {}\n\n", escaped(list.title.trim()), escaped(&list.words.join(" "))),
         Block::Table(table) => tabled(table),
-        Block::Finding(one) => format!("- **{}** {} {}\n\n", one.code, escaped(&one.message), escaped(&one.actions.join(" "))),
+        Block::Finding(one) => {
+            format!("- **{}** {} {}\n\n", one.code, escaped(&one.message), escaped(&one.actions.join(" ")))
+        }
     }
 }
 

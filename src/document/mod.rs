@@ -15,7 +15,7 @@ pub mod svg;
 mod table;
 pub mod terminal;
 
-pub use chart::{Axis, Bar, Bars, Bins, Chart, Fill, Layer, Plot, PlotPoint, Scale, Spread, Stroke};
+pub use chart::{Axis, Bar, Bars, Chart, Fill, Layer, Plot, PlotPoint, Scale, Spread, Stroke};
 pub(crate) use spread::Extent;
 pub use table::{Cell, Column, Columns, Table, Value};
 pub use terminal::{Detail, Style};

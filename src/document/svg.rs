@@ -46,7 +46,8 @@ pub(super) fn drawn(plots: &[&Plot], title: &str) -> String {
 
 /// Names come from studies: nothing in them is markup, and characters that XML 1.0 does not have are left out.
 pub(super) fn escaped(text: &str) -> String {
-    let allowed = |c: &char| !matches!(c, '\0'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}');
+    let allowed =
+        |c: &char| !matches!(c, '\0'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}');
     let text: String = text.chars().filter(allowed).collect();
     let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     text.replace('"', "&quot;").replace('\'', "&#x27;")
@@ -99,7 +100,8 @@ impl Ruler {
         // Round numbers, five to ten of them.
         let rough = (self.to - self.from) / 5.0;
         let decade = 10f64.powf(rough.log10().floor());
-        let step = [5.0, 2.0, 1.0].map(|digit| digit * decade).into_iter().find(|step| *step <= rough).unwrap_or(decade);
+        let step =
+            [5.0, 2.0, 1.0].map(|digit| digit * decade).into_iter().find(|step| *step <= rough).unwrap_or(decade);
         let (first, last) = ((self.from / step).ceil() as i64, (self.to / step).floor() as i64);
         // A product is rounder than a sum of steps.
         let rounded = |tick: i64| format!("{:.12e}", tick as f64 * step).parse().unwrap_or(tick as f64 * step);
@@ -164,7 +166,12 @@ fn plot(svg: &mut String, plot: &Plot) {
                 let at = y.at(*value);
                 // Where names would stand over one another only the first is there.
                 if named.is_none_or(|first| (at - first).abs() > NEAR) {
-                    let _ = writeln!(svg, "<text x=\"{}\" y=\"{:.1}\" fill=\"{ACCENT}\">{name}</text>", far + 6.0, at + 4.0);
+                    let _ = writeln!(
+                        svg,
+                        "<text x=\"{}\" y=\"{:.1}\" fill=\"{ACCENT}\">{name}</text>",
+                        far + 6.0,
+                        at + 4.0
+                    );
                 }
                 named = named.or(Some(at));
             }

@@ -136,7 +136,14 @@ impl Table {
     pub fn untitled<const N: usize>(rows: impl IntoIterator<Item = [Cell; N]>) -> Self {
         let column = Column { key: "", title: "", heading: "", terminal: true, page: true };
         let rows: Vec<Vec<Cell>> = rows.into_iter().map(Vec::from).collect();
-        Self { name: "", columns: vec![column; N], view: (0..rows.len()).collect(), rows, most: [usize::MAX; 2], rest: String::new() }
+        Self {
+            name: "",
+            columns: vec![column; N],
+            view: (0..rows.len()).collect(),
+            rows,
+            most: [usize::MAX; 2],
+            rest: String::new(),
+        }
     }
 
     /// The places of the columns that are wanted.

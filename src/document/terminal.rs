@@ -303,7 +303,10 @@ mod tests {
     fn colour_follows_the_tone() {
         let line = || Line::from("met: the yield is ").and(Line::toned("met by far", Tone::Good));
         let page = shown(|page| page.wrapped(0, line()), STYLE);
-        assert_eq!(page, "met: the yield is\n    \u{1b}[32mmet\u{1b}[0m \u{1b}[32mby\u{1b}[0m \u{1b}[32mfar\u{1b}[0m\n");
+        assert_eq!(
+            page,
+            "met: the yield is\n    \u{1b}[32mmet\u{1b}[0m \u{1b}[32mby\u{1b}[0m \u{1b}[32mfar\u{1b}[0m\n"
+        );
         let plain = shown(|page| page.wrapped(0, line()), Style { color: false, ..STYLE });
         assert_eq!(plain, "met: the yield is\n    met by far\n");
     }

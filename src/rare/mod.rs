@@ -24,6 +24,8 @@ mod target;
 mod warnings;
 mod within;
 
+use serde::Serialize;
+
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::characteristic::Characteristic;
 use crate::evaluation::history;
@@ -127,7 +129,8 @@ pub struct Beyond {
 }
 
 /// The most likely assembly at a limit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct DesignPoint {
     /// How far it is from the middle, in standard deviations of independent normal variables.
     pub distance: f64,

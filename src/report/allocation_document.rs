@@ -2,10 +2,11 @@
 
 use super::allocation::{
     AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, ContributionReport, FrontRequirement,
-    JointReport, KeptReport, PriceReport,
+    KeptReport, PriceReport,
 };
 use super::requirement::loud;
 use super::{CharacteristicReport, head};
+use crate::allocation::JointYield;
 use crate::document::number::{beside, index, known, plain, rejected, share, short, significant, yielded};
 use crate::document::{
     Axis, Block, Blocks, Cell, Chart, Columns, Document, Flow, Layer, Line, Paragraph, Plot, PlotPoint, Scale, Section,
@@ -255,9 +256,9 @@ impl AllocationReport {
     }
 
     fn joint(&self, section: &mut Section) {
-        let of = |joint: &JointReport| {
+        let of = |joint: &JointYield| {
             let error = joint.standard_error.map(|error| format!(" ± {}", significant(100.0 * error, 2)));
-            format!("{:.4}{} %", 100.0 * joint.yield_, error.unwrap_or_default())
+            format!("{:.4}{} %", 100.0 * joint.value, error.unwrap_or_default())
         };
         let text = match [&self.joint_yield.before, &self.joint_yield.after].map(|joint| joint.as_ref().map(of)) {
             [Some(before), Some(after)] => format!("{before} before, {after} after"),
@@ -273,7 +274,9 @@ impl AllocationReport {
             let Some((value, interval)) = one.yield_.zip(one.standard_error.yield_) else { continue };
             let [low, high] = interval.map(yielded);
             let (name, value, points) = (short(&one.name), yielded(value), confirmation.samples);
-            section.line(format!("{name}: {value} of {points} points of the model keep the limits, 95 % interval {low} .. {high}"));
+            section.line(format!(
+                "{name}: {value} of {points} points of the model keep the limits, 95 % interval {low} .. {high}"
+            ));
         }
     }
 
@@ -344,10 +347,8 @@ impl AllocationReport {
         });
         let points = points.chain(before.map(|at| circle(at, false, "before", String::new()))).collect();
         let every = front.len().div_ceil(LABELS).max(1);
-        let mut x = Axis::new(
-            format!("{} required", first.map_or("yield", |wanted| wanted.requirement)),
-            Scale::Linear(0.05),
-        );
+        let mut x =
+            Axis::new(format!("{} required", first.map_or("yield", |wanted| wanted.requirement)), Scale::Linear(0.05));
         x.ticks = front.iter().step_by(every).map(|(place, _, label)| (*place, label.clone())).collect();
         let line = front.iter().map(|(place, cost, _)| (*place, Some(*cost))).collect();
         Plot {

@@ -4,17 +4,14 @@ use super::distribution::{DistributionReport, Quantiles};
 use super::head::{self, findings};
 use super::requirement::{RequirementReport, judged, loud};
 use super::stack::Stack;
-use super::{
-    CharacteristicReport, CorrelationReport, DimensionReport, InteractionReport, NormalFitReport, Report,
-    SensitivityReport, WarningReport, bars,
-};
+use super::{CharacteristicReport, CorrelationReport, DimensionReport, NormalFitReport, Report, WarningReport, bars};
+use crate::analysis::{Interaction, Sensitivity};
 use crate::capability::Law;
 use crate::document::number::{
     NEWS, UNKNOWN, beside, index, known, limits, percent, plain, plural, rejected, shape, share, short, significant,
 };
 use crate::document::{
-    Bins, Block, Blocks, Cell, Chart, Columns, Document, Line, Section, Spread, Style,
-    Table, Value, terminal,
+    Block, Blocks, Cell, Chart, Columns, Document, Line, Section, Spread, Style, Table, Value, terminal,
 };
 use crate::extremes::{Extreme, Place};
 use crate::method::Basis;
@@ -101,7 +98,8 @@ impl Report {
             Some(DistributionReport::Pearson { kind, .. }) => [Some("pearson"), Some(*kind)],
         };
         let end = |interval: Option<[f64; 2]>, end: usize| Cell::data(interval.map(|ends| ends[end]));
-        let normal = |one: &Of<'_>, of: fn(&NormalFitReport) -> Option<f64>| Cell::data(one.normal_fit.as_ref().and_then(of));
+        let normal =
+            |one: &Of<'_>, of: fn(&NormalFitReport) -> Option<f64>| Cell::data(one.normal_fit.as_ref().and_then(of));
         Columns::default()
             .named("name", "characteristic", |one: &Of<'_>| Cell::name(&one.name))
             .data("unit", |one| Cell::optional(one.unit.as_deref()))
@@ -226,8 +224,18 @@ impl CharacteristicReport {
                 ("nominal", number(self.nominal), "mean shift", shift),
                 ("mean", number(self.mean), "3 sigma", around(self.mean, self.sigma.map(|sigma| 3.0 * sigma))),
                 ("sigma", number(self.sigma), "rss", around(self.middle, self.rss)),
-                ("skewness", Cell::number(self.skewness, shape), "inflated rss", around(self.middle, self.inflated_rss)),
-                ("kurtosis", Cell::number(self.kurtosis, shape), "mean-shift rss", around(self.middle, self.mean_shift_rss)),
+                (
+                    "skewness",
+                    Cell::number(self.skewness, shape),
+                    "inflated rss",
+                    around(self.middle, self.inflated_rss),
+                ),
+                (
+                    "kurtosis",
+                    Cell::number(self.kurtosis, shape),
+                    "mean-shift rss",
+                    around(self.middle, self.mean_shift_rss),
+                ),
                 ("", Cell::empty(), "worst case", interval(self.worst_case.linear)),
             ]
             .map(|(name, value, other, text)| [Cell::text(name), value, Cell::text(other), text]),
@@ -242,9 +250,9 @@ impl CharacteristicReport {
                 "{} coefficients fitted to {} points: residual standard error {}, of the mean {}, of sigma {}",
                 fit.coefficients,
                 fit.points,
-                error(fit.residual_standard_error),
-                error(fit.mean_standard_error),
-                error(fit.sigma_standard_error)
+                error(fit.standard_error),
+                error(fit.mean),
+                error(fit.sigma)
             ));
         }
         if let Some(estimate) = &self.error_estimate {
@@ -261,7 +269,8 @@ impl CharacteristicReport {
                 parts.push(format!("yield {}", percent.unwrap_or_else(|| UNKNOWN.to_owned())));
             }
             section.wrapped(2, format!("estimated errors: {}", parts.join(", ")));
-            section.wrapped(2, format!("they rest on: {}", estimate.basis()));
+            let basis: Vec<String> = estimate.sources.iter().map(|source| source.words()).collect();
+            section.wrapped(2, format!("they rest on: {}", basis.join("; ")));
         }
         if let Some(sampled) = self.error_estimate.as_ref().and(self.model_sampling.as_ref()) {
             section.wrapped(2, format!(
@@ -331,7 +340,7 @@ impl CharacteristicReport {
         places.extend(self.mean.map(|mean| (mean, "mean", "mean")));
         Spread {
             law: Some(law.clone()),
-            bins: sample.map(|of| Bins { edges: of.edges.clone(), counts: of.counts.clone() }),
+            bins: sample.cloned(),
             sampled: false,
             limits: [self.lower, self.upper],
             places,
@@ -411,26 +420,43 @@ impl CharacteristicReport {
         let of_limits = |name: &str, text: String| if limited { [name.to_owned(), text] } else { Default::default() };
         let ([yield_, yields], [cpk, cpks]) =
             (of_limits("yield", range(kept, &share)), of_limits("Cpk", range(interval.cpk, &index)));
-        section.table(Table::untitled([
-            ["mean".to_owned(), value(interval.mean), "skewness".to_owned(), of_shape(interval.skewness), yield_, yields],
-            ["sigma".to_owned(), value(interval.sigma), "kurtosis".to_owned(), of_shape(interval.kurtosis), cpk, cpks],
-        ].map(|row| row.map(Cell::text))));
+        section.table(Table::untitled(
+            [
+                [
+                    "mean".to_owned(),
+                    value(interval.mean),
+                    "skewness".to_owned(),
+                    of_shape(interval.skewness),
+                    yield_,
+                    yields,
+                ],
+                [
+                    "sigma".to_owned(),
+                    value(interval.sigma),
+                    "kurtosis".to_owned(),
+                    of_shape(interval.kurtosis),
+                    cpk,
+                    cpks,
+                ],
+            ]
+            .map(|row| row.map(Cell::text)),
+        ));
     }
 
     /// The dimensions that vary or do something, with what they do.
     fn shown<'r>(
         &'r self,
         dimensions: &'r [DimensionReport],
-    ) -> impl Iterator<Item = (&'r SensitivityReport, &'r DimensionReport)> {
-        self.sensitivities.iter().zip(dimensions).filter(|(row, dimension)| row.matters(dimension))
+    ) -> impl Iterator<Item = (&'r Sensitivity, &'r DimensionReport)> {
+        self.sensitivities.iter().zip(dimensions).filter(|(row, dimension)| matters(row, dimension))
     }
 
     /// What the dimensions do, strongest first.
     pub(super) fn contributions(&self, dimensions: &[DimensionReport]) -> Table {
-        type Row<'r> = (&'r SensitivityReport, &'r DimensionReport);
-        let part = |row: &SensitivityReport| Some(row.linear_share? + row.curvature_share.unwrap_or(0.0));
+        type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
+        let part = |row: &Sensitivity| Some(row.linear_share? + row.curvature_share.unwrap_or(0.0));
         let all: Vec<Row<'_>> = self.sensitivities.iter().zip(dimensions).collect();
-        let mut view: Vec<usize> = (0..all.len()).filter(|&index| all[index].0.matters(all[index].1)).collect();
+        let mut view: Vec<usize> = (0..all.len()).filter(|&index| matters(all[index].0, all[index].1)).collect();
         let size = |index: usize| part(all[index].0).unwrap_or(-1.0);
         view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
         let rest = &view[view.len().min(CONTRIBUTIONS)..];
@@ -472,7 +498,8 @@ impl CharacteristicReport {
             let known: Option<Vec<f64>> = self.interactions.iter().map(|interaction| interaction.share).collect();
             let sum = known.map(|shares| format!("{} %", percent(shares.iter().sum())));
             let together = sum.unwrap_or_else(|| "an unknown part".to_owned());
-            section.note(format!("interactions: {examined} of {possible} examined, {together} of the variance together"));
+            section
+                .note(format!("interactions: {examined} of {possible} examined, {together} of the variance together"));
         }
         section.table(self.interaction_table());
     }
@@ -480,13 +507,16 @@ impl CharacteristicReport {
     pub(super) fn interaction_table(&self) -> Table {
         let news = self.interactions.iter().filter(|pair| pair.share.is_none_or(|share| share >= NEWS)).count();
         let most = [news.min(INTERACTIONS), news.min(INTERACTIONS_OF_PAGE)];
-        let both = |pair: &&InteractionReport| {
+        let both = |pair: &&Interaction| {
             let [a, b] = &pair.dimensions;
-            Cell { full: Some(format!("{a} × {b}")), ..Cell::both(Value::Empty, format!("{} × {}", short(a), short(b))) }
+            Cell {
+                full: Some(format!("{a} × {b}")),
+                ..Cell::both(Value::Empty, format!("{} × {}", short(a), short(b)))
+            }
         };
         Columns::default()
             .data("characteristic", |_| Cell::text(&self.name))
-            .data("dimension_a", |pair: &&InteractionReport| Cell::text(&pair.dimensions[0]))
+            .data("dimension_a", |pair: &&Interaction| Cell::text(&pair.dimensions[0]))
             .data("dimension_b", |pair| Cell::text(&pair.dimensions[1]))
             .named("", "pair", both)
             .column("mixed", "mixed derivative", |pair| {
@@ -499,11 +529,9 @@ impl CharacteristicReport {
     }
 }
 
-impl SensitivityReport {
-    /// Whether a dimension varies, or does something without.
-    fn matters(&self, dimension: &DimensionReport) -> bool {
-        dimension.sigma > 0.0 || self.first.is_some_and(|first| first != 0.0)
-    }
+/// Whether a dimension varies, or does something without.
+fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
+    dimension.sigma > 0.0 || row.first.is_some_and(|first| first != 0.0)
 }
 
 /// The dimensions by the end of their bands, and the others by their values.

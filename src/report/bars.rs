@@ -14,9 +14,10 @@ const FAR: f64 = 2.0;
 /// The strongest contributions to the variance, and what is left in words.
 pub(super) fn pareto(one: &CharacteristicReport) -> (Bars, Option<String>) {
     type Share = (String, [f64; 3]);
-    let own = one.sensitivities.iter().filter_map(|row| {
-        Some((row.dimension.clone(), [row.linear_share?, row.curvature_share.unwrap_or(0.0), 0.0]))
-    });
+    let own = one
+        .sensitivities
+        .iter()
+        .filter_map(|row| Some((row.dimension.clone(), [row.linear_share?, row.curvature_share.unwrap_or(0.0), 0.0])));
     let joint = one.interactions.iter().filter_map(|pair| {
         Some((format!("{} \u{d7} {}", pair.dimensions[0], pair.dimensions[1]), [0.0, 0.0, pair.share?]))
     });
@@ -82,7 +83,8 @@ pub(super) fn spans(one: &CharacteristicReport) -> Option<Bars> {
     let (unit, slack) = (one.scale(), ROUNDING * extent);
     let limited = limits != [None, None];
     let row = |(name, [from, to]): (&str, [f64; 2])| {
-        let kept = one.lower.is_none_or(|lower| from >= lower - slack) && one.upper.is_none_or(|upper| to <= upper + slack);
+        let kept =
+            one.lower.is_none_or(|lower| from >= lower - slack) && one.upper.is_none_or(|upper| to <= upper + slack);
         let fill = if limited && !kept { Fill::Over } else { Fill::Span };
         let x = scale.at(from);
         Bar {

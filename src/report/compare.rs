@@ -62,7 +62,7 @@ pub struct MethodReport {
     pub engine_s: f64,
     /// What it says.
     #[serde(flatten)]
-    pub figures: FiguresReport,
+    pub figures: Figures,
     /// How far that is off the reference.
     pub error_vs_reference: ErrorReport,
     /// Whether no other method has a smaller error for as many evaluations or fewer.
@@ -71,32 +71,15 @@ pub struct MethodReport {
     pub verdict: Option<Verdict>,
 }
 
-/// Moments and yield.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct FiguresReport {
-    /// First moment.
-    pub mean: Option<f64>,
-    /// Standard deviation.
-    pub sigma: Option<f64>,
-    /// Third standardised moment.
-    pub skewness: Option<f64>,
-    /// Fourth standardised moment.
-    pub kurtosis: Option<f64>,
-    /// Share within the limits.
-    #[serde(rename = "yield")]
-    pub yield_: Option<f64>,
-}
-
 /// How far a method is off.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ErrorReport {
     /// The mean in sigmas, sigma relative, the others as they are.
     #[serde(flatten)]
-    pub off: FiguresReport,
+    pub off: Figures,
     /// The reference's own standard errors in the same units.
-    pub reference_standard_error: FiguresReport,
+    pub reference_standard_error: Figures,
     /// Root of the sum of squares of the errors of mean and sigma.
     pub overall: Option<f64>,
     /// Whether the reference tells that from 0.
@@ -157,10 +140,10 @@ impl MethodReport {
             run: ran.run,
             evaluation_s: ran.evaluation.as_secs_f64(),
             engine_s: ran.engine.as_secs_f64(),
-            figures: FiguresReport::of(&ran.figures[c]),
+            figures: ran.figures[c],
             error_vs_reference: ErrorReport {
-                off: FiguresReport::of(off),
-                reference_standard_error: FiguresReport::of(reference),
+                off: *off,
+                reference_standard_error: *reference,
                 overall: ran.errors[c].overall(),
                 resolved: ran.errors[c].resolved(),
                 floor: ran.errors[c].floor(),
@@ -168,13 +151,6 @@ impl MethodReport {
             pareto: ran.pareto[c],
             verdict: ran.verdicts[c],
         }
-    }
-}
-
-impl FiguresReport {
-    fn of(figures: &Figures) -> Self {
-        let Figures { mean, sigma, skewness, kurtosis, yield_ } = *figures;
-        Self { mean, sigma, skewness, kurtosis, yield_ }
     }
 }
 

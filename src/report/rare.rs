@@ -8,7 +8,7 @@ use super::{About, CorrelationReport, DimensionReport, Head, RequirementReport, 
 use crate::document::number::{known, plain, short, significant, yielded};
 use crate::document::{Blocks, Cell, Columns, Document, Line, Section, Table, Value};
 use crate::problem::Problem;
-use crate::rare::{Beyond, RareCharacteristic, RareEvents};
+use crate::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
 
@@ -104,17 +104,7 @@ pub struct BeyondReport {
     /// Points of a plain random sample that would have the same standard error.
     pub plain_samples: Option<f64>,
     /// The most likely assembly at the limit, as the surrogate has it.
-    pub design_point: Option<DesignPointReport>,
-}
-
-/// The most likely assembly at a limit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct DesignPointReport {
-    /// Its distance from the middle in standard deviations of independent normal variables.
-    pub distance: f64,
-    /// Every dimension's value, in the order of `dimensions`.
-    pub values: Vec<f64>,
+    pub design_point: Option<DesignPoint>,
 }
 
 impl RareReport {
@@ -173,10 +163,7 @@ impl BeyondReport {
             effective_samples: beyond.effective_samples,
             greatest_part: beyond.greatest_part,
             plain_samples: beyond.plain_samples,
-            design_point: beyond
-                .design_point
-                .as_ref()
-                .map(|point| DesignPointReport { distance: point.distance, values: point.values.clone() }),
+            design_point: beyond.design_point.clone(),
         }
     }
 }
@@ -230,7 +217,7 @@ impl RareCharacteristicReport {
         self.requirements.iter().filter_map(RequirementReport::line).for_each(|line| section.note(line));
         for (side, of) in sides {
             if let Some(point) = &of.design_point {
-                section.note(format!("most likely {side}, in sigmas off the means: {}", point.words(dimensions)));
+                section.note(format!("most likely {side}, in sigmas off the means: {}", farthest(point, dimensions)));
             }
         }
         section
@@ -238,7 +225,8 @@ impl RareCharacteristicReport {
 
     fn table(&self, sides: &[Side<'_>]) -> Table {
         let limit = |(side, of): &Side<'_>| Cell::both(Value::Empty, format!("{side} {}", plain(of.limit)));
-        let millionths = |value: Option<f64>, digits: usize| Cell::number(value, |value| significant(1e6 * value, digits));
+        let millionths =
+            |value: Option<f64>, digits: usize| Cell::number(value, |value| significant(1e6 * value, digits));
         Columns::default()
             .data("characteristic", |_| Cell::text(&self.name))
             .data("unit", |_| Cell::optional(self.unit.as_deref()))
@@ -262,17 +250,15 @@ fn ppm(value: f64) -> String {
     significant(1e6 * value, 3)
 }
 
-impl DesignPointReport {
-    /// In sigmas off the means, farthest first.
-    fn words(&self, dimensions: &[DimensionReport]) -> String {
-        let mut moved: Vec<(f64, String)> = (dimensions.iter().zip(&self.values))
-            .filter(|(dimension, _)| dimension.sigma > 0.0)
-            .map(|(dimension, value)| ((value - dimension.mean) / dimension.sigma, short(&dimension.name)))
-            .collect();
-        moved.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-        let rest = moved.len().saturating_sub(SHOWN);
-        let words = moved.iter().take(SHOWN).map(|(sigmas, name)| format!("{name} {sigmas:+.2}"));
-        let rest = if rest > 0 { format!(" and {rest} less") } else { String::new() };
-        format!("{}{rest}", words.collect::<Vec<_>>().join(", "))
-    }
+/// A design point in sigmas off the means, farthest first.
+fn farthest(point: &DesignPoint, dimensions: &[DimensionReport]) -> String {
+    let mut moved: Vec<(f64, String)> = (dimensions.iter().zip(&point.values))
+        .filter(|(dimension, _)| dimension.sigma > 0.0)
+        .map(|(dimension, value)| ((value - dimension.mean) / dimension.sigma, short(&dimension.name)))
+        .collect();
+    moved.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let rest = moved.len().saturating_sub(SHOWN);
+    let words = moved.iter().take(SHOWN).map(|(sigmas, name)| format!("{name} {sigmas:+.2}"));
+    let rest = if rest > 0 { format!(" and {rest} less") } else { String::new() };
+    format!("{}{rest}", words.collect::<Vec<_>>().join(", "))
 }

@@ -8,7 +8,7 @@ use super::requirement::judged;
 use super::{About, CorrelationReport, DimensionReport, Head, RequirementReport, WarningReport, correlation};
 use crate::capability::Law;
 use crate::document::number::{estimated, index, known, limits, plain, significant, uncertainty, yielded};
-use crate::document::{Bins, Blocks, Cell, Chart, Columns, Document, Line, Section, Spread, Table};
+use crate::document::{Blocks, Cell, Chart, Columns, Document, Line, Section, Spread, Table};
 use crate::moments::Moments;
 use crate::pearson::Pearson;
 use crate::problem::Problem;
@@ -103,7 +103,7 @@ pub struct SimulatedReport {
     /// Distance of the nearer limit by three sigma.
     pub cpk: Option<f64>,
     /// The sample in intervals.
-    pub histogram: Option<HistogramReport>,
+    pub histogram: Option<Histogram>,
     /// The surrogate as control variate; null where there is none.
     pub control: Option<ControlReport>,
 }
@@ -157,22 +157,6 @@ pub struct EmpiricalReport {
     pub family: &'static str,
     /// Quantiles.
     pub quantiles: OptionalQuantiles,
-}
-
-/// A sample in intervals.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct HistogramReport {
-    /// One more than there are intervals, ascending.
-    pub edges: Vec<f64>,
-    /// How many values in each.
-    pub counts: Vec<u64>,
-}
-
-impl HistogramReport {
-    pub(super) fn of(Histogram { edges, counts }: &Histogram) -> Self {
-        Self { edges: edges.clone(), counts: counts.clone() }
-    }
 }
 
 impl SimulationReport {
@@ -246,7 +230,7 @@ impl SimulatedReport {
             ppm_above: one.above.map(|share| 1e6 * share),
             cp: one.cp,
             cpk: one.cpk,
-            histogram: one.histogram.as_ref().map(HistogramReport::of),
+            histogram: one.histogram.clone(),
             control: one.control.map(|control| ControlReport {
                 method: control.method.name(),
                 evaluations: control.evaluations,
@@ -302,23 +286,21 @@ impl SimulatedReport {
     }
 
     fn limits(&self, section: &mut Section, yield_: f64) {
-        let interval = self.standard_error.yield_.map_or(String::new(), |[low, high]| {
-            format!(", 95 % interval {} to {}", yielded(low), yielded(high))
-        });
+        let interval = self
+            .standard_error
+            .yield_
+            .map_or(String::new(), |[low, high]| format!(", 95 % interval {} to {}", yielded(low), yielded(high)));
         let target = judged(self.target_yield, self.verdict);
         section.note(Line::from(format!("yield {}{interval}", yielded(yield_))).and(target));
         if let Some([low, high]) = self.yield_bounds {
             let (points, [low, high]) = (self.failed, [low, high].map(yielded));
-            section.note(format!("{points} points have no value: {low} if all of these are rejected, {high} if none is"));
+            section
+                .note(format!("{points} points have no value: {low} if all of these are rejected, {high} if none is"));
         }
         let ppm = |value: Option<f64>, side: &str| value.map(|value| format!("{} ppm {side}", significant(value, 4)));
         let named = |value: Option<f64>, name: &str| value.map(|value| format!("{name} {}", index(value)));
-        let figures = [
-            ppm(self.ppm_below, "below"),
-            ppm(self.ppm_above, "above"),
-            named(self.cp, "Cp"),
-            named(self.cpk, "Cpk"),
-        ];
+        let figures =
+            [ppm(self.ppm_below, "below"), ppm(self.ppm_above, "above"), named(self.cp, "Cp"), named(self.cpk, "Cpk")];
         section.note(figures.into_iter().flatten().collect::<Vec<_>>().join("  "));
         section.remark(format!(
             "Limits {}; values seen from {} to {}.",
@@ -375,7 +357,7 @@ impl SimulatedReport {
         });
         section.gap();
         section.chart(Chart::Spread(Box::new(Spread {
-            bins: Some(Bins { edges: of.edges.clone(), counts: of.counts.clone() }),
+            bins: Some(of.clone()),
             law,
             sampled: true,
             limits: [self.lower, self.upper],

@@ -10,7 +10,8 @@
 
 use std::fmt;
 
-use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
+use super::{CharacteristicReport, DimensionReport, Report};
+use crate::analysis::Sensitivity;
 use crate::document::number::{UNKNOWN, beside, limits, percent, plain, short, significant};
 use crate::document::{Blocks, Cell, Columns, Document, Line, Section, Table, Tone, Value};
 use crate::method::Method;
@@ -209,7 +210,7 @@ impl TotalKind {
 }
 
 impl StackRow {
-    fn of(sensitivity: &SensitivityReport, dimension: &DimensionReport) -> Self {
+    fn of(sensitivity: &Sensitivity, dimension: &DimensionReport) -> Self {
         let (shift, reach) = (dimension.mean - dimension.nominal, SIGMAS * dimension.sigma);
         let deviations = dimension.tolerance.unwrap_or([shift - reach, shift + reach]);
         let contribution = sensitivity.first.map(|slope| (0.5 * slope * (deviations[1] - deviations[0])).abs());
@@ -225,13 +226,13 @@ impl StackRow {
 }
 
 /// Whether a dimension belongs into the table: it varies and is not known to do nothing, or is known to do something.
-fn matters(row: &SensitivityReport, dimension: &DimensionReport) -> bool {
+fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
     let idle = row.first == Some(0.0) && row.second.unwrap_or(0.0) == 0.0;
     !idle && (dimension.sigma > 0.0 || row.first.is_some())
 }
 
 /// `+`, `-`, or the slope where it is neither 1 nor -1.
-fn direction(row: &SensitivityReport) -> String {
+fn direction(row: &Sensitivity) -> String {
     let Some(slope) = row.first else { return UNKNOWN.to_owned() };
     let rounding = row.rounding.map_or(0.0, |[first, _]| 2.0 * first);
     let near = |value: f64| (slope - value).abs() <= DIRECTION.max(rounding);
@@ -292,7 +293,7 @@ fn shape(one: &CharacteristicReport, rows: &[StackRow]) -> Option<StackNote> {
     let joint = one.interactions.iter().filter(|pair| real(pair.mixed, pair.rounding));
     let interactions: f64 = joint.clone().filter_map(|pair| pair.share).sum();
     let varying =
-        |row: &SensitivityReport| rows.iter().any(|of| of.dimension.name == row.dimension && of.dimension.sigma > 0.0);
+        |row: &Sensitivity| rows.iter().any(|of| of.dimension.name == row.dimension && of.dimension.sigma > 0.0);
     let not_examined = one.sensitivities.iter().any(|row| varying(row) && row.curvature_share.is_none());
     if (curved.count() > 0 && known) || joint.count() > 0 {
         return Some(StackNote::Curved { share: curvature + interactions, mean_shift });

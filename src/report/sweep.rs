@@ -10,7 +10,9 @@ use super::{About, Head, OptionalQuantiles, Quantiles, RequirementReport, Warnin
 use crate::analysis::CharacteristicAnalysis;
 use crate::capability::Law;
 use crate::document::number::{beside, known, limits, plain, plural, rejected, shape, short, significant};
-use crate::document::{Axis, Blocks, Cell, Chart, Columns, Document, Layer, Plot, Scale, Section, Stroke, Table, Value};
+use crate::document::{
+    Axis, Blocks, Cell, Chart, Columns, Document, Layer, Plot, Scale, Section, Stroke, Table, Value,
+};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::sweep::Sweep;
@@ -247,8 +249,7 @@ fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport>
     let all = sweep.analyses.iter().flatten().count();
     let of_values = kinds.into_values().map(|(warning, at)| {
         let share = if at.len() == all { "every value".to_owned() } else { format!("{} of {all} values", at.len()) };
-        let message =
-            format!("At {share}, first at {parameter} = {}: {}", plain(at[0]), warning.message);
+        let message = format!("At {share}, first at {parameter} = {}: {}", plain(at[0]), warning.message);
         WarningReport { message, at, ..warning }
     });
     about.warnings.iter().map(WarningReport::of).chain(of_values).collect()

@@ -432,7 +432,9 @@ fn names_that_are_verdicts_are_plain() {
              [costs]\n{dimension} = {{ model = \"reciprocal\", b = 1 }}\n"
         );
         std::fs::write(&study, text).unwrap();
-        let (study, [name, rest @ ..]) = (study.to_str().unwrap(), command) else { unreachable!("a command has a name") };
+        let (study, [name, rest @ ..]) = (study.to_str().unwrap(), command) else {
+            unreachable!("a command has a name")
+        };
         let over = format!("{dimension}=0.9:1.1:3");
         let rest: Vec<&str> = rest.iter().map(|&word| if word == "OVER" { &over } else { word }).collect();
         let arguments = [&[*name, study, "--color", "always", "-v"][..], &rest].concat();
@@ -626,7 +628,8 @@ fn reports_fit_their_width() {
         let study = sensitol::Study::read(&repository(&format!("examples/{name}/study.toml"))).unwrap();
         let analysis = sensitol::analyze(&study.problem, &study.options).unwrap();
         let report = Report::of(&study.problem, &analysis, About::default());
-        let of = |width: usize| text(&report.document(), Style { detail: Detail::Full, unicode: true, color: false, width });
+        let of =
+            |width: usize| text(&report.document(), Style { detail: Detail::Full, unicode: true, color: false, width });
         let numbers = |text: &str| -> BTreeSet<String> {
             let words = text.split(|c: char| c.is_whitespace() || ",;:()".contains(c));
             words.filter(|word| word.parse::<f64>().is_ok()).map(str::to_owned).collect()

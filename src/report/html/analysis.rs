@@ -42,8 +42,7 @@ struct Try<'r> {
 pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let possible = what_if.filter(|what_if| what_if.possible());
     let document = report.document();
-    let analysed =
-        Analysed { what_if: possible.map(tries), no_what_if: what_if.and_then(WhatIf::impossible) };
+    let analysed = Analysed { what_if: possible.map(tries), no_what_if: what_if.and_then(WhatIf::impossible) };
     let (parts, warnings) = ([head(&document), sections(&document)], others(&document, &report.warnings));
     render("what_if.html", &report.head, facts(report), parts, warnings, possible.map(json), analysed)
 }

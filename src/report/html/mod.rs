@@ -18,19 +18,17 @@ use sha2::{Digest, Sha256};
 
 use super::head::findings;
 use super::{AllocationReport, CompareReport, Head, SimulationReport, SweepReport, WarningReport};
+use crate::document::Document;
 use crate::document::html::{blocks, head as summary, sections};
 use crate::document::number::significant;
-use crate::document::Document;
 use crate::summary::RunSummary;
 
 const STYLE: &str = include_str!("page.css");
 /// The mathematics of the what-if, and then what shows it.
 const SCRIPT: &str =
     concat!(include_str!("what_if.js"), include_str!("pearson.js"), include_str!("live.js"), include_str!("page.js"));
-const TEMPLATES: [(&str, &str); 2] = [
-    ("page.html", include_str!("page.html")),
-    ("what_if.html", include_str!("what_if.html")),
-];
+const TEMPLATES: [(&str, &str); 2] =
+    [("page.html", include_str!("page.html")), ("what_if.html", include_str!("what_if.html"))];
 
 /// What every page begins with, and the page's own content.
 #[derive(Serialize)]
