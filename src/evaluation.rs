@@ -39,7 +39,7 @@ pub struct Evaluated {
 /// Evaluates stage after stage until the plan lacks nothing, or the run is stopped.
 ///
 /// Evaluations: as [`Plan::cost`] says, and more only where the model fails.
-pub fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated {
+pub(crate) fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated {
     let mut evaluated = Evaluated::nothing(problem);
     while let Some(stage) = plan.next(&evaluated.known) {
         evaluated.add(problem, plan, &stage, run);
@@ -52,7 +52,7 @@ pub fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated 
 
 impl Evaluated {
     /// Nothing yet.
-    pub fn nothing(problem: &Problem) -> Self {
+    pub(crate) fn nothing(problem: &Problem) -> Self {
         Self {
             known: Known::nothing(problem.characteristics().len()),
             evaluations: 0,
@@ -66,7 +66,7 @@ impl Evaluated {
     }
 
     /// In numbers.
-    pub fn summary(&self) -> RunSummary {
+    pub(crate) fn summary(&self) -> RunSummary {
         RunSummary {
             evaluations: self.evaluations as u64,
             cached: self.reused as u64,
@@ -80,7 +80,7 @@ impl Evaluated {
     }
 
     /// Evaluates one stage; the points are by the nodes of this plan.
-    pub fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
+    pub(crate) fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
         self.stages += 1;
         let centre = plan.centre();
         let rows = (BATCH / centre.len()).max(1);

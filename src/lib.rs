@@ -6,6 +6,7 @@ pub mod assembly;
 pub mod capability;
 pub mod characteristic;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
 pub mod compare;
 pub mod correlation;
@@ -15,7 +16,7 @@ pub mod distribution;
 pub mod document;
 mod elementary;
 pub mod error;
-pub mod evaluation;
+mod evaluation;
 pub mod extremes;
 pub mod fits;
 #[cfg(feature = "journal")]
@@ -25,9 +26,9 @@ pub mod method;
 mod method_kind;
 pub mod models;
 pub mod moments;
-pub mod names;
+mod names;
 pub mod pearson;
-pub mod plan;
+mod plan;
 pub mod probe;
 pub mod problem;
 pub mod rare;
@@ -53,6 +54,7 @@ pub use dimension::{Dimension, DimensionError};
 pub use error::Error;
 pub use method::{DerivativeSource, Method, MethodError, Options};
 pub use moments::Moments;
+pub use names::UnknownName;
 pub use problem::{Problem, ProblemError};
 pub use requirement::{Requirement, RequirementError};
 #[cfg(feature = "study")]

@@ -1,15 +1,21 @@
 //! Names that people type: which known one did they mean?
 
+/// Whether a character is not seen and moves what is: control characters, and those that turn the direction of text (Unicode 16,
+/// `Bidi_Control`).
+pub(crate) fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// Text on one line that cannot move the cursor, turn or break the line: hidden characters become U+FFFD.
+pub(crate) fn clean(text: &str) -> String {
+    text.chars().map(|c| if is_hidden(c) { '\u{fffd}' } else { c }).collect()
+}
+
 /// The known name most similar to `typed`, if any is similar enough to be meant.
 ///
 /// Differences in case, and between `-` and `_`, count little.
-///
-/// ```
-/// use sensitol::names::nearest;
-/// assert_eq!(nearest("tolerence", ["nominal", "tolerance", "unit"]), Some("tolerance"));
-/// assert_eq!(nearest("zebra", ["nominal", "tolerance", "unit"]), None);
-/// ```
-pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let folded = |name: &str| name.to_lowercase().replace('_', "-");
     let typed = folded(typed);
     let likeness = |name: &str| {
@@ -62,6 +68,7 @@ fn slips(from: &str, to: &str) -> usize {
 /// A name that stands for none of a list of things.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("there is no {what} `{name}`; {}", self.help())]
+#[non_exhaustive]
 pub struct UnknownName {
     /// What the name should stand for, such as `method`.
     pub what: &'static str,
@@ -103,7 +110,13 @@ impl UnknownName {
 
 #[cfg(test)]
 mod tests {
-    use super::slips;
+    use super::{nearest, slips};
+
+    #[test]
+    fn a_name_is_meant_by_one_like_it() {
+        assert_eq!(nearest("tolerence", ["nominal", "tolerance", "unit"]), Some("tolerance"));
+        assert_eq!(nearest("zebra", ["nominal", "tolerance", "unit"]), None);
+    }
 
     /// Counted by hand.
     #[test]

@@ -32,6 +32,7 @@ const MANY: usize = 5;
 
 /// What a probe found out.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Probe {
     /// What an external program says of itself.
     pub adapter: Option<ModelInfo>,
@@ -51,6 +52,7 @@ pub struct Probe {
 
 /// One thing that a model should do.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Check {
     /// What.
     pub what: &'static str,
@@ -88,6 +90,7 @@ impl Finding {
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Probed {
     /// Its name.
     pub name: String,

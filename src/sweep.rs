@@ -23,6 +23,7 @@ use crate::warning::Warning;
 
 /// A problem along one of its dimensions.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Sweep {
     /// The place of the dimension among the problem's.
     pub dimension: usize,
@@ -79,7 +80,8 @@ pub enum SweepError {
 ///
 /// Evaluations: those of the method at every value, each point once, in as many batches as the method has stages. A method that
 /// goes on and on, or asks for thousands of points at once, is given its answers as it asks from then on. A budget is that of
-/// all values together, an equal part for each.
+/// all values together, an equal part for each. Results are verified only where [`Options::verify`] says so: a check at every value
+/// would cost more than what it checks.
 ///
 /// # Errors
 /// When the dimension or the values cannot be, or the options do not fit the problem; nothing is evaluated then. A model that
@@ -128,7 +130,8 @@ pub fn sweep_within(
         })
         .collect::<Result<_, _>>()?;
     // What may be spent is shared alike.
-    let options = &Options { budget: options.budget.map(|budget| budget / values.len()), ..options.clone() };
+    let budget = options.budget.map(|budget| budget / values.len());
+    let options = &Options { budget, verify: options.verify.or(Some(0)), ..options.clone() };
     for problem in &problems {
         options.method.procedure().fits(problem, options)?;
     }

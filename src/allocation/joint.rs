@@ -11,6 +11,7 @@ use crate::sampling::{Draws, Portion, Sampler, wilson};
 /// A share of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct JointYield {
     /// The share of assemblies within all limits.
     #[serde(rename = "yield")]

@@ -23,6 +23,7 @@ mod branch;
 mod choose;
 mod closed_form;
 mod constraint;
+mod correction;
 mod cost;
 mod front;
 mod joint;
@@ -41,8 +42,7 @@ mod vector;
 
 pub use crate::requirement::{Requirement, RequirementError};
 pub use cost::{CostError, Curve, CurveKind, Offer, Priced};
-pub use front::FrontPoint;
 pub use joint::JointYield;
-pub use result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, ShadowPrice, Status};
+pub use result::{Allocated, Allocation, Attainable, Bound, FrontPoint, Kept, Moved, Proof, ShadowPrice, Status};
 pub use run::{allocate, allocate_within};
 pub use task::{AllocateError, AllocationOptions, AllocationTask};

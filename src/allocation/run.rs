@@ -397,7 +397,7 @@ impl Driver<'_> {
         self.spent.run = self.spent.run.and(&analysis.run);
         self.spent.rounds += 1;
         self.spent.stopped |= analysis.run.unfinished();
-        let responses = Responses::of(&problem, &outcome);
+        let responses = Responses::of(&problem, &outcome, &analysis);
         Ok(Station { problem, analysis, responses })
     }
 

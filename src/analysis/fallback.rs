@@ -25,6 +25,7 @@ const MORE: u64 = 4;
 
 /// Points of the model in place of a surrogate that was not trusted.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SampledModel {
     /// Points.
     pub samples: u64,
@@ -38,6 +39,8 @@ pub struct SampledModel {
     pub standard_errors: [Option<f64>; 4],
     /// The share of the sample within the limits with its 95 % interval.
     pub yield_: Option<(f64, [f64; 2])>,
+    /// Its shares below the lower and above the upper limit; None without that limit.
+    pub beyond: [Option<f64>; 2],
     /// The sample, counted in some tens of intervals.
     pub histogram: Option<Histogram>,
 }
@@ -170,6 +173,7 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
         left: left.min(1.0),
         standard_errors,
         yield_,
+        beyond: [found.below, found.above],
         histogram: found.histogram.clone(),
     });
 }

@@ -19,6 +19,7 @@ fn words(advice: &Advice) -> String {
             }
         }
         Advice::RaiseBudget => "raise --budget".to_owned(),
+        Advice::SetBudget => "allow that many with --budget".to_owned(),
         Advice::RaiseTimeLimit => "raise --time".to_owned(),
         Advice::LimitTime => "set a limit with --time S".to_owned(),
         Advice::Sample { points: None } => "run `sensitol simulate`".to_owned(),

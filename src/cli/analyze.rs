@@ -47,7 +47,9 @@ pub(super) fn read(path: &Path, asked: &AnalyzeArgs, given: Option<Arc<Table>>, 
     let externals = externals(asked.work.journal.as_deref(), look, given);
     let mut study = study::read_file(path, &asked.how, externals)?;
     study.options.seed = asked.seed.or(study.options.seed);
-    study.options.verify = asked.verify.or(study.options.verify);
+    // A file of answers has those that the plan asks for.
+    let answers = asked.points.as_ref().map(|_| 0);
+    study.options.verify = asked.verify.or(study.options.verify).or(answers);
     study.options.extremes |= asked.extremes;
     if asked.check && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
         return Err(Failure::NothingToCheck);

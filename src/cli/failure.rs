@@ -181,7 +181,10 @@ impl Failure {
         match self {
             Self::ClosedPipe => None,
             // It names its file by itself.
-            Self::Study(error) => Some(render(error)),
+            Self::Study(error) => {
+                let all: Vec<String> = std::iter::once(error).chain(&error.more).map(render).collect();
+                Some(all.join("\n\n"))
+            }
             Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. }) => {
                 Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
             }

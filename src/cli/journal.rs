@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::args::{JournalArgs, JournalCommand, OutputArgs};
 use super::failure::{Exit, Failure};
 use super::files::Files;
-use super::output::{Destination, Look, json};
+use super::output::{self, Destination, Look, json};
 use crate::journal::{KnownModel, Store, StoredAnswer};
 
 /// What `journal show --json` prints of one model.
@@ -76,7 +76,7 @@ fn agreed(answers: usize) -> Result<bool, Failure> {
     if !stdin.is_terminal() || !std::io::stderr().is_terminal() {
         return Err(Failure::NotAgreed { answers });
     }
-    anstream::eprint!("forget {answers} answers, each of which was evaluated? [y/N] ");
+    output::prompt(&format!("forget {answers} answers, each of which was evaluated? [y/N] "));
     stdin.read_line(&mut said).map_err(|_| Failure::NotAgreed { answers })?;
     Ok(["y", "yes"].contains(&said.trim().to_lowercase().as_str()))
 }

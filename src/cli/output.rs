@@ -10,6 +10,7 @@ use super::advice;
 use super::args::OutputArgs;
 use super::failure::Failure;
 use crate::document::{Detail, Style};
+use crate::names::{clean, is_hidden};
 use crate::report::WarningReport;
 use crate::warning::Warning;
 
@@ -54,16 +55,56 @@ impl<'s> Look<'s> {
         }
         let WarningReport { code, message, .. } = warning;
         let of = self.study.map(|study| format!("{study}: ")).unwrap_or_default();
-        anstream::eprintln!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {of}{message}");
+        let mut text = format!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {}{}\n", clean(&of), clean(message));
         if let Some(help) = advice::help(&warning.advice) {
-            anstream::eprintln!("  \u{1b}[1mhelp\u{1b}[0m: {help}");
+            text += &format!("  \u{1b}[1mhelp\u{1b}[0m: {}\n", clean(&help));
         }
+        to_stderr(&text);
     }
 }
 
 /// Tells why nothing came of it.
 pub(super) fn error(message: &str) {
-    anstream::eprintln!("{message}");
+    to_stderr(&format!("{}\n", shown(message)));
+}
+
+/// Asks, and leaves the cursor behind the question.
+pub(super) fn prompt(question: &str) {
+    to_stderr(&shown(question));
+}
+
+/// A line that a model wrote.
+pub(super) fn model_line(line: &str) {
+    to_stderr(&format!("model: {}\n", clean(line)));
+}
+
+/// A stderr that is full or closed changes no result and no exit code.
+fn to_stderr(text: &str) {
+    let mut stderr = anstream::stderr().lock();
+    let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
+}
+
+/// Own text with lines and colours of its own, in which names and texts of others stand: of what is hidden it keeps line breaks
+/// and the sequences that set colours.
+fn shown(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let colour = rest.strip_prefix("\u{1b}[").and_then(|after| {
+            let end = after.find(|c: char| !c.is_ascii_digit() && c != ';')?;
+            after[end..].starts_with('m').then_some(2 + end + 1)
+        });
+        let taken = colour.unwrap_or(c.len_utf8());
+        match c {
+            _ if colour.is_some() => shown.push_str(&rest[..taken]),
+            '\n' => shown.push(c),
+            '\t' => shown.push(' '),
+            c if is_hidden(c) => shown.push('\u{fffd}'),
+            c => shown.push(c),
+        }
+        rest = &rest[taken..];
+    }
+    shown
 }
 
 pub(super) fn set_color(choice: ColorChoice) {
@@ -95,11 +136,9 @@ fn utf8_locale() -> bool {
 /// Where a result goes: opened before the work, so that a file that cannot be written costs no evaluation.
 pub(super) enum Destination {
     Stdout,
-    /// Written under another name and renamed, so that no half result ever bears the name. Made and closed again: however many
-    /// results there are to be, none keeps a file open.
+    /// Written under another name and renamed, so that no half result ever bears the name.
     File {
         path: PathBuf,
-        file: TempPath,
     },
     /// What is no ordinary file, such as a pipe or a device, is written to as it is.
     Special {
@@ -117,11 +156,7 @@ impl Destination {
     }
 
     pub(super) fn file(path: &Path) -> Result<Self, Failure> {
-        // The temporary file's own name would only puzzle.
-        let unwritable = |error: std::io::Error| {
-            let error = error.raw_os_error().map_or(error.kind().into(), std::io::Error::from_raw_os_error);
-            Failure::Unwritable { path: path.to_owned(), error }
-        };
+        let unwritable = |error: std::io::Error| Failure::Unwritable { path: path.to_owned(), error: bare(error) };
         if path.is_dir() {
             return Err(unwritable(ErrorKind::IsADirectory.into()));
         }
@@ -137,12 +172,13 @@ impl Destination {
             let missing = std::io::Error::new(ErrorKind::NotFound, format!("there is no folder {}", folder.display()));
             return Err(Failure::Unwritable { path: path.to_owned(), error: missing });
         }
-        let mut builder = tempfile::Builder::new();
-        // A private temporary file becomes an ordinary one: readable as the user's other files are.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.prefix(".sensitol-").tempfile_in(folder).map_err(unwritable)?;
-        Ok(Self::File { path: path.to_owned(), file: file.into_temp_path() })
+        if std::fs::metadata(path).is_ok_and(|there| there.permissions().readonly()) {
+            let protected = std::io::Error::new(ErrorKind::PermissionDenied, "the file is there and read-only");
+            return Err(Failure::Unwritable { path: path.to_owned(), error: protected });
+        }
+        // Tried now, so that a folder that cannot be written to costs no evaluation; nothing stays.
+        temporary(path).map_err(unwritable)?;
+        Ok(Self::File { path: path.to_owned() })
     }
 
     pub(super) fn write(self, text: &str) -> Result<(), Failure> {
@@ -161,13 +197,34 @@ impl Destination {
                     written => written.map_err(|error| Failure::Unwritable { path, error }),
                 }
             }
-            Self::File { path, file } => {
-                let written = std::fs::write(&file, text);
-                let renamed = written.and_then(|()| file.persist(&path).map_err(|error| error.error));
-                renamed.map(drop).map_err(|error| Failure::Unwritable { path, error })
+            Self::File { path } => {
+                let written = temporary(&path).and_then(|file| {
+                    std::fs::write(&file, text)?;
+                    file.persist(&path).map_err(|error| error.error)
+                });
+                written.map_err(|error| Failure::Unwritable { path, error: bare(error) })
             }
         }
     }
+}
+
+/// A file next to that of this path, with the mode of the one that it will replace; a new one is readable as the user's other
+/// files are.
+fn temporary(path: &Path) -> std::io::Result<TempPath> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.prefix(".sensitol-").tempfile_in(folder)?.into_temp_path();
+    if let Ok(there) = std::fs::metadata(path) {
+        std::fs::set_permissions(&file, there.permissions())?;
+    }
+    Ok(file)
+}
+
+/// Without the temporary file's own name, which would only puzzle.
+fn bare(error: std::io::Error) -> std::io::Error {
+    error.raw_os_error().map_or(error.kind().into(), std::io::Error::from_raw_os_error)
 }
 
 /// JSON for people and programs: indented, with a line break at its end.

@@ -10,10 +10,11 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::{points, study};
-use crate::method::DerivativeSource;
+use crate::method::{DerivativeSource, Options};
 use crate::plan::{Known, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
+use crate::verification::MOST_CHECKS;
 use crate::warning::Warning;
 
 /// What `plan --json` prints.
@@ -29,6 +30,9 @@ pub(super) struct PlanReport {
     /// The fewest and the most, of a method that chooses as it goes.
     range: Option<[usize; 2]>,
     stages: Vec<StageReport>,
+    /// The check points that verify it in the end, placed by the answers, at most; null where the model is sampled instead, and 0
+    /// where nothing is verified.
+    checks: Option<usize>,
     /// Whether a search of the extremes follows, whose points nobody knows beforehand.
     extremes: bool,
     dimensions: Vec<AxisReport>,
@@ -79,6 +83,10 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         evaluations,
         range: procedure.range(&study.problem, &study.options),
         stages: vec![of_stage(&first)],
+        checks: match study.options.verify.unwrap_or(Options::VERIFY) {
+            0 => Some(0),
+            most => study.problem.function().signature().costly.then_some(most.min(MOST_CHECKS)),
+        },
         extremes: study.options.extremes,
         dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &*plan, d)).collect(),
     };
@@ -138,6 +146,9 @@ fn text(report: &PlanReport) -> String {
             "and points of the model itself where no surrogate is to be trusted and --budget, or a cheap model, allows"
                 .into(),
         );
+    }
+    if let Some(checks) = report.checks.filter(|&checks| checks > 0) {
+        lines.push(format!("then up to {checks} check points, placed by the answers, that verify the results"));
     }
     if report.extremes {
         let search = "then the search of the extremes: 4 points for a linear characteristic, some 2N or more for either side \

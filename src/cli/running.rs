@@ -1,12 +1,12 @@
 //! What the commands that evaluate have in common: for how long, on how many threads, where answers are kept.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Once};
 use std::time::{Duration, Instant};
 
 use super::failure::{Exit, Failure};
 use super::interrupt;
-use super::output::Look;
+use super::output::{self, Look};
 use crate::assembly::Table;
 use crate::assembly::process::Listener;
 use crate::report::About;
@@ -25,6 +25,7 @@ impl Clock {
     /// From now on, for so many seconds; from now on Ctrl-C is heard too.
     pub(super) fn start(seconds: Option<f64>) -> Self {
         interrupt::listen();
+        start_threads();
         let limit = seconds.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
         Self { begun: Instant::now(), limit }
     }
@@ -61,7 +62,17 @@ pub(super) fn externals(journal: Option<&Path>, look: Look, points: Option<Arc<T
 
 /// Who shows what an external program writes to stderr: somebody, when all details are asked for.
 pub(super) fn listener(look: Look) -> Option<Listener> {
-    look.verbose.then(|| Arc::new(|line: &str| anstream::eprintln!("model: {line}")) as Listener)
+    look.verbose.then(|| Arc::new(|line: &str| output::model_line(line)) as Listener)
+}
+
+/// Where the system gives no more threads, everything is done by the one that there is.
+fn start_threads() {
+    static TRIED: Once = Once::new();
+    TRIED.call_once(|| {
+        if rayon::ThreadPoolBuilder::new().build().is_err() {
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
+        }
+    });
 }
 
 /// Does the work with as many threads as were asked for.

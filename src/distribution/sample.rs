@@ -23,6 +23,7 @@ pub struct Sample {
 
 /// What a law that follows from a sample becomes when the measured values count otherwise.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Reweighted {
     /// How far the mean moves, in sigmas of the sample.
     pub shift: f64,

@@ -1,8 +1,8 @@
 //! Documents as fragments of HTML: the page around them has the style sheet that their classes stand in.
 
-use super::number::clean;
 use super::svg::{drawn, escaped};
 use super::{Bar, Bars, Block, Cell, Chart, Document, Fill, Flow, Line, Section, Table, Tone, spread};
+use crate::names::clean;
 
 /// A section for what is said before all others, and one for every section.
 pub fn html(document: &Document) -> String {

@@ -1,7 +1,7 @@
 //! Documents as Markdown.
 
-use super::number::clean;
 use super::{Block, Document, Table};
+use crate::names::clean;
 
 /// A document: its title as a heading, a heading for every section, tables with the columns that pages show.
 pub fn markdown(document: &Document) -> String {

@@ -1,5 +1,7 @@
 //! Numbers and names for people: rounded to what they are worth, the sign for what is unknown, and what is too small to be shown.
 
+use crate::names::clean;
+
 /// In place of what is unknown.
 pub(crate) const UNKNOWN: &str = "-";
 
@@ -121,11 +123,6 @@ pub(super) fn shortened_to(name: &str, most: usize) -> String {
     let head: String = name.chars().take(most / 2).collect();
     let tail: String = name.chars().skip(count - (most - most / 2 - 1)).collect();
     format!("{head}…{tail}")
-}
-
-/// What came from a file cannot move the cursor or break a line.
-pub(crate) fn clean(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
 /// A number, or the sign for unknown.

@@ -1,8 +1,9 @@
 //! Documents as text for a terminal: lines and tables without lines, in Unicode or plain ASCII.
 
-use super::number::{clean, shortened_to};
+use super::number::shortened_to;
 use super::sketch::{bars, sketch};
 use super::{Block, Chart, Document, Flow, Line, List, Paragraph, Section, Table, Tone};
+use crate::names::clean;
 
 /// How much is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

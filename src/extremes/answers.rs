@@ -32,6 +32,7 @@ pub(super) struct Failures {
 
 /// What asking came to.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Spent {
     /// In numbers.
     pub run: RunSummary,

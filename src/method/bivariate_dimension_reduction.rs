@@ -19,8 +19,9 @@
 
 use std::sync::Arc;
 
+use super::cost::affordable;
 use super::dimension_reduction::{tables, univariate};
-use super::quadrature::{Quadrature, affordable, check, complete, next_to_the_mean};
+use super::quadrature::{Quadrature, check, complete, next_to_the_mean};
 use super::{Integrated, InteractionEffect, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
 use crate::moments::Tables;

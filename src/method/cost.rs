@@ -1,11 +1,12 @@
 //! What a method takes.
 
-use super::{Method, MethodError, Options};
+use super::{EvaluationLimit, Method, MethodError, Options};
 use crate::plan::Plan;
 use crate::problem::Problem;
 
 /// Evaluations and stages, if no point fails.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Cost {
     /// Points that are sent to the model.
     pub evaluations: usize,
@@ -20,22 +21,37 @@ impl Cost {
         Self { evaluations, stages }
     }
 
-    /// The same, if the budget allows it.
+    /// The same, if the budget allows it, or the limit without one.
     pub(super) fn within(
         self,
         method: &'static str,
         problem: &Problem,
         options: &Options,
     ) -> Result<Self, MethodError> {
-        match options.budget.filter(|&budget| self.evaluations > budget) {
-            None => Ok(self),
-            Some(budget) => Err(MethodError::OverBudget {
-                method,
-                needed: self.evaluations,
-                budget,
-                fitting: fitting(problem, budget),
-            }),
+        let dimensions = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count();
+        affordable(method, self.evaluations as u128, problem, options, dimensions).map(|()| self)
+    }
+}
+
+/// Refuses more evaluations than a plan may have, before any of its points is made: 1,000,000 without a budget.
+pub(super) fn affordable(
+    method: &'static str,
+    needed: u128,
+    problem: &Problem,
+    options: &Options,
+    dimensions: usize,
+) -> Result<(), MethodError> {
+    let limit = options.budget.map_or(EvaluationLimit::WithoutBudget, |_| EvaluationLimit::Listed);
+    let most = options.budget.unwrap_or(usize::MAX).min(limit.most());
+    if needed <= most as u128 {
+        return Ok(());
+    }
+    let fitting = fitting(problem, most);
+    match (options.budget, usize::try_from(needed)) {
+        (Some(budget), Ok(needed)) if budget == most => {
+            Err(MethodError::OverBudget { method, needed, budget, fitting })
         }
+        _ => Err(MethodError::TooMany { method, dimensions, needed, limit, fitting }),
     }
 }
 

@@ -23,6 +23,7 @@ const MOST: f64 = 0.5;
 /// The estimated error of each result, in its own unit; None where nothing is known.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ErrorEstimate {
     /// Of the mean.
     pub mean: Option<f64>,

@@ -28,6 +28,7 @@ mod three_point;
 mod worst_case;
 
 pub use crate::method_kind::Method;
+pub use crate::plan::{Nodes, Spread, Stencil, corners};
 pub use auto::ACCURACY;
 pub(crate) use auto::climb_until;
 pub use check::SurrogateCheck;
@@ -194,7 +195,7 @@ pub enum MethodError {
         /// The one that does not vary.
         still: String,
     },
-    /// More points than can ever be evaluated, whatever the budget.
+    /// More evaluations than a limit allows.
     #[error("{method} needs {} evaluations for {dimensions} varying dimensions, {limit}{}", count(*.needed), instead(.fitting))]
     TooMany {
         /// The method's name.
@@ -203,8 +204,20 @@ pub enum MethodError {
         dimensions: usize,
         /// How many evaluations it needs, `u128::MAX` where there are more than that.
         needed: u128,
-        /// What is the most, in words.
-        limit: &'static str,
+        /// Which limit.
+        limit: EvaluationLimit,
+        /// The derivative method to use instead, and what it needs.
+        fitting: Option<(Method, usize)>,
+    },
+    /// More dimensions than the method can fit a surface to.
+    #[error("{method} fits at most {most} varying dimensions, and {dimensions} vary{}", instead(.fitting))]
+    TooManyDimensions {
+        /// The method's name.
+        method: &'static str,
+        /// How many dimensions vary.
+        dimensions: usize,
+        /// How many may.
+        most: usize,
         /// The derivative method to use instead, and what it needs.
         fitting: Option<(Method, usize)>,
     },
@@ -238,7 +251,14 @@ impl MethodError {
                 let method = fitting.map(|(method, _)| Advice::UseMethod { methods: vec![method] });
                 method.into_iter().chain([Advice::RaiseBudget]).collect()
             }
-            Self::TooMany { fitting: Some((method, _)), .. } => vec![Advice::UseMethod { methods: vec![*method] }],
+            Self::TooMany { limit, fitting, .. } => {
+                let method = fitting.map(|(method, _)| Advice::UseMethod { methods: vec![method] });
+                let budget = (*limit == EvaluationLimit::WithoutBudget).then_some(Advice::SetBudget);
+                method.into_iter().chain(budget).collect()
+            }
+            Self::TooManyDimensions { fitting: Some((method, _)), .. } => {
+                vec![Advice::UseMethod { methods: vec![*method] }]
+            }
             Self::DerivativesUnknown { .. } | Self::NoDerivative { .. } => vec![Advice::UseDifferences],
             _ => Vec::new(),
         }
@@ -250,6 +270,35 @@ impl MethodError {
             Self::OverBudget { needed, .. } => u64::try_from(*needed).ok(),
             Self::TooMany { needed, .. } => u64::try_from(*needed).ok(),
             _ => None,
+        }
+    }
+}
+
+/// The most evaluations that a method may ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum EvaluationLimit {
+    /// 1,000,000, unless a budget is given.
+    WithoutBudget,
+    /// 100,000,000, whatever the budget: the points of a plan are listed in memory.
+    Listed,
+}
+
+impl EvaluationLimit {
+    /// The number.
+    pub fn most(self) -> usize {
+        match self {
+            Self::WithoutBudget => 1_000_000,
+            Self::Listed => 100_000_000,
+        }
+    }
+}
+
+impl std::fmt::Display for EvaluationLimit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::WithoutBudget => write!(f, "more than the {} that are allowed without a budget", self.most()),
+            Self::Listed => write!(f, "more than the {} that a plan may have", self.most()),
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::surrogate::{Surrogate, Univariate};
 
 /// What a method found out.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Outcome {
     /// The method that was asked for.
     pub asked: Method,
@@ -35,6 +36,7 @@ pub struct Outcome {
 
 /// What is known of one characteristic.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Fitted {
     /// Its value at the nominal dimensions.
     pub nominal: Option<f64>,
@@ -58,6 +60,7 @@ pub struct Fitted {
 
 /// Moments that were integrated from values, and what they are made of.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Integrated {
     /// The moments.
     pub moments: Moments,
@@ -73,6 +76,7 @@ pub struct Integrated {
 
 /// What one dimension does by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct MainEffect {
     /// Share of the variance that the best straight line explains.
     pub linear: f64,
@@ -84,6 +88,7 @@ pub struct MainEffect {
 
 /// What two dimensions do together, beyond what each does by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct InteractionEffect {
     /// Share of the variance.
     pub share: f64,
@@ -113,6 +118,7 @@ pub enum Lacking {
 /// How far a surrogate misses the values that it was fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Residual {
     /// `sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None where there are no more points
     /// than coefficients.

@@ -16,7 +16,7 @@ use faer::{Mat, Side};
 
 use super::{
     Basis, Cost, DerivativeSource, ExactDerivatives, Fitted, Integrated, Lacking, Method, MethodError, Options, Order,
-    Outcome, cost,
+    Outcome,
 };
 use crate::assembly::Run;
 use crate::correlation::Correlation;
@@ -26,9 +26,6 @@ use crate::plan::{At, Design, Known, Mixed, Plan, Point, Purpose};
 use crate::problem::Problem;
 use crate::surrogate::Univariate;
 
-/// Points that are ever evaluated by one method.
-pub(super) const MOST: usize = 1_000_000;
-const LIMIT: &str = "more than the 1000000 that are ever done";
 /// An eigenvalue below this is rounding of 0.
 const ZERO: f64 = 1e-12;
 /// A median as near to the mean as this part of sigma is the mean.
@@ -235,23 +232,6 @@ pub(super) fn check(method: &'static str, options: &Options, nodes: bool) -> Res
     match options.nodes {
         Some(nodes) if ![3, 5, 7].contains(&nodes) => Err(MethodError::BadNodes { nodes }),
         _ => Ok(()),
-    }
-}
-
-/// So many points, unless there are too many of them.
-pub(super) fn affordable(
-    method: &'static str,
-    needed: u128,
-    problem: &Problem,
-    options: &Options,
-    dimensions: usize,
-) -> Result<(), MethodError> {
-    match usize::try_from(needed).is_ok_and(|needed| needed <= MOST) {
-        true => Ok(()),
-        false => {
-            let fitting = cost::fitting(problem, options.budget.unwrap_or(MOST));
-            Err(MethodError::TooMany { method, dimensions, needed, limit: LIMIT, fitting })
-        }
     }
 }
 

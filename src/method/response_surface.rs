@@ -28,8 +28,8 @@ use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
 
 use super::{
-    Basis, Cost, ExactDerivatives, Fitted, Lacking, Method, MethodError, Options, Order, Outcome, Procedure, Residual,
-    cost,
+    Basis, Cost, EvaluationLimit, ExactDerivatives, Fitted, Lacking, Method, MethodError, Options, Order, Outcome,
+    Procedure, Residual, cost,
 };
 use crate::assembly::Run;
 use crate::evaluation::evaluate;
@@ -42,7 +42,6 @@ pub(super) struct ResponseSurface;
 
 /// Dimensions of which a surface is fitted: 1431 coefficients take some seconds.
 const MOST: usize = 52;
-const LIMIT: &str = "and no surface of more than 52 dimensions is fitted";
 /// A pivot below this part of the largest says that a coefficient is not determined.
 const SINGULAR: f64 = 1e-10;
 
@@ -94,11 +93,10 @@ impl ResponseSurface {
         let mut design = Design::new(dimensions, correlation, problem.dependence(), options.all_sensitivities);
         let varying = design.varying().to_vec();
         let n = varying.len();
-        let factorial = corners(n);
         if n > MOST {
-            let needed = factorial.len() as u128 + 2 * n as u128 + 1;
-            let fitting = cost::fitting(problem, options.budget.unwrap_or(super::quadrature::MOST));
-            return Err(MethodError::TooMany { method: self.name(), dimensions: n, needed, limit: LIMIT, fitting });
+            let most = options.budget.unwrap_or(EvaluationLimit::WithoutBudget.most());
+            let fitting = cost::fitting(problem, most);
+            return Err(MethodError::TooManyDimensions { method: self.name(), dimensions: n, most: MOST, fitting });
         }
         let mut points = vec![Point::Centre];
         design.want(Point::Centre, Purpose::Centre);
@@ -115,7 +113,7 @@ impl ResponseSurface {
                 points.push(point);
             }
         }
-        for corner in factorial {
+        for corner in corners(n) {
             let at: Vec<(usize, f64)> =
                 varying.iter().zip(&corner).zip(&near).map(|((&d, &up), near)| (d, near[usize::from(up)])).collect();
             let point = design.point(&at);

@@ -20,7 +20,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::quadrature::{Quadrature, affordable, check, complete};
+use super::cost::affordable;
+use super::quadrature::{Quadrature, check, complete};
 use super::{
     Cost, Integrated, InteractionEffect, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure,
 };

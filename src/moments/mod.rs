@@ -86,6 +86,7 @@ impl Moments {
 
 /// The moments of a sum of terms and products, and what each has contributed.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Contributions {
     /// Moments of the whole.
     pub moments: Moments,

@@ -12,13 +12,19 @@ const HEAVY: f64 = 3.0;
 const Z: f64 = 1.959_963_984_540_054;
 /// No hit leaves room for so many, with 97.5 %: `-ln 0.025`.
 const UNSEEN: f64 = 3.688_879_454_113_936;
+/// A probability below this is told as a bound: some 26 sigmas out.
+const FAINTEST: f64 = 1e-150;
 /// Points of a weight up to so many times the greatest of those beyond the limit lie next to these; farther
 /// where weights differ widely: those not seen differ more.
 const NEXT: f64 = 3.0;
 
 /// Points as they were weighed, and whether each lies beyond the limit.
-#[derive(Debug, Clone, Default)]
+///
+/// Weights are as small as the probability, and their squares would be nothing at 27 sigma: all sums are of weights by the greatest of
+/// those beyond, whose logarithm is `scale`.
+#[derive(Debug, Clone)]
 pub(super) struct Weighed {
+    scale: f64,
     /// The sum and the sum of squares of those beyond.
     sum: f64,
     squares: f64,
@@ -27,10 +33,24 @@ pub(super) struct Weighed {
     /// How many points there are, how many of these beyond, and how many of unknown value.
     points: u64,
     hits: u64,
-    /// The greatest weight beyond, of the others ascending, and of those without a value in all.
-    greatest: f64,
+    /// Logarithms of the weights of the others, and the sum of those without a value.
     others: Vec<f64>,
     unknown: f64,
+}
+
+impl Default for Weighed {
+    fn default() -> Self {
+        Self {
+            scale: f64::NEG_INFINITY,
+            sum: 0.0,
+            squares: 0.0,
+            stages: Vec::new(),
+            points: 0,
+            hits: 0,
+            others: Vec::new(),
+            unknown: 0.0,
+        }
+    }
 }
 
 /// How many points a stage had, the sum of the weights beyond, and the variance of that.
@@ -45,7 +65,7 @@ struct Stage {
 const APART: f64 = 4.0;
 
 /// A probability, as far as it is known.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Found {
     /// None where no point lies beyond.
     pub(super) probability: Option<Estimate>,
@@ -53,30 +73,34 @@ pub(super) struct Found {
     /// If no point without a value lies beyond, and if all do.
     pub(super) bounds: [f64; 2],
     pub(super) hits: u64,
+    /// Points with a value, those beyond and the others.
+    pub(super) points: u64,
     pub(super) effective: f64,
     /// The greatest part of it that is a single point's.
     pub(super) greatest_part: Option<f64>,
 }
 
 impl Weighed {
-    /// Adds a stage: points with the component that each was drawn from, its weight, and whether it lies beyond, None where
-    /// the model has no value.
+    /// Adds a stage: points with the component that each was drawn from, the logarithm of its weight, and whether it is one of those
+    /// sought, None where the model has no value.
     ///
     /// How many points a component has is not left to chance, so that the variance is the sum of the components' own.
-    pub(super) fn add(&mut self, components: usize, points: impl Iterator<Item = (usize, f64, Option<bool>)>) {
+    pub(super) fn add(&mut self, components: usize, points: &[(usize, f64, Option<bool>)]) {
+        let hits = points.iter().filter(|point| point.2 == Some(true));
+        self.rescale(hits.map(|point| point.1).fold(self.scale, f64::max));
         let mut sums = vec![[0.0; 3]; components];
-        for (component, weight, beyond) in points {
+        for &(component, weight, beyond) in points {
             self.points += 1;
             sums[component][0] += 1.0;
             match beyond {
                 Some(true) => {
                     self.hits += 1;
-                    self.greatest = self.greatest.max(weight);
+                    let weight = (weight - self.scale).exp();
                     sums[component][1] += weight;
                     sums[component][2] += weight * weight;
                 }
                 Some(false) => self.others.push(weight),
-                None => self.unknown += weight,
+                None => self.unknown += weight.exp(),
             }
         }
         let mut stage = Stage::default();
@@ -90,6 +114,20 @@ impl Weighed {
         }
         self.sum += stage.sum;
         self.stages.push(stage);
+    }
+
+    /// Measures all sums by a greater weight, whose logarithm this is.
+    fn rescale(&mut self, scale: f64) {
+        if scale > self.scale {
+            let by = (self.scale - scale).exp();
+            self.sum *= by;
+            self.squares *= by * by;
+            for stage in &mut self.stages {
+                stage.sum *= by;
+                stage.variance *= by * by;
+            }
+            self.scale = scale;
+        }
     }
 
     /// The variance of the sum: of all components of all stages; more where stages do not agree (Birge 1932), because
@@ -116,11 +154,11 @@ impl Weighed {
             return None;
         }
         let n = self.points as f64;
-        let heaviest = || self.others.iter().copied().fold(0.0, f64::max);
         if self.hits == 0 {
-            let interval = [0.0, (UNSEEN * heaviest().max(self.unknown) / n).min(1.0)];
+            let heaviest = self.others.iter().copied().fold(f64::NEG_INFINITY, f64::max).exp();
+            let interval = [0.0, (UNSEEN * heaviest.max(self.unknown) / n).min(1.0)];
             let bounds = [0.0, (self.unknown / n).min(1.0)];
-            return Some(Found { probability: None, interval, bounds, hits: 0, effective: 0.0, greatest_part: None });
+            return Some(Found { points: self.seen(), interval, bounds, ..Found::default() });
         }
         let value = self.sum / n;
         let error = self.variance().sqrt() / n;
@@ -131,39 +169,72 @@ impl Weighed {
                 let ratio = (Z * error / value).exp();
                 [value / ratio, value * ratio]
             }
-            false => counted(value, self.squares / (n * n), heavy.max(1.0) * self.greatest / n),
+            false => counted(value, self.squares / (n * n), heavy.max(1.0) / n),
         };
         let unseen = UNSEEN * self.next() / n;
-        Some(Found {
-            probability: Some(Estimate { value, standard_error: (self.points > 1).then_some(error) }),
-            interval: [low, (value + (high - value).hypot(unseen)).min(1.0)],
-            bounds: [value, value + self.unknown / n].map(|bound| bound.min(1.0)),
+        let high = value + (high - value).hypot(unseen);
+        let probability = |scaled: f64| (scaled.ln() + self.scale).exp().min(1.0);
+        let found = Found {
+            probability: Some(Estimate {
+                value: probability(value),
+                standard_error: (self.points > 1).then(|| probability(error)),
+            }),
+            interval: [low, high].map(probability),
+            bounds: [0.0, self.unknown / n].map(|unknown| (probability(value) + unknown).min(1.0)),
             hits: self.hits,
+            points: self.seen(),
             effective,
-            greatest_part: Some(self.greatest / self.sum),
-        })
+            greatest_part: Some(1.0 / self.sum),
+        };
+        Some(if probability(value) < FAINTEST { found.out_of_reach() } else { found })
+    }
+
+    /// Points with a value.
+    fn seen(&self) -> u64 {
+        self.hits + self.others.len() as u64
+    }
+}
+
+impl Found {
+    /// Of what is so improbable that only a bound is told.
+    fn out_of_reach(self) -> Self {
+        let bound = |high: f64| high.max(FAINTEST);
+        let (interval, bounds) = ([0.0, bound(self.interval[1])], [0.0, bound(self.bounds[1])]);
+        Self { probability: None, interval, bounds, greatest_part: None, ..self }
+    }
+
+    /// Of everything else than what was sought. Where nothing of that was seen, everything else is all.
+    pub(super) fn complement(self) -> Self {
+        let all = Estimate { value: 1.0, standard_error: None };
+        let rest = |Estimate { value, standard_error }: Estimate| Estimate { value: 1.0 - value, standard_error };
+        Self {
+            probability: Some(self.probability.map_or(all, rest)),
+            interval: [1.0 - self.interval[1], 1.0 - self.interval[0]],
+            bounds: [1.0 - self.bounds[1], 1.0 - self.bounds[0]],
+            hits: self.points - self.hits,
+            ..self
+        }
     }
 }
 
 impl Weighed {
-    /// The greatest weight beyond by the average of those.
+    /// The greatest weight of those sought by the average of them.
     fn spread(&self) -> f64 {
-        self.greatest * self.hits as f64 / self.sum
+        self.hits as f64 / self.sum
     }
 
-    /// The weight, on average, of the points next to those beyond the limit, on the side of the means, of which none is
-    /// beyond; of the nearest of them where none is near.
+    /// The weight, on average, of the points next to those sought, on the side of the means, of which none is sought; of the
+    /// nearest of them where none is near.
     fn next(&self) -> f64 {
-        let before = |weight: &&f64| **weight > self.greatest;
         let times = NEXT * (if self.spread() > HEAVY { self.spread() } else { 1.0 });
-        let near = |weight: &&f64| **weight <= times * self.greatest;
+        let above = || self.others.iter().map(|weight| weight - self.scale).filter(|&by| by > 0.0);
         let (sum, count) =
-            self.others.iter().filter(before).filter(near).fold((0.0, 0.0), |(sum, n), weight| (sum + weight, n + 1.0));
+            above().filter(|by| *by <= times.ln()).fold((0.0, 0.0), |(sum, n), by| (sum + by.exp(), n + 1.0));
         if count > 0.0 {
             return sum / count;
         }
-        let nearest = self.others.iter().filter(before).copied().fold(f64::INFINITY, f64::min);
-        if nearest.is_finite() { nearest } else { 0.0 }
+        let nearest = above().fold(f64::INFINITY, f64::min);
+        if nearest.is_finite() { nearest.exp() } else { 0.0 }
     }
 }
 
@@ -181,12 +252,22 @@ fn counted(value: f64, squares: f64, greatest: f64) -> [f64; 2] {
 /// convex function, by multiplicative steps that never leave the simplex (Silvey, Titterington and Torsney 1978, with the
 /// exponent 1/2 of Yu 2010).
 ///
-/// Shapes: a hit is its weight and the heights of the K components there; `start` has length K.
+/// Shapes: a hit is the logarithm of its weight and those of the heights of the K components there; `start` has length K.
 pub(super) fn best_parts(hits: &[(f64, Vec<f64>)], start: &[f64]) -> Vec<f64> {
+    let highest = |heights: &[f64]| heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // The gains of all hits by the greatest of them: w h / d^2 is of the size of w / h.
+    let sizes: Vec<f64> = hits.iter().map(|(weight, heights)| weight - highest(heights)).collect();
+    let greatest = highest(&sizes);
+    let scaled: Vec<(f64, Vec<f64>)> = (hits.iter().zip(&sizes))
+        .map(|((_, heights), size)| {
+            let highest = highest(heights);
+            ((size - greatest).exp(), heights.iter().map(|height| (height - highest).exp()).collect())
+        })
+        .collect();
     let mut parts = start.to_vec();
     for _ in 0..60 {
         let mut gains = vec![0.0; parts.len()];
-        for (weight, heights) in hits {
+        for (weight, heights) in &scaled {
             let density: f64 = parts.iter().zip(heights).map(|(part, height)| part * height).sum();
             let factor = weight / density / density;
             gains.iter_mut().zip(heights).for_each(|(gain, height)| *gain += factor * height);
@@ -215,7 +296,8 @@ mod tests {
     /// Of two components with heights (4, 0) where hits lie, all goes to the first.
     #[test]
     fn parts_go_where_hits_are() {
-        let parts = best_parts(&[(1.0, vec![4.0, 0.0]), (1.0, vec![4.0, 1.0])], &[0.5, 0.5]);
+        let (none, four) = (f64::NEG_INFINITY, 4f64.ln());
+        let parts = best_parts(&[(0.0, vec![four, none]), (0.0, vec![four, 0.0])], &[0.5, 0.5]);
         assert!(parts[0] > 0.999, "{parts:?}");
     }
 }

@@ -16,7 +16,7 @@ use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
-use super::place::Place;
+use super::place::{FARTHEST, Place};
 use super::space::Columns;
 use super::target::Target;
 use crate::distribution::standard_normal;
@@ -60,11 +60,17 @@ pub(super) struct Mixture<'a> {
     dimensions: usize,
 }
 
-/// Where a place's line through each point crosses, and how far out on it the point lies.
+/// Where a place's line through each point crosses, how far out on it the point lies, and the logarithm of what the spreads make of
+/// the height.
 struct Crossing {
     along: Vec<f64>,
     crossing: Vec<f64>,
     spread: Vec<f64>,
+}
+
+/// Where a component begins on a line that crosses there; farther out a double knows no probability.
+fn edge(crossing: f64, shift: f64) -> f64 {
+    (crossing - shift).min(FARTHEST)
 }
 
 impl<'a> Mixture<'a> {
@@ -142,14 +148,14 @@ impl<'a> Mixture<'a> {
         }
         let Crossing { along, crossing, .. } = self.crossing(place, &columns);
         for row in 0..rows {
-            let tail: f64 = rng.sample::<f64, _>(rand_distr::Open01) * standard_normal::sf(crossing[row] - shift);
+            let tail: f64 = rng.sample::<f64, _>(rand_distr::Open01) * standard_normal::sf(edge(crossing[row], shift));
             let moved = standard_normal::upper_quantile(tail) - along[row];
             columns.iter_mut().zip(&place.direction).for_each(|(column, part)| column[row] += moved * part);
         }
         columns
     }
 
-    /// The height of every component relative to the inputs' own density: a row for every point.
+    /// The logarithm of every component's height relative to the inputs' own density: a row for every point.
     pub(super) fn heights(&self, points: &Columns) -> Vec<Vec<f64>> {
         let rows = points.first().map_or(0, Vec::len);
         let firsts: Vec<usize> = (0..rows).step_by(ROWS).collect();
@@ -158,10 +164,10 @@ impl<'a> Mixture<'a> {
             let part: Columns = points.iter().map(|column| column[first..last].to_vec()).collect();
             let crossings: Vec<Crossing> = self.places.iter().map(|place| self.crossing(place, &part)).collect();
             let height = |row: usize, component: &Option<Beyond>| {
-                let Some(Beyond { place, shift }) = *component else { return 1.0 };
+                let Some(Beyond { place, shift }) = *component else { return 0.0 };
                 let Crossing { along, crossing, spread } = &crossings[place];
-                let edge = crossing[row] - shift;
-                if along[row] > edge { spread[row] / standard_normal::sf(edge) } else { 0.0 }
+                let edge = edge(crossing[row], shift);
+                if along[row] > edge { spread[row] - standard_normal::sf(edge).ln() } else { f64::NEG_INFINITY }
             };
             let row = |row: usize| self.components.iter().map(|component| height(row, component)).collect();
             (0..last - first).map(row).collect::<Vec<Vec<f64>>>()
@@ -174,10 +180,10 @@ impl<'a> Mixture<'a> {
     fn crossing(&self, place: &Place, points: &Columns) -> Crossing {
         let rows = points.first().map_or(0, Vec::len);
         let along_it = along(points, &place.direction);
-        let mut spread = vec![1.0; rows];
+        let mut spread = vec![0.0; rows];
         for (direction, by) in &place.spreads {
             for (spread, across) in spread.iter_mut().zip(along(points, direction)) {
-                *spread *= (-0.5 * across * across * (1.0 / (by * by) - 1.0)).exp() / by;
+                *spread -= 0.5 * across * across * (1.0 / (by * by) - 1.0) + by.ln();
             }
         }
         let crossing = match place.crossed {

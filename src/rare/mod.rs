@@ -63,6 +63,7 @@ impl Default for RareOptions {
 
 /// What was found out about rare events.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RareEvents {
     /// The method of the surrogate.
     pub method: Method,
@@ -85,6 +86,7 @@ pub struct RareEvents {
 
 /// What is known of one characteristic.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RareCharacteristic {
     /// The characteristic, with its limits.
     pub characteristic: Characteristic,
@@ -106,6 +108,7 @@ pub struct RareCharacteristic {
 
 /// What is known of what lies beyond one limit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Beyond {
     /// The limit.
     pub limit: f64,
@@ -131,6 +134,7 @@ pub struct Beyond {
 /// The most likely assembly at a limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct DesignPoint {
     /// How far it is from the middle, in standard deviations of independent normal variables.
     pub distance: f64,
@@ -289,10 +293,12 @@ fn targets<'a>(problem: &Problem, surrogates: &'a Surrogates, space: &'a Space<'
     for (c, characteristic) in problem.characteristics().iter().enumerate() {
         let Some(known) = surrogates.known.get(c).and_then(Option::as_ref) else { continue };
         let limits = characteristic.limits();
-        for (sign, limit) in [(-1.0, limits.lower()), (1.0, limits.upper())] {
+        for (side, limit) in [(-1.0, limits.lower()), (1.0, limits.upper())] {
             let Some(limit) = limit else { continue };
             let (surrogate, sigma) = (&known.surrogate, known.moments.sigma);
-            targets.push(Target { space, characteristic: c, sign, limit, surrogate, sigma });
+            let target = Target { space, characteristic: c, side, kept: false, limit, surrogate, sigma };
+            let middle = target.margins(&vec![vec![0.0]; space.len()]);
+            targets.push(Target { kept: middle.first().is_some_and(|&margin| margin > 0.0), ..target });
         }
     }
     targets

@@ -6,7 +6,7 @@ use super::space::Columns;
 use super::target::Target;
 
 /// Farther out nothing has a probability that a double knows.
-const FARTHEST: f64 = 37.0;
+pub(super) const FARTHEST: f64 = 37.0;
 /// The most places of one target.
 const PLACES: usize = 12;
 /// A place this much less probable than the nearest adds nothing.

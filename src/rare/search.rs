@@ -23,7 +23,7 @@ pub(super) struct Search<'a> {
     targets: &'a [Target<'a>],
     mixture: Mixture<'a>,
     weighed: Vec<Weighed>,
-    /// For every target some rejects: their weights and normal variables.
+    /// For every target some rejects: the logarithms of their weights, and their normal variables.
     guides: Vec<Vec<(f64, Vec<f64>)>>,
     /// Points drawn and answered.
     pub(super) points: u64,
@@ -35,6 +35,7 @@ struct Drawn {
     /// The component of every point.
     from: Vec<usize>,
     normals: Columns,
+    /// Their natural logarithms.
     heights: Vec<Vec<f64>>,
 }
 
@@ -60,8 +61,9 @@ impl<'a> Search<'a> {
         let before = places.len();
         for (index, guides) in self.guides.iter().enumerate().filter(|(_, guides)| guides.len() >= FEW) {
             let mut middle = vec![0.0; model.space.len()];
+            let greatest = guides.iter().map(|guide| guide.0).fold(f64::NEG_INFINITY, f64::max);
             for (weight, normals) in guides {
-                middle.iter_mut().zip(normals).for_each(|(sum, z)| *sum += weight * z);
+                middle.iter_mut().zip(normals).for_each(|(sum, z)| *sum += (weight - greatest).exp() * z);
             }
             let Some(direction) = unit(middle) else { continue };
             let near = |place: &&Place| place.target == index && dot(&place.direction, &direction) > 0.97;
@@ -87,7 +89,7 @@ impl<'a> Search<'a> {
         parts.iter().zip(first).map(|(part, first)| (1.0 - KEPT) * part + KEPT * first).collect()
     }
 
-    /// Weights with the heights of all components instead of the points.
+    /// Weights with the heights of all components instead of the points, all as logarithms.
     fn heights(&self, guides: &[(f64, Vec<f64>)]) -> Vec<(f64, Vec<f64>)> {
         let dimensions = guides.first().map_or(0, |guide| guide.1.len());
         let columns = (0..dimensions).map(|j| guides.iter().map(|guide| guide.1[j]).collect()).collect();
@@ -115,14 +117,17 @@ impl<'a> Search<'a> {
         rows.iter().for_each(|&row| counts[drawn.from[row]] += 1.0);
         let total = rows.len() as f64;
         let weight = |&row: &usize| {
-            total / counts.iter().zip(&drawn.heights[row]).map(|(count, height)| count * height).sum::<f64>()
+            let heights = &drawn.heights[row];
+            let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let sum: f64 = counts.iter().zip(heights).map(|(count, height)| count * (height - highest).exp()).sum();
+            total.ln() - highest - sum.ln()
         };
         let weights: Vec<f64> = rows.iter().map(weight).collect();
         self.points += rows.len() as u64;
         for (target, (weighed, guides)) in self.targets.iter().zip(self.weighed.iter_mut().zip(&mut self.guides)) {
-            let beyond = |row: usize| answers.value(row, target.characteristic).map(|value| target.beyond(value));
+            let beyond = |row: usize| answers.value(row, target.characteristic).map(|value| target.sought(value));
             let points = rows.iter().zip(&weights).map(|(&row, &weight)| (drawn.from[row], weight, beyond(row)));
-            weighed.add(self.mixture.len(), points);
+            weighed.add(self.mixture.len(), &points.collect::<Vec<_>>());
             let hits = rows.iter().zip(&weights).filter(|&(&row, _)| beyond(row) == Some(true));
             let room = GUIDES.saturating_sub(guides.len());
             guides.extend(
@@ -147,9 +152,10 @@ impl<'a> Search<'a> {
     pub(super) fn characteristics(self, model: &Model<'_>, unfinished: bool) -> Vec<RareCharacteristic> {
         let space = model.space;
         let beyond = |c: usize, sign: f64| {
-            let same = |target: &Target<'_>| target.characteristic == c && target.sign * sign > 0.0;
+            let same = |target: &Target<'_>| target.characteristic == c && target.side * sign > 0.0;
             let index = self.targets.iter().position(same)?;
             let found = self.weighed[index].found()?;
+            let found = if self.targets[index].kept { found.complement() } else { found };
             let place = self.mixture.places().iter().find(|place| place.target == index && place.crossed);
             let design_point = place.map(|place| {
                 let normals = place.direction.iter().map(|part| vec![part * place.distance]).collect();
@@ -159,7 +165,7 @@ impl<'a> Search<'a> {
             });
             let plain = |Estimate { value, standard_error }: Estimate| {
                 let error = standard_error.filter(|&error| error > 0.0)?;
-                Some(value * (1.0 - value) / (error * error))
+                Some(value * (1.0 - value) / error / error).filter(|samples| samples.is_finite())
             };
             Some(Beyond {
                 limit: self.targets[index].limit,
@@ -175,7 +181,11 @@ impl<'a> Search<'a> {
         };
         let characteristic = |(c, characteristic): (usize, &Characteristic)| {
             let (below, above) = (beyond(c, -1.0), beyond(c, 1.0));
-            let within = within(characteristic.limits(), [&below, &above]);
+            let kept = self.targets.iter().zip(&self.weighed).find_map(|(target, weighed)| {
+                let mine = target.characteristic == c && target.kept;
+                mine.then(|| weighed.found()).flatten().map(|found| (usize::from(target.side > 0.0), found))
+            });
+            let within = within(characteristic.limits(), [&below, &above], kept);
             RareCharacteristic {
                 characteristic: characteristic.clone(),
                 failed: model.lost[c].0,

@@ -8,7 +8,9 @@ pub(super) struct Target<'a> {
     pub(super) space: &'a Space<'a>,
     pub(super) characteristic: usize,
     /// 1 for what lies above the limit, -1 for what lies below.
-    pub(super) sign: f64,
+    pub(super) side: f64,
+    /// Where the means lie beyond the limit, what keeps it is sought instead: the rarer of the two.
+    pub(super) kept: bool,
     pub(super) limit: f64,
     pub(super) surrogate: &'a Surrogate,
     /// The surrogate's, to measure by.
@@ -16,21 +18,26 @@ pub(super) struct Target<'a> {
 }
 
 impl Target<'_> {
-    /// Whether a value of the model is beyond the limit; on it, it keeps it.
-    pub(super) fn beyond(&self, value: f64) -> bool {
-        self.sign * (value - self.limit) > 0.0
+    /// 1 where what is sought lies above the limit, -1 where it lies below.
+    fn sign(&self) -> f64 {
+        if self.kept { -self.side } else { self.side }
     }
 
-    /// How far a value lies beyond the limit, in sigmas; negative within.
+    /// Whether a value of the model is one that is sought; on the limit, it keeps it.
+    pub(super) fn sought(&self, value: f64) -> bool {
+        (self.side * (value - self.limit) > 0.0) != self.kept
+    }
+
+    /// How far a value lies among those sought, in sigmas; negative where it is none.
     pub(super) fn margin_of(&self, value: f64) -> f64 {
-        self.sign * (value - self.limit) / self.sigma
+        self.sign() * (value - self.limit) / self.sigma
     }
 
-    /// How far the surrogate lies beyond the limit at these normal variables, in sigmas; negative within.
+    /// How far the surrogate lies among those sought at these normal variables, in sigmas; negative where it does not.
     pub(super) fn margins(&self, normals: &Columns) -> Vec<f64> {
         let mut margins = self.surrogate.rises(&self.space.standardised(normals)).unwrap_or_default();
         let short = self.limit - self.surrogate.centre;
-        margins.iter_mut().for_each(|rise| *rise = self.sign * (*rise - short) / self.sigma);
+        margins.iter_mut().for_each(|rise| *rise = self.sign() * (*rise - short) / self.sigma);
         margins
     }
 

@@ -1,14 +1,16 @@
 //! The share within the limits, from what lies beyond each of them.
 
+use super::estimate::Found;
 use super::{Beyond, RareCharacteristic};
 use crate::characteristic::SpecLimits;
 use crate::requirement::Requirement;
+use crate::sampling::Estimate;
 use crate::verdict::{self, Judged, Verdict};
 
 /// The share within the limits.
 #[derive(Clone, Copy)]
 pub(super) struct Within {
-    /// None where beyond some limit no point was seen.
+    /// None where beyond some limit no point was seen and that may matter.
     pub(super) value: Option<f64>,
     /// 95 % interval.
     pub(super) interval: [f64; 2],
@@ -16,8 +18,17 @@ pub(super) struct Within {
 
 /// Of both sides; None where there is no limit, or one of them could not be looked at.
 ///
-/// Two independent errors are joined as Zou and Donner (2008) do.
-pub(super) fn within(limits: SpecLimits, sides: [&Option<Beyond>; 2]) -> Option<Within> {
+/// A side beyond which nothing was seen adds to the interval; where that is less than what the other side leaves open, the value
+/// is that of the other. Two independent errors are joined as Zou and Donner (2008) do.
+/// Where the means lie beyond a limit, `kept` is what keeps that one: the share within the limits is what of it keeps the other too.
+pub(super) fn within(limits: SpecLimits, sides: [&Option<Beyond>; 2], kept: Option<(usize, Found)>) -> Option<Within> {
+    if let Some((side, kept)) = kept {
+        let other = match (sides[1 - side], [limits.lower(), limits.upper()][1 - side]) {
+            (None, Some(_)) => return None,
+            (beyond, _) => beyond.as_ref(),
+        };
+        return Some(keeping(kept, other));
+    }
     let sides: Vec<&Beyond> = sides.into_iter().flatten().collect();
     if sides.is_empty() || sides.len() != [limits.lower(), limits.upper()].iter().flatten().count() {
         return None;
@@ -28,9 +39,26 @@ pub(super) fn within(limits: SpecLimits, sides: [&Option<Beyond>; 2]) -> Option<
         distances.fold(0.0, f64::hypot)
     };
     let seen: f64 = sides.iter().filter_map(|beyond| value(beyond)).sum();
-    let rejected: Option<f64> = sides.iter().map(|beyond| value(beyond)).sum();
+    let (known, unseen): (Vec<&Beyond>, Vec<&Beyond>) = sides.iter().partition(|beyond| value(beyond).is_some());
+    let open: f64 = known.iter().map(|beyond| beyond.interval[1] - value(beyond).unwrap_or(0.0)).sum();
+    let negligible = !known.is_empty() && unseen.iter().map(|beyond| beyond.interval[1]).sum::<f64>() <= open;
     let interval = verdict::share([1.0 - seen - apart(1), 1.0 - seen + apart(0)]);
-    Some(Within { value: rejected.map(|rejected| 1.0 - rejected), interval })
+    let value = (unseen.is_empty() || negligible).then(|| (1.0 - seen).clamp(0.0, 1.0));
+    Some(Within { value, interval })
+}
+
+/// What keeps one limit, less what lies beyond the other.
+fn keeping(kept: Found, other: Option<&Beyond>) -> Within {
+    let estimate = |probability: Option<Estimate>| probability.map_or(0.0, |estimate| estimate.value);
+    let (keeps, lost) = (estimate(kept.probability), other.map_or(0.0, |beyond| estimate(beyond.probability)));
+    let apart = |end: usize| {
+        let of_other = other.map_or(0.0, |beyond| beyond.interval[1 - end] - lost);
+        (kept.interval[end] - keeps).hypot(of_other)
+    };
+    let known = kept.probability.is_some()
+        && other.is_none_or(|beyond| beyond.probability.is_some() || beyond.interval[1] < keeps);
+    let value = known.then(|| (keeps - lost).clamp(0.0, 1.0));
+    Within { value, interval: verdict::share([keeps - lost - apart(0), keeps - lost + apart(1)]) }
 }
 
 impl RareCharacteristic {

@@ -4,11 +4,13 @@ use super::distribution::{DistributionReport, Quantiles};
 use super::head::{self, findings};
 use super::requirement::{RequirementReport, judged, loud};
 use super::stack::Stack;
-use super::{CharacteristicReport, CorrelationReport, DimensionReport, NormalFitReport, Report, WarningReport, bars};
+use super::surface_law::source;
+use super::{CharacteristicReport, CorrelationReport, DimensionReport, FitReport, Report, WarningReport, bars};
 use crate::analysis::{Interaction, Sensitivity};
 use crate::capability::Law;
 use crate::document::number::{
     NEWS, UNKNOWN, beside, index, known, limits, percent, plain, plural, rejected, shape, share, short, significant,
+    yielded,
 };
 use crate::document::{
     Block, Blocks, Cell, Chart, Columns, Document, Line, Section, Spread, Style, Table, Value, terminal,
@@ -41,6 +43,10 @@ impl Report {
         self.account.iter().for_each(|account| document.wrapped(0, account.to_string()));
         document.gap();
         document.table(self.verdicts());
+        if let Some(joint) = &self.joint_yield {
+            let error = significant(100.0 * joint.error, 2);
+            document.note(format!("all limits at once: yield {}, ± {error} %", yielded(joint.value)));
+        }
         let all = self.characteristics.iter().zip(self.stacks());
         document.sections = all.map(|(one, stack)| self.section(one, &stack)).collect();
         document.head.extend([self.dimension_table(), self.warning_table()].map(Block::Table));
@@ -98,8 +104,7 @@ impl Report {
             Some(DistributionReport::Pearson { kind, .. }) => [Some("pearson"), Some(*kind)],
         };
         let end = |interval: Option<[f64; 2]>, end: usize| Cell::data(interval.map(|ends| ends[end]));
-        let normal =
-            |one: &Of<'_>, of: fn(&NormalFitReport) -> Option<f64>| Cell::data(one.normal_fit.as_ref().and_then(of));
+        let normal = |one: &Of<'_>, of: fn(&FitReport) -> Option<f64>| Cell::data(one.normal_fit.as_ref().and_then(of));
         Columns::default()
             .named("name", "characteristic", |one: &Of<'_>| Cell::name(&one.name))
             .data("unit", |one| Cell::optional(one.unit.as_deref()))
@@ -278,8 +283,11 @@ impl CharacteristicReport {
                 sampled.samples
             ));
         }
-        if let Some(found) = &self.verification {
-            section.note(found.words.as_str());
+        match &self.verification {
+            Some(found) => section.note(found.words.as_str()),
+            // Nothing is to be verified of what has no moments, or depends on nothing that varies.
+            None if self.mean.is_some() && !self.constant => section.note("not verified by the model"),
+            None => {}
         }
         if let Some(sampled) = &self.surrogate_sampling {
             let [sigma, skewness, kurtosis] =
@@ -319,7 +327,11 @@ impl CharacteristicReport {
                     section.chart(Chart::Spread(Box::new(self.spread(law, kind))));
                 }
                 section.gap();
-                section.table(quantile_table(kind, quantiles, self.sigma.unwrap_or(0.0)));
+                let sigma = self.sigma.unwrap_or(0.0);
+                section.table(match self.surface_law.as_ref().and_then(|law| law.quantiles.as_ref()) {
+                    Some(law) => quantile_table("surface law", law, sigma),
+                    None => quantile_table(&named(kind), quantiles, sigma),
+                });
             }
         }
         section.table(self.quantile_data());
@@ -351,10 +363,7 @@ impl CharacteristicReport {
     }
 
     fn quantile_data(&self) -> Table {
-        let quantiles = match &self.distribution {
-            Some(DistributionReport::Pearson { quantiles, .. }) => quantiles.0.as_slice(),
-            _ => &[],
-        };
+        let quantiles = self.quantiles().map_or(&[][..], |quantiles| &quantiles.0);
         Columns::default()
             .data("characteristic", |_| Cell::text(&self.name))
             .data("probability", |row: &&(&'static str, f64)| Cell::text(row.0))
@@ -369,6 +378,7 @@ impl CharacteristicReport {
         };
         let target = judged(self.target_yield, self.verdict);
         section.note(Line::from(shown(self.ppm_below, self.ppm_above)).and(target));
+        source(self).into_iter().for_each(|line| section.note(line));
         let named = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {}", index(value)));
         let indices = [
             named("Cp", self.cp),
@@ -388,7 +398,7 @@ impl CharacteristicReport {
     }
 
     /// Whether the normal fit rejects visibly more or fewer, on either side.
-    fn differs(&self, normal: &NormalFitReport) -> bool {
+    fn differs(&self, normal: &FitReport) -> bool {
         let far = |a: Option<f64>, b: Option<f64>| match (a, b) {
             (Some(a), Some(b)) => (a - b).abs() > DIFFERENT * a.max(b),
             (None, None) => false,
@@ -564,7 +574,7 @@ pub fn law_text(law: &Pearson, style: Style) -> String {
     document.gap();
     document.chart(Chart::Spread(Box::new(Spread { law: Some(law.clone()), sigma: law.sigma(), ..Spread::default() })));
     document.gap();
-    document.table(quantile_table(kind, &Quantiles::of(law), law.sigma()));
+    document.table(quantile_table(&named(kind), &Quantiles::of(law), law.sigma()));
     terminal::text(&document, style)
 }
 
@@ -573,7 +583,7 @@ fn named(kind: &str) -> String {
 }
 
 /// Quantiles beside one another, with their probabilities above.
-fn quantile_table(kind: &str, quantiles: &Quantiles, sigma: f64) -> Table {
+fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> Table {
     let row = |name: String, cell: &dyn Fn(&(&'static str, f64)) -> Cell| -> [Cell; 8] {
         let mut cells = std::iter::once(Cell::text(name)).chain(quantiles.0.iter().map(cell));
         std::array::from_fn(|_| cells.next().unwrap_or_else(Cell::empty))
@@ -583,7 +593,7 @@ fn quantile_table(kind: &str, quantiles: &Quantiles, sigma: f64) -> Table {
         Cell::number(p.parse::<f64>().ok(), |p| format!("{} %", plain((1e5 * p).round() / 1e3)))
     };
     Table::untitled([
-        row(named(kind), &probability),
+        row(law.to_owned(), &probability),
         row("quantiles".to_owned(), &|(_, value)| Cell::number(*value, |value| beside(value, sigma))),
     ])
 }

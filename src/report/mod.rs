@@ -21,6 +21,7 @@ mod sampling;
 mod schema;
 mod simulation;
 mod stack;
+mod surface_law;
 mod sweep;
 mod verification;
 
@@ -41,12 +42,13 @@ pub use requirement::RequirementReport;
 pub use sampling::SamplingReport;
 pub use simulation::{EmpiricalReport, SimulatedReport, SimulationReport, StandardErrors};
 pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_document};
+pub use surface_law::SurfaceLawReport;
 pub use sweep::{ParameterReport, SweepReport, SweptPointReport, SweptReport};
 pub use verification::{SwitchReport, VarianceShareReport, VerificationReport, VerifiedFiguresReport};
 
 use serde::Serialize;
 
-use crate::analysis::{Account, Analysis, CharacteristicAnalysis, Interaction, Sensitivity, Tails};
+use crate::analysis::{Account, Analysis, CharacteristicAnalysis, Interaction, Sensitivity, YieldSource};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
 use crate::document::number::{UNKNOWN, band, significant};
@@ -56,6 +58,7 @@ use crate::moments::Sampled;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
+use crate::verification::Verified;
 use crate::warning::{Advice, Warning};
 
 /// The version of the JSON report's shape.
@@ -87,6 +90,9 @@ pub struct Report {
     pub correlation: Vec<CorrelationReport>,
     /// What was asked.
     pub characteristics: Vec<CharacteristicReport>,
+    /// The share of assemblies that keep the limits of all characteristics at once; null with fewer than two that have limits, and
+    /// where it is not known.
+    pub joint_yield: Option<Verified>,
     /// Where an assumption fails.
     pub warnings: Vec<WarningReport>,
 }
@@ -153,8 +159,8 @@ pub struct CharacteristicReport {
     pub verification: Option<VerificationReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
-    /// What law and surface reject; null without limits, or where the surface is plainly normal.
-    pub tails: Option<Tails>,
+    /// What the law of its surface says; null where its moments follow from no surface.
+    pub surface_law: Option<SurfaceLawReport>,
     /// Whether planned points of it were not evaluated because the run was stopped.
     pub unfinished: bool,
     /// Evaluated points at which it has no value.
@@ -200,6 +206,8 @@ pub struct CharacteristicReport {
     pub requirements: Vec<RequirementReport>,
     /// Within which the share is known that does; null where that is not known.
     pub yield_interval: Option<[f64; 2]>,
+    /// What the yield comes from: `proof`, `samples` of the model, `surface-law` or `pearson`; null without a yield.
+    pub yield_source: Option<YieldSource>,
     /// The share that does.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
@@ -217,8 +225,10 @@ pub struct CharacteristicReport {
     pub cpk_percentile: Option<f64>,
     /// Sigmas of a normal beyond which, on one side, as many lie as are rejected.
     pub sigma_level: Option<f64>,
+    /// What the Pearson distribution with the same moments would make of the limits.
+    pub pearson_fit: Option<FitReport>,
     /// What a normal distribution with the same mean and sigma would make of the limits.
-    pub normal_fit: Option<NormalFitReport>,
+    pub normal_fit: Option<FitReport>,
 }
 
 /// Intervals that no assembly leaves.
@@ -262,10 +272,10 @@ impl Serialize for PointReport {
     }
 }
 
-/// What a normal distribution with the same mean and sigma would make of the limits.
+/// What a distribution with the same moments would make of the limits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct NormalFitReport {
+pub struct FitReport {
     /// The share of assemblies within them.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
@@ -325,6 +335,7 @@ impl Report {
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             correlation: correlation(problem),
             characteristics: analysis.characteristics.iter().map(CharacteristicReport::of).collect(),
+            joint_yield: analysis.joint,
             warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
         }
     }
@@ -388,7 +399,7 @@ impl CharacteristicReport {
             model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
             verification: VerificationReport::of(analysis),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
-            tails: analysis.tails,
+            surface_law: analysis.surface_law.as_ref().map(SurfaceLawReport::of),
             unfinished: analysis.unfinished,
             without_value: analysis.without_value,
             constant: analysis.constant,
@@ -411,6 +422,7 @@ impl CharacteristicReport {
             verdict: analysis.verdict(),
             requirements: analysis.requirements().iter().map(RequirementReport::of).collect(),
             yield_interval: analysis.yield_interval(),
+            yield_source: analysis.yield_source,
             yield_: of(|capability| capability.yield_()),
             ppm_below: of(|capability| capability.below.map(ppm)),
             ppm_above: of(|capability| capability.above.map(ppm)),
@@ -419,12 +431,16 @@ impl CharacteristicReport {
             cp_percentile: of(|capability| capability.cp_percentile),
             cpk_percentile: of(|capability| capability.cpk_percentile),
             sigma_level: of(|capability| capability.sigma_level()),
-            normal_fit: analysis.normal.map(|normal| NormalFitReport {
-                yield_: normal.yield_(),
-                ppm_below: normal.below.map(ppm),
-                ppm_above: normal.above.map(ppm),
-            }),
+            pearson_fit: analysis.pearson.as_ref().map(FitReport::of),
+            normal_fit: analysis.normal.as_ref().map(FitReport::of),
         }
+    }
+}
+
+impl FitReport {
+    fn of(fit: &Capability) -> Self {
+        let ppm = |share: Option<f64>| share.map(|share| 1e6 * share);
+        Self { yield_: fit.yield_(), ppm_below: ppm(fit.below), ppm_above: ppm(fit.above) }
     }
 }
 

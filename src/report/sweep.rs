@@ -260,7 +260,11 @@ impl SweptPointReport {
         let moments = analysis.and_then(|analysis| analysis.moments);
         let capability = analysis.and_then(|analysis| analysis.capability);
         let law = analysis.and_then(|analysis| analysis.law.as_ref()).and_then(|law| law.as_ref().ok());
+        let surface = analysis.and_then(|analysis| analysis.surface_law.as_ref()?.quantiles);
         let quantiles = match law {
+            _ if let Some(surface) = surface => {
+                NAMES.iter().zip(surface).map(|(&name, figure)| (name, Some(figure.value))).collect()
+            }
             Some(Law::Point { at }) => NAMES.iter().map(|&name| (name, Some(*at))).collect(),
             Some(Law::Pearson(pearson)) => {
                 Quantiles::of(pearson).0.into_iter().map(|(name, value)| (name, Some(value))).collect()

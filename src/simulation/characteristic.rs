@@ -16,6 +16,7 @@ use crate::warning::Warning;
 
 /// Estimates for one characteristic, each with its standard error. What is unknown is None.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct SimulatedCharacteristic {
     /// The characteristic, with its limits.
     pub characteristic: Characteristic,
@@ -58,6 +59,7 @@ pub struct SimulatedCharacteristic {
 
 /// What a surrogate as control variate has done.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SurrogateControl {
     /// The method that it comes from.
     pub method: Method,
@@ -71,6 +73,7 @@ pub struct SurrogateControl {
 
 /// The share of assemblies that keep the limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct YieldEstimate {
     /// Among the points that have a value.
     pub value: f64,
@@ -83,6 +86,7 @@ pub struct YieldEstimate {
 /// How many values lie in which interval.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Histogram {
     /// One more than there are intervals, ascending.
     pub edges: Vec<f64>,

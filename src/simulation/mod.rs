@@ -69,6 +69,7 @@ const COSTLY: usize = 4096;
 
 /// What a simulation found out.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Simulation {
     /// How points were drawn.
     pub sampler: Sampler,
@@ -91,6 +92,7 @@ pub struct Simulation {
 
 /// How far a simulation is.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Pace {
     /// Points answered.
     pub samples: u64,

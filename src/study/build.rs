@@ -7,22 +7,23 @@ use super::correlation::correlated;
 use super::costs::{costs, requirement};
 use super::data::Data;
 use super::dimension;
-use super::error::{Fault, StudyFault, fault};
+use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
 use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
+use super::values::NominalEntry;
 use crate::allocation::Priced;
-use crate::assembly::formula::{Formula, is_reserved};
+use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
 use crate::dimension::Dimension;
 use crate::method::Options;
 use crate::models::{self, Model};
-use crate::names::nearest;
+use crate::names::{is_hidden, nearest};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::warning::{NameKind, Warning, aggregated};
@@ -40,19 +41,24 @@ pub(super) struct Built {
     pub(super) files: Vec<NamedFile>,
 }
 
-pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
+pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> {
     let evaluated = file.model.as_ref().map(|entry| model(entry, source)).transpose()?;
     let program = matches!(evaluated, Some(ModelOf::Program(_)));
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
-    names(file, model)?;
-    let mut data = Data::of(&source.folder);
-    let dimensions = dimensions(file, model, &mut data)?;
-    let formulas = formulas(file, source)?;
-    for (what, empty) in [("dimension", dimensions.is_empty()), ("characteristic", file.characteristics.0.is_empty())] {
+    let mut faults = Faults::default();
+    faults.take(names(file, model));
+    let mut data = Data::of(&source.place);
+    let dimensions = faults.take(dimensions(file, model, &mut data)).unwrap_or_default();
+    let formulas = faults.take(formulas(file, source)).unwrap_or_default();
+    faults.take(characteristics(file, model, program));
+    for (what, empty) in
+        [("dimension", file.dimensions.0.is_empty()), ("characteristic", file.characteristics.0.is_empty())]
+    {
         if empty {
-            return Err(Fault { span: None, key: String::new(), fault: Box::new(StudyFault::Nothing { what }) });
+            faults.0.push(Fault { span: None, key: String::new(), fault: Box::new(StudyFault::Nothing { what }) });
         }
     }
+    faults.none()?;
     let implicit = implicit(file, &dimensions, source)?;
     let written = Written { formulas, implicit };
     let used = |name: &str| written.names().any(|used| used == name);
@@ -60,6 +66,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     let (characteristics, outputs) = characteristics(file, model, program)?;
     let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
     let mut warnings = aggregated(std::mem::take(&mut data.warnings));
+    warnings.extend(outside_limits(file));
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
@@ -70,7 +77,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Fault> {
     let requirements = requirements(file, &problem)?;
     let problem = requiring(problem, &requirements)?;
     let mut files = data.files();
-    files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), &source.folder)));
+    files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), source.place.path())));
     Ok(Built { problem, options, costs, requirements, warnings, data: data.bytes(), files })
 }
 
@@ -98,7 +105,8 @@ fn requiring(problem: Problem, requirements: &[(String, Requirement)]) -> Result
 }
 
 /// Every name means one thing.
-fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Fault> {
+fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Faults> {
+    let mut faults = Faults::default();
     let with_formula = file.characteristics.0.iter().filter(|(_, entry)| entry.get_ref().formula.is_some());
     let written = [file.formulas.names(), file.unknowns.names(), file.equations.names(), file.loops.names()];
     let formulas = written.iter().any(|names| !names.is_empty()) || with_formula.clone().next().is_some();
@@ -118,26 +126,27 @@ fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Fault> {
     for (section, by, name) in all {
         let text = name.get_ref();
         let at = |found| fault(name.span(), format!("{section}.{text}"), found);
-        if text.is_empty() {
-            return Err(at(StudyFault::EmptyName));
-        }
-        if is_reserved(text) && formulas {
-            return Err(at(StudyFault::ReservedName { name: text.clone() }));
-        }
-        if let Some(by) = taken.insert(text, by) {
-            return Err(at(StudyFault::NameTaken { name: text.clone(), by }));
-        }
+        let found = if text.is_empty() {
+            Some(StudyFault::EmptyName)
+        } else if let Some(character) = text.chars().find(|&c| is_hidden(c)) {
+            Some(StudyFault::HiddenCharacter { character })
+        } else if is_reserved(text) && formulas {
+            Some(StudyFault::ReservedName { name: text.clone() })
+        } else {
+            taken.insert(text, by).map(|by| StudyFault::NameTaken { name: text.clone(), by })
+        };
+        faults.0.extend(found.map(at));
     }
-    Ok(())
+    faults.none()
 }
 
-fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> Result<Vec<Dimension>, Fault> {
+fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> Result<Vec<Dimension>, Faults> {
     let input = |name: &str| model.and_then(|model| model.inputs.iter().find(|input| input.name == name));
     let with_unit = |dimension: Dimension| match (dimension.unit(), input(dimension.name())) {
         (None, Some(input)) => dimension.with_unit(input.unit),
         _ => dimension,
     };
-    let mut dimensions = Vec::new();
+    let (mut dimensions, mut faults) = (Vec::new(), Faults::default());
     for (name, entry) in &file.dimensions.0 {
         let of_model = |name: &str| input(name).map(|input| input.nominal);
         let of_line = dimension::dimensions(name, entry, &of_model, data).map_err(|found| {
@@ -145,10 +154,10 @@ fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> R
             // A fault of the line as a whole is shown at the dimension's name.
             let span = found.span.filter(|span| !span.is_empty()).unwrap_or_else(|| name.span());
             Fault { span: Some(span), key: format!("dimensions.{}{below}", name.get_ref()), fault: found.fault }
-        })?;
-        dimensions.extend(of_line.into_iter().map(with_unit));
+        });
+        dimensions.extend(faults.take(of_line).into_iter().flatten().map(with_unit));
     }
-    Ok(dimensions)
+    faults.none().map(|()| dimensions)
 }
 
 /// A formula of the file: of `[formulas]` or of a characteristic.
@@ -160,17 +169,19 @@ struct Named<'f> {
     formula: Formula,
 }
 
-fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, Fault> {
+fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, Faults> {
+    let mut faults = Faults::default();
     let own = file.formulas.0.iter().map(|(name, text)| (name, text, format!("formulas.{}", name.get_ref())));
     let of_characteristics = file.characteristics.0.iter().filter_map(|(name, entry)| {
         Some((name, entry.get_ref().formula.as_ref()?, format!("characteristics.{}.formula", name.get_ref())))
     });
-    own.chain(of_characteristics)
-        .map(|(name, text, key)| match Formula::parse(text.get_ref()) {
+    let parsed =
+        |(name, text, key): (&Spanned<String>, &'f Spanned<String>, String)| match Formula::parse(text.get_ref()) {
             Ok(formula) => Ok(Named { name: name.get_ref().clone(), text, key, formula }),
-            Err(error) => Err(in_formula(source, text.span(), key, error)),
-        })
-        .collect()
+            Err(error) => Err(in_formula(source, text.span(), key, of_several_words(file, text.get_ref(), error))),
+        };
+    let parsed: Vec<Named<'f>> = own.chain(of_characteristics).filter_map(|one| faults.take(parsed(one))).collect();
+    faults.none().map(|()| parsed)
 }
 
 /// Everything that is written as a formula.
@@ -198,8 +209,9 @@ impl Written<'_> {
 }
 
 /// Dimensions and constants are inputs of the model, or else a formula uses them.
-fn known_to_model(file: &StudyFile, model: Option<&Model>, used: &dyn Fn(&str) -> bool) -> Result<(), Fault> {
+fn known_to_model(file: &StudyFile, model: Option<&Model>, used: &dyn Fn(&str) -> bool) -> Result<(), Faults> {
     let Some(model) = model else { return Ok(()) };
+    let mut faults = Faults::default();
     let dimensions = dimension::names(&file.dimensions);
     let names = (dimensions.iter().map(|name| ("dimensions", name)))
         .chain(file.constants.names().into_iter().map(|name| ("constants", name)));
@@ -211,9 +223,9 @@ fn known_to_model(file: &StudyFile, model: Option<&Model>, used: &dyn Fn(&str) -
         let known: Vec<String> = model.inputs.iter().map(|input| input.name.to_owned()).collect();
         let nearest = nearest(text, known.iter().map(String::as_str)).map(str::to_owned);
         let unknown = StudyFault::UnknownInput { model: model.name.into(), name: text.clone(), nearest, known };
-        return Err(fault(name.span(), format!("{section}.{text}"), unknown));
+        faults.0.push(fault(name.span(), format!("{section}.{text}"), unknown));
     }
-    Ok(())
+    faults.none()
 }
 
 type Outputs = Vec<(String, Option<String>)>;
@@ -222,8 +234,8 @@ fn characteristics(
     file: &StudyFile,
     model: Option<&Model>,
     program: bool,
-) -> Result<(Vec<Characteristic>, Outputs), Fault> {
-    let (mut characteristics, mut outputs) = (Vec::new(), Vec::new());
+) -> Result<(Vec<Characteristic>, Outputs), Faults> {
+    let (mut characteristics, mut outputs, mut faults) = (Vec::new(), Vec::new(), Faults::default());
     for (name, entry) in &file.characteristics.0 {
         let (text, key) = (name.get_ref(), format!("characteristics.{}", name.get_ref()));
         let entry = entry.get_ref();
@@ -231,13 +243,13 @@ fn characteristics(
         // What a program offers it says itself.
         let unknowns = file.unknowns.names();
         if entry.formula.is_none() && !program && !unknowns.iter().any(|unknown| unknown.get_ref() == text) {
-            let output = offered(name, &key, model, &unknowns)?;
-            unit = unit.or_else(|| Some(output.unit.to_owned()));
+            let output = faults.take(offered(name, &key, model, &unknowns));
+            unit = unit.or_else(|| Some(output?.unit.to_owned()));
         }
         outputs.push((text.clone(), unit.clone()));
-        characteristics.push(characteristic(text, unit, entry, &key)?);
+        characteristics.extend(faults.take(characteristic(text, unit, entry, &key)));
     }
-    Ok((characteristics, outputs))
+    faults.none().map(|()| (characteristics, outputs))
 }
 
 /// The model's output of this name, for a characteristic that has no formula and is no unknown.
@@ -344,9 +356,25 @@ fn compose(
                 None => (written.formulas[index].text.span(), written.formulas[index].key.clone()),
                 Some(index) => written.implicit.as_ref().expect("the formula came from here").places[index].clone(),
             };
-            in_formula(source, text, key, error)
+            let formula = written.formulas.get(index).map_or("", |named| named.text.get_ref());
+            in_formula(source, text, key, of_several_words(file, formula, error))
         }
     })
+}
+
+/// The fault of a formula, or that a name in it which reads as several needs backquotes.
+fn of_several_words(file: &StudyFile, formula: &str, error: FormulaError) -> FormulaError {
+    let dimensions = dimension::names(&file.dimensions);
+    let others = [file.constants.names(), file.formulas.names(), file.unknowns.names()].concat();
+    let names = dimensions.iter().chain(others).map(Spanned::get_ref);
+    let meant = names.filter(|name| !is_plain(name)).find_map(|name| {
+        let mut places = formula.match_indices(name.as_str()).map(|(at, _)| at..at + name.len());
+        places.find(|place| place.contains(&error.span.start)).map(|place| (name.clone(), place))
+    });
+    match meant {
+        Some((name, span)) => FormulaError { span, fault: FormulaFault::NeedsBackquotes { name } },
+        None => error,
+    }
 }
 
 /// Where the inputs of a built-in model come from: a dimension, a constant, or its own nominal value.
@@ -380,6 +408,17 @@ fn asked_of_program(
         }
     }
     asked
+}
+
+/// Dimensions whose nominal value lies outside the limits that they give themselves.
+fn outside_limits(file: &StudyFile) -> Option<Warning> {
+    let outside = file.dimensions.0.iter().filter_map(|(name, entry)| {
+        let (Some(nominal), Some(limits)) = (&entry.get_ref().nominal, &entry.get_ref().limits) else { return None };
+        let (NominalEntry::One(nominal), [lower, upper]) = (nominal.get_ref(), *limits.get_ref()) else { return None };
+        (*nominal < lower || *nominal > upper).then(|| name.get_ref().clone())
+    });
+    let dimensions: Vec<String> = outside.collect();
+    (!dimensions.is_empty()).then_some(Warning::NominalOutsideLimits { dimensions })
 }
 
 /// Constants, formulas and unknowns that no characteristic of the file needs.

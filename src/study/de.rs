@@ -7,7 +7,7 @@ use serde::de::value::StrDeserializer;
 use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde_spanned::de::{SpannedDeserializer, is_spanned};
 
-use super::error::{Fault, StudyFault};
+use super::error::{Fault, Faults, StudyFault};
 use super::tree::{Key, Tree, Value};
 use crate::names::nearest;
 
@@ -29,7 +29,7 @@ impl Error {
         self
     }
 
-    pub(super) fn into_fault(self) -> Fault {
+    fn into_fault(self) -> Fault {
         Fault { span: self.span, key: self.path.join(".").replace(".[", "["), fault: self.fault }
     }
 
@@ -49,7 +49,7 @@ impl std::error::Error for Error {}
 
 impl de::Error for Error {
     fn custom<T: Display>(message: T) -> Self {
-        Self::new(StudyFault::Syntax { message: message.to_string() })
+        Self::new(StudyFault::Syntax { message: message.to_string(), slip: None })
     }
 
     fn invalid_type(found: de::Unexpected<'_>, expected: &dyn de::Expected) -> Self {
@@ -84,6 +84,39 @@ impl de::Error for Error {
     fn missing_field(field: &'static str) -> Self {
         Self::new(StudyFault::MissingKey { key: field.to_owned(), instead: format!("add `{field} = ...`") })
     }
+}
+
+/// Reads the tree; what is at fault is left out and the rest read again, so that all faults are told at once.
+pub(super) fn read<T: serde::de::DeserializeOwned>(tree: &Tree) -> Result<T, Faults> {
+    let mut faults = Faults::default();
+    let mut left = match T::deserialize(tree) {
+        Ok(read) => return Ok(read),
+        Err(error) => {
+            let mut left = tree.clone();
+            let more = left.remove(&error.path);
+            faults.0.push(error.into_fault());
+            if !more {
+                return Err(faults);
+            }
+            left
+        }
+    };
+    while faults.0.len() < super::Study::MOST_FAULTS {
+        let Err(error) = T::deserialize(&left) else { break };
+        let on = left.remove(&error.path);
+        let fault = error.into_fault();
+        // What lacks in an entry of which something was left out may be just that.
+        let entry = |key: &str| key.split('.').take(2).map(str::to_owned).collect::<Vec<_>>();
+        let follows = matches!(*fault.fault, StudyFault::MissingKey { .. })
+            && faults.0.iter().any(|earlier| entry(&earlier.key) == entry(&fault.key));
+        if !follows {
+            faults.0.push(fault);
+        }
+        if !on {
+            break;
+        }
+    }
+    Err(faults)
 }
 
 /// What Rust expects, in the words of who writes a study.

@@ -4,7 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::data::DataFault;
-use super::file::CORRELATIONS;
+use super::slip::{Slip, percent};
+use super::words::CORRELATIONS;
 use crate::allocation::{CostError, RequirementError};
 use crate::assembly::NoColumn;
 use crate::assembly::formula::FormulaFault;
@@ -21,7 +22,8 @@ use crate::warning::Advice;
 
 /// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{}{}{}", self.place(), self.fault, self.help().map(|help| format!(" ({help})")).unwrap_or_default())]
+#[error("{}{}{}{}", self.place(), self.fault, self.help().map(|help| format!(" ({help})")).unwrap_or_default(), self.others())]
+#[non_exhaustive]
 pub struct StudyError {
     /// The file's name as it was given.
     pub file: String,
@@ -33,9 +35,28 @@ pub struct StudyError {
     pub key: String,
     /// What is wrong.
     pub fault: Box<StudyFault>,
+    /// The other faults of the same study, in the order of the file: [`Study::MOST_FAULTS`](super::Study::MOST_FAULTS) in all at most.
+    pub more: Vec<StudyError>,
 }
 
 impl StudyError {
+    /// Of the faults of one study, those that come first in its file; None without a fault.
+    pub(super) fn of(faults: Vec<Fault>, file: &str, text: &Arc<str>) -> Option<Self> {
+        let mut faults = faults;
+        faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
+        let error = |Fault { span, key, fault }| Self {
+            file: file.to_owned(),
+            text: Arc::clone(text),
+            span,
+            key,
+            fault,
+            more: Vec::new(),
+        };
+        let mut errors = faults.into_iter().map(error).take(super::Study::MOST_FAULTS);
+        let first = errors.next()?;
+        Some(Self { more: errors.collect(), ..first })
+    }
+
     /// Line and column, both from 1, the column in characters.
     ///
     /// ```
@@ -53,6 +74,15 @@ impl StudyError {
     /// What to write instead, where that can be said.
     pub fn help(&self) -> Option<String> {
         self.fault.help()
+    }
+
+    /// How many faults there are beside the first.
+    fn others(&self) -> String {
+        match self.more.len() {
+            0 => String::new(),
+            1 => "; and one more fault".to_owned(),
+            more => format!("; and {more} more faults"),
+        }
     }
 
     /// `file:line:column: key: `, as far as they are known.
@@ -98,6 +128,8 @@ pub enum StudyFault {
     Syntax {
         /// The parser's words.
         message: String,
+        /// What was probably meant.
+        slip: Option<Slip>,
     },
     /// A key that means nothing here.
     #[error("there is no key `{key}` here")]
@@ -209,6 +241,12 @@ pub enum StudyFault {
     /// A name of nothing.
     #[error("a name must not be empty")]
     EmptyName,
+    /// A name with a character that is not seen, or that moves others.
+    #[error("a name must not contain the invisible character U+{:04X}", *character as u32)]
+    HiddenCharacter {
+        /// The character.
+        character: char,
+    },
     /// A name that something else in the study bears.
     #[error("the name `{name}` is taken: {by} bears it already")]
     NameTaken {
@@ -310,6 +348,8 @@ impl StudyFault {
             Self::WrongType { expected, .. } if expected == CORRELATIONS => {
                 Some("write three lines for each pair:\n[[correlation]]\nbetween = [\"a\", \"b\"]\nvalue = 0.9".into())
             }
+            Self::Syntax { slip, .. } => slip.as_ref().map(ToString::to_string),
+            Self::WrongType { expected, found } => Slip::of_value(expected, found).map(|slip| slip.to_string()),
             Self::IsFolder { within: None } => Some("name the study file in it".into()),
             Self::UnknownKey { nearest: Some(name), .. } | Self::UnknownWord { nearest: Some(name), .. } => {
                 Some(meant(name))
@@ -337,6 +377,9 @@ impl StudyFault {
                 DistributionError::InfiniteMoment { .. } | DistributionError::Pearson(_),
             )) => Some("leave model out: the values themselves have all moments".into()),
             Self::Data(fault) => fault.problem.help(),
+            Self::Limits(LimitsError::ImpossibleYield { value }) if *value > 1.0 && *value <= 100.0 => {
+                Some(format!("write {} for {value} %", percent(*value)))
+            }
             Self::Limits(LimitsError::Swapped { .. }) | Self::Cost(CostError::Swapped { .. }) => {
                 Some("exchange them".into())
             }
@@ -383,6 +426,28 @@ pub(super) struct Fault {
     pub(super) span: Option<Range<usize>>,
     pub(super) key: String,
     pub(super) fault: Box<StudyFault>,
+}
+
+/// Faults that were found independently of each other, and what was found without one; `Err` where there is any.
+#[derive(Default)]
+pub(super) struct Faults(pub(super) Vec<Fault>);
+
+impl Faults {
+    /// What a part of the study came to; None where it is at fault, which is kept.
+    pub(super) fn take<T>(&mut self, found: Result<T, impl Into<Self>>) -> Option<T> {
+        found.map_err(|faults| self.0.extend(faults.into().0)).ok()
+    }
+
+    /// Everything so far, if nothing was at fault.
+    pub(super) fn none(self) -> Result<(), Self> {
+        if self.0.is_empty() { Ok(()) } else { Err(self) }
+    }
+}
+
+impl From<Fault> for Faults {
+    fn from(fault: Fault) -> Self {
+        Self(vec![fault])
+    }
 }
 
 pub(super) fn fault(span: Range<usize>, key: impl Into<String>, fault: impl Into<StudyFault>) -> Fault {

@@ -50,28 +50,35 @@ mod implicit;
 mod lines;
 mod model;
 mod options;
+mod place;
+mod price;
+#[cfg(feature = "cli")]
+mod registry;
 mod rewrite;
 #[cfg(feature = "cli")]
 mod schema;
+mod slip;
 mod source;
 mod spanned;
 mod sweep;
 mod tree;
 mod values;
+mod words;
+pub(crate) mod write;
 
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};
 pub use files::{FileRole, NamedFile};
+pub use place::{Format, StudyText};
 pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "cli")]
 pub use schema::schema;
-pub use source::Format;
+pub use slip::Slip;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
 use crate::allocation::{AllocationTask, Priced, Requirement};
@@ -79,7 +86,8 @@ use crate::characteristic::Characteristic;
 use crate::method::Options;
 use crate::problem::Problem;
 use crate::warning::Warning;
-use error::Fault;
+use error::Faults;
+use place::Place;
 use source::Source;
 use tree::Tree;
 
@@ -111,10 +119,13 @@ pub struct Study {
     text: Arc<str>,
     format: Format,
     name: String,
-    folder: PathBuf,
+    place: Place,
 }
 
 impl Study {
+    /// Faults of a study that are told at once.
+    pub const MOST_FAULTS: usize = 20;
+
     /// Costs and requirements of the characteristics that its problem asks for.
     pub fn allocation_task(&self) -> AllocationTask {
         let of = |one: &Characteristic| {
@@ -129,7 +140,8 @@ impl Study {
     /// Reads a `.toml` or `.json` file.
     ///
     /// # Errors
-    /// The first fault, of the file, its syntax, its keys, its values, or of what they mean together.
+    /// What is wrong: with the file or its syntax, or else with its keys and values, or else with what they mean together. Faults
+    /// that do not follow from each other are told together.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         Self::read_with(path, Externals::default())
     }
@@ -159,6 +171,7 @@ impl Study {
             span: None,
             key: String::new(),
             fault: Box::new(fault),
+            more: Vec::new(),
         };
         if path.is_dir() {
             let within =
@@ -181,7 +194,7 @@ impl Study {
         match std::str::from_utf8(&bytes) {
             Ok(text) => {
                 let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-                Self::parse(text, format, &name, folder.to_owned(), externals, parameter)
+                Self::parse(text, format, &name, Place::folder(folder), externals, parameter)
             }
             Err(error) => {
                 let offset = error.valid_up_to();
@@ -207,38 +220,43 @@ impl Study {
     /// # Ok::<(), sensitol::Error>(())
     /// ```
     pub fn from_toml(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Toml, name, PathBuf::from("."), Externals::default(), None)
+        Self::from_text(StudyText::toml(name, text))
     }
 
     /// From JSON text; `name` stands for the file in errors.
     pub fn from_json(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Json, name, PathBuf::from("."), Externals::default(), None)
+        Self::from_text(StudyText::json(name, text))
+    }
+
+    /// From text in memory, with the files that it names.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn from_text(study: StudyText) -> Result<Self, StudyError> {
+        let StudyText { format, name, text, files, externals, parameter } = study;
+        Self::parse(&text, format, &name, Place::memory(files), externals, parameter.as_deref())
     }
 
     fn parse(
         text: &str,
         format: Format,
         name: &str,
-        folder: PathBuf,
+        place: Place,
         externals: Externals,
         parameter: Option<&str>,
     ) -> Result<Self, StudyError> {
-        let source = Source { name: name.to_owned(), text: Arc::from(text), folder, externals };
-        let failed = |Fault { span, key, fault }| StudyError {
-            file: source.name.clone(),
-            text: Arc::clone(&source.text),
-            span,
-            key,
-            fault,
+        let source = Source { name: name.to_owned(), text: Arc::from(text), place, externals };
+        let failed = |faults: Faults| {
+            StudyError::of(faults.0, &source.name, &source.text).expect("a study that fails has a fault")
         };
         let tree = match format {
             Format::Toml => Tree::of_toml(text),
             Format::Json => Tree::of_json(text),
         };
-        let tree = tree.map_err(failed)?;
-        let mut file = file::StudyFile::deserialize(&tree).map_err(|error| failed(error.into_fault()))?;
+        let tree = tree.map_err(|fault| failed(fault.into()))?;
+        let mut file: file::StudyFile = de::read(&tree).map_err(failed)?;
         if let Some(parameter) = parameter {
-            sweep::as_dimension(&mut file, parameter).map_err(failed)?;
+            sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
         }
         let built = build::build(&file, &source).map_err(failed)?;
         let mut hash = Sha256::new_with_prefix(text.as_bytes());
@@ -255,7 +273,7 @@ impl Study {
             files: built.files,
             format,
             name: source.name,
-            folder: source.folder,
+            place: source.place,
             text: source.text,
             sha256: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
         })

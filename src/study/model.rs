@@ -103,13 +103,13 @@ fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) 
         }
     };
     let file = |file: &Spanned<String>| {
-        let path = source.folder.join(file.get_ref());
+        let path = source.place.path().join(file.get_ref());
         if path.is_file() { Ok(path) } else { Err(fault(file.span(), "model.files", StudyFault::MissingFile { path })) }
     };
     let files = entry.files.iter().flatten().map(file).collect::<Result<_, _>>()?;
     let defaults = Settings::new(command.get_ref().iter());
     let settings = Settings {
-        folder: source.folder.clone(),
+        folder: source.place.path().to_owned(),
         workers: count(&entry.workers, "workers", 1, 1, WORKERS, "between 1 and 1024")? as usize,
         retries: count(&entry.retries, "retries", u64::from(defaults.retries), 0, 1000, "between 0 and 1000")? as u32,
         verify: match &entry.verify {

@@ -6,6 +6,7 @@ use jsonc_parser::ast;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Fault, StudyFault, fault};
+use super::slip::Slip;
 
 /// A value and its place in the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,12 +35,27 @@ pub(super) struct Key {
 }
 
 impl Tree {
+    /// Leaves out what stands at this path, with a list that it stands in; whether there was such a thing.
+    pub(super) fn remove(&mut self, path: &[String]) -> bool {
+        let Some((first, rest)) = path.split_first() else { return false };
+        let Value::Table(entries) = &mut self.value else { return false };
+        let Some(place) = entries.iter().position(|(key, _)| key.name == *first) else { return false };
+        if rest.is_empty() || !entries[place].1.remove(rest) {
+            entries.remove(place);
+        }
+        true
+    }
+
     pub(super) fn of_toml(text: &str) -> Result<Self, Fault> {
         let table = DeTable::parse(text).map_err(|error| {
             let key = error.span().map(|span| text[span].trim_matches(['"', '\'']).to_owned());
             let found = match key {
                 Some(key) if error.message().contains("duplicate key") => StudyFault::DuplicateKey { key },
-                _ => StudyFault::Syntax { message: error.message().lines().collect::<Vec<_>>().join("; ") },
+                _ => {
+                    let message = error.message().lines().collect::<Vec<_>>().join("; ");
+                    let slip = error.span().and_then(|span| Slip::of_syntax(text, &span, &message));
+                    StudyFault::Syntax { message, slip }
+                }
             };
             Fault { span: error.span(), key: String::new(), fault: Box::new(found) }
         })?;
@@ -60,7 +76,9 @@ impl Tree {
         };
         let parsed = jsonc_parser::parse_to_ast(text, &Default::default(), &strict).map_err(|error| {
             let range = error.range();
-            fault(range.start..range.end, "", StudyFault::Syntax { message: error.kind().to_string() })
+            let (span, message) = (range.start..range.end, error.kind().to_string());
+            let slip = Slip::of_syntax(text, &span, &message);
+            fault(span, "", StudyFault::Syntax { message, slip })
         })?;
         match &parsed.value {
             Some(value) => json_value(value),

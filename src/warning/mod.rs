@@ -43,6 +43,11 @@ warnings! {
         /// The dimensions.
         dimensions: Vec<String>,
     };
+    /// Nominal values that lie outside the limits of their own dimensions.
+    NominalOutsideLimits = "nominal-outside-limits" by study::nominal_outside_limits {
+        /// The dimensions.
+        dimensions: Vec<String>,
+    };
     /// No characteristic of the study uses these constants, formulas or unknowns.
     UnusedName = "unused-name" by study::unused_name {
         /// What they are.
@@ -427,16 +432,16 @@ warnings! {
         /// Fourth standardised moment.
         kurtosis: f64,
     };
-    /// The Pearson fit and the surface reject different shares.
-    TailsMissed = "tails-missed" by distribution::tails_missed {
+    /// The Pearson fit rejects another share than what is known to be rejected.
+    PearsonDiffers = "pearson-differs" by distribution::pearson_differs {
         /// The characteristic.
         characteristic: String,
         /// The share that the Pearson fit rejects.
-        law: f64,
-        /// The share of the surface's points that are rejected.
-        surface: f64,
-        /// The number of these points.
-        points: usize,
+        pearson: f64,
+        /// The share that is rejected.
+        rejected: f64,
+        /// Its error.
+        error: f64,
     };
     /// The moments are those of a distribution with several peaks.
     SeveralModes = "several-modes" by distribution::several_modes {

@@ -334,3 +334,49 @@ fn the_command_reports_it() {
     let table = std::fs::read_to_string(csv.join("rare.csv")).unwrap();
     assert_eq!(table.lines().count(), 3);
 }
+
+/// Limits on the far side of the means: nearly everything lies below the lower one. What is left is known by its own estimate, not as the
+/// rest of one.
+#[test]
+fn limits_on_the_far_side() {
+    let function = Closure::scalar("gap", |x: &[f64]| 0.3 * x[0] + 0.4 * x[1]);
+    let problem = limited(Problem::new(standard(2), function).unwrap(), Some(2.0), Some(2.5));
+    let truth = tail(4.0) - tail(5.0);
+    let mut held = 0;
+    for seed in 0..20 {
+        let found = found(&problem, 500, seed, Method::Full);
+        let one = &found.characteristics[0];
+        let [low, high] = one.yield_interval.unwrap();
+        assert!(0.0 < low && high < 2.0 * truth, "{low} {high}");
+        assert!(low <= one.yield_.unwrap() && one.yield_.unwrap() <= high);
+        held += usize::from(low <= truth && truth <= high);
+        let below = one.below.as_ref().unwrap();
+        assert!(below.probability.unwrap().value <= 1.0 && below.interval[1] <= 1.0 && below.hits > 0, "{below:?}");
+    }
+    // 20 seeds of 95 % intervals: fewer than 16 are 1 in 400.
+    assert!(held >= 16, "{held}");
+}
+
+/// Weights of 1e-250, whose squares no double has: estimates beyond 27 sigma are bounds, and the yield is that of the other side.
+#[test]
+fn a_limit_that_is_out_of_reach_is_a_bound() {
+    let line = || Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
+    for distance in [28.0, 33.0] {
+        let found = found(&limited(line(), Some(-distance), Some(4.0)), 500, 1, Method::Full);
+        let one = &found.characteristics[0];
+        let (below, above) = (one.below.as_ref().unwrap(), one.above.as_ref().unwrap());
+        assert!(below.probability.is_none() && below.interval[0] == 0.0 && below.interval[1] < 1e-7, "{below:?}");
+        let rejected = 1.0 - one.yield_.unwrap();
+        assert!((rejected / above.probability.unwrap().value - 1.0).abs() < 1e-9, "{rejected}");
+        let [low, high] = one.yield_interval.unwrap();
+        assert!(low <= 1.0 - tail(4.0) && 1.0 - tail(4.0) <= high, "{low} {high}");
+    }
+    // Where the surrogate reaches the limit, the bound says so.
+    let [below, _] = sides(&found(&limited(line(), Some(-28.0), None), 500, 1, Method::Full));
+    assert!(below.clone().is_some_and(|below| below.hits > 0 && below.interval == [0.0, 1e-150]), "{below:?}");
+    // 20 sigma out there is an estimate, with finite figures.
+    let [below, _] = sides(&found(&limited(line(), Some(-20.0), None), 500, 1, Method::Full));
+    let (below, truth) = (below.unwrap(), tail(20.0));
+    assert!(below.interval[0] <= truth && truth <= below.interval[1], "{below:?}");
+    assert!(below.effective_samples > 30.0 && below.greatest_part.unwrap() < 0.1, "{below:?}");
+}

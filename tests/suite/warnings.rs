@@ -46,6 +46,8 @@ fn every() -> Vec<Warning> {
     vec![
         Warning::UnusedDimension { dimensions: names(1) },
         Warning::UnusedDimension { dimensions: names(997) },
+        Warning::NominalOutsideLimits { dimensions: names(1) },
+        Warning::NominalOutsideLimits { dimensions: names(2) },
         Warning::UnusedName { kind: NameKind::Constant, names: names(1) },
         Warning::UnusedName { kind: NameKind::Formula, names: names(2) },
         Warning::UnusedName { kind: NameKind::Unknown, names: names(30) },
@@ -173,7 +175,7 @@ fn every() -> Vec<Warning> {
             reason: text("the kurtosis 0.9 is not above 1"),
         },
         Warning::NearInfeasibleMoments { characteristic: characteristic(), skewness: 0.0, kurtosis: 1.02 },
-        Warning::TailsMissed { characteristic: characteristic(), law: 1017e-6, surface: 3372e-6, points: 65_536 },
+        Warning::PearsonDiffers { characteristic: characteristic(), pearson: 1017e-6, rejected: 3415e-6, error: 30e-6 },
         Warning::SeveralModes { characteristic: characteristic(), coefficient: 0.8 },
         Warning::Switch {
             characteristic: characteristic(),
@@ -294,9 +296,9 @@ fn the_fields_are_data() {
             assert!(known && json["characteristic"] == characteristic, "{json}");
         }
     }
-    let tails = Warning::TailsMissed { characteristic: text("gap"), law: 1e-3, surface: 3e-3, points: 65_536 };
-    let data = serde_json::json!({ "characteristic": "gap", "law": 1e-3, "surface": 3e-3, "points": 65_536 });
-    assert_eq!(serde_json::to_value(tails.data()).unwrap(), data);
+    let fit = Warning::PearsonDiffers { characteristic: text("gap"), pearson: 1e-3, rejected: 3e-3, error: 1e-5 };
+    let data = serde_json::json!({ "characteristic": "gap", "pearson": 1e-3, "rejected": 3e-3, "error": 1e-5 });
+    assert_eq!(serde_json::to_value(fit.data()).unwrap(), data);
     let stopped = Warning::Stopped {
         cause: StopReason::TimeLimit,
         limit_s: Some(2.5),

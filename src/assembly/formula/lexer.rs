@@ -20,12 +20,19 @@ pub(super) enum Token {
 const OPERATORS: [&str; 11] = ["<=", ">=", "==", "!=", "<", ">", "+", "-", "*", "/", "^"];
 
 /// What people write by habit, and what formulas write instead.
-const HABITS: [(&str, &str); 5] = [
+const HABITS: [(&str, &str); 12] = [
     ("**", "powers are written with `^`"),
     ("&&", "write `if(a, b, 0)` for a and b"),
     ("||", "write `if(a, 1, b)` for a or b"),
     ("=", "equality is written with `==`"),
     ("!", "write `if(a, 0, 1)` for not a"),
+    ("\u{2212}", "minus is the sign `-` of the keyboard"),
+    ("\u{2013}", "minus is the sign `-` of the keyboard"),
+    ("\u{d7}", "multiplication is written with `*`"),
+    ("\u{b7}", "multiplication is written with `*`"),
+    ("\u{22c5}", "multiplication is written with `*`"),
+    ("\u{f7}", "division is written with `/`"),
+    (".", "functions have no prefix: write `sin(x)`, not `math.sin(x)`"),
 ];
 
 /// All tokens with their byte ranges.
@@ -41,7 +48,8 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Range<usize>)>, FormulaEr
         let fault = |length: usize, fault| Err(FormulaError { span: start..start + length, fault });
         let habit = HABITS
             .iter()
-            .find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="));
+            .find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="))
+            .filter(|(sign, _)| *sign != "." || matches!(tokens.last(), Some((Token::Name(..), _))));
         if let Some(&(sign, instead)) = habit {
             let found = FormulaFault::UnexpectedCharacter { found: sign.to_owned(), instead: Some(instead) };
             return fault(sign.len(), found);

@@ -6,6 +6,7 @@ use std::time::Duration;
 /// Why a process gave no value. Each names what was seen, and quotes the last lines that it wrote to stderr.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}{stderr}")]
+#[non_exhaustive]
 pub struct ProcessError {
     /// What went wrong.
     pub fault: ProcessFault,
