@@ -156,7 +156,7 @@ impl Page {
         self.put(&rest);
     }
 
-    /// A text that may take several lines, those after the first indented by four more; a percent sign stays with its number.
+    /// A text that may take several lines, those after the first indented by four; a percent sign stays with its number.
     fn wrapped(&mut self, indent: usize, line: &Line) {
         let letters = self.letters(line);
         let glued = |at: usize| letters[at].0 == ' ' && letters.get(at + 1).is_some_and(|next| next.0 == '%');
