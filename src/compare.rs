@@ -71,7 +71,8 @@ impl Contender {
 }
 
 /// What a method says of one characteristic. What is unknown is None.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Figures {
     /// First moment.
@@ -83,6 +84,7 @@ pub struct Figures {
     /// Fourth standardised moment.
     pub kurtosis: Option<f64>,
     /// Share within the limits.
+    #[serde(rename = "yield")]
     pub yield_: Option<f64>,
 }
 

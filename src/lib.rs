@@ -12,6 +12,8 @@ pub mod compare;
 pub mod correlation;
 pub mod dimension;
 pub mod distribution;
+#[cfg(feature = "report")]
+pub mod document;
 mod elementary;
 pub mod error;
 mod evaluation;

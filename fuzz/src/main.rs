@@ -13,10 +13,63 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 const SLOW: Duration = Duration::from_secs(20);
 /// Pieces that parsers have a meaning for.
 const WORDS: &[&str] = &[
-    "[", "]", "{", "}", "\"", "'", "=", ",", ".", "\n", "-", "e308", "1e-320", "nan", "inf", "0x", "\\u0000", "\u{202e}", "\u{2212}",
-    "nominal", "tolerance", "limits", "sigma", "formula", "lower", "upper", "target_yield", "distribution", "kind", "mixture", "beta",
-    "correlation", "between", "value", "min(", "max(", "if(", "sqrt(", "atan2(", "^", "`", "99999999999999999999", "--method", "full",
-    "--samples", "100", "STUDY", "--check", "--json", "--rare", "{\"id\":0,\"y\":1}", "{\"ready\":true}", ";", "\t", "H7", "g6", "js5",
+    "[",
+    "]",
+    "{",
+    "}",
+    "\"",
+    "'",
+    "=",
+    ",",
+    ".",
+    "\n",
+    "-",
+    "e308",
+    "1e-320",
+    "nan",
+    "inf",
+    "0x",
+    "\\u0000",
+    "\u{202e}",
+    "\u{2212}",
+    "nominal",
+    "tolerance",
+    "limits",
+    "sigma",
+    "formula",
+    "lower",
+    "upper",
+    "target_yield",
+    "distribution",
+    "kind",
+    "mixture",
+    "beta",
+    "correlation",
+    "between",
+    "value",
+    "min(",
+    "max(",
+    "if(",
+    "sqrt(",
+    "atan2(",
+    "^",
+    "`",
+    "99999999999999999999",
+    "--method",
+    "full",
+    "--samples",
+    "100",
+    "STUDY",
+    "--check",
+    "--json",
+    "--rare",
+    "{\"id\":0,\"y\":1}",
+    "{\"ready\":true}",
+    ";",
+    "\t",
+    "H7",
+    "g6",
+    "js5",
 ];
 
 struct Asked {
@@ -30,7 +83,8 @@ fn asked() -> Result<Asked, String> {
     let mut asked = Asked { seconds: 60, replay: false, seed: 1, only: None };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
-        let mut number = || words.next().and_then(|text| text.parse().ok()).ok_or(format!("{word} needs a whole number"));
+        let mut number =
+            || words.next().and_then(|text| text.parse().ok()).ok_or(format!("{word} needs a whole number"));
         match word.as_str() {
             "--seconds" => asked.seconds = number()?,
             "--seed" => asked.seed = number()?,

@@ -192,7 +192,8 @@ fn command_line(bytes: &[u8]) {
 /// No word that writes elsewhere, and no number that asks for hours.
 fn harmless(word: &str) -> bool {
     let long = word.chars().filter(char::is_ascii_digit).count() > 4;
-    let file = ["-o", "--out", "--csv", "--svg", "--html", "--write", "--journal"].iter().any(|flag| word.starts_with(flag));
+    let file =
+        ["-o", "--out", "--csv", "--svg", "--html", "--write", "--journal"].iter().any(|flag| word.starts_with(flag));
     let path = word.contains('/') && Path::new(word).parent().is_some_and(|parent| parent.components().count() > 0);
     !(long || file || path)
 }

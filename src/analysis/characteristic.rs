@@ -85,7 +85,8 @@ pub struct CharacteristicAnalysis {
 }
 
 /// What one dimension does to a characteristic.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Sensitivity {
     /// The dimension.
@@ -111,7 +112,8 @@ pub struct Sensitivity {
 }
 
 /// What two dimensions do together.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Interaction {
     /// The two dimensions.

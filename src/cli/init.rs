@@ -7,8 +7,8 @@ use super::args::InitArgs;
 use super::failure::{Exit, Failure};
 use super::models::known;
 use super::output::Destination;
+use crate::document::number::plain;
 use crate::models::{Model, ModelInput};
-use crate::report::number::plain;
 use crate::study::Format;
 use crate::study::write::{inline, pair, quoted};
 

@@ -1,5 +1,7 @@
 //! What a method found out.
 
+use serde::Serialize;
+
 use std::sync::Arc;
 
 use super::{Basis, Climbed, ExactDerivatives, Method, Order};
@@ -114,15 +116,19 @@ pub enum Lacking {
 }
 
 /// How far a surrogate misses the values that it was fitted to.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Residual {
     /// `sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None where there are no more points
     /// than coefficients.
+    #[serde(rename = "residual_standard_error")]
     pub standard_error: Option<f64>,
     /// What that leaves uncertain of the mean, as a standard error; None where it is unknown or inputs are correlated.
+    #[serde(rename = "mean_standard_error")]
     pub mean: Option<f64>,
     /// The same of sigma.
+    #[serde(rename = "sigma_standard_error")]
     pub sigma: Option<f64>,
     /// Points that were fitted.
     pub points: usize,

@@ -24,6 +24,8 @@ mod target;
 mod warnings;
 mod within;
 
+use serde::Serialize;
+
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::characteristic::Characteristic;
 use crate::evaluation::history;
@@ -130,7 +132,8 @@ pub struct Beyond {
 }
 
 /// The most likely assembly at a limit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct DesignPoint {
     /// How far it is from the middle, in standard deviations of independent normal variables.

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::CharacteristicReport;
 use super::distribution::{DistributionReport, NAMES, Quantiles};
-use super::number::{share, significant};
 use crate::analysis::{SurfaceShares, YieldSource};
+use crate::document::number::{share, significant};
 use crate::law::Branch;
 
 /// The Pearson fit is named beside the yield where it has more than this part of what is rejected wrong.

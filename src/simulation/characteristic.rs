@@ -1,5 +1,7 @@
 //! What a simulation knows of one characteristic.
 
+use serde::Serialize;
+
 use super::control::Twin;
 use super::difference::{Difference, Shares, moments as controlled, shares};
 use super::tally::{Count, Replicate};
@@ -82,7 +84,8 @@ pub struct YieldEstimate {
 }
 
 /// How many values lie in which interval.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Histogram {
     /// One more than there are intervals, ascending.

@@ -85,7 +85,9 @@ impl Slip {
 fn decimal_comma(line: &str, here: usize) -> Option<String> {
     let digit = |c: char| c.is_ascii_digit();
     for (comma, _) in line.match_indices(',') {
-        let before = line[..comma].rfind(|c: char| !digit(c)).map_or(0, |at| at + line[at..].chars().next().map_or(1, char::len_utf8));
+        let before = line[..comma]
+            .rfind(|c: char| !digit(c))
+            .map_or(0, |at| at + line[at..].chars().next().map_or(1, char::len_utf8));
         let after = line[comma + 1..].find(|c: char| !digit(c)).map_or(line.len(), |at| comma + 1 + at);
         if before < comma && after > comma + 1 && (before..=after).contains(&here) {
             return Some(line[before..after].to_owned());

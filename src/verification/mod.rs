@@ -23,6 +23,8 @@ pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
 
+use serde::Serialize;
+
 use crate::problem::Problem;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
@@ -34,7 +36,8 @@ use sample::Sample;
 pub(crate) const CORE: usize = 1 << 15;
 
 /// A figure as the model itself gives it, and its error: three of it reach the truth whenever three standard errors do.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Verified {
     /// The value.
     pub value: f64,

@@ -10,6 +10,7 @@ const LAYERS: &[&[&str]] = &[
     &["cli"],
     &["error"],
     &["study", "report"],
+    &["document"],
     &["compare", "rare", "sweep", "allocation"],
     &["analysis", "probe"],
     &["simulation"],

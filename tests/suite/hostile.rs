@@ -16,7 +16,8 @@ fn study(folder: &tempfile::TempDir, name: &str, text: &str) -> PathBuf {
     path
 }
 
-const PLAIN: &str = "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\n[characteristics]\ngap = { formula = \"a\", lower = 9.8 }\n";
+const PLAIN: &str =
+    "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\n[characteristics]\ngap = { formula = \"a\", lower = 9.8 }\n";
 
 /// The command in a shell with this limit or redirection, `$0` being the program.
 fn in_shell(script: &str, arguments: &[&str]) -> Output {
@@ -34,7 +35,10 @@ fn names_that_are_not_seen_are_refused() {
     ]);
     insta::assert_snapshot!("hidden-characters", all);
     // Letters of any script are names.
-    assert!(parse("[dimensions]\n\"Länge ℓ\" = { nominal = 1 }\n[characteristics]\ny = { formula = \"`Länge ℓ`\" }\n").is_ok());
+    assert!(
+        parse("[dimensions]\n\"Länge ℓ\" = { nominal = 1 }\n[characteristics]\ny = { formula = \"`Länge ℓ`\" }\n")
+            .is_ok()
+    );
 }
 
 /// Titles, units and a model's stderr are texts of others: no escape sequence of theirs reaches the terminal, on any stream of any
@@ -60,9 +64,10 @@ fn nothing_moves_the_cursor() {
             let output = sensitol(&[command, &["--color", color]].concat()).output().unwrap();
             for bytes in [&output.stdout, &output.stderr] {
                 let text = String::from_utf8(bytes.clone()).unwrap();
-                let colours = text.split("\u{1b}[").skip(1).all(|rest| {
-                    rest.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';').starts_with('m')
-                });
+                let colours = text
+                    .split("\u{1b}[")
+                    .skip(1)
+                    .all(|rest| rest.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';').starts_with('m'));
                 let hidden = text.chars().find(|&c| {
                     (c.is_control() && c != '\n' && c != '\u{1b}') || ('\u{202a}'..='\u{202e}').contains(&c)
                 });
@@ -175,7 +180,9 @@ fn all_faults_at_once() {
 fn slips_are_told_what_was_meant() {
     let of = |line: &str| format!("[dimensions]\n{line}\n[characteristics]\ny = {{ formula = \"1\" }}\n");
     let formula = |text: &str| {
-        format!("[dimensions]\npin-d = {{ nominal = 1 }}\n\"pin length\" = {{ nominal = 1 }}\na = {{ nominal = 1 }}\n[characteristics]\ny = {{ formula = \"{text}\" }}\n")
+        format!(
+            "[dimensions]\npin-d = {{ nominal = 1 }}\n\"pin length\" = {{ nominal = 1 }}\na = {{ nominal = 1 }}\n[characteristics]\ny = {{ formula = \"{text}\" }}\n"
+        )
     };
     let texts = [
         of("a = { nominal = 10,0, tolerance = 0.3 }"),
@@ -201,7 +208,9 @@ fn long_formulas_make_short_messages() {
     let folder = tempfile::tempdir().unwrap();
     let sum = vec!["a"; 50_000].join("+");
     for formula in [format!("sqrt({sum} - 1e9)"), format!("{sum} +* a"), format!("{sum} + b")] {
-        let text = format!("[dimensions]\na = {{ nominal = 1, tolerance = 0.1 }}\n[characteristics]\ny = {{ formula = \"{formula}\" }}\n");
+        let text = format!(
+            "[dimensions]\na = {{ nominal = 1, tolerance = 0.1 }}\n[characteristics]\ny = {{ formula = \"{formula}\" }}\n"
+        );
         let path = study(&folder, "long.toml", &text).display().to_string();
         let output = sensitol(&["analyze", &path]).output().unwrap();
         let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();

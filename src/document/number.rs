@@ -1,7 +1,15 @@
-//! Numbers for people: rounded to what they are worth, aligned by their decimal point.
+//! Numbers and names for people: rounded to what they are worth, the sign for what is unknown, and what is too small to be shown.
+
+use crate::names::clean;
 
 /// In place of what is unknown.
 pub(crate) const UNKNOWN: &str = "-";
+
+/// Names longer than this are shortened in their middle.
+const NAME: usize = 30;
+
+/// Shares of the variance below this are not shown one by one.
+pub(crate) const NEWS: f64 = 1e-4;
 
 /// A count with what is counted.
 pub(crate) fn plural(count: usize, one: &str, many: &str) -> String {
@@ -99,4 +107,82 @@ fn trimmed(text: &str) -> String {
     } else {
         text.to_owned()
     }
+}
+
+/// A name on one line that does not push everything else off it.
+pub(crate) fn short(name: &str) -> String {
+    shortened_to(&clean(name), NAME)
+}
+
+/// Without its middle, where it is longer than `most` characters.
+pub(super) fn shortened_to(name: &str, most: usize) -> String {
+    let count = name.chars().count();
+    if count <= most {
+        return name.to_owned();
+    }
+    let head: String = name.chars().take(most / 2).collect();
+    let tail: String = name.chars().skip(count - (most - most / 2 - 1)).collect();
+    format!("{head}…{tail}")
+}
+
+/// A number, or the sign for unknown.
+pub(crate) fn known(value: Option<f64>, show: impl FnOnce(f64) -> String) -> String {
+    value.map_or(UNKNOWN.to_owned(), show)
+}
+
+/// Skewness and kurtosis.
+pub(crate) fn shape(value: f64) -> String {
+    unsigned_zero(format!("{value:.4}"))
+}
+
+/// Cp, Cpk and the like.
+pub(crate) fn index(value: f64) -> String {
+    unsigned_zero(format!("{value:.3}"))
+}
+
+/// A yield in percent, by itself.
+pub(crate) fn yielded(yield_: f64) -> String {
+    share(1.0 - yield_)
+}
+
+/// Limits in words.
+pub(crate) fn limits(lower: Option<f64>, upper: Option<f64>) -> String {
+    match (lower, upper) {
+        (None, None) => String::new(),
+        (Some(lower), None) => format!("above {}", plain(lower)),
+        (None, Some(upper)) => format!("below {}", plain(upper)),
+        (Some(lower), Some(upper)) => format!("{} .. {}", plain(lower), plain(upper)),
+    }
+}
+
+/// The yield that leaves these parts per million; None where both are unknown.
+pub(crate) fn rejected(below: Option<f64>, above: Option<f64>) -> Option<String> {
+    below.or(above)?;
+    Some(share(1e-6 * (below.unwrap_or(0.0) + above.unwrap_or(0.0))))
+}
+
+/// A number as a sample of this standard error knows it: two digits of the error.
+pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
+    match error {
+        Some(error) if error > 0.0 && error.is_finite() => {
+            let decimals = (1.0 - error.log10().floor()).clamp(0.0, 15.0) as usize;
+            unsigned_zero(format!("{value:.decimals$}"))
+        }
+        Some(_) => plain(value),
+        None => significant(value, 4),
+    }
+}
+
+/// A standard error.
+pub(crate) fn uncertainty(error: f64) -> String {
+    significant(error, 2)
+}
+
+/// The ends of a tolerance band as drawings have them.
+pub(crate) fn band([lower, upper]: [f64; 2]) -> String {
+    if lower == -upper {
+        return format!("± {}", plain(upper));
+    }
+    let signed = |value: f64| if value >= 0.0 { format!("+{}", plain(value)) } else { plain(value) };
+    format!("{} / {}", signed(lower), signed(upper))
 }

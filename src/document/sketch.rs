@@ -1,8 +1,12 @@
-//! A density in a few lines of text, with the limits marked.
+//! A density in a few lines of text, with the limits marked, and a histogram of bars.
 
-use super::number::{plain, significant};
-use super::page::Page;
+use super::number::{beside, plain, significant};
+use super::{Cell, Columns, Table};
 use crate::pearson::Pearson;
+use crate::simulation::Histogram;
+
+/// Characters of the longest bar of a histogram.
+const BAR: usize = 50;
 
 /// Columns of the picture, where there is room.
 const COLUMNS: usize = 64;
@@ -18,8 +22,8 @@ const BLOCKS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇',
 const PLAIN: [char; 4] = [' ', '.', ':', '#'];
 
 /// Draws the density between its extreme quantiles, limits included where they are near.
-pub(super) fn sketch(page: &mut Page, law: &Pearson, limits: [Option<f64>; 2]) {
-    let columns = COLUMNS.min(page.style().width.saturating_sub(2)).max(1);
+pub(super) fn sketch(law: &Pearson, limits: [Option<f64>; 2], width: usize, unicode: bool) -> Vec<String> {
+    let columns = COLUMNS.min(width.saturating_sub(2)).max(1);
     let (from, to) = (law.quantile(TAIL), law.upper_quantile(TAIL));
     let width = to - from;
     let near = |limit: &&f64| **limit > from - OUTSIDE * width && **limit < to + OUTSIDE * width;
@@ -29,7 +33,7 @@ pub(super) fn sketch(page: &mut Page, law: &Pearson, limits: [Option<f64>; 2]) {
     let high = marks.iter().fold(to, |high, limit| high.max(limit + width / columns as f64));
     let step = (high - low) / columns as f64;
     if !(step > 0.0 && step.is_finite()) {
-        return;
+        return Vec::new();
     }
     // By probability rather than density, which may be infinite at an end of the support.
     let below: Vec<[f64; 2]> =
@@ -39,10 +43,9 @@ pub(super) fn sketch(page: &mut Page, law: &Pearson, limits: [Option<f64>; 2]) {
     let highest = heights.iter().copied().fold(0.0, f64::max);
     let column = |x: f64| (((x - low) / step) as usize).min(columns - 1);
     let bars: Vec<usize> = marks.iter().map(|&limit| column(limit)).collect();
-    let unicode = page.style().unicode;
     let (levels, bar): (&[char], char) = if unicode { (&BLOCKS, '│') } else { (&PLAIN, '|') };
     let full = levels.len() - 1;
-    for line in (0..LINES).rev() {
+    let row = |line: usize| {
         let cell = |(column, height): (usize, &f64)| {
             let filled = (height / highest * (LINES * full) as f64).round() as usize;
             match filled.saturating_sub(line * full).min(full) {
@@ -50,12 +53,27 @@ pub(super) fn sketch(page: &mut Page, law: &Pearson, limits: [Option<f64>; 2]) {
                 level => levels[level],
             }
         };
-        page.line(&format!("  {}", heights.iter().enumerate().map(cell).collect::<String>()));
-    }
+        format!("  {}", heights.iter().enumerate().map(cell).collect::<String>())
+    };
+    let mut lines: Vec<String> = (0..LINES).rev().map(row).collect();
     let (rule, cross) = if unicode { ('─', '┴') } else { ('-', '+') };
     let axis: String = (0..columns).map(|column| if bars.contains(&column) { cross } else { rule }).collect();
-    page.line(&format!("  {axis}"));
-    page.line(&format!("  {}", labels(limits, [low, high], columns, column)));
+    lines.extend([format!("  {axis}"), format!("  {}", labels(limits, [low, high], columns, column))]);
+    lines
+}
+
+/// Bars of a sample, turned by a right angle, two intervals a line.
+pub(super) fn bars(bins: &Histogram, sigma: f64) -> Table {
+    let groups: Vec<(f64, f64)> = (bins.counts.chunks(2).zip(bins.edges.chunks(2)))
+        .map(|(counts, edges)| (edges[0], counts.iter().sum::<u64>() as f64))
+        .collect();
+    let most = groups.iter().map(|&(_, count)| count).fold(1.0, f64::max);
+    let total = bins.counts.iter().sum::<u64>() as f64;
+    Columns::default()
+        .shown("from", |&(edge, _): &(f64, f64)| Cell::number(edge, |edge| beside(edge, sigma)))
+        .shown("%", |&(_, count)| Cell::number(count, |count| format!("{:.2}", 100.0 * count / total)))
+        .shown("", |&(_, count)| Cell::text("█".repeat((BAR as f64 * count / most).round() as usize)))
+        .table("", groups)
 }
 
 /// The limits below their marks, those outside the picture at its edge with where they are; without limits the ends.
