@@ -117,7 +117,7 @@ impl Responses {
                     depends,
                     limits,
                     law: by_law.then(|| surface_law(problem, outcome, c)?.ok()).flatten(),
-                    unknown: Unknown::of(found),
+                    unknown: Unknown::of(found, by_law),
                 }
             })
             .collect();
@@ -172,7 +172,7 @@ impl Responses {
                 *law = Arc::clone(self.dimensions[d].scaled(factors[d])?.ok()?.law()?);
             }
         }
-        law_over(&surrogate, laws, inputs.correlation(), None).ok()
+        law_over(&surrogate, &laws, inputs.correlation()).ok()
     }
 
     /// Factors of all dimensions when the groups have these half bands.
@@ -392,8 +392,8 @@ impl Responses {
 }
 
 impl Unknown {
-    fn of(found: &CharacteristicAnalysis) -> Self {
-        let law = found.surface_law.as_ref().and_then(|law| law.yield_());
+    fn of(found: &CharacteristicAnalysis, by_law: bool) -> Self {
+        let law = found.surface_law.as_ref().filter(|_| by_law).and_then(|law| law.yield_());
         let judged = law.or_else(|| found.pearson?.yield_());
         let yield_ = judged.zip(found.yield_interval()).map(|(value, [low, _])| value - low);
         // The target of a requirement does not change its interval.

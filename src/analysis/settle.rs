@@ -44,7 +44,7 @@ pub(super) fn settle(
             continue;
         }
         if follows_from_a_surface(one) {
-            let (shares, law) = SurfaceShares::of(problem, outcome, c, fit(one)).unzip();
+            let (shares, law) = SurfaceShares::of(problem, outcome, c, fit(one), is_sampled(one)).unzip();
             (one.surface_law, laws[c]) = (shares, law.flatten());
         }
         let Some(found) = rejected(problem, outcome, c, one) else { continue };
@@ -87,6 +87,10 @@ const TRUSTED: f64 = 0.01;
 fn follows_from_a_surface(one: &CharacteristicAnalysis) -> bool {
     let replaced = |of: &Verification| of.replaced && of.left.is_none_or(|left| left > TRUSTED);
     one.model_sampled.is_none() && !one.verification.as_ref().is_some_and(replaced)
+}
+
+fn is_sampled(one: &CharacteristicAnalysis) -> bool {
+    one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample)
 }
 
 fn fit(one: &CharacteristicAnalysis) -> Option<&Law> {

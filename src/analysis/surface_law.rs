@@ -27,12 +27,13 @@ const OUTER: [usize; 3] = [0, 3, 6];
 
 /// Variance that a surface leaves out, by its own: below this part it moves no probability by more than 1e-10.
 const IDLE: f64 = 1e-10;
-/// Points of a limit, in the sampled branch, and of quantiles, which are printed to a hundredth of sigma;
-const POINTS: usize = 1 << 13;
-const FEW: usize = 1 << 10;
+/// Points of a limit in the sampled branch,
+const POINTS: usize = 1 << 12;
 /// and terms of the surface, from which on there are fewer.
 const TERMS: usize = 1 << 10;
 const FEWEST: usize = 1 << 9;
+/// Measured values of one input from which on every point of a contour is a long sum: the surface is counted at points instead.
+const ATOMS: usize = 64;
 /// A quantile is found within this part of sigma,
 const NEAR: f64 = 1e-7;
 /// in so many steps from the quantile of the Pearson fit, or by the law's own search.
@@ -54,17 +55,26 @@ pub struct SurfaceShares {
 impl SurfaceShares {
     /// None where the moments do not follow from a surface, or nothing but moments is known of an input. Quantiles are sought from
     /// those of `fit`. With the law itself, where it answers.
+    ///
+    /// A variance that the surface leaves out is a normal input beside it; not in the shares where a sample of the model is `beside`,
+    /// which knows what is left out.
     pub(super) fn of(
         problem: &Problem,
         outcome: &Outcome,
         c: usize,
         fit: Option<&Law>,
+        beside: bool,
     ) -> Option<(Self, Option<SurfaceLaw>)> {
         let fitted = &outcome.fitted[c];
         if fitted.integrated.is_some() {
             return None;
         }
-        let (surrogate, inputs) = surface(problem, outcome, c)?;
+        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+        let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
+        let measured = inputs.iter().filter_map(|law| law.probability());
+        if measured.map(|law| law.atoms().len()).any(|atoms| atoms > ATOMS) {
+            return Some((Self::counted(problem, outcome, c)?, None));
+        }
         let correlation = outcome.plan.inputs().correlation();
         let points = points(&surrogate);
         let whole = match law(&surrogate, &inputs, correlation, points) {
@@ -80,11 +90,14 @@ impl SurfaceShares {
         if ![below, above].iter().flatten().all(known) {
             return Some((Self::counted(problem, outcome, c)?, None));
         }
-        let quick = match whole.branch() {
-            Branch::Sampled => law(&surrogate, &inputs, correlation, points.min(FEW)).ok(),
-            _ => None,
+        let full = match unexplained.filter(|_| beside) {
+            Some(_) => {
+                let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
+                law(&surrogate, &inputs, correlation, points).ok()
+            }
+            None => None,
         };
-        let quantiles = quantiles(quick.as_ref().unwrap_or(&whole), fit);
+        let quantiles = quantiles(full.as_ref().unwrap_or(&whole), fit);
         Some((Self { branch: whole.branch(), below, above, quantiles }, Some(whole)))
     }
 
@@ -115,25 +128,28 @@ impl SurfaceShares {
     }
 }
 
-/// The law of a characteristic's surface; None where there is no surface, or nothing but moments is known of an input.
+/// The law of a characteristic's surface itself; None where there is no surface, or nothing but moments is known of an input.
 pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
-    let (surrogate, inputs) = surface(problem, outcome, c)?;
-    Some(law(&surrogate, &inputs, outcome.plan.inputs().correlation(), points(&surrogate)))
+    let (surrogate, inputs) = surface(problem, outcome, c, None)?;
+    Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation()))
 }
 
-/// The law of a surface over these inputs, beside a variance that it leaves out, with as many points as reports take.
+/// The law of a surface over these inputs, with as many points as reports take.
 pub(crate) fn law_over(
     surrogate: &Surrogate,
-    inputs: Vec<Arc<dyn Distribution>>,
+    inputs: &[Arc<dyn Distribution>],
     correlation: Option<&Correlation>,
-    unexplained: Option<f64>,
 ) -> Result<SurfaceLaw, LawError> {
-    let (surrogate, inputs) = with(surrogate, inputs, unexplained);
-    law(&surrogate, &inputs, correlation, points(&surrogate))
+    law(surrogate, inputs, correlation, points(surrogate))
 }
 
-fn surface(problem: &Problem, outcome: &Outcome, c: usize) -> Option<(Surrogate, Vec<Arc<dyn Distribution>>)> {
-    let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+/// A surface and the distributions of its inputs, beside a variance that it leaves out.
+fn surface(
+    problem: &Problem,
+    outcome: &Outcome,
+    c: usize,
+    unexplained: Option<f64>,
+) -> Option<(Surrogate, Vec<Arc<dyn Distribution>>)> {
     let inputs = outcome.plan.varying().iter().map(|&d| problem.dimensions()[d].law().cloned());
     Some(with(outcome.fitted[c].surrogate.as_ref()?, inputs.collect::<Option<_>>()?, unexplained))
 }

@@ -157,8 +157,11 @@ fn tails_that_the_law_misses_are_told_of() {
         assert!(error < 1.1 / 32_768.0, "{error}");
         assert_eq!(one.yield_source, Some(YieldSource::Samples));
     }
-    // In the middle of the distribution the two agree.
-    assert!(codes(&of(-0.05)).is_empty(), "{:?}", codes(&of(-0.05)));
+    // In the middle of the distribution the two are near each other, and what is left is still more than the error.
+    let found = of(-0.05);
+    let one = &found.characteristics[0];
+    let (fit, rejected) = (one.pearson.unwrap().rejected().unwrap(), one.capability.unwrap().rejected().unwrap());
+    assert!((fit / rejected - 1.0).abs() < 0.1 && (rejected / below(-0.05) - 1.0).abs() < 1e-6, "{fit} {rejected}");
 }
 
 /// A target is met or missed, and inconclusive only where points have no value.

@@ -58,3 +58,4 @@ mod trust;
 mod type_names;
 mod verdicts;
 mod warnings;
+mod yields;
