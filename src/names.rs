@@ -2,12 +2,14 @@
 
 /// Whether a character is not seen and moves what is: control characters, and those that turn the direction of text (Unicode 16,
 /// `Bidi_Control`).
+#[cfg(any(feature = "report", feature = "study"))]
 pub(crate) fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// Text on one line that cannot move the cursor, turn or break the line: hidden characters become U+FFFD.
+#[cfg(feature = "report")]
 pub(crate) fn clean(text: &str) -> String {
     text.chars().map(|c| if is_hidden(c) { '\u{fffd}' } else { c }).collect()
 }

@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::control::Twin;
+use super::count::{Count, Replicate};
 use super::difference::{Difference, Shares, moments as controlled, shares};
-use super::tally::{Count, Replicate};
+use super::replicate::of_replicates;
 use crate::assembly::EvaluationError;
 use crate::capability::{self, TAIL};
 use crate::characteristic::{Characteristic, SpecLimits};
@@ -101,8 +102,6 @@ pub const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
 const BEYOND: f64 = 5.0;
 /// Rejected assemblies in every replicate, on average, from which their differences are an interval of the yield.
 const REJECTED: u64 = 5;
-/// The 97.5 % quantile of Student's distribution with 15 degrees of freedom: for 16 replicates.
-const STUDENT: f64 = 2.131_449_545_559_323;
 /// Intervals of the histogram between the outer quantiles.
 const BINS: usize = 40;
 
@@ -297,14 +296,6 @@ fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
         }
     }
     estimates
-}
-
-/// The standard error of the mean of independent replicates, widened so that two of it are Student's 95 %; None where one
-/// has no value.
-pub(super) fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
-    let values: Vec<f64> = values.collect::<Option<_>>()?;
-    let summary = Summary::of(&values);
-    (values.len() > 1).then(|| 0.5 * STUDENT * summary.sigma() / (values.len() as f64).sqrt())
 }
 
 /// A quantile; its standard error is half the distance of the quantiles one standard deviation of the binomial count below

@@ -2,7 +2,9 @@
 
 mod characteristic;
 mod control;
+mod count;
 mod difference;
+mod replicate;
 mod surrogates;
 mod tally;
 

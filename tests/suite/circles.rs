@@ -10,7 +10,6 @@ const ALLOWED: &[&[&str]] = &[
     &["analysis/bootstrap", "analysis/characteristic", "analysis/errors", "analysis/fallback"],
     &["cli/analyze", "cli/several"],
     &["cli/rare", "cli/simulate"],
-    &["simulation/characteristic", "simulation/difference", "simulation/tally"],
 ];
 
 /// Modules by their path (`allocation/choose`, and `allocation` for its `mod.rs`), with their code without comments and tests.
