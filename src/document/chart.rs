@@ -10,7 +10,7 @@ pub enum Chart {
     /// Values over others.
     Plot(Plot),
     /// How a value is distributed.
-    Spread(Box<Spread>),
+    Spread(Box<SpreadChart>),
     /// Amounts beside one another.
     Bars(Bars),
 }
@@ -58,7 +58,7 @@ pub enum Fill {
 
 /// How a value is distributed: a density, a histogram, or one over the other.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Spread {
+pub struct SpreadChart {
     /// The density.
     pub law: Option<Pearson>,
     /// The histogram.
@@ -83,27 +83,27 @@ pub struct Plot {
     /// What it is about.
     pub name: String,
     /// Across.
-    pub x: Axis,
+    pub x: PlotAxis,
     /// Upwards.
-    pub y: Axis,
+    pub y: PlotAxis,
     /// What is drawn, one over the other.
     pub layers: Vec<Layer>,
 }
 
 /// An axis. It reaches over everything that is drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct PlotAxis {
     /// What it shows.
     pub label: String,
     /// Its scale.
-    pub scale: Scale,
+    pub scale: PlotScale,
     /// Where numbers stand beside it; round ones where there are none.
     pub ticks: Vec<(f64, String)>,
 }
 
 /// The scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Scale {
+pub enum PlotScale {
     /// Even steps, with this part of the extent as margin.
     Linear(f64),
     /// Whole powers of ten.
@@ -151,9 +151,9 @@ pub struct PlotPoint {
     pub filled: bool,
 }
 
-impl Axis {
+impl PlotAxis {
     /// An axis with round numbers.
-    pub fn new(label: impl Into<String>, scale: Scale) -> Self {
+    pub fn new(label: impl Into<String>, scale: PlotScale) -> Self {
         Self { label: label.into(), scale, ticks: Vec::new() }
     }
 }

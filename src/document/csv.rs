@@ -2,14 +2,14 @@
 //!
 //! RFC 4180, but for line ends without carriage return.
 
-use super::{Block, Cell, Document, Table, Value};
+use super::{Cell, DataTable, Document, Element, Value};
 
 /// All tables of this name in a document as one: they have the same columns.
 pub fn csv(document: &Document, name: &str) -> String {
-    let tables: Vec<&Table> = document
+    let tables: Vec<&DataTable> = document
         .all()
         .filter_map(|block| match block {
-            Block::Table(table) if table.name == name => Some(table),
+            Element::Table(table) if table.name == name => Some(table),
             _ => None,
         })
         .collect();
@@ -17,7 +17,7 @@ pub fn csv(document: &Document, name: &str) -> String {
 }
 
 /// Tables with the same columns as one, each row behind the words of its table: the name of that column and its cell.
-pub fn joined<'t>(tables: impl IntoIterator<Item = (Option<[&'t str; 2]>, &'t Table)>) -> String {
+pub fn joined<'t>(tables: impl IntoIterator<Item = (Option<[&'t str; 2]>, &'t DataTable)>) -> String {
     let mut text = String::new();
     for (lead, table) in tables {
         let places = table.places(|column| !column.key.is_empty());
@@ -81,7 +81,7 @@ mod tests {
                 .data("unknown", |_| Cell::data(None))
                 .table("both", [()])
         };
-        let section = |table| Section { blocks: vec![Block::Table(table)], ..Section::default() };
+        let section = |table| Section { blocks: vec![Element::Table(table)], ..Section::default() };
         let sections = vec![section(table("=1+1", -0.1)), section(table("a, \"b\"", 1e300))];
         let document = Document { sections, ..Document::default() };
         let expected = "name,value,unknown\n'=1+1,-0.1,\n\"a, \"\"b\"\"\",1e300,\n";

@@ -1,7 +1,7 @@
 //! Documents as fragments of HTML: the page around them has the style sheet that their classes stand in.
 
 use super::svg::{drawn, escaped};
-use super::{Bar, Bars, Block, Cell, Chart, Document, Fill, Flow, Line, Section, Table, Tone, spread};
+use super::{Bar, Bars, Cell, Chart, DataTable, Document, Element, Fill, Flow, Line, Section, Tone, spread};
 use crate::names::clean;
 
 /// A section for what is said before all others, and one for every section.
@@ -79,11 +79,11 @@ fn bars(bars: &Bars) -> String {
 }
 
 /// Blocks one after the other; findings beside one another are one list.
-pub fn blocks(blocks: &[Block]) -> String {
+pub fn blocks(blocks: &[Element]) -> String {
     let mut text = String::new();
-    for part in blocks.chunk_by(|a, b| matches!((a, b), (Block::Finding(_), Block::Finding(_)))) {
+    for part in blocks.chunk_by(|a, b| matches!((a, b), (Element::Finding(_), Element::Finding(_)))) {
         match part {
-            [Block::Finding(_), ..] => {
+            [Element::Finding(_), ..] => {
                 text += &format!("<ul class=\"warnings\">\n{}</ul>\n", part.iter().map(block).collect::<String>());
             }
             _ => text.extend(part.iter().map(block)),
@@ -92,28 +92,28 @@ pub fn blocks(blocks: &[Block]) -> String {
     text
 }
 
-fn block(block: &Block) -> String {
+fn block(block: &Element) -> String {
     match block {
-        Block::Gap => String::new(),
-        Block::Paragraph(one) if one.flow == Flow::Verbatim => format!("<pre>{}</pre>\n", escaped(&one.line.text())),
-        Block::Paragraph(one) => {
+        Element::Gap => String::new(),
+        Element::Paragraph(one) if one.flow == Flow::Verbatim => format!("<pre>{}</pre>\n", escaped(&one.line.text())),
+        Element::Paragraph(one) => {
             let class = if one.indent > 0 { " class=\"note\"" } else { "" };
             format!("<p{class}>{}</p>\n", toned(&one.line))
         }
-        Block::Aside(aside) if aside.title.is_empty() => blocks(&aside.blocks),
-        Block::Aside(aside) => format!("<h3>{}</h3>\n{}", aside.title, blocks(&aside.blocks)),
-        Block::List(list) => {
+        Element::Aside(aside) if aside.title.is_empty() => blocks(&aside.blocks),
+        Element::Aside(aside) => format!("<h3>{}</h3>\n{}", aside.title, blocks(&aside.blocks)),
+        Element::List(list) => {
             format!("<p class=\"note\">{}: {}</p>\n", escaped(list.title.trim()), escaped(&list.words.join(" ")))
         }
-        Block::Table(one) => table(one),
-        Block::Chart(Chart::Plot(one)) => {
+        Element::Table(one) => table(one),
+        Element::Chart(Chart::Plot(one)) => {
             // What a drawing names its own format by asks for nothing, and is left out all the same.
             let svg = drawn(&[one], &one.name).replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
             format!("<div class=\"trade\">{svg}</div>\n")
         }
-        Block::Chart(Chart::Bars(one)) => bars(one),
-        Block::Chart(Chart::Spread(one)) => spread::figure(one).unwrap_or_default(),
-        Block::Finding(one) => {
+        Element::Chart(Chart::Bars(one)) => bars(one),
+        Element::Chart(Chart::Spread(one)) => spread::figure(one).unwrap_or_default(),
+        Element::Finding(one) => {
             let actions: String =
                 one.actions.iter().map(|action| format!(" <span>{}</span>", escaped(action))).collect();
             format!("<li><strong>{}</strong> {}{actions}</li>\n", one.code, escaped(&one.message))
@@ -136,7 +136,7 @@ fn toned(line: &Line) -> String {
 }
 
 /// A table with the columns that pages show; the first names its row unless it is a number.
-pub fn table(table: &Table) -> String {
+pub fn table(table: &DataTable) -> String {
     let places = table.places(|column| column.page);
     if table.view.is_empty() || places.is_empty() || table.most[1] == 0 {
         return String::new();

@@ -1,6 +1,6 @@
 //! Documents as Markdown.
 
-use super::{Block, Document, Table};
+use super::{DataTable, Document, Element};
 use crate::names::clean;
 
 /// A document: its title as a heading, a heading for every section, tables with the columns that pages show.
@@ -20,23 +20,23 @@ pub fn markdown(document: &Document) -> String {
     format!("{}\n", text.trim_end())
 }
 
-fn shown(block: &Block) -> String {
+fn shown(block: &Element) -> String {
     match block {
-        Block::Gap | Block::Chart(_) => String::new(),
-        Block::Paragraph(one) => format!("{}\n\n", escaped(one.line.text().trim())),
-        Block::Aside(aside) => {
+        Element::Gap | Element::Chart(_) => String::new(),
+        Element::Paragraph(one) => format!("{}\n\n", escaped(one.line.text().trim())),
+        Element::Aside(aside) => {
             let title = if aside.title.is_empty() { String::new() } else { format!("### {}\n\n", aside.title) };
             title + &aside.blocks.iter().map(shown).collect::<String>()
         }
-        Block::List(list) => format!("{}: {}\n\n", escaped(list.title.trim()), escaped(&list.words.join(" "))),
-        Block::Table(table) => tabled(table),
-        Block::Finding(one) => {
+        Element::List(list) => format!("{}: {}\n\n", escaped(list.title.trim()), escaped(&list.words.join(" "))),
+        Element::Table(table) => tabled(table),
+        Element::Finding(one) => {
             format!("- **{}** {} {}\n\n", one.code, escaped(&one.message), escaped(&one.actions.join(" ")))
         }
     }
 }
 
-fn tabled(table: &Table) -> String {
+fn tabled(table: &DataTable) -> String {
     let places = table.places(|column| column.page);
     if table.view.is_empty() || places.is_empty() || table.most[1] == 0 {
         return String::new();

@@ -15,9 +15,9 @@ pub mod svg;
 mod table;
 pub mod terminal;
 
-pub use chart::{Axis, Bar, Bars, Chart, Fill, Layer, Plot, PlotPoint, Scale, Spread, Stroke};
+pub use chart::{Bar, Bars, Chart, Fill, Layer, Plot, PlotAxis, PlotPoint, PlotScale, SpreadChart, Stroke};
 pub(crate) use spread::Extent;
-pub use table::{Cell, Column, Columns, Table, Value};
+pub use table::{Cell, Column, Columns, DataTable, Value};
 pub use terminal::{Detail, Style};
 
 /// What a piece of text means for the reader.
@@ -80,7 +80,7 @@ pub struct List {
 
 /// Something that the reader should know of a result: a warning, and what to do about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Finding {
+pub struct Notice {
     /// The code of the warning.
     pub code: &'static str,
     /// What happened, and what it means.
@@ -97,12 +97,12 @@ pub struct Aside {
     /// Its heading; empty for none.
     pub title: &'static str,
     /// What it says.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<Element>,
 }
 
 /// A part of a document.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Block {
+pub enum Element {
     /// An empty line in a terminal.
     Gap,
     /// Text.
@@ -112,11 +112,11 @@ pub enum Block {
     /// Words after a title.
     List(List),
     /// A table.
-    Table(Table),
+    Table(DataTable),
     /// A drawing.
     Chart(Chart),
     /// A warning. Terminals have it from stderr.
-    Finding(Finding),
+    Finding(Notice),
 }
 
 /// What a document says of one thing.
@@ -129,7 +129,7 @@ pub struct Section {
     /// What follows the name and the unit.
     pub words: String,
     /// What is said.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<Element>,
 }
 
 /// A document.
@@ -138,7 +138,7 @@ pub struct Document {
     /// Its title.
     pub title: Option<String>,
     /// What it says before its sections.
-    pub head: Vec<Block>,
+    pub head: Vec<Element>,
     /// Its sections; the first may be about everything, without a name.
     pub sections: Vec<Section>,
 }
@@ -174,36 +174,36 @@ impl<T: Into<String>> From<T> for Line {
 /// What can be put down: blocks one after the other.
 pub trait Blocks {
     /// The blocks so far.
-    fn blocks(&mut self) -> &mut Vec<Block>;
+    fn blocks(&mut self) -> &mut Vec<Element>;
 
     /// An empty line.
     fn gap(&mut self) {
-        self.blocks().push(Block::Gap);
+        self.blocks().push(Element::Gap);
     }
 
     /// A line at the margin.
     fn line(&mut self, line: impl Into<Line>) {
-        self.blocks().push(Block::Paragraph(Paragraph { line: line.into(), indent: 0, flow: Flow::Folded }));
+        self.blocks().push(Element::Paragraph(Paragraph { line: line.into(), indent: 0, flow: Flow::Folded }));
     }
 
     /// A line below what it belongs to.
     fn note(&mut self, line: impl Into<Line>) {
-        self.blocks().push(Block::Paragraph(Paragraph { line: line.into(), indent: 2, flow: Flow::Folded }));
+        self.blocks().push(Element::Paragraph(Paragraph { line: line.into(), indent: 2, flow: Flow::Folded }));
     }
 
     /// Text of any length, this far from the margin.
     fn wrapped(&mut self, indent: usize, line: impl Into<Line>) {
-        self.blocks().push(Block::Paragraph(Paragraph { line: line.into(), indent, flow: Flow::Wrapped }));
+        self.blocks().push(Element::Paragraph(Paragraph { line: line.into(), indent, flow: Flow::Wrapped }));
     }
 
     /// Words after a title.
     fn list(&mut self, title: &str, words: Vec<String>) {
-        self.blocks().push(Block::List(List { title: title.to_owned(), words }));
+        self.blocks().push(Element::List(List { title: title.to_owned(), words }));
     }
 
     /// Blocks for pages only, below a heading unless that is empty.
-    fn aside(&mut self, title: &'static str, blocks: Vec<Block>) {
-        self.blocks().push(Block::Aside(Aside { title, blocks }));
+    fn aside(&mut self, title: &'static str, blocks: Vec<Element>) {
+        self.blocks().push(Element::Aside(Aside { title, blocks }));
     }
 
     /// A line for pages only.
@@ -214,30 +214,30 @@ pub trait Blocks {
     }
 
     /// A table.
-    fn table(&mut self, table: Table) {
-        self.blocks().push(Block::Table(table));
+    fn table(&mut self, table: DataTable) {
+        self.blocks().push(Element::Table(table));
     }
 
     /// A drawing.
     fn chart(&mut self, chart: Chart) {
-        self.blocks().push(Block::Chart(chart));
+        self.blocks().push(Element::Chart(chart));
     }
 }
 
 impl Blocks for Document {
-    fn blocks(&mut self) -> &mut Vec<Block> {
+    fn blocks(&mut self) -> &mut Vec<Element> {
         &mut self.head
     }
 }
 
 impl Blocks for Section {
-    fn blocks(&mut self) -> &mut Vec<Block> {
+    fn blocks(&mut self) -> &mut Vec<Element> {
         &mut self.blocks
     }
 }
 
-impl Blocks for Vec<Block> {
-    fn blocks(&mut self) -> &mut Vec<Block> {
+impl Blocks for Vec<Element> {
+    fn blocks(&mut self) -> &mut Vec<Element> {
         self
     }
 }
@@ -256,7 +256,7 @@ impl Document {
     }
 
     /// All blocks, in order.
-    pub fn all(&self) -> impl Iterator<Item = &Block> {
+    pub fn all(&self) -> impl Iterator<Item = &Element> {
         self.head.iter().chain(self.sections.iter().flat_map(|section| &section.blocks))
     }
 }

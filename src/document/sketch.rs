@@ -1,7 +1,7 @@
 //! A density in a few lines of text, with the limits marked, and a histogram of bars.
 
 use super::number::{beside, plain, significant};
-use super::{Cell, Columns, Table};
+use super::{Cell, Columns, DataTable};
 use crate::pearson::Pearson;
 use crate::simulation::Histogram;
 
@@ -63,7 +63,7 @@ pub(super) fn sketch(law: &Pearson, limits: [Option<f64>; 2], width: usize, unic
 }
 
 /// Bars of a sample, turned by a right angle, two intervals a line.
-pub(super) fn bars(bins: &Histogram, sigma: f64) -> Table {
+pub(super) fn bars(bins: &Histogram, sigma: f64) -> DataTable {
     let groups: Vec<(f64, f64)> = (bins.counts.chunks(2).zip(bins.edges.chunks(2)))
         .map(|(counts, edges)| (edges[0], counts.iter().sum::<u64>() as f64))
         .collect();

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::chart::Spread;
+use super::chart::SpreadChart;
 use super::number::{beside, plain, unsigned_zero};
 use super::svg::escaped;
 use crate::simulation::Histogram;
@@ -92,7 +92,7 @@ fn densest(bins: &Histogram) -> f64 {
 }
 
 /// A figure; nothing where there is neither density nor sample, or no extent. Places are marked where they lie within what is drawn.
-pub(super) fn figure(of: &Spread) -> Option<String> {
+pub(super) fn figure(of: &SpreadChart) -> Option<String> {
     let (law, limits) = (of.law.as_ref(), of.limits);
     let bins = of.bins.as_ref().filter(|bins| bins.counts.len() > 1 && total(bins) > 0.0);
     let of_law = law.map(|law| [law.quantile(1e-4), law.upper_quantile(1e-4)]);

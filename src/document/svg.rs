@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::labels::{Label, placed};
 use super::number::plain;
-use super::{Axis, Block, Chart, Document, Layer, Plot, PlotPoint, Scale, Stroke};
+use super::{Chart, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Stroke};
 
 const WIDTH: f64 = 720.0;
 /// Height of one plot.
@@ -20,7 +20,7 @@ const NEAR: f64 = 12.0;
 /// All plots of a document.
 pub fn svg(document: &Document, title: &str) -> String {
     let plots = document.all().filter_map(|block| match block {
-        Block::Chart(Chart::Plot(plot)) => Some(plot),
+        Element::Chart(Chart::Plot(plot)) => Some(plot),
         _ => None,
     });
     drawn(&plots.collect::<Vec<_>>(), title)
@@ -55,14 +55,14 @@ pub(super) fn escaped(text: &str) -> String {
 
 /// A scale from values to places in the drawing.
 struct Ruler {
-    scale: Scale,
+    scale: PlotScale,
     from: f64,
     to: f64,
     pixels: [f64; 2],
 }
 
 impl Ruler {
-    fn over(values: Vec<f64>, scale: Scale, pixels: [f64; 2]) -> Self {
+    fn over(values: Vec<f64>, scale: PlotScale, pixels: [f64; 2]) -> Self {
         let ends = |values: &mut dyn Iterator<Item = f64>| {
             let ends = values.filter(|value| value.is_finite());
             let [low, high] =
@@ -70,13 +70,13 @@ impl Ruler {
             if low <= high { [low, high] } else { [0.0, 1.0] }
         };
         let [from, to] = match scale {
-            Scale::Linear(margin) => {
+            PlotScale::Linear(margin) => {
                 let [from, to] = ends(&mut values.into_iter());
                 // What does not vary stands in the middle.
                 let room = if from < to { margin * (to - from) } else { 0.5 * from.abs().max(1.0) };
                 [from - room, to + room]
             }
-            Scale::Decades => {
+            PlotScale::Decades => {
                 let [from, to] = ends(&mut values.into_iter().filter(|value| *value > 0.0).map(f64::log10));
                 [from.floor(), to.ceil().max(from.floor() + 1.0)]
             }
@@ -85,16 +85,16 @@ impl Ruler {
     }
 
     fn at(&self, value: f64) -> f64 {
-        let value = if self.scale == Scale::Decades { value.log10() } else { value };
+        let value = if self.scale == PlotScale::Decades { value.log10() } else { value };
         self.pixels[0] + (value - self.from) / (self.to - self.from) * (self.pixels[1] - self.pixels[0])
     }
 
     /// Places of an axis with what stands there, which is markup.
-    fn ticks(&self, axis: &Axis) -> Vec<(f64, String)> {
+    fn ticks(&self, axis: &PlotAxis) -> Vec<(f64, String)> {
         if !axis.ticks.is_empty() {
             return axis.ticks.iter().map(|(at, label)| (self.at(*at), escaped(label))).collect();
         }
-        if self.scale == Scale::Decades {
+        if self.scale == PlotScale::Decades {
             return (self.from as i32..=self.to as i32).map(|of| (self.at(10f64.powi(of)), power(of))).collect();
         }
         // Round numbers, five to ten of them.

@@ -46,7 +46,7 @@ pub struct Column {
 
 /// A table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct DataTable {
     /// The name of its CSV file without the ending; empty where it has none.
     pub name: &'static str,
     /// Its columns.
@@ -110,15 +110,15 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// The table of these rows. People see all of them.
-    pub fn table(self, name: &'static str, rows: impl IntoIterator<Item = T>) -> Table {
+    pub fn table(self, name: &'static str, rows: impl IntoIterator<Item = T>) -> DataTable {
         let rows: Vec<Vec<Cell>> =
             rows.into_iter().map(|row| self.0.iter().map(|(_, cell)| cell(&row)).collect()).collect();
         let columns = self.0.iter().map(|(column, _)| *column).collect();
-        Table { name, columns, view: (0..rows.len()).collect(), rows, most: [usize::MAX; 2], rest: String::new() }
+        DataTable { name, columns, view: (0..rows.len()).collect(), rows, most: [usize::MAX; 2], rest: String::new() }
     }
 }
 
-impl Table {
+impl DataTable {
     /// The table of which people see these rows in this order.
     pub fn seen(mut self, view: Vec<usize>) -> Self {
         self.view = view;

@@ -2,7 +2,7 @@
 
 use super::number::shortened_to;
 use super::sketch::{bars, sketch};
-use super::{Block, Chart, Document, Flow, Line, List, Paragraph, Section, Table, Tone};
+use super::{Chart, DataTable, Document, Element, Flow, Line, List, Paragraph, Section, Tone};
 use crate::names::clean;
 
 /// How much is shown.
@@ -86,13 +86,13 @@ impl Page {
         section.blocks.iter().for_each(|block| self.block(block));
     }
 
-    fn block(&mut self, block: &Block) {
+    fn block(&mut self, block: &Element) {
         match block {
-            Block::Gap => self.text.push('\n'),
-            Block::Paragraph(paragraph) => self.paragraph(paragraph),
-            Block::List(list) => self.list(list),
-            Block::Table(table) => self.table(table),
-            Block::Chart(Chart::Spread(spread)) => {
+            Element::Gap => self.text.push('\n'),
+            Element::Paragraph(paragraph) => self.paragraph(paragraph),
+            Element::List(list) => self.list(list),
+            Element::Table(table) => self.table(table),
+            Element::Chart(Chart::Spread(spread)) => {
                 if let Some(bins) = spread.bins.as_ref().filter(|_| spread.sampled) {
                     self.table(&bars(bins, spread.sigma));
                 } else if let Some(law) = &spread.law {
@@ -100,7 +100,7 @@ impl Page {
                     picture.into_iter().for_each(|line| self.folded(&line.into()));
                 }
             }
-            Block::Chart(Chart::Plot(_) | Chart::Bars(_)) | Block::Aside(_) | Block::Finding(_) => {}
+            Element::Chart(Chart::Plot(_) | Chart::Bars(_)) | Element::Aside(_) | Element::Finding(_) => {}
         }
     }
 
@@ -206,7 +206,7 @@ impl Page {
 
     /// A table, indented by two and no wider than the page: names, in the first column, give way, and columns that have no room
     /// stand in a table of their own below, with the names again.
-    fn table(&mut self, table: &Table) {
+    fn table(&mut self, table: &DataTable) {
         let most = if self.style.detail == Detail::Full { usize::MAX } else { table.most[0] };
         let places = table.places(|column| column.terminal);
         if table.view.is_empty() || places.is_empty() || most == 0 {
@@ -317,7 +317,7 @@ mod tests {
     fn tables_fit_the_page() {
         let row =
             |name: &str| [Cell::name(name), Cell::number(1.25, |x| format!("{x:.3}")), Cell::text("a word or two")];
-        let table = Table::untitled([row("a"), row("a name that is long")]);
+        let table = DataTable::untitled([row("a"), row("a name that is long")]);
         let page = shown(|page| page.table(table), Style { color: false, ..STYLE });
         let lines: Vec<&str> = page.lines().collect();
         let expected =

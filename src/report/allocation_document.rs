@@ -9,8 +9,8 @@ use super::{CharacteristicReport, head};
 use crate::allocation::JointYield;
 use crate::document::number::{beside, index, known, plain, rejected, share, short, significant, yielded};
 use crate::document::{
-    Axis, Block, Blocks, Cell, Chart, Columns, Document, Flow, Layer, Line, Paragraph, Plot, PlotPoint, Scale, Section,
-    Stroke, Table, Tone, Value,
+    Blocks, Cell, Chart, Columns, DataTable, Document, Element, Flow, Layer, Line, Paragraph, Plot, PlotAxis,
+    PlotPoint, PlotScale, Section, Stroke, Tone, Value,
 };
 use crate::verdict::Verdict;
 
@@ -64,7 +64,7 @@ impl AllocationReport {
         if let Some(entries) = &self.dimensions_table {
             let text = format!("[dimensions]\n{}", entries.trim_end_matches('\n'));
             let mut section = Section::default();
-            section.blocks.push(Block::Paragraph(Paragraph { line: text.into(), indent: 0, flow: Flow::Verbatim }));
+            section.blocks.push(Element::Paragraph(Paragraph { line: text.into(), indent: 0, flow: Flow::Verbatim }));
             document.sections.push(section);
         }
         document
@@ -78,7 +78,7 @@ impl AllocationReport {
         }
     }
 
-    fn heading(&self, page: &mut Vec<Block>) {
+    fn heading(&self, page: &mut Vec<Element>) {
         let cost = match (self.cost_before, self.cost_after) {
             (before, Some(after)) => {
                 let saved = before.map_or(String::new(), |before| {
@@ -119,7 +119,7 @@ impl AllocationReport {
         }
     }
 
-    fn tolerances(&self) -> Table {
+    fn tolerances(&self) -> DataTable {
         let side = |band: Option<[f64; 2]>, end: usize| Cell::data(band.map(|band| band[end]));
         let most = |one: &AllocatedReport, of: &dyn Fn(&ContributionReport) -> Option<f64>| {
             let share = one.contributions.iter().filter_map(of).reduce(f64::max);
@@ -153,7 +153,7 @@ impl AllocationReport {
             .table("tolerances", &self.tolerances)
     }
 
-    fn recentred(&self) -> Table {
+    fn recentred(&self) -> DataTable {
         Columns::default()
             .shown("nominal", |one: &&super::RecentredReport| Cell::name(&one.dimension))
             .shown("before", |one| Cell::number(one.before, plain))
@@ -162,7 +162,7 @@ impl AllocationReport {
             .table("", &self.recentred)
     }
 
-    fn requirements(&self) -> Table {
+    fn requirements(&self) -> DataTable {
         let price = |one: &KeptReport, of: fn(&PriceReport) -> Option<f64>| {
             Cell::data(self.shadow_prices.iter().find(|price| price.characteristic == one.characteristic).and_then(of))
         };
@@ -215,7 +215,7 @@ impl AllocationReport {
         }
     }
 
-    fn before_after(&self) -> Table {
+    fn before_after(&self) -> DataTable {
         type Row<'r> = (Option<&'r AllocatedCharacteristic>, &'static str, &'r CharacteristicReport);
         let rows = self.characteristics.iter().flat_map(|one| {
             let after = one.after.as_ref().map(|after| (None, "after", after));
@@ -281,7 +281,7 @@ impl AllocationReport {
     }
 
     /// The front for people.
-    fn front_table(&self) -> Table {
+    fn front_table(&self) -> DataTable {
         type Row = (FrontRequirement, Option<f64>);
         let rows = self.front.iter().filter_map(|point| Some((point.required.first()?.clone(), point.cost)));
         Columns::default()
@@ -297,7 +297,7 @@ impl AllocationReport {
     }
 
     /// The front for programs: a row for every dimension at every point.
-    fn front_points(&self) -> Table {
+    fn front_points(&self) -> DataTable {
         type Row<'r> = (u64, &'r FrontRequirement, Option<f64>, Option<(&'r str, f64)>);
         let rows = self.front.iter().enumerate().flat_map(|(place, point)| {
             point.required.iter().flat_map(move |wanted| {
@@ -347,14 +347,16 @@ impl AllocationReport {
         });
         let points = points.chain(before.map(|at| circle(at, false, "before", String::new()))).collect();
         let every = front.len().div_ceil(LABELS).max(1);
-        let mut x =
-            Axis::new(format!("{} required", first.map_or("yield", |wanted| wanted.requirement)), Scale::Linear(0.05));
+        let mut x = PlotAxis::new(
+            format!("{} required", first.map_or("yield", |wanted| wanted.requirement)),
+            PlotScale::Linear(0.05),
+        );
         x.ticks = front.iter().step_by(every).map(|(place, _, label)| (*place, label.clone())).collect();
         let line = front.iter().map(|(place, cost, _)| (*place, Some(*cost))).collect();
         Plot {
             name: self.head.title.clone().unwrap_or_else(|| "Cost against what is required".to_owned()),
             x,
-            y: Axis::new("cost", Scale::Linear(0.05)),
+            y: PlotAxis::new("cost", PlotScale::Linear(0.05)),
             layers: vec![Layer::Curve(line, Stroke::Thin), Layer::Points(points)],
         }
     }
@@ -364,7 +366,7 @@ fn money(cost: f64) -> String {
     significant(cost, COST)
 }
 
-fn unattainable(page: &mut Vec<Block>, one: &AttainableReport) {
+fn unattainable(page: &mut Vec<Element>, one: &AttainableReport) {
     let (name, required) = (short(&one.characteristic), required(one.requirement, one.required));
     let best = one.best.map_or("unknown".to_owned(), |best| measure(one.requirement, best));
     page.line(format!("`{name}` cannot keep {required}: the best that there is is {best}"));

@@ -13,7 +13,7 @@ use crate::document::number::{
     yielded,
 };
 use crate::document::{
-    Block, Blocks, Cell, Chart, Columns, Document, Line, Section, Spread, Style, Table, Value, terminal,
+    Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Section, SpreadChart, Style, Value, terminal,
 };
 use crate::extremes::{Extreme, Place};
 use crate::method::Basis;
@@ -49,7 +49,7 @@ impl Report {
         }
         let all = self.characteristics.iter().zip(self.stacks());
         document.sections = all.map(|(one, stack)| self.section(one, &stack)).collect();
-        document.head.extend([self.dimension_table(), self.warning_table()].map(Block::Table));
+        document.head.extend([self.dimension_table(), self.warning_table()].map(Element::Table));
         document
     }
 
@@ -69,14 +69,14 @@ impl Report {
         self.correlations(one, &mut section);
         one.pairs(&mut section);
         let (pareto, rest) = bars::pareto(one);
-        let mut drawn = vec![Block::Chart(Chart::Bars(pareto))];
+        let mut drawn = vec![Element::Chart(Chart::Bars(pareto))];
         rest.into_iter().for_each(|rest| drawn.note(rest));
         section.aside("Contributions to the variance", drawn);
         if let Some(spans) = bars::spans(one) {
-            section.aside("Worst case and RSS", vec![Block::Chart(Chart::Bars(spans))]);
+            section.aside("Worst case and RSS", vec![Element::Chart(Chart::Bars(spans))]);
         }
         if stack.straight() {
-            let mut blocks: Vec<Block> = stack.tables().map(Block::Table).into();
+            let mut blocks: Vec<Element> = stack.tables().map(Element::Table).into();
             stack.notes.iter().for_each(|note| blocks.note(note.to_string()));
             section.aside("Stack", blocks);
         }
@@ -84,7 +84,7 @@ impl Report {
     }
 
     /// A row for every characteristic: where it lies, its limits, and how it keeps them.
-    pub(super) fn verdicts(&self) -> Table {
+    pub(super) fn verdicts(&self) -> DataTable {
         type Of<'r> = &'r CharacteristicReport;
         let scaled = |one: &Of<'_>, value: Option<f64>, unknown: &str| {
             let text = value.zip(one.sigma).map_or(unknown.to_owned(), |(value, sigma)| beside(value, sigma));
@@ -144,7 +144,7 @@ impl Report {
             .table("characteristics", &self.characteristics)
     }
 
-    fn dimension_table(&self) -> Table {
+    fn dimension_table(&self) -> DataTable {
         let end = |one: &DimensionReport, end: usize| Cell::data(one.tolerance.map(|ends| ends[end]));
         Columns::default()
             .data("name", |one: &&DimensionReport| Cell::text(&one.name))
@@ -159,7 +159,7 @@ impl Report {
             .table("dimensions", &self.dimensions)
     }
 
-    fn warning_table(&self) -> Table {
+    fn warning_table(&self) -> DataTable {
         Columns::default()
             .data("code", |one: &&WarningReport| Cell::text(one.code))
             .data("characteristic", |one| Cell::optional(one.characteristic.as_deref()))
@@ -224,7 +224,7 @@ impl CharacteristicReport {
         };
         let shift = self.mean.zip(self.nominal).map(|(mean, nominal)| mean - nominal);
         let shift = Cell::text(known(shift, |shift| beside(shift, scale)));
-        section.table(Table::untitled(
+        section.table(DataTable::untitled(
             [
                 ("nominal", number(self.nominal), "mean shift", shift),
                 ("mean", number(self.mean), "3 sigma", around(self.mean, self.sigma.map(|sigma| 3.0 * sigma))),
@@ -341,7 +341,7 @@ impl CharacteristicReport {
     }
 
     /// The density, over the sample of the model where there is one.
-    pub(super) fn spread(&self, law: &Pearson, kind: &str) -> Spread {
+    pub(super) fn spread(&self, law: &Pearson, kind: &str) -> SpreadChart {
         let sample = self.model_sampling.as_ref().and_then(|sampling| sampling.histogram.as_ref());
         let bars = sample.map_or("", |_| " over the sample of the model; each bar with one standard error");
         let mut places = vec![
@@ -350,7 +350,7 @@ impl CharacteristicReport {
             (law.upper_quantile(0.00135), "quantile", "99.865 % quantile"),
         ];
         places.extend(self.mean.map(|mean| (mean, "mean", "mean")));
-        Spread {
+        SpreadChart {
             law: Some(law.clone()),
             bins: sample.cloned(),
             sampled: false,
@@ -362,7 +362,7 @@ impl CharacteristicReport {
         }
     }
 
-    fn quantile_data(&self) -> Table {
+    fn quantile_data(&self) -> DataTable {
         let quantiles = self.quantiles().map_or(&[][..], |quantiles| &quantiles.0);
         Columns::default()
             .data("characteristic", |_| Cell::text(&self.name))
@@ -430,7 +430,7 @@ impl CharacteristicReport {
         let of_limits = |name: &str, text: String| if limited { [name.to_owned(), text] } else { Default::default() };
         let ([yield_, yields], [cpk, cpks]) =
             (of_limits("yield", range(kept, &share)), of_limits("Cpk", range(interval.cpk, &index)));
-        section.table(Table::untitled(
+        section.table(DataTable::untitled(
             [
                 [
                     "mean".to_owned(),
@@ -462,7 +462,7 @@ impl CharacteristicReport {
     }
 
     /// What the dimensions do, strongest first.
-    pub(super) fn contributions(&self, dimensions: &[DimensionReport]) -> Table {
+    pub(super) fn contributions(&self, dimensions: &[DimensionReport]) -> DataTable {
         type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
         let part = |row: &Sensitivity| Some(row.linear_share? + row.curvature_share.unwrap_or(0.0));
         let all: Vec<Row<'_>> = self.sensitivities.iter().zip(dimensions).collect();
@@ -514,7 +514,7 @@ impl CharacteristicReport {
         section.table(self.interaction_table());
     }
 
-    pub(super) fn interaction_table(&self) -> Table {
+    pub(super) fn interaction_table(&self) -> DataTable {
         let news = self.interactions.iter().filter(|pair| pair.share.is_none_or(|share| share >= NEWS)).count();
         let most = [news.min(INTERACTIONS), news.min(INTERACTIONS_OF_PAGE)];
         let both = |pair: &&Interaction| {
@@ -572,7 +572,11 @@ pub fn law_text(law: &Pearson, style: Style) -> String {
     let ([lower, upper], kind) = (law.support().map(end), law.kind().name());
     document.line(format!("{}, from {lower} to {upper}", named(kind)));
     document.gap();
-    document.chart(Chart::Spread(Box::new(Spread { law: Some(law.clone()), sigma: law.sigma(), ..Spread::default() })));
+    document.chart(Chart::Spread(Box::new(SpreadChart {
+        law: Some(law.clone()),
+        sigma: law.sigma(),
+        ..SpreadChart::default()
+    })));
     document.gap();
     document.table(quantile_table(&named(kind), &Quantiles::of(law), law.sigma()));
     terminal::text(&document, style)
@@ -583,7 +587,7 @@ fn named(kind: &str) -> String {
 }
 
 /// Quantiles beside one another, with their probabilities above.
-fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> Table {
+fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
     let row = |name: String, cell: &dyn Fn(&(&'static str, f64)) -> Cell| -> [Cell; 8] {
         let mut cells = std::iter::once(Cell::text(name)).chain(quantiles.0.iter().map(cell));
         std::array::from_fn(|_| cells.next().unwrap_or_else(Cell::empty))
@@ -592,7 +596,7 @@ fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> Table {
         // `0.00135` as `0.135 %`.
         Cell::number(p.parse::<f64>().ok(), |p| format!("{} %", plain((1e5 * p).round() / 1e3)))
     };
-    Table::untitled([
+    DataTable::untitled([
         row(law.to_owned(), &probability),
         row("quantiles".to_owned(), &|(_, value)| Cell::number(*value, |value| beside(value, sigma))),
     ])

@@ -7,7 +7,8 @@ use super::{About, Head, head};
 use crate::compare::{Comparison, Contender, Errors, Figures, NotRunReason, RESOLVED, Ran};
 use crate::document::number::{known, significant, yielded};
 use crate::document::{
-    Axis, Blocks, Cell, Chart, Columns, Document, Layer, Plot, PlotPoint, Scale, Section, Stroke, Table, Tone, Value,
+    Blocks, Cell, Chart, Columns, DataTable, Document, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Section, Stroke,
+    Tone, Value,
 };
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
@@ -195,7 +196,7 @@ impl ComparedReport {
         section
     }
 
-    fn table(&self) -> Table {
+    fn table(&self) -> DataTable {
         let error = |off: Option<f64>, own: Option<f64>, factor: f64| {
             // Below two standard errors of the reference, these.
             let own = own.map(|own| RESOLVED * own);
@@ -263,8 +264,8 @@ impl ComparedReport {
         layers.push(Layer::Points(points));
         Plot {
             name: self.name.clone(),
-            x: Axis::new("evaluations", Scale::Decades),
-            y: Axis::new("error of mean and sigma, in sigmas", Scale::Decades),
+            x: PlotAxis::new("evaluations", PlotScale::Decades),
+            y: PlotAxis::new("error of mean and sigma, in sigmas", PlotScale::Decades),
             layers,
         }
     }

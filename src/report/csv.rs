@@ -3,7 +3,7 @@
 use super::Report;
 use super::stack::{Stack, stack_document};
 use crate::document::csv::{csv, joined};
-use crate::document::{Document, Table};
+use crate::document::{DataTable, Document};
 
 /// The tables of an analysis but for the stacks.
 const TABLES: [&str; 6] = ["dimensions", "characteristics", "sensitivities", "interactions", "quantiles", "warnings"];
@@ -67,7 +67,7 @@ pub fn stack_csv(stacks: &[Stack]) -> String {
 
 /// The stacks of several studies as one table, with the study's name before the columns of [`stack_csv`].
 pub fn stack_csv_of_studies(studies: &[(String, Vec<Stack>)]) -> String {
-    let tables: Vec<(&str, Table)> = studies
+    let tables: Vec<(&str, DataTable)> = studies
         .iter()
         .flat_map(|(study, stacks)| stacks.iter().flat_map(Stack::tables).map(move |table| (study.as_str(), table)))
         .collect();

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{About, SCHEMA, WarningReport};
 use crate::document::number::plural;
-use crate::document::{Block, Finding, Tone};
+use crate::document::{Element, Notice, Tone};
 use crate::summary::RunSummary;
 
 /// Versions, the study, and the command.
@@ -47,10 +47,10 @@ pub(super) fn seed(run: &RunSummary) -> String {
 }
 
 /// The warnings about a characteristic, or those about no one of them.
-pub(super) fn findings(all: &[WarningReport], about: impl Fn(Option<&str>) -> bool) -> Vec<Block> {
+pub(super) fn findings(all: &[WarningReport], about: impl Fn(Option<&str>) -> bool) -> Vec<Element> {
     let found = |one: &WarningReport| {
         let actions = one.advice.iter().map(ToString::to_string).collect();
-        Block::Finding(Finding { code: one.code, message: one.message.clone(), actions, tone: Tone::Doubtful })
+        Element::Finding(Notice { code: one.code, message: one.message.clone(), actions, tone: Tone::Doubtful })
     };
     all.iter().filter(|one| about(one.characteristic.as_deref())).map(found).collect()
 }

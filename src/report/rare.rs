@@ -6,7 +6,7 @@ use super::head::{self, seed};
 use super::requirement::judged;
 use super::{About, CorrelationReport, DimensionReport, Head, RequirementReport, WarningReport, correlation};
 use crate::document::number::{known, plain, short, significant, yielded};
-use crate::document::{Blocks, Cell, Columns, Document, Line, Section, Table, Value};
+use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Value};
 use crate::problem::Problem;
 use crate::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
 use crate::summary::RunSummary;
@@ -223,7 +223,7 @@ impl RareCharacteristicReport {
         section
     }
 
-    fn table(&self, sides: &[Side<'_>]) -> Table {
+    fn table(&self, sides: &[Side<'_>]) -> DataTable {
         let limit = |(side, of): &Side<'_>| Cell::both(Value::Empty, format!("{side} {}", plain(of.limit)));
         let millionths =
             |value: Option<f64>, digits: usize| Cell::number(value, |value| significant(1e6 * value, digits));

@@ -8,7 +8,7 @@ use super::requirement::judged;
 use super::{About, CorrelationReport, DimensionReport, Head, RequirementReport, WarningReport, correlation};
 use crate::capability::Law;
 use crate::document::number::{estimated, index, known, limits, plain, significant, uncertainty, yielded};
-use crate::document::{Blocks, Cell, Chart, Columns, Document, Line, Section, Spread, Table};
+use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Line, Section, SpreadChart};
 use crate::moments::Moments;
 use crate::pearson::Pearson;
 use crate::problem::Problem;
@@ -310,7 +310,7 @@ impl SimulatedReport {
         ));
     }
 
-    fn estimates(&self) -> Table {
+    fn estimates(&self) -> DataTable {
         let errors = &self.standard_error;
         let moments: [Row; 4] = [
             ("mean", self.mean, errors.mean, None),
@@ -338,7 +338,7 @@ impl SimulatedReport {
             .seen((0..seen).collect())
     }
 
-    fn histogram_table(&self) -> Table {
+    fn histogram_table(&self) -> DataTable {
         let rows = self.histogram.iter().flat_map(|of| of.edges.windows(2).zip(&of.counts));
         Columns::default()
             .data("characteristic", |_| Cell::text(&self.name))
@@ -356,7 +356,7 @@ impl SimulatedReport {
             format!(" The line: the Pearson curve of its four moments ({}).", law.kind().name())
         });
         section.gap();
-        section.chart(Chart::Spread(Box::new(Spread {
+        section.chart(Chart::Spread(Box::new(SpreadChart {
             bins: Some(of.clone()),
             law,
             sampled: true,

@@ -13,7 +13,7 @@ use std::fmt;
 use super::{CharacteristicReport, DimensionReport, Report};
 use crate::analysis::Sensitivity;
 use crate::document::number::{UNKNOWN, beside, limits, percent, plain, short, significant};
-use crate::document::{Blocks, Cell, Columns, Document, Line, Section, Table, Tone, Value};
+use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Tone, Value};
 use crate::method::Method;
 
 /// A slope this near to 1 or -1 is a direction.
@@ -376,7 +376,7 @@ impl Stack {
 
     /// What dimensions contribute, and the totals. In CSV they are one table: of a total, `nominal` is the middle, and `lower` and
     /// `upper` are its half width as deviations.
-    pub(super) fn tables(&self) -> [Table; 2] {
+    pub(super) fn tables(&self) -> [DataTable; 2] {
         let scale = self.totals.iter().filter_map(|total| total.half_width).fold(0.0, f64::max);
         let scaled = |value: Option<f64>| Cell::number(value, |value| beside(value, scale));
         let end = |interval: Option<[f64; 2]>, end: usize| interval.map(|ends| ends[end]);

@@ -11,7 +11,7 @@ use crate::analysis::CharacteristicAnalysis;
 use crate::capability::Law;
 use crate::document::number::{beside, known, limits, plain, plural, rejected, shape, short, significant};
 use crate::document::{
-    Axis, Blocks, Cell, Chart, Columns, Document, Layer, Plot, Scale, Section, Stroke, Table, Value,
+    Blocks, Cell, Chart, Columns, DataTable, Document, Layer, Plot, PlotAxis, PlotScale, Section, Stroke, Value,
 };
 use crate::problem::Problem;
 use crate::summary::RunSummary;
@@ -168,7 +168,7 @@ fn with_unit(name: &str, unit: Option<&str>) -> String {
 }
 
 impl SweptReport {
-    fn table(&self, parameter: &str) -> Table {
+    fn table(&self, parameter: &str) -> DataTable {
         let rounded = |value: Option<f64>, point: &SweptPointReport| {
             Cell::number(value, |value| match point.sigma.filter(|sigma| *sigma > 0.0) {
                 Some(sigma) => beside(value, sigma),
@@ -225,8 +225,8 @@ impl SweptReport {
         }
         Plot {
             name: self.name.clone(),
-            x: Axis::new(parameter, Scale::Linear(0.0)),
-            y: Axis::new(with_unit(&self.name, self.unit.as_deref()), Scale::Linear(0.05)),
+            x: PlotAxis::new(parameter, PlotScale::Linear(0.0)),
+            y: PlotAxis::new(with_unit(&self.name, self.unit.as_deref()), PlotScale::Linear(0.05)),
             layers,
         }
     }
