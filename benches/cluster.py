@@ -23,7 +23,7 @@ for line in sys.stdin:
 """
 
 
-def measure(title, cluster, count, seconds, threads, window=None):
+def measure(title, cluster, count, seconds, threads):
     """Seconds from the first request to the last answer, and the adapter's memory at its peak."""
     with tempfile.TemporaryDirectory() as folder:
         pathlib.Path(folder, "model.py").write_text(MODEL)
@@ -76,5 +76,7 @@ def peak(pid):
 if __name__ == "__main__":
     measure("two workers, 50 ms", "local:2", 211, 0.05, 2)
     measure("two workers, no work", "local:2", 5000, 0.0, 2)
+    measure("8 threads, 1 s", "local:1x8", 80, 1.0, 8)
     measure("64 threads in 4 workers, 1 s", "local:4x16", 1280, 1.0, 64)
+    measure("64 threads in 1 worker, 4 s", "local:1x64", 256, 4.0, 64)
     measure("10,000 points queued, 2 ms", "local:2", 10_000, 0.002, 2)
