@@ -9,6 +9,7 @@ use super::running::{Clock, checked};
 use super::simulate::{sampling, surrogate};
 use crate::method::Options;
 use crate::rare::{RareCharacteristic, RareOptions, rare_within};
+use crate::report::html::rare_html;
 use crate::report::{CsvFile, RareCharacteristicReport, RareReport, rare_csv, rare_text};
 use crate::study::Study;
 use crate::warning::{Counted, Warning};
@@ -21,6 +22,7 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     let destination = files.output(&asked.output)?;
     let names = ["rare.csv".to_owned()];
     let folder = files.folder(asked.csv.as_deref(), &names)?;
+    let page = files.file(asked.html.as_deref())?;
     let costly = study.problem.function().signature().costly;
     let options = RareOptions {
         samples: asked.samples.unwrap_or(SAMPLES[usize::from(costly)]),
@@ -42,6 +44,7 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
         let [name] = names;
         folder.write(&[CsvFile { name, text: rare_csv(&report) }])
     }));
+    let written = written.and(page.map_or(Ok(()), |page| page.write(&rare_html(&report))));
     for warning in &report.warnings {
         look.tell(warning);
     }

@@ -8,6 +8,7 @@ mod allocated;
 mod analysis;
 mod chart;
 mod comparison;
+mod rare;
 mod sampled;
 mod swept;
 mod warned;
@@ -16,6 +17,7 @@ mod what_if;
 pub use allocated::allocate_html;
 pub use analysis::analyze_html;
 pub use comparison::compare_html;
+pub use rare::rare_html;
 pub use sampled::simulate_html;
 pub use swept::sweep_html;
 pub use what_if::{Line, WhatIf};
@@ -34,11 +36,12 @@ const STYLE: &str = include_str!("page.css");
 /// The mathematics of the what-if, and then what shows it.
 const SCRIPT: &str =
     concat!(include_str!("what_if.js"), include_str!("pearson.js"), include_str!("live.js"), include_str!("page.js"));
-const TEMPLATES: [(&str, &str); 7] = [
+const TEMPLATES: [(&str, &str); 8] = [
     ("parts.html", include_str!("parts.html")),
     ("page.html", include_str!("page.html")),
     ("analysis.html", include_str!("analysis.html")),
     ("simulation.html", include_str!("simulation.html")),
+    ("rare.html", include_str!("rare.html")),
     ("comparison.html", include_str!("comparison.html")),
     ("allocation.html", include_str!("allocation.html")),
     ("sweep.html", include_str!("sweep.html")),
