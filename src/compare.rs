@@ -1,7 +1,7 @@
 //! The trade of speed for accuracy, measured: every method on one problem, against a reference that states its own error.
 
 use std::fmt;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde::Serialize;
 
@@ -12,6 +12,7 @@ use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_within};
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::verdict::Verdict;
 
 /// What may be spent.
@@ -45,7 +46,7 @@ const SAMPLES: [u64; 4] = [100, 1000, 10_000, 100_000];
 /// Points of the quasi-random ones: 16 replicates of a power of two.
 const QUASI: [u64; 3] = [256, 4096, 65_536];
 /// An error is told from the reference's own when it is larger than so many of its standard errors.
-pub const RESOLVED: f64 = 2.0;
+pub(crate) const RESOLVED: f64 = 2.0;
 
 /// A method as it was run: a derivative method, or so many points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,7 +71,9 @@ impl Contender {
 }
 
 /// What a method says of one characteristic. What is unknown is None.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Figures {
     /// First moment.
     pub mean: Option<f64>,
@@ -81,11 +84,13 @@ pub struct Figures {
     /// Fourth standardised moment.
     pub kurtosis: Option<f64>,
     /// Share within the limits.
+    #[serde(rename = "yield")]
     pub yield_: Option<f64>,
 }
 
 /// How far a method is off the reference: the mean in sigmas, sigma relative, the others as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Errors {
     /// How far.
     pub off: Figures,
@@ -113,6 +118,7 @@ impl Errors {
 
 /// One method, as it was run.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Ran {
     /// Which.
     pub contender: Contender,
@@ -136,6 +142,7 @@ pub struct Ran {
 
 /// One method that was not run.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NotRun {
     /// Which.
     pub contender: Contender,
@@ -185,6 +192,7 @@ impl fmt::Display for NotRunReason {
 
 /// What a comparison found out.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Comparison {
     /// What all are measured by.
     pub reference: Simulation,
@@ -283,7 +291,8 @@ impl Comparer<'_> {
     /// Unless the budget allows it, nothing that is costly is evaluated more often than the `reference`.
     fn method(&mut self, method: Method, reference: Option<u64>) {
         let contender = Contender::Method(method);
-        let options = Options { budget: self.options.budget, ..Options::from(method) };
+        // Compared are the methods themselves, by a reference of their own.
+        let options = Options { budget: self.options.budget, verify: Some(0), ..Options::from(method) };
         let cost = match method.procedure().fits(self.problem, &options) {
             Ok(cost) => Some(cost.evaluations as u64),
             Err(error) => return self.refuse(contender, error.needed(), impossible(&error)),

@@ -32,6 +32,7 @@ pub struct Dimension {
 /// Why a dimension cannot be.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("dimension `{name}`: {fault}")]
+#[non_exhaustive]
 pub struct DimensionError {
     /// The dimension's name.
     pub name: String,
@@ -240,6 +241,11 @@ impl Dimension {
     /// How it varies; None when it is fixed.
     pub fn distribution(&self) -> Option<&dyn Distribution> {
         self.distribution.as_deref()
+    }
+
+    /// The same, to be shared.
+    pub(crate) fn law(&self) -> Option<&Arc<dyn Distribution>> {
+        self.distribution.as_ref()
     }
 
     /// Its step in sigmas, where one was given.

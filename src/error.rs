@@ -22,6 +22,7 @@ use crate::problem::ProblemError;
 use crate::rare::RareError;
 use crate::sampling::SamplingError;
 use crate::simulation::SimulationError;
+#[cfg(feature = "study")]
 use crate::study::{RewriteError, StudyError};
 use crate::sweep::SweepError;
 
@@ -54,6 +55,7 @@ pub enum Error {
     #[error(transparent)]
     Correlation(#[from] CorrelationError),
     /// A study file is wrong.
+    #[cfg(feature = "study")]
     #[error(transparent)]
     Study(#[from] StudyError),
     /// No distribution has the moments.
@@ -72,6 +74,7 @@ pub enum Error {
     #[error(transparent)]
     Allocate(#[from] AllocateError),
     /// A study cannot be written anew.
+    #[cfg(feature = "study")]
     #[error(transparent)]
     Rewrite(#[from] RewriteError),
     /// A method does not fit the problem.

@@ -4,13 +4,13 @@ mod history;
 
 pub(crate) use history::history;
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use crate::assembly::process::Doubt;
-use crate::assembly::{Ask, Points, Responses, Run};
+use crate::assembly::{Ask, NonRepeatable, Points, Responses, Run};
 use crate::plan::{Known, Plan, Stage};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
 
 /// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
 pub(crate) const BATCH: usize = 1 << 23;
@@ -25,7 +25,7 @@ pub struct Evaluated {
     /// Points whose answers were known from an earlier run.
     pub reused: usize,
     /// Where the model answered the nominal point otherwise than before.
-    pub doubts: Vec<Doubt>,
+    pub non_repeatable: Vec<NonRepeatable>,
     /// In how many stages.
     pub stages: usize,
     /// Points sent again.
@@ -39,7 +39,7 @@ pub struct Evaluated {
 /// Evaluates stage after stage until the plan lacks nothing, or the run is stopped.
 ///
 /// Evaluations: as [`Plan::cost`] says, and more only where the model fails.
-pub fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated {
+pub(crate) fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated {
     let mut evaluated = Evaluated::nothing(problem);
     while let Some(stage) = plan.next(&evaluated.known) {
         evaluated.add(problem, plan, &stage, run);
@@ -52,12 +52,12 @@ pub fn evaluate(problem: &Problem, plan: &dyn Plan, run: &Run<'_>) -> Evaluated 
 
 impl Evaluated {
     /// Nothing yet.
-    pub fn nothing(problem: &Problem) -> Self {
+    pub(crate) fn nothing(problem: &Problem) -> Self {
         Self {
             known: Known::nothing(problem.characteristics().len()),
             evaluations: 0,
             reused: 0,
-            doubts: Vec::new(),
+            non_repeatable: Vec::new(),
             stages: 0,
             retried: 0,
             stopped: None,
@@ -66,7 +66,7 @@ impl Evaluated {
     }
 
     /// In numbers.
-    pub fn summary(&self) -> RunSummary {
+    pub(crate) fn summary(&self) -> RunSummary {
         RunSummary {
             evaluations: self.evaluations as u64,
             cached: self.reused as u64,
@@ -80,7 +80,7 @@ impl Evaluated {
     }
 
     /// Evaluates one stage; the points are by the nodes of this plan.
-    pub fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
+    pub(crate) fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
         self.stages += 1;
         let centre = plan.centre();
         let rows = (BATCH / centre.len()).max(1);
@@ -102,7 +102,7 @@ impl Evaluated {
             self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
             self.reused += out.count_reused();
             self.retried += out.count_retried();
-            self.doubts.extend(out.doubts().iter().cloned());
+            self.non_repeatable.extend(out.non_repeatable().iter().cloned());
             if self.stopped.is_some() {
                 return;
             }

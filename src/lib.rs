@@ -6,14 +6,17 @@ pub mod assembly;
 pub mod capability;
 pub mod characteristic;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
 pub mod compare;
 pub mod correlation;
 pub mod dimension;
 pub mod distribution;
+#[cfg(feature = "report")]
+pub mod document;
 mod elementary;
 pub mod error;
-pub mod evaluation;
+mod evaluation;
 pub mod extremes;
 pub mod fits;
 #[cfg(feature = "journal")]
@@ -23,20 +26,23 @@ pub mod method;
 mod method_kind;
 pub mod models;
 pub mod moments;
-pub mod names;
+mod names;
 pub mod pearson;
-pub mod plan;
+mod plan;
 pub mod probe;
 pub mod problem;
 pub mod rare;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod requirement;
 pub mod sampling;
 pub mod simulation;
+#[cfg(feature = "study")]
 pub mod study;
 pub mod summary;
 pub mod surrogate;
 pub mod sweep;
+mod time;
 pub mod verdict;
 pub mod verification;
 pub mod warning;
@@ -48,8 +54,10 @@ pub use dimension::{Dimension, DimensionError};
 pub use error::Error;
 pub use method::{DerivativeSource, Method, MethodError, Options};
 pub use moments::Moments;
+pub use names::UnknownName;
 pub use problem::{Problem, ProblemError};
 pub use requirement::{Requirement, RequirementError};
+#[cfg(feature = "study")]
 pub use study::{Study, StudyError};
 pub use summary::{RunSummary, StopReason};
 pub use verdict::Verdict;

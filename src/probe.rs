@@ -5,12 +5,12 @@
 //! Source of the noise level: Moré and Wild, Estimating Computational Noise, SIAM J. Sci. Comput. 33 (2011), algorithm
 //! ECnoise: the standard deviation of differences of order k of values at equal distances, where it no longer depends on k.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use crate::assembly::process::Adapter;
-use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
+use crate::assembly::{Ask, EvaluationError, ModelInfo, Points, Responses, Run};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
+use crate::time::Instant;
 
 /// Points in the two passes that must agree.
 const SCATTERED: usize = 8;
@@ -32,9 +32,10 @@ const MANY: usize = 5;
 
 /// What a probe found out.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Probe {
     /// What an external program says of itself.
-    pub adapter: Option<Adapter>,
+    pub adapter: Option<ModelInfo>,
     /// What it came to in points and time.
     pub run: RunSummary,
     /// From nothing to ready.
@@ -51,6 +52,7 @@ pub struct Probe {
 
 /// One thing that a model should do.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Check {
     /// What.
     pub what: &'static str,
@@ -88,6 +90,7 @@ impl Finding {
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Probed {
     /// Its name.
     pub name: String,

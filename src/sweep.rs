@@ -6,12 +6,11 @@
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 use crate::analysis::{Analysis, analyze_within};
-use crate::assembly::process::Adapter;
 use crate::assembly::{
-    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Points, Responses, Run, Signature,
+    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, Responses, Run,
+    Signature,
 };
 use crate::dimension::DimensionError;
 use crate::evaluation::BATCH;
@@ -19,10 +18,12 @@ use crate::method::{MethodError, Options};
 use crate::names::nearest;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::warning::Warning;
 
 /// A problem along one of its dimensions.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Sweep {
     /// The place of the dimension among the problem's.
     pub dimension: usize,
@@ -79,7 +80,8 @@ pub enum SweepError {
 ///
 /// Evaluations: those of the method at every value, each point once, in as many batches as the method has stages. A method that
 /// goes on and on, or asks for thousands of points at once, is given its answers as it asks from then on. A budget is that of
-/// all values together, an equal part for each.
+/// all values together, an equal part for each. Results are verified only where [`Options::verify`] says so: a check at every value
+/// would cost more than what it checks.
 ///
 /// # Errors
 /// When the dimension or the values cannot be, or the options do not fit the problem; nothing is evaluated then. A model that
@@ -128,7 +130,8 @@ pub fn sweep_within(
         })
         .collect::<Result<_, _>>()?;
     // What may be spent is shared alike.
-    let options = &Options { budget: options.budget.map(|budget| budget / values.len()), ..options.clone() };
+    let budget = options.budget.map(|budget| budget / values.len());
+    let options = &Options { budget, verify: options.verify.or(Some(0)), ..options.clone() };
     for problem in &problems {
         options.method.procedure().fits(problem, options)?;
     }
@@ -269,7 +272,7 @@ impl AssemblyFunction for Gatherer {
         self.function().signature()
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
         self.function().prepare(outputs)
     }
 

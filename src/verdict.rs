@@ -85,6 +85,7 @@ impl Verdict {
 
 /// A requirement, what there is of it, and what that says.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Judged {
     /// What is required.
     pub requirement: Requirement,

@@ -4,14 +4,18 @@
 //! worst case       (reach beyond the nominal)/(U - nominal), linear in T
 //! rss              (R/s)^2 with R the rss and s the room that the middle of the linear model leaves
 //! Cpk, sigma       (R/s)^2 with R sigma and s the room that the mean leaves
-//! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield
+//! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield, corrected by the surface law
 //! ```
 //!
 //! The squares are exact sums of squares of tolerances for a linear characteristic; for any other the slopes are those of the
-//! second-order moments at the trial tolerances.
+//! second-order moments at the trial tolerances. Yield, Cpk and sigma are required of the pessimistic end of their intervals at the
+//! station: what is not known there is added to what is required.
 
+use std::sync::Arc;
+
+use super::correction::Correction;
 use super::cost::Priced;
-use super::response::Responses;
+use super::response::{Responses, Unknown};
 use super::separable::{Row, Term};
 use crate::capability::{self, Capability, Law};
 use crate::characteristic::SpecLimits;
@@ -113,9 +117,14 @@ impl Constraint {
     fn with_room(&self, responses: &Responses, priced: &[Priced], factors: &[f64]) -> Option<Vec<f64>> {
         let moments = responses.moments(self.characteristic, factors)?;
         let by = responses.moment_slopes(self.characteristic, priced, factors)?;
-        let partial = self.room_slopes(&moments)?;
+        let partial = self.room_slopes(&moments, self.target(responses))?;
         let of = |by: &[f64; 4]| by[1] - partial[0] * by[0] - partial[1] * by[2] - partial[2] * by[3];
-        Some(by.iter().map(of).collect())
+        let correction = self.correction(responses);
+        let corrected = |group: &Priced| {
+            let slopes = group.members.iter().map(|&d| correction.as_ref().map_or(0.0, |of| of.slope(d, factors)));
+            slopes.sum::<f64>()
+        };
+        Some(by.iter().zip(priced).map(|(by, group)| of(by) - corrected(group)).collect())
     }
 
     /// The reach beyond the nominal by the room that the limit leaves, and its coefficients by `T`.
@@ -153,7 +162,10 @@ impl Constraint {
                 let rss = responses.rss_squared(self.characteristic, priced, factors)?.0.sqrt();
                 (rss, self.room_about(responses.middle(self.characteristic, shifts)?)?)
             }
-            _ => (moments.sigma(), self.room(&moments)?),
+            _ => {
+                let factor = self.correction(responses).map_or(1.0, |of| of.factor(factors));
+                (moments.sigma(), factor * self.room(&moments, self.target(responses))?)
+            }
         };
         if own == 0.0 { Some(if room > 0.0 { 0.0 } else { f64::INFINITY }) } else { Some(own / room) }
     }
@@ -185,8 +197,25 @@ impl Constraint {
         (room > 0.0).then_some(room)
     }
 
+    /// What is required, made stricter by what is not known at the station: a yield, a Cpk, a sigma.
+    fn target(&self, responses: &Responses) -> f64 {
+        let reach = |of: fn(&Unknown) -> f64| of(&responses.of[self.characteristic].unknown);
+        match self.requirement {
+            Requirement::Yield(least) => 1.0 - Correction::allowed(least, reach(|of| of.yield_)),
+            Requirement::Cpk(least) => least + reach(|of| of.cpk),
+            Requirement::Sigma(most) => (most - reach(|of| of.sigma)).max(0.5 * most),
+            Requirement::Rss | Requirement::WorstCase => f64::NAN,
+        }
+    }
+
+    /// What the law of the surface makes of the room for a yield.
+    fn correction(&self, responses: &Responses) -> Option<Arc<Correction>> {
+        let Requirement::Yield(least) = self.requirement else { return None };
+        responses.correction(self.characteristic, least, &|moments| self.room(moments, self.target(responses)))
+    }
+
     /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it is no matter of the mean.
-    pub(super) fn room(&self, moments: &Moments) -> Option<f64> {
+    fn room(&self, moments: &Moments, target: f64) -> Option<f64> {
         let (below, above) =
             (self.limits.lower().map(|l| moments.mean() - l), self.limits.upper().map(|u| u - moments.mean()));
         let side = match self.side {
@@ -196,28 +225,28 @@ impl Constraint {
         };
         let positive = |room: f64| (room > 0.0).then_some(room);
         match self.requirement {
-            Requirement::Sigma(most) => Some(most),
-            Requirement::Cpk(least) => positive(side? / (3.0 * least)),
+            Requirement::Sigma(_) => Some(target),
+            Requirement::Cpk(_) => positive(side? / (3.0 * target)),
             Requirement::Rss | Requirement::WorstCase => None,
-            Requirement::Yield(least) => room_for_yield(moments, [below, above], 1.0 - least),
+            Requirement::Yield(_) => room_for_yield(moments, [below, above], 1.0 - target),
         }
     }
 
     /// Derivatives of `ln s` by mean, skewness and excess.
-    fn room_slopes(&self, moments: &Moments) -> Option<[f64; 3]> {
-        let room = self.room(moments)?;
+    fn room_slopes(&self, moments: &Moments, target: f64) -> Option<[f64; 3]> {
+        let room = self.room(moments, target)?;
         match self.requirement {
             Requirement::Sigma(_) => return Some([0.0; 3]),
-            Requirement::Cpk(least) => {
+            Requirement::Cpk(_) => {
                 let sign = if self.side == Side::Above { -1.0 } else { 1.0 };
-                return Some([sign / (3.0 * least * room), 0.0, 0.0]);
+                return Some([sign / (3.0 * target * room), 0.0, 0.0]);
             }
             Requirement::Rss | Requirement::WorstCase | Requirement::Yield(_) => {}
         }
         let (mean, sigma) = (moments.mean(), moments.sigma());
         let (skewness, excess) = (moments.skewness()?, moments.excess()?);
         let difference = |at: &dyn Fn(f64) -> Moments, step: f64| {
-            let ln = |step: f64| self.room(&at(step)).map(f64::ln);
+            let ln = |step: f64| self.room(&at(step), target).map(f64::ln);
             match (ln(step), ln(-step)) {
                 (Some(up), Some(down)) => Some((up - down) / (2.0 * step)),
                 // Beside the least kurtosis, or the limit itself, one side is all there is.
@@ -234,13 +263,13 @@ impl Constraint {
     }
 
     /// How `ln` of the room grows with the lower limit lowered and the upper limit raised, per unit.
-    pub(super) fn room_by_limits(&self, moments: &Moments) -> Option<[f64; 2]> {
-        let room = self.room(moments)?;
+    fn room_by_limits(&self, moments: &Moments, target: f64) -> Option<[f64; 2]> {
+        let room = self.room(moments, target)?;
         let step = 1e-5 * room;
         let moved = |lower: f64, upper: f64| {
             let limits =
                 SpecLimits::new(self.limits.lower().map(|l| l - lower), self.limits.upper().map(|u| u + upper));
-            Self { limits: limits.unwrap_or(self.limits), ..*self }.room(moments)
+            Self { limits: limits.unwrap_or(self.limits), ..*self }.room(moments, target)
         };
         let difference = |by: &dyn Fn(f64) -> Option<f64>| match (by(step), by(-step)) {
             (Some(up), Some(down)) => (up.ln() - down.ln()) / (2.0 * step),
@@ -425,7 +454,7 @@ impl Constraint {
                 _ => [None, Some(price), None],
             });
         }
-        let [lower, upper] = self.room_by_limits(&moments)?;
+        let [lower, upper] = self.room_by_limits(&moments, self.target(responses))?;
         let of = |exists: bool, by: f64| (exists && by != 0.0).then_some(doubled * by);
         Some([of(self.limits.lower().is_some(), lower), of(self.limits.upper().is_some(), upper), None])
     }

@@ -185,6 +185,7 @@ impl Curve {
 
 /// One way of making a part: over which half bands, and what it costs there.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Offer {
     /// Its name, where several compete.
     pub process: Option<String>,

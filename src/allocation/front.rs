@@ -2,21 +2,11 @@
 
 use super::choose::{Choice, choose};
 use super::constraint::Constraint;
+use super::result::FrontPoint;
 use super::solve::Setting;
 use crate::distribution::standard_normal;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
-
-/// One point of the front: the cheapest tolerances for a requirement.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrontPoint {
-    /// What was required of every characteristic of which a yield or a Cpk is, in the order of the problem.
-    pub required: Vec<(usize, Requirement)>,
-    /// What that costs; None where it cannot be kept.
-    pub cost: Option<f64>,
-    /// Half bands, in the order of [`Allocation::tolerances`](super::Allocation::tolerances).
-    pub tolerances: Option<Vec<f64>>,
-}
 
 /// From one sigma less to one and a half more than what is required, and for Cpk a third of that.
 const SPAN: [f64; 2] = [-1.0, 1.5];

@@ -1,5 +1,7 @@
 //! The share of assemblies that keep the limits of all characteristics at once.
 
+use serde::Serialize;
+
 use rayon::prelude::*;
 
 use super::response::Responses;
@@ -7,9 +9,12 @@ use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, wilson};
 
 /// A share of a sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct JointYield {
     /// The share of assemblies within all limits.
+    #[serde(rename = "yield")]
     pub value: f64,
     /// Its standard error; None where all or none are.
     pub standard_error: Option<f64>,

@@ -9,6 +9,8 @@ use argmin::core::{CostFunction, Error, Executor, Gradient, State};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 
+use super::vector::Vector;
+
 /// Vectors that L-BFGS remembers.
 const MEMORY: usize = 12;
 
@@ -49,20 +51,20 @@ impl Watched<'_> {
 struct Asked<'a>(&'a Watched<'a>);
 
 impl CostFunction for Asked<'_> {
-    type Param = Vec<f64>;
+    type Param = Vector;
     type Output = f64;
 
     fn cost(&self, x: &Self::Param) -> Result<f64, Error> {
-        Ok(self.0.at(x).0)
+        Ok(self.0.at(&x.0).0)
     }
 }
 
 impl Gradient for Asked<'_> {
-    type Param = Vec<f64>;
-    type Gradient = Vec<f64>;
+    type Param = Vector;
+    type Gradient = Vector;
 
-    fn gradient(&self, x: &Self::Param) -> Result<Vec<f64>, Error> {
-        Ok(self.0.at(x).1)
+    fn gradient(&self, x: &Self::Param) -> Result<Self::Gradient, Error> {
+        Ok(Vector(self.0.at(&x.0).1))
     }
 }
 
@@ -77,7 +79,7 @@ pub(super) fn minimised(function: &Function<'_>, start: &[f64], tolerance: f64, 
         let descent = Executor::new(Asked(&watched), solver).ctrlc(false);
         // Its own end is of no interest: a point at which nothing is defined ends a line search with an error.
         let _ = descent
-            .configure(|state| state.param(start.to_vec()).max_iters(iterations))
+            .configure(|state| state.param(Vector(start.to_vec())).max_iters(iterations))
             .run()
             .map(|end| end.state.get_iter());
     }

@@ -5,12 +5,20 @@
 //! as `f_j f_k`. The middle of a band stays where it is; only the mean of a skewed law over it moves.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
+use super::correction::{About, Correction, Follows};
 use super::cost::Priced;
+use crate::analysis::{Analysis, CharacteristicAnalysis, law_over, surface_law};
+use crate::characteristic::SpecLimits;
 use crate::dimension::Dimension;
+use crate::distribution::Distribution;
+use crate::law::SurfaceLaw;
 use crate::method::Outcome;
 use crate::moments::Moments;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 use crate::surrogate::{InputShape, Inputs, Relocation, Surrogate, shapes};
 
 /// What is known of the characteristics near some tolerances.
@@ -24,6 +32,10 @@ pub(super) struct Responses {
     reach: Vec<Reach>,
     correlated: Vec<(usize, usize, f64)>,
     pub(super) of: Vec<Response>,
+    /// The distributions of the varying dimensions; None where one has moments only.
+    laws: Option<Vec<Arc<dyn Distribution>>>,
+    /// What was found for a characteristic and a required yield, by its bits.
+    corrections: Mutex<BTreeMap<(usize, u64), Arc<Correction>>>,
 }
 
 /// One characteristic.
@@ -35,6 +47,20 @@ pub(super) struct Response {
     slopes: Option<Vec<f64>>,
     /// Whether it can depend on each dimension.
     depends: Vec<bool>,
+    limits: SpecLimits,
+    /// The law of the surface, where a yield comes from one.
+    law: Option<SurfaceLaw>,
+    pub(super) unknown: Unknown,
+}
+
+/// How far the bad ends of the intervals lie from the figures by which trial tolerances are judged; 0 where nothing is known of an
+/// error.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Unknown {
+    /// From the share that the surface law keeps, or the Pearson fit.
+    pub(super) yield_: f64,
+    pub(super) cpk: f64,
+    pub(super) sigma: f64,
 }
 
 /// How a varying dimension follows its tolerance.
@@ -62,7 +88,7 @@ const STEP: f64 = 3e-5;
 
 impl Responses {
     /// Of what a method found out.
-    pub(super) fn of(problem: &Problem, outcome: &Outcome) -> Self {
+    pub(super) fn of(problem: &Problem, outcome: &Outcome, analysis: &Analysis) -> Self {
         let dimensions = problem.dimensions().to_vec();
         let varying = outcome.plan.varying().to_vec();
         let scaling = varying.iter().map(|&d| Scaling::of(&dimensions[d])).collect();
@@ -80,15 +106,73 @@ impl Responses {
                     Some(exact) if exact.first[d].is_some() => exact.first[d],
                     _ => Some(fitted.parts[d]?.slope() / outcome.plan.axis(d).scale),
                 };
+                let found = &analysis.characteristics[c];
+                let limits = found.characteristic.limits();
+                // A law that could only be counted has no slopes.
+                let by_law = limits.exist() && found.surface_law.is_some_and(|law| law.quantiles.is_some());
                 Response {
                     surrogate: fitted.surrogate.clone(),
                     nominal: fitted.nominal,
                     slopes: (0..n).map(slope).collect(),
                     depends,
+                    limits,
+                    law: by_law.then(|| surface_law(problem, outcome, c)?.ok()).flatten(),
+                    unknown: Unknown::of(found, by_law),
                 }
             })
             .collect();
-        Self { dimensions, varying, inputs: outcome.plan.inputs().clone(), scaling, reach, correlated, of }
+        let laws = varying.iter().map(|&d| dimensions[d].law().cloned()).collect();
+        let inputs = outcome.plan.inputs().clone();
+        let corrections = Mutex::default();
+        Self { dimensions, varying, inputs, scaling, reach, correlated, of, laws, corrections }
+    }
+
+    /// What the law of the surface makes of the room for a yield that `room` finds by four moments; None where that is unknown.
+    pub(super) fn correction(
+        &self,
+        c: usize,
+        required: f64,
+        room: &dyn Fn(&Moments) -> Option<f64>,
+    ) -> Option<Arc<Correction>> {
+        let one = &self.of[c];
+        let law = one.law.as_ref().filter(|_| !self.is_plain(c))?;
+        let key = (c, required.to_bits());
+        let known = || self.corrections.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = known().get(&key) {
+            return Some(Arc::clone(found));
+        }
+        let rejected = Correction::allowed(required, one.unknown.yield_);
+        let follows = |(&d, scaling): (&usize, &Scaling)| match scaling {
+            Scaling::Still => (d, Follows::Still),
+            _ if !one.depends[d] => (d, Follows::Still),
+            Scaling::Similar { alpha } if *alpha == 0.0 => (d, Follows::Similar),
+            Scaling::Similar { .. } | Scaling::Reshaped => (d, Follows::Otherwise),
+        };
+        let about = About {
+            law,
+            limits: one.limits,
+            dimensions: self.dimensions.len(),
+            varying: self.varying.iter().zip(&self.scaling).map(follows).collect(),
+            moments: &|factors| self.moments(c, factors),
+            law_at: &|factors| self.law_at(c, factors),
+            room,
+        };
+        let found = Correction::of(&about, rejected).unwrap_or_else(|| Correction::none(self.dimensions.len()));
+        let found = Arc::new(found);
+        known().insert(key, Arc::clone(&found));
+        Some(found)
+    }
+
+    /// The law of a characteristic at other tolerances.
+    fn law_at(&self, c: usize, factors: &[f64]) -> Option<SurfaceLaw> {
+        let (surrogate, inputs) = self.relocated(c, factors, None)?;
+        let mut laws = self.laws.clone()?;
+        for (position, (&d, law)) in self.varying.iter().zip(&mut laws).enumerate() {
+            if matches!(self.scaling[position], Scaling::Reshaped) && factors[d] != 1.0 {
+                *law = Arc::clone(self.dimensions[d].scaled(factors[d])?.ok()?.law()?);
+            }
+        }
+        law_over(&surrogate, &laws, inputs.correlation()).ok()
     }
 
     /// Factors of all dimensions when the groups have these half bands.
@@ -304,6 +388,23 @@ impl Responses {
             matches!(scaling, Scaling::Similar { alpha } if *alpha == 0.0) || matches!(scaling, Scaling::Still)
         });
         straight && normal && still && self.correlated.is_empty()
+    }
+}
+
+impl Unknown {
+    fn of(found: &CharacteristicAnalysis, by_law: bool) -> Self {
+        let law = found.surface_law.as_ref().filter(|_| by_law).and_then(|law| law.yield_());
+        let judged = law.or_else(|| found.pearson?.yield_());
+        let yield_ = judged.zip(found.yield_interval()).map(|(value, [low, _])| value - low);
+        // The target of a requirement does not change its interval.
+        let cpk = found.judge(Requirement::Cpk(1.0));
+        let sigma = found.judge(Requirement::Sigma(1.0));
+        let of = |value: Option<f64>, end: Option<f64>| value.zip(end).map_or(0.0, |(value, end)| (value - end).abs());
+        Self {
+            yield_: yield_.unwrap_or(0.0),
+            cpk: of(cpk.value, cpk.interval.map(|[low, _]| low)),
+            sigma: of(sigma.value, sigma.interval.map(|[_, high]| high)),
+        }
     }
 }
 

@@ -1,6 +1,5 @@
 //! What an allocation found out.
 
-use super::front::FrontPoint;
 use super::joint::JointYield;
 use crate::analysis::Analysis;
 use crate::problem::Problem;
@@ -46,6 +45,7 @@ pub enum Bound {
 
 /// One dimension with a cost.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Allocated {
     /// Index of the dimension in the problem.
     pub dimension: usize,
@@ -65,6 +65,7 @@ pub struct Allocated {
 
 /// A nominal value that has moved.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Moved {
     /// Index of the dimension in the problem.
     pub dimension: usize,
@@ -76,6 +77,7 @@ pub struct Moved {
 
 /// What a characteristic must keep, and what it has.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Kept {
     /// Index of the characteristic in the problem.
     pub characteristic: usize,
@@ -91,6 +93,7 @@ pub struct Kept {
 ///
 /// Where both sides of a requirement hold the cost up, widening one of them alone saves nothing, and only `both` is known.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ShadowPrice {
     /// Index of the characteristic in the problem.
     pub characteristic: usize,
@@ -106,6 +109,7 @@ pub struct ShadowPrice {
 
 /// A requirement that cannot be kept.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Attainable {
     /// Index of the characteristic in the problem.
     pub characteristic: usize,
@@ -121,6 +125,7 @@ pub struct Attainable {
 
 /// What shows that nothing is cheaper.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Proof {
     /// The largest violation of the conditions of Karush, Kuhn and Tucker; None where everything is chosen from lists.
     pub residual: Option<f64>,
@@ -136,6 +141,7 @@ pub struct Proof {
 
 /// What an allocation found out. What is unknown is None.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Allocation {
     /// How it ended.
     pub status: Status,
@@ -180,4 +186,16 @@ pub struct Allocation {
     pub rounds: usize,
     /// Where what was found is in doubt: tolerances that the model was not asked at, requirements that a sample refutes.
     pub warnings: Vec<Warning>,
+}
+
+/// One point of the front: the cheapest tolerances for a requirement.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FrontPoint {
+    /// What was required of every characteristic of which a yield or a Cpk is, in the order of the problem.
+    pub required: Vec<(usize, Requirement)>,
+    /// What that costs; None where it cannot be kept.
+    pub cost: Option<f64>,
+    /// Half bands, in the order of [`Allocation::tolerances`].
+    pub tolerances: Option<Vec<f64>>,
 }

@@ -1,7 +1,5 @@
 //! From a problem with costs to tolerances that the model confirms.
 
-use std::time::Instant;
-
 use super::choose::{Choice, choose, within_bounds};
 use super::constraint::{Constraint, kept};
 use super::cost::Priced;
@@ -24,6 +22,7 @@ use crate::requirement::Requirement;
 use crate::sampling::{Draws, Sampler};
 use crate::simulation::{SimulationError, SimulationOptions, simulate_within};
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
 use crate::warning::Warning;
 
 /// Rounds of derivatives, at most.
@@ -398,7 +397,7 @@ impl Driver<'_> {
         self.spent.run = self.spent.run.and(&analysis.run);
         self.spent.rounds += 1;
         self.spent.stopped |= analysis.run.unfinished();
-        let responses = Responses::of(&problem, &outcome);
+        let responses = Responses::of(&problem, &outcome, &analysis);
         Ok(Station { problem, analysis, responses })
     }
 

@@ -16,6 +16,7 @@ const STRAIGHT: f64 = 1e-8;
 /// What `auto` found of the dimensions, and what its points went to. As text it is a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Account {
     /// Dimensions that vary and matter.
     pub varying: usize,

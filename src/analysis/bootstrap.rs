@@ -59,6 +59,7 @@ type Figures = [f64; FIGURES];
 /// Of skewness and kurtosis the intervals are too narrow by far in samples of this size: a sample seldom has the rare values
 /// that decide them.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SamplingInterval {
     /// Of the mean.
     pub mean: Option<[f64; 2]>,
@@ -143,7 +144,8 @@ pub(super) fn intervals(
         let analysis = &mut characteristics[target.index];
         let estimate = {
             let moments = analysis.moments.expect("a target has moments");
-            figures(&moments, analysis.capability.as_ref(), target.limits)
+            // As the resamples: by the Pearson fit.
+            figures(&moments, analysis.pearson.as_ref(), target.limits)
         };
         let interval = |figure: usize| {
             let mut values: Vec<f64> = resampled.iter().map(|of| of[t][figure]).collect();

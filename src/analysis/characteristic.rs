@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::errors::of_yield;
 use super::linear::Linear;
 use super::shares::Shares;
-use super::{SampledModel, SamplingInterval, Tails, Verification, VerificationKind};
+use super::{SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource};
 use crate::capability::{Capability, Law};
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::Extremes;
@@ -19,6 +19,7 @@ use crate::verdict::{self, Judged, Verdict};
 
 /// Moments, sensitivities and contributions of one characteristic. What is unknown is None.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CharacteristicAnalysis {
     /// The characteristic, with its limits.
     pub characteristic: Characteristic,
@@ -32,8 +33,10 @@ pub struct CharacteristicAnalysis {
     pub model_sampled: Option<SampledModel>,
     /// What the model itself says of these results; None where they were not verified.
     pub verification: Option<Verification>,
-    /// What law and surface reject; None without limits, or where the surface is plainly normal.
-    pub tails: Option<Tails>,
+    /// What the law of its surface says; None where its moments follow from no surface.
+    pub surface_law: Option<SurfaceShares>,
+    /// What its yield comes from; None without a yield.
+    pub yield_source: Option<YieldSource>,
     /// Whether planned points were not evaluated because the run was stopped: no verdict follows from the others.
     pub unfinished: bool,
     /// Evaluated points at which it has no value.
@@ -44,8 +47,11 @@ pub struct CharacteristicAnalysis {
     pub residual: Option<Residual>,
     /// The distribution that has these moments, or why none has.
     pub law: Option<Result<Law, PearsonError>>,
-    /// How that keeps the limits.
+    /// How the limits are kept, by the best that is known ([`yield_source`](Self::yield_source)); quantiles by the law of the
+    /// surface, where there is one.
     pub capability: Option<Capability>,
+    /// How the distribution with its moments keeps them: the Pearson fit.
+    pub pearson: Option<Capability>,
     /// How the normal distribution with the same mean and sigma would.
     pub normal: Option<Capability>,
     /// How far the results may be off because measured dimensions are known by samples; None where there are none.
@@ -79,7 +85,9 @@ pub struct CharacteristicAnalysis {
 }
 
 /// What one dimension does to a characteristic.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Sensitivity {
     /// The dimension.
     pub dimension: String,
@@ -104,7 +112,9 @@ pub struct Sensitivity {
 }
 
 /// What two dimensions do together.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Interaction {
     /// The two dimensions.
     pub dimensions: [String; 2],
@@ -141,14 +151,12 @@ impl CharacteristicAnalysis {
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
     }
 
-    /// Within which the yield is known: the estimate and two of its errors, wider where the surface contradicts the law of four
-    /// moments, and down to 0 where there are assemblies without a value and nobody counted them. None where an error is unknown.
+    /// Within which the yield is known: the estimate and two of its errors, and down to 0 where there are assemblies without a value
+    /// and nobody counted them. None where an error is unknown.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
         let value = self.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
         let around = verdict::about(value, error)?;
-        let tails = self.tails.filter(Tails::misses);
-        let around = tails.map_or(around, |tails| verdict::including(around, 1.0 - tails.surface));
         // How many assemblies have no value, only samples tell.
         let counted =
             self.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample).and_then(|of| of.valid);
@@ -280,7 +288,9 @@ impl CharacteristicAnalysis {
             error_estimate,
             model_sampled: None,
             verification: None,
-            tails: None,
+            surface_law: None,
+            yield_source: None,
+            pearson: None,
             unfinished: false,
             constant: plan.varying().iter().all(|&d| !plan.depends(c, d)),
             without_value: outcome.evaluated.known.errors().filter(|&(_, of, _)| of == c).count(),

@@ -2,8 +2,7 @@
 
 use super::CharacteristicAnalysis;
 use super::errors::{excess, of_yield};
-use crate::assembly::Run;
-use crate::assembly::process::Doubt;
+use crate::assembly::{NonRepeatable, Run};
 use crate::capability::{Capability, Law};
 use crate::method::{Climbed, ErrorEstimate, ErrorSource, Options, Outcome};
 use crate::moments::Moments;
@@ -26,6 +25,7 @@ const MORE: u64 = 4;
 
 /// Points of the model in place of a surrogate that was not trusted.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SampledModel {
     /// Points.
     pub samples: u64,
@@ -39,6 +39,8 @@ pub struct SampledModel {
     pub standard_errors: [Option<f64>; 4],
     /// The share of the sample within the limits with its 95 % interval.
     pub yield_: Option<(f64, [f64; 2])>,
+    /// Its shares below the lower and above the upper limit; None without that limit.
+    pub beyond: [Option<f64>; 2],
     /// The sample, counted in some tens of intervals.
     pub histogram: Option<Histogram>,
 }
@@ -47,7 +49,7 @@ pub struct SampledModel {
 #[derive(Debug, Default)]
 pub(super) struct Spent {
     pub(super) run: RunSummary,
-    pub(super) doubts: Vec<Doubt>,
+    pub(super) non_repeatable: Vec<NonRepeatable>,
 }
 
 /// Replaces moments that are not known as well as they were wanted, where that can be paid: `left` is what the budget, where
@@ -171,6 +173,7 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
         left: left.min(1.0),
         standard_errors,
         yield_,
+        beyond: [found.below, found.above],
         histogram: found.histogram.clone(),
     });
 }
@@ -178,6 +181,6 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
 impl Spent {
     fn add(&mut self, found: &Simulation) {
         self.run = self.run.and(&found.run);
-        self.doubts.extend(found.doubts.iter().cloned());
+        self.non_repeatable.extend(found.non_repeatable.iter().cloned());
     }
 }

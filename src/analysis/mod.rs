@@ -3,38 +3,44 @@
 mod account;
 mod bootstrap;
 mod characteristic;
+mod counted;
 mod errors;
 mod fallback;
 mod interval;
 mod linear;
+mod settle;
 mod shapes;
 mod shares;
 mod surface;
-mod tails;
+mod surface_law;
 mod trust;
 mod verification;
 mod verified;
 mod warnings;
+mod yield_source;
 
 pub use account::Account;
 pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
 pub use fallback::SampledModel;
 pub use surface::{Fit, NoFit, Surface};
-pub use tails::Tails;
+pub use surface_law::{QUANTILES, SurfaceShares};
+pub(crate) use surface_law::{law_over, surface_law};
 pub use verified::{Verification, VerificationKind};
-
-use std::time::Instant;
+pub use yield_source::YieldSource;
 
 use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, search};
 use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
+use crate::verification::Verified;
 use crate::warning::Warning;
 
 /// What an analysis found out.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Analysis {
     /// The method that was run: for `auto`, what it stands for.
     pub method: Method,
@@ -44,6 +50,9 @@ pub struct Analysis {
     pub run: RunSummary,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<CharacteristicAnalysis>,
+    /// The share of assemblies that keep the limits of all characteristics at once, and its error; None with fewer than two that have
+    /// limits, and where it is not known.
+    pub joint: Option<Verified>,
     /// What `auto` found, and what its points went to; None for any other method.
     pub account: Option<Account>,
     /// What the moments rest on.
@@ -93,7 +102,7 @@ pub(crate) fn analyze_keeping(
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
     let found = if options.extremes { search(problem, &outcome, left, run) } else { SearchedExtremes::default() };
-    outcome.evaluated.doubts.extend(found.spent.doubts);
+    outcome.evaluated.non_repeatable.extend(found.spent.non_repeatable);
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
     // A cheap model that is verified is sampled anyway, and by points that need no surface.
@@ -102,13 +111,13 @@ pub(crate) fn analyze_keeping(
         true => fallback::Spent::default(),
         false => fallback::fall_back(problem, &outcome, left, &mut characteristics, run),
     };
-    tails::look(problem, &outcome, &mut characteristics);
-    outcome.evaluated.doubts.extend(fallback.doubts);
+    outcome.evaluated.non_repeatable.extend(fallback.non_repeatable);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
     let left = left.map(|left| left.saturating_sub(fallback.run.evaluations as usize));
     let verified = verification::verify(problem, &outcome, options, left, &mut characteristics, run);
+    let joint = settle::settle(problem, &outcome, &mut characteristics);
     let spent = spent(&outcome, options).and(&fallback.run).and(&verified);
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
@@ -128,6 +137,7 @@ pub(crate) fn analyze_keeping(
         basis: outcome.basis,
         surface: Surface::of(&outcome, &characteristics),
         characteristics,
+        joint,
         warnings,
     };
     Ok((analysis, outcome))

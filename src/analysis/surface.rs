@@ -7,6 +7,7 @@ use crate::surrogate::{InputShape, Inputs, Relocation, Surrogate};
 
 /// The surrogates of all characteristics over the dimensions that vary.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Surface {
     /// Where the varying dimensions stand among the problem's.
     pub varying: Vec<usize>,
@@ -18,6 +19,7 @@ pub struct Surface {
 
 /// What the moments of one characteristic follow from.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Fit {
     /// The surrogate.
     pub surrogate: Surrogate,

@@ -2,10 +2,11 @@
 
 use super::errors::beside_sigma;
 use super::shapes::{Shape, higher, shape};
-use super::{CharacteristicAnalysis, Tails};
+use super::{CharacteristicAnalysis, YieldSource};
 use crate::method::{ClimbEnd, Climbed, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
+use crate::verdict::ERRORS;
 use crate::warning::{Figure, Warning};
 
 /// A second difference below this part of sigma does not matter: what it bends is far below what anybody wants to know.
@@ -19,6 +20,11 @@ const LEFT_OUT: f64 = 1e-3;
 /// and from here on the surrogate is no surrogate.
 const UNTRUSTED: f64 = 0.05;
 
+/// The Pearson fit is worth a warning where it is off by more than the interval of the yield, by this part of what is rejected, and by
+/// more than a hundredth of a part per million, which nobody counts.
+const APART: f64 = 0.01;
+const COUNTED: f64 = 1e-8;
+
 pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Vec<Warning> {
     let Some(sigma) = analysis.moments.map(|moments| moments.sigma()).filter(|&sigma| sigma > 0.0) else {
         return Vec::new();
@@ -29,10 +35,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &Char
         let seen = |warning: &Warning| matches!(warning, Warning::Kink { .. } | Warning::Discontinuity { .. });
         warnings.retain(|warning| !seen(warning));
     }
-    if let Some(Tails { law, surface, points }) = analysis.tails.filter(Tails::misses) {
-        let characteristic = problem.characteristics()[c].name().to_owned();
-        warnings.push(Warning::TailsMissed { characteristic, law, surface, points });
-    }
+    warnings.extend(pearson(analysis));
     if let Some(climbed) = &outcome.climbed {
         let mut found = climb(outcome, climbed, c, (analysis, sigma));
         // What a formula answers next to the means does not scatter: that is a kink, or a root that is not smooth.
@@ -48,6 +51,22 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &Char
         warnings.extend(found);
     }
     warnings
+}
+
+/// Whether the Pearson fit is not to be trusted with the yield.
+fn pearson(analysis: &CharacteristicAnalysis) -> Option<Warning> {
+    let source = analysis.yield_source.filter(|source| *source != YieldSource::Pearson)?;
+    let fit = analysis.pearson?.rejected()?;
+    let rejected = analysis.capability?.rejected()?;
+    // Of a proof without an estimate nothing is left open.
+    let error = match analysis.error_estimate.as_ref().and_then(|estimate| estimate.yield_) {
+        None if source == YieldSource::Proof => 0.0,
+        error => error?,
+    };
+    let apart = (fit - rejected).abs();
+    let differs = apart > ERRORS * error && apart > APART * fit.max(rejected) && apart > COUNTED;
+    let characteristic = analysis.characteristic.name().to_owned();
+    differs.then_some(Warning::PearsonDiffers { characteristic, pearson: fit, rejected, error })
 }
 
 /// Kinks, jumps and higher powers along the axes that have five points.

@@ -13,6 +13,7 @@ use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome}
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::verification::{
     Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, unexplained, variance_shares,
     verify_by_checks, verify_characteristic,
@@ -21,6 +22,8 @@ use crate::warning::{Change, Warning};
 
 /// A sample that leaves more open than this part of what is wanted is drawn again, four times as large,
 const PART: f64 = 0.5;
+/// or more of a share than this part of what a target lets be rejected,
+const TARGET: f64 = 0.1;
 /// up to so many points in its core.
 const MOST: usize = 1 << 19;
 const MORE: usize = 4;
@@ -97,9 +100,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
         sources: vec![ErrorSource::Proven { degree }],
     };
     let yield_ = of_yield(&estimate, &moments, one.characteristic.limits());
-    // What the law of four moments is off the surface was seen before: it is all that is left.
-    let law = one.tails.map(|tails| tails.off());
-    one.error_estimate = Some(ErrorEstimate { yield_: yield_.map(|error| error + law.unwrap_or(0.0)), ..estimate });
+    one.error_estimate = Some(ErrorEstimate { yield_, ..estimate });
     one.verification = Some(Verification {
         kind: VerificationKind::Exact { degree },
         points: 0,
@@ -108,6 +109,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
         figures: [None; 4],
         yield_: None,
         beyond: [None; 2],
+        difference: None,
         switches: Some(Vec::new()),
         unseen: None,
         shares: None,
@@ -125,17 +127,22 @@ fn sample(
     seed: u64,
 ) {
     let mut core = crate::verification::CORE;
-    let mut found = verify_characteristic(problem, c, seed, core);
+    let surrogate = outcome.fitted[c].surrogate.as_ref();
+    let beside = surrogate.map(|surrogate| (outcome.plan.varying(), surrogate));
+    let mut found = verify_characteristic(problem, c, seed, core, beside);
     let climbed = outcome.climbed.as_ref();
     let wanted = climbed.map(|climbed| climbed.accuracy);
-    while let Some(wanted) = wanted
-        && core < MOST
-        && found.sigma.is_some_and(|sigma| sigma.error > PART * wanted * sigma.value)
-    {
+    // Of a target that leaves little to be rejected, the weight of one point may be all.
+    let rejected = one.characteristic.target_yield().map(|target| 1.0 - target);
+    let coarse = |found: &SampledFigures| {
+        let sigma = wanted.zip(found.sigma).is_some_and(|(wanted, sigma)| sigma.error > PART * wanted * sigma.value);
+        let error = found.difference.map(|[within, ..]| within.error).or(found.yield_.map(|share| share.error));
+        sigma || rejected.zip(error).is_some_and(|(rejected, error)| error > TARGET * rejected)
+    };
+    while core < MOST && coarse(&found) {
         core *= MORE;
-        found = verify_characteristic(problem, c, seed, core);
+        found = verify_characteristic(problem, c, seed, core, beside);
     }
-    let surrogate = outcome.fitted[c].surrogate.as_ref();
     let left = surrogate.and_then(|surrogate| unexplained(problem, c, outcome.plan.varying(), surrogate, seed));
     let shares = left.filter(|&left| left > UNTRUSTED).and_then(|_| variance_shares(problem, c, seed));
     let replaced = options.method == Method::Auto && replace(one, &found);
@@ -158,6 +165,7 @@ fn sample(
         figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
         yield_: found.yield_,
         beyond: found.beyond,
+        difference: found.difference,
         switches: found.switches.filter(|found| {
             !found.is_empty() || problem.function().switches(problem.outputs()[c]).is_some_and(|of| of.complete)
         }),
@@ -213,7 +221,7 @@ fn check(
     run: &Run<'_>,
 ) -> RunSummary {
     let varying = outcome.plan.varying();
-    let begun = std::time::Instant::now();
+    let begun = Instant::now();
     let shares: Vec<Vec<f64>> =
         characteristics.iter().map(|one| varying.iter().map(|&d| one.share(d).unwrap_or(0.0)).collect()).collect();
     let targets: Vec<Target<'_>> = (outcome.fitted.iter().zip(&shares).enumerate())
@@ -278,6 +286,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         figures: [None; 4],
         yield_: found.yield_,
         beyond: found.beyond,
+        difference: None,
         switches: None,
         unseen: Some(checked.unseen()),
         shares: None,

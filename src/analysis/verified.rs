@@ -18,6 +18,7 @@ pub enum VerificationKind {
 
 /// What the model itself says of a characteristic.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Verification {
     /// How.
     pub kind: VerificationKind,
@@ -33,6 +34,8 @@ pub struct Verification {
     pub yield_: Option<Verified>,
     /// The shares beyond the lower and the upper limit.
     pub beyond: [Option<Verified>; 2],
+    /// How much more of the model than of its surface lies within the limits, below and above them; None without a sample of both.
+    pub difference: Option<[Verified; 3]>,
     /// The switches that are met; None where the model does not tell where it changes its form.
     pub switches: Option<Vec<FoundSwitch>>,
     /// The share of the assemblies that may do anything else where all points agree, at 95 %; None where points are many.

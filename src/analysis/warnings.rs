@@ -45,7 +45,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
         warnings.extend(outcome.plan.axis(d).moved.iter().map(moved));
     }
     warnings.extend(not_resampled(problem, outcome));
-    warnings.extend(history(problem, &outcome.evaluated.doubts));
+    warnings.extend(history(problem, &outcome.evaluated.non_repeatable));
     warnings.extend(problem.function().warnings(problem.outputs()));
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));

@@ -95,6 +95,7 @@ impl Points {
 
 /// A batch of points and the outputs wanted there.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Ask<'a> {
     /// The points, a column per input of the [`Signature`](super::Signature).
     pub points: &'a Points,

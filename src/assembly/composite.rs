@@ -8,11 +8,10 @@ use std::sync::Arc;
 
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
-use super::process::Adapter;
 use super::responses::all_finite;
 use super::{
-    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, Output, Points, Responses, Run,
-    Signature, Switches, in_blocks,
+    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points,
+    Responses, Run, Signature, Switches, in_blocks,
 };
 use crate::warning::Warning;
 
@@ -332,7 +331,7 @@ impl AssemblyFunction for Composite {
         &self.signature
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
         let needs = self.all_needs(&self.origins(outputs));
         if let (true, Some(assembler)) = (needs.unknowns, &self.assembler)
             && self.split(assembler.uses()).answers.is_empty()
@@ -452,7 +451,7 @@ impl AssemblyFunction for Composite {
         out.spent(spent + answers.extra() + answers.count_reused() as i64);
         out.reused(answers.count_reused());
         out.retried(answers.count_retried());
-        out.doubt(answers.doubts().iter().cloned());
+        out.note_non_repeatable(answers.non_repeatable().iter().cloned());
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {

@@ -45,6 +45,7 @@ pub enum EvaluationError {
 /// A dimension or output for which a table has no column.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the points that were evaluated elsewhere have no column `{name}`{}", self.instead())]
+#[non_exhaustive]
 pub struct NoColumn {
     /// The name of what is wanted.
     pub name: String,

@@ -3,8 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, PoisonError};
 
-use super::process::Adapter;
-use super::{Ask, AssemblyFunction, EvaluationError, NoColumn, Responses, Run, Signature};
+use super::{Ask, AssemblyFunction, EvaluationError, ModelInfo, NoColumn, Responses, Run, Signature};
 
 /// Coordinates are the same when they differ by no more than this part of themselves: a spreadsheet keeps 15 digits.
 const SAME: f64 = 1e-12;
@@ -110,7 +109,7 @@ impl AssemblyFunction for GivenAnswers {
         &self.signature
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
         let names = outputs.iter().map(|&output| &self.signature.outputs[output].name);
         match names.into_iter().find(|name| self.table.column(name).is_none()) {
             Some(name) => Err(EvaluationError::NoColumn(self.table.lacks(name))),

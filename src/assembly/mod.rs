@@ -8,6 +8,7 @@
 //! # A new kind of assembly function
 //! One new file with a type that implements [`AssemblyFunction`].
 
+mod account;
 mod ask;
 mod blocks;
 mod bounds;
@@ -24,6 +25,7 @@ mod run;
 mod signature;
 mod switch;
 
+pub use account::{ModelInfo, NonRepeatable};
 pub use ask::{Ask, Points};
 pub use blocks::in_blocks;
 pub use bounds::Bounds;
@@ -49,7 +51,7 @@ pub trait AssemblyFunction: Send + Sync {
     ///
     /// # Errors
     /// When the function cannot be had at all, such as a program that does not exist.
-    fn prepare(&self, outputs: &[usize]) -> Result<Option<process::Adapter>, EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
         let _ = outputs;
         Ok(None)
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::EvaluationError;
-use super::process::Doubt;
+use super::NonRepeatable;
 
 /// Answers of a batch: a column per asked output, and an error wherever there is no value.
 ///
@@ -32,8 +32,8 @@ pub struct Responses {
     reused: usize,
     /// Points that were sent again.
     retried: usize,
-    /// What the model is not trusted in.
-    doubts: Vec<Doubt>,
+    /// Where the model answered otherwise than before.
+    non_repeatable: Vec<NonRepeatable>,
 }
 
 impl Responses {
@@ -47,7 +47,7 @@ impl Responses {
             extra: 0,
             reused: 0,
             retried: 0,
-            doubts: Vec::new(),
+            non_repeatable: Vec::new(),
         }
     }
 
@@ -127,14 +127,14 @@ impl Responses {
         self.retried
     }
 
-    /// Notes that the model answered the nominal point otherwise than before.
-    pub fn doubt(&mut self, doubts: impl IntoIterator<Item = Doubt>) {
-        self.doubts.extend(doubts);
+    /// Notes that the model answered a point otherwise than before.
+    pub fn note_non_repeatable(&mut self, non_repeatable: impl IntoIterator<Item = NonRepeatable>) {
+        self.non_repeatable.extend(non_repeatable);
     }
 
-    /// Where the model answered the nominal point otherwise than before.
-    pub fn doubts(&self) -> &[Doubt] {
-        &self.doubts
+    /// Where the model answered a point otherwise than before.
+    pub fn non_repeatable(&self) -> &[NonRepeatable] {
+        &self.non_repeatable
     }
 
     /// Rows whose answers were known already.
@@ -180,7 +180,7 @@ impl Responses {
         self.extra += block.extra;
         self.reused += block.reused;
         self.retried += block.retried;
-        self.doubts.extend(block.doubts.iter().cloned());
+        self.non_repeatable.extend(block.non_repeatable.iter().cloned());
         self.errors.extend(block.errors.into_iter().map(|((row, output), error)| ((first + row, output), error)));
     }
 }

@@ -34,6 +34,13 @@ pub fn cpk(mean: f64, sigma: f64, limits: SpecLimits) -> Option<f64> {
     nearer(limits, mean, 3.0 * sigma, 3.0 * sigma)
 }
 
+/// Cp and Cpk by the quantiles 0.00135, 0.5 and 0.99865 of a law: [`Capability::cp_percentile`] and
+/// [`Capability::cpk_percentile`].
+pub fn percentiles([low, middle, high]: [f64; 3], limits: SpecLimits) -> [Option<f64>; 2] {
+    let both = limits.upper().zip(limits.lower()).and_then(|(upper, lower)| width(upper - lower, high - low));
+    [both, nearer(limits, middle, middle - low, high - middle)]
+}
+
 fn width(narrow: f64, wide: f64) -> Option<f64> {
     (wide > 0.0).then_some(narrow / wide)
 }
@@ -63,16 +70,22 @@ impl Capability {
     /// ```
     pub fn of(law: &Law, mean: f64, sigma: f64, limits: SpecLimits) -> Self {
         let (lower, upper) = (limits.lower(), limits.upper());
-        let [low, middle, high] = [law.quantile(TAIL), law.quantile(0.5), law.upper_quantile(TAIL)];
-        let both = |wide: f64| width(upper? - lower?, wide);
+        let quantiles = [law.quantile(TAIL), law.quantile(0.5), law.upper_quantile(TAIL)];
+        let [cp_percentile, cpk_percentile] = percentiles(quantiles, limits);
         Self {
             below: lower.map(|lower| law.below(lower)),
             above: upper.map(|upper| law.above(upper)),
-            cp: both(6.0 * sigma),
-            cpk: cpk(mean, sigma, limits),
-            cp_percentile: both(high - low),
-            cpk_percentile: nearer(limits, middle, middle - low, high - middle),
+            cp_percentile,
+            cpk_percentile,
+            ..Self::of_moments(mean, sigma, limits)
         }
+    }
+
+    /// What mean and sigma alone tell: Cp and Cpk.
+    pub fn of_moments(mean: f64, sigma: f64, limits: SpecLimits) -> Self {
+        let cp = limits.upper().zip(limits.lower()).and_then(|(upper, lower)| width(upper - lower, 6.0 * sigma));
+        let cpk = cpk(mean, sigma, limits);
+        Self { below: None, above: None, cp, cpk, cp_percentile: None, cpk_percentile: None }
     }
 
     /// Share of assemblies outside the limits; None without any limit.

@@ -11,11 +11,11 @@ use super::running::{Clock, externals, on_threads};
 use super::{interrupt, study};
 use crate::allocation::{Allocation, AllocationOptions, Status, allocate_within};
 use crate::assembly::{Progress, Run};
+use crate::document::svg::svg;
+use crate::document::terminal::text;
 use crate::method::Options;
 use crate::report::html::allocate_html;
-use crate::report::{
-    AllocationReport, WrittenAnew, allocation_csv, allocation_csv_names, allocation_svg, allocation_text,
-};
+use crate::report::{AllocationReport, WrittenAnew, csv_tables};
 use crate::study::{NamedFile, Rewritten, Study};
 use crate::warning::{Counted, Warning};
 
@@ -23,7 +23,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read(&asked.study, externals(asked.work.journal.as_deref(), look, None))?;
     let mut files = Files::of(&asked.study.study, &study, asked.work.journal.as_deref());
     let destination = files.output(&asked.output)?;
-    let folder = files.folder(asked.csv.as_deref(), &allocation_csv_names())?;
+    let folder = files.folder(asked.csv.as_deref(), &TABLES.map(|name| format!("{name}.csv")))?;
     let chart = files.file(asked.svg.as_deref())?;
     let page = files.file(asked.html.as_deref())?;
     asked.write.as_deref().map_or(Ok(()), |path| stays_beside(path, &asked.study.study, &study))?;
@@ -48,14 +48,15 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         });
     let about = clock.about(&study);
     let report = AllocationReport::of(&study.problem, &allocation, table.as_ref(), about);
+    let document = report.document();
     let printed = match asked.output.json {
         true if look.verbose => json(&report),
         true => json(&report.clone().shortened()),
-        false => allocation_text(&report, look.style(&asked.output)),
+        false => text(&document, look.style(&asked.output)),
     };
     let mut result = destination.write(&printed);
-    result = result.and(folder.map_or(Ok(()), |folder| folder.write(&allocation_csv(&report))));
-    result = result.and(chart.map_or(Ok(()), |chart| chart.write(&allocation_svg(&report))));
+    result = result.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &TABLES))));
+    result = result.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Cost against what is required"))));
     result = result.and(page.map_or(Ok(()), |page| page.write(&allocate_html(&report))));
     match (written, anew) {
         (Some(file), Some(Ok(anew))) => result = result.and(file.write(&anew.text)),
@@ -97,6 +98,9 @@ fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Fai
         false => Ok(()),
     }
 }
+
+/// The tables of an allocation, a file each.
+const TABLES: [&str; 3] = ["tolerances", "requirements", "front"];
 
 /// Points of a chart when nobody said how many.
 const FRONT: usize = 12;

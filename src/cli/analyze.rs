@@ -16,8 +16,10 @@ use super::{several, study};
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_within};
 use crate::assembly::{Progress, Run, Table};
 use crate::characteristic::Characteristic;
+use crate::document::markdown::markdown;
+use crate::document::terminal::text;
 use crate::report::html::{WhatIf, analyze_html};
-use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_markdown, stack_text, text};
+use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_document};
 use crate::study::Study;
 use crate::warning::{Counted, Warning};
 
@@ -45,7 +47,9 @@ pub(super) fn read(path: &Path, asked: &AnalyzeArgs, given: Option<Arc<Table>>, 
     let externals = externals(asked.work.journal.as_deref(), look, given);
     let mut study = study::read_file(path, &asked.how, externals)?;
     study.options.seed = asked.seed.or(study.options.seed);
-    study.options.verify = asked.verify.or(study.options.verify);
+    // A file of answers has those that the plan asks for.
+    let answers = asked.points.as_ref().map(|_| 0);
+    study.options.verify = asked.verify.or(study.options.verify).or(answers);
     study.options.extremes |= asked.extremes;
     if asked.check && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
         return Err(Failure::NothingToCheck);
@@ -77,10 +81,10 @@ pub(super) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> Strin
     match asked.stack {
         None if asked.output.json && look.verbose => json(report),
         None if asked.output.json => json(&report.clone().shortened()),
-        None => text(report, look.style(&asked.output)),
-        Some(StackArg::Text) => stack_text(&report.stacks(), look.style(&asked.output)),
+        None => text(&report.document(), look.style(&asked.output)),
+        Some(StackArg::Text) => text(&stack_document(&report.stacks()), look.style(&asked.output)),
         Some(StackArg::Csv) => stack_csv(&report.stacks()),
-        Some(StackArg::Markdown) => stack_markdown(&report.stacks()),
+        Some(StackArg::Markdown) => markdown(&stack_document(&report.stacks())),
     }
 }
 

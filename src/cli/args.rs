@@ -102,6 +102,12 @@ pub(super) enum Command {
     /// Checks an external model: protocol, names, repeatability, noise, speed, least step
     #[command(after_help = "Examples:\n  sensitol probe examples/external-python/study.toml")]
     Probe(ProbeArgs),
+    /// Answers points of a study over the adapter protocol, as an external model does
+    ///
+    /// Reads requests from stdin and writes the values of the characteristics to stdout. The study then is the model of another
+    /// study, of a UM-Bridge client or of workers on a cluster.
+    #[command(after_help = "Examples:\n  sensitol evaluate examples/stacked-blocks/study.toml")]
+    Evaluate(EvaluateArgs),
     /// What is kept of external models: show, export or forget it
     #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
     Journal(JournalArgs),
@@ -205,7 +211,8 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FILE.csv", requires = "points", help_heading = OUTPUT)]
     pub(super) write_missing: Option<PathBuf>,
 
-    /// Verify every figure by the model itself: a sample of a cheap model, or at most N check points of an external one; 0 for none
+    /// Verify every figure by the model itself: a sample of a cheap model, or at most N check points of an external one, 12 unless said
+    /// otherwise; 0 for none
     #[arg(long, value_name = "N", value_parser = count, num_args = 0..=1, default_missing_value = "18")]
     pub(super) verify: Option<usize>,
 
@@ -494,6 +501,12 @@ pub(super) struct ProbeArgs {
 
     #[command(flatten)]
     pub(super) output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct EvaluateArgs {
+    /// The study, a .toml or .json file
+    pub(super) study: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -8,9 +8,11 @@ use super::running::{Clock, on_threads};
 use super::{interrupt, study};
 use crate::assembly::Run;
 use crate::compare::{CompareOptions, compare_within};
+use crate::document::svg::svg;
+use crate::document::terminal::text;
 use crate::method::Options;
 use crate::report::html::compare_html;
-use crate::report::{CompareReport, compare_csv, compare_svg, compare_text};
+use crate::report::{CompareReport, csv_tables};
 use crate::warning::{Counted, Warning};
 
 pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
@@ -32,13 +34,11 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let comparison = on_threads(asked.of.threads, || compare_within(&study.problem, &options, &run))??;
     let about = clock.about(&study);
     let report = CompareReport::of(&comparison, about);
-    let written = destination.write(&if asked.output.json {
-        json(&report)
-    } else {
-        compare_text(&report, look.style(&asked.output))
-    });
-    let written = written.and(table.map_or(Ok(()), |table| table.write(&[compare_csv(&report)])));
-    let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&compare_svg(&report))));
+    let document = report.document();
+    let written =
+        destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
+    let written = written.and(table.map_or(Ok(()), |table| table.write(&csv_tables(&document, &["comparison"]))));
+    let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Evaluations against error"))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&compare_html(&report))));
     for warning in &study.warnings {
         look.warn(warning);

@@ -7,8 +7,10 @@ use super::args::InitArgs;
 use super::failure::{Exit, Failure};
 use super::models::known;
 use super::output::Destination;
+use crate::document::number::plain;
 use crate::models::{Model, ModelInput};
-use crate::report::number::plain;
+use crate::study::Format;
+use crate::study::write::{inline, pair, quoted};
 
 /// The tolerance that a built-in model's inputs get, of their nominal value.
 const TOLERANCE: &str = "1%";
@@ -84,7 +86,7 @@ for line in sys.stdin:
 
 pub(super) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
     let path = study_path(asked.name.as_deref().unwrap_or("study"));
-    let name = quoted(&path);
+    let name = shell(&path);
     let mut files: Vec<(PathBuf, String)> = Vec::new();
     match &asked.model {
         Some(model) => files.push((path.clone(), of_model(known(model)?))),
@@ -116,7 +118,7 @@ pub(super) fn run(asked: &InitArgs) -> Result<Exit, Failure> {
 }
 
 /// A path as a shell takes it.
-fn quoted(path: &Path) -> String {
+fn shell(path: &Path) -> String {
     let text = path.display().to_string();
     let plain = |c: char| c.is_alphanumeric() || "_-./:+,@%".contains(c) || cfg!(windows) && c == '\\';
     match text.chars().all(plain) {
@@ -142,20 +144,21 @@ fn of_model(model: &Model) -> String {
     let widest = model.inputs.iter().map(|input| input.name.len()).max().unwrap_or(0);
     for &ModelInput { name, unit, nominal, about } in model.inputs {
         let nominal_text = plain(nominal);
-        let unit_text = if matches!(unit, "" | "-") { String::new() } else { format!(", unit = \"{unit}\"") };
-        let line = match nominal != 0.0 && !matches!(unit, "" | "-") {
-            true => {
-                format!("{name:<widest$} = {{ nominal = {nominal_text}, tolerance = \"{TOLERANCE}\"{unit_text} }}")
-            }
-            false => format!("# {name} = {{ nominal = {nominal_text}{unit_text} }}"),
-        };
+        let sized = !matches!(unit, "" | "-");
+        let of = |key, value: &str| pair(Format::Toml, key, value);
+        let tolerance = (nominal != 0.0 && sized).then(|| of("tolerance", &quoted(TOLERANCE)));
+        let (active, width) = if tolerance.is_some() { ("", widest) } else { ("# ", 0) };
+        let unit = sized.then(|| of("unit", &quoted(unit)));
+        let keys = inline([Some(of("nominal", &nominal_text)), tolerance, unit].into_iter().flatten());
+        let line = active.to_owned() + &of(&format!("{name:<width$}"), &keys);
         let _ = writeln!(text, "{line}  # {about}");
     }
     text +=
         "\n[characteristics]\n# With lower, upper and target_yield the report tells how many assemblies keep them.\n";
     for (index, output) in model.outputs.iter().enumerate() {
         let off = if index == 0 { "" } else { "# " };
-        let _ = writeln!(text, "{off}{} = {{ unit = \"{}\" }}  # {}", output.name, output.unit, output.about);
+        let keys = inline([pair(Format::Toml, "unit", &quoted(output.unit))]);
+        let _ = writeln!(text, "{off}{}  # {}", pair(Format::Toml, output.name, &keys), output.about);
     }
     text
 }

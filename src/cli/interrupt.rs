@@ -21,7 +21,10 @@ pub(super) fn listen() {
     let _ = ctrlc::set_handler(|| match PRESSED.fetch_add(1, Ordering::SeqCst) {
         0 if !std::io::stderr().is_terminal() => {
             error("interrupted: waiting 10 s for what is under way");
-            std::thread::spawn(hurry);
+            // Without a thread to wait, what is under way is given up at once.
+            if std::thread::Builder::new().spawn(hurry).is_err() {
+                PRESSED.fetch_max(2, Ordering::SeqCst);
+            }
         }
         0 => error("interrupted: waiting for what is under way; once more gives that up"),
         1 => error("interrupted again: giving up what is under way"),

@@ -9,6 +9,7 @@ mod args;
 mod check;
 mod compare;
 mod csv;
+mod evaluate;
 mod failure;
 mod files;
 mod init;
@@ -92,6 +93,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(asked) => check::run(asked, style),
         Command::Models(asked) => models::run(asked, style),
         Command::Probe(asked) => probe::run(asked, style),
+        Command::Evaluate(asked) => evaluate::run(asked, style),
         Command::Journal(asked) => journal::run(asked, style),
         Command::Init(asked) => init::run(asked),
         Command::Schema(asked) => schema::run(asked),

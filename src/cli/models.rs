@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::args::ModelsArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
+use crate::document::number::plain;
 use crate::models::{ALL, Model};
-use crate::report::number::plain;
 
 /// What `models --json` prints of one model.
 #[derive(Debug, Serialize, JsonSchema)]

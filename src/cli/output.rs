@@ -9,8 +9,9 @@ use tempfile::TempPath;
 use super::advice;
 use super::args::OutputArgs;
 use super::failure::Failure;
+use crate::document::{Detail, Style};
 use crate::names::{clean, is_hidden};
-use crate::report::{Detail, Style, WarningReport};
+use crate::report::WarningReport;
 use crate::warning::Warning;
 
 /// What the user wants to see.

@@ -10,10 +10,12 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::{points, study};
-use crate::method::DerivativeSource;
+use crate::document::number::plural;
+use crate::method::{DerivativeSource, Options};
 use crate::plan::{Known, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
+use crate::verification::MOST_CHECKS;
 use crate::warning::Warning;
 
 /// What `plan --json` prints.
@@ -28,7 +30,14 @@ pub(super) struct PlanReport {
     evaluations: usize,
     /// The fewest and the most, of a method that chooses as it goes.
     range: Option<[usize; 2]>,
+    /// Batches that wait for each other, the fewest; with `range` or `extremes` more may follow.
+    rounds: usize,
+    /// Points of the largest batch: so many workers can be busy at a time.
+    largest_batch: usize,
     stages: Vec<StageReport>,
+    /// The check points that verify it in the end, placed by the answers, at most; null where the model is sampled instead, and 0
+    /// where nothing is verified.
+    checks: Option<usize>,
     /// Whether a search of the extremes follows, whose points nobody knows beforehand.
     extremes: bool,
     dimensions: Vec<AxisReport>,
@@ -78,7 +87,13 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         varying: plan.varying().len(),
         evaluations,
         range: procedure.range(&study.problem, &study.options),
+        rounds: stages,
+        largest_batch: first.points.len().max(evaluations.saturating_sub(first.points.len())),
         stages: vec![of_stage(&first)],
+        checks: match study.options.verify.unwrap_or(Options::VERIFY) {
+            0 => Some(0),
+            most => study.problem.function().signature().costly.then_some(most.min(MOST_CHECKS)),
+        },
         extremes: study.options.extremes,
         dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &*plan, d)).collect(),
     };
@@ -120,10 +135,21 @@ fn axis(problem: &Problem, plan: &dyn Plan, d: usize) -> AxisReport {
     }
 }
 
+/// How many batches wait for each other, and how many workers can be busy.
+fn rounds(report: &PlanReport) -> String {
+    let (rounds, points) = (plural(report.rounds, "round", "rounds"), plural(report.largest_batch, "point", "points"));
+    match report.range.is_some() || report.extremes {
+        true => format!("{rounds} or more, the largest of {points}"),
+        false if report.rounds == 1 => format!("{rounds} of {points}"),
+        false => format!("{rounds}, the largest of {points}"),
+    }
+}
+
 fn text(report: &PlanReport) -> String {
     let mut lines = vec![
         format!("{}: {}", report.method, report.about),
         format!("{} evaluations for {} varying dimensions ({})", report.evaluations, report.varying, report.count),
+        rounds(report),
     ];
     for (index, stage) in report.stages.iter().enumerate() {
         let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };
@@ -138,6 +164,9 @@ fn text(report: &PlanReport) -> String {
             "and points of the model itself where no surrogate is to be trusted and --budget, or a cheap model, allows"
                 .into(),
         );
+    }
+    if let Some(checks) = report.checks.filter(|&checks| checks > 0) {
+        lines.push(format!("then up to {checks} check points, placed by the answers, that verify the results"));
     }
     if report.extremes {
         let search = "then the search of the extremes: 4 points for a linear characteristic, some 2N or more for either side \

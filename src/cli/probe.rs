@@ -11,9 +11,9 @@ use super::progress::Bar;
 use super::running::listener;
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
+use crate::document::number::{plural, significant};
 use crate::method::MethodError;
 use crate::probe::{Finding, Probe, evaluations, probe};
-use crate::report::number::{plural, significant};
 use crate::study::{Externals, JournalPlace};
 use crate::summary::RunSummary;
 

@@ -21,7 +21,9 @@ impl Bar {
         let bar = ProgressBar::with_draw_target(Some(points as u64), target);
         let style = ProgressStyle::with_template("{bar:30} {pos}/{len} points, {per_sec}, {eta} left{msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.enable_steady_tick(Duration::from_millis(200));
+        if !bar.is_hidden() {
+            bar.enable_steady_tick(Duration::from_millis(200));
+        }
         Self { bar, so_far: Mutex::new(Progress::default()) }
     }
 

@@ -7,10 +7,11 @@ use super::interrupt;
 use super::output::{Look, json};
 use super::running::{Clock, checked};
 use super::simulate::{sampling, surrogate};
+use crate::document::terminal::text;
 use crate::method::Options;
 use crate::rare::{RareCharacteristic, RareOptions, rare_within};
 use crate::report::html::rare_html;
-use crate::report::{CsvFile, RareCharacteristicReport, RareReport, rare_csv, rare_text};
+use crate::report::{RareCharacteristicReport, RareReport, csv_tables};
 use crate::study::Study;
 use crate::warning::{Counted, Warning};
 
@@ -35,15 +36,10 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     let found = sampling(threads, &clock, look, |run, pace| rare_within(&study.problem, &options, run, pace))??;
     let about = clock.about(study);
     let report = RareReport::of(&study.problem, &found, about);
-    let written = destination.write(&if asked.output.json {
-        json(&report)
-    } else {
-        rare_text(&report, look.style(&asked.output))
-    });
-    let written = written.and(folder.map_or(Ok(()), |folder| {
-        let [name] = names;
-        folder.write(&[CsvFile { name, text: rare_csv(&report) }])
-    }));
+    let document = report.document();
+    let written =
+        destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
+    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &["rare"]))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&rare_html(&report))));
     for warning in &report.warnings {
         look.tell(warning);

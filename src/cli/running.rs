@@ -1,7 +1,7 @@
 //! What the commands that evaluate have in common: for how long, on how many threads, where answers are kept.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Once};
 use std::time::{Duration, Instant};
 
 use super::failure::{Exit, Failure};
@@ -13,7 +13,7 @@ use crate::report::About;
 use crate::study::{Externals, JournalPlace, Study};
 use crate::summary::{RunSummary, StopReason};
 use crate::verdict::{self, Judged, Verdict};
-use crate::warning::{Counted, StopCause, Warning};
+use crate::warning::{Counted, Warning};
 
 /// Since when a command runs, and for how long it may.
 pub(super) struct Clock {
@@ -25,6 +25,7 @@ impl Clock {
     /// From now on, for so many seconds; from now on Ctrl-C is heard too.
     pub(super) fn start(seconds: Option<f64>) -> Self {
         interrupt::listen();
+        start_threads();
         let limit = seconds.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
         Self { begun: Instant::now(), limit }
     }
@@ -43,14 +44,9 @@ impl Clock {
     /// Warns of a run that ended early: why, and how much of what was planned it did.
     pub(super) fn stopped(&self, run: &RunSummary, (done, planned): (u64, Option<u64>), counted: Counted, look: Look) {
         // A run that was interrupted when all was done is reported as interrupted too.
-        let Some(reason) = interrupt::reason().or(run.stopped) else { return };
-        let cause = match (reason, self.limit) {
-            (StopReason::TimeLimit, Some(limit)) => StopCause::TimeLimit { limit_s: limit.as_secs_f64() },
-            (StopReason::Budget, _) => StopCause::Budget,
-            (StopReason::Interrupted, _) => StopCause::Interrupted,
-            _ => StopCause::Requested,
-        };
-        look.warn(&Warning::Stopped { cause, done, planned, counted });
+        let Some(cause) = interrupt::reason().or(run.stopped) else { return };
+        let limit_s = self.limit.filter(|_| cause == StopReason::TimeLimit).map(|limit| limit.as_secs_f64());
+        look.warn(&Warning::Stopped { cause, limit_s, done, planned, counted });
     }
 
     /// What a report says of the study beside the results.
@@ -67,6 +63,16 @@ pub(super) fn externals(journal: Option<&Path>, look: Look, points: Option<Arc<T
 /// Who shows what an external program writes to stderr: somebody, when all details are asked for.
 pub(super) fn listener(look: Look) -> Option<Listener> {
     look.verbose.then(|| Arc::new(|line: &str| output::model_line(line)) as Listener)
+}
+
+/// Where the system gives no more threads, everything is done by the one that there is.
+fn start_threads() {
+    static TRIED: Once = Once::new();
+    TRIED.call_once(|| {
+        if rayon::ThreadPoolBuilder::new().build().is_err() {
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
+        }
+    });
 }
 
 /// Does the work with as many threads as were asked for.

@@ -15,7 +15,8 @@ use super::interrupt;
 use super::output::{Destination, Look, error, json};
 use crate::report::{Report, Stack, stack_csv_of_studies};
 use crate::study::Study;
-use crate::warning::{Counted, StopCause, Warning};
+use crate::summary::StopReason;
+use crate::warning::{Counted, Warning};
 
 /// Tells what is wrong with one study, and how it ended. What ends all is that nothing can be printed any more.
 pub(super) fn outcome(study: &str, result: Result<Exit, Failure>) -> Result<Exit, Failure> {
@@ -69,8 +70,8 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
             }
         };
         if interrupt::stopped() {
-            let (cause, counted) = (StopCause::Interrupted, Counted::Evaluations);
-            look.of(name).warn(&Warning::Stopped { cause, done: 0, planned: None, counted });
+            let (cause, counted) = (StopReason::Interrupted, Counted::Evaluations);
+            look.of(name).warn(&Warning::Stopped { cause, limit_s: None, done: 0, planned: None, counted });
             printer.failed(name, "interrupted before it was analysed".to_owned());
             exit = Exit::Interrupted;
             continue;

@@ -11,9 +11,10 @@ use super::progress::Samples;
 use super::running::{Clock, checked, on_threads};
 use super::{interrupt, rare, study};
 use crate::assembly::Run;
+use crate::document::terminal::text;
 use crate::method::{Method, Options};
 use crate::report::html::simulate_html;
-use crate::report::{SimulationReport, simulation_csv, simulation_text};
+use crate::report::{SimulationReport, csv_tables};
 use crate::sampling::Sampler;
 use crate::simulation::{Pace, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_within};
 use crate::study::Study;
@@ -21,6 +22,9 @@ use crate::warning::{Counted, Warning};
 
 /// Points unless the user says otherwise; where accuracy is wanted, as many as that takes.
 const SAMPLES: u64 = 100_000;
+
+/// The tables of a simulation, a file each.
+const TABLES: [&str; 2] = ["estimates", "histogram"];
 
 /// A simulation that will take longer than this tells so.
 const LONG: Duration = Duration::from_secs(60);
@@ -35,7 +39,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     }
     let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref());
     let destination = files.output(&asked.output)?;
-    let names = ["estimates.csv", "histogram.csv"].map(str::to_owned);
+    let names = TABLES.map(|name| format!("{name}.csv"));
     let folder = files.folder(asked.csv.as_deref(), &names)?;
     let page = files.file(asked.html.as_deref())?;
     let wanted = asked.until.is_some() || asked.until_yield.is_some();
@@ -54,12 +58,10 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look)?;
     let about = clock.about(&study);
     let report = SimulationReport::of(&study.problem, &simulation, about);
-    let written = destination.write(&if asked.output.json {
-        json(&report)
-    } else {
-        simulation_text(&report, look.style(&asked.output))
-    });
-    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&simulation_csv(&report))));
+    let document = report.document();
+    let written =
+        destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
+    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &TABLES))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
     for warning in &report.warnings {
         look.tell(warning);

@@ -8,8 +8,10 @@ use super::progress::Bar;
 use super::running::{Clock, externals, on_threads};
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
+use crate::document::svg::svg;
+use crate::document::terminal::text;
 use crate::report::html::sweep_html;
-use crate::report::{SweepReport, sweep_csv, sweep_svg, sweep_text};
+use crate::report::{SweepReport, csv_tables};
 use crate::study::Study;
 use crate::sweep::{Sweep, sweep_within};
 use crate::warning::Counted;
@@ -27,13 +29,11 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let clock = Clock::start(asked.work.time);
     let sweep = swept(&study, asked, &clock, look)?;
     let report = SweepReport::of(&study.problem, &sweep, clock.about(&study));
-    let written = destination.write(&if asked.output.json {
-        json(&report)
-    } else {
-        sweep_text(&report, look.style(&asked.output))
-    });
-    let written = written.and(table.map_or(Ok(()), |table| table.write(&[sweep_csv(&report)])));
-    let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&sweep_svg(&report))));
+    let document = report.document();
+    let written =
+        destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
+    let written = written.and(table.map_or(Ok(()), |table| table.write(&csv_tables(&document, &["sweep"]))));
+    let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Mean and quantile band"))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&sweep_html(&report))));
     for warning in &report.warnings {
         look.tell(warning);

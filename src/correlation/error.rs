@@ -8,6 +8,7 @@ use crate::names::nearest;
 /// Why a correlation is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{refusal}")]
+#[non_exhaustive]
 pub struct CorrelationError {
     /// Which of the pairs, where it is one of them.
     pub pair: Option<usize>,

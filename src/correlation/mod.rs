@@ -13,9 +13,11 @@
 
 mod error;
 mod matrix;
+mod together;
 mod transform;
 
 pub use error::{CorrelationError, Refusal};
+pub(crate) use together::Together;
 pub use transform::Transform;
 
 use std::collections::{HashMap, HashSet};

@@ -1,9 +1,9 @@
 //! Measured values: the distinct ones with their counts, and the moments of the law that has them as atoms.
 
 use rand::{Rng, RngExt};
-use twofloat::TwoFloat;
 
 use super::{DistributionError, Jacobi, Rule, StandardMoments, finite, positive};
+use crate::elementary::Double;
 
 /// Measured values as a law that gives each of them the same probability, `1/n`.
 ///
@@ -23,6 +23,7 @@ pub struct Sample {
 
 /// What a law that follows from a sample becomes when the measured values count otherwise.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Reweighted {
     /// How far the mean moves, in sigmas of the sample.
     pub shift: f64,
@@ -87,8 +88,7 @@ impl Sample {
         positive("the range of the measured values", scale)?;
         let mut standard: Vec<f64> = values.iter().map(|value| (value - origin) / scale).collect();
         let n = measured.len() as f64;
-        let average =
-            |terms: &mut dyn Iterator<Item = f64>| f64::from(terms.fold(TwoFloat::from(0.0), |a, b| a + b)) / n;
+        let average = |terms: &mut dyn Iterator<Item = f64>| f64::from(terms.fold(Double::from(0.0), |a, b| a + b)) / n;
         let mean = average(&mut standard.iter().zip(&counts).map(|(u, &count)| f64::from(count) * u));
         standard.iter_mut().for_each(|u| *u -= mean);
         let sigma = average(&mut standard.iter().zip(&counts).map(|(u, &count)| f64::from(count) * u * u)).sqrt();

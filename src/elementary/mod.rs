@@ -17,6 +17,7 @@
 //! **Why no library.** `sleef` wants an unstable compiler, and `wide` takes the instructions from the compiler's command line. What runs on which processor is chosen by `pulp`,
 //! which the linear algebra brings along and which needs no unsafe code here.
 
+mod double;
 mod exponential;
 mod inverse;
 mod trigonometric;
@@ -28,6 +29,7 @@ use std::marker::PhantomData;
 
 use pulp::{Arch, Simd, WithSimd};
 
+pub(crate) use double::Double;
 pub(crate) use exponential::{Exp, Ln};
 pub(crate) use inverse::Acos;
 pub(crate) use trigonometric::{Cos, Sin, Tan};

@@ -1,6 +1,6 @@
 //! External models that do not answer as they did.
 
-use crate::assembly::process::Doubt;
+use crate::assembly::NonRepeatable;
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -10,11 +10,12 @@ const FLIP: f64 = 0.01;
 const SUSPECTS: usize = 3;
 
 /// One warning for each output.
-pub(crate) fn history(problem: &Problem, doubts: &[Doubt]) -> Vec<Warning> {
-    let first = |index: &usize| !doubts[..*index].iter().any(|earlier| earlier.output == doubts[*index].output);
+pub(crate) fn history(problem: &Problem, non_repeatable: &[NonRepeatable]) -> Vec<Warning> {
+    let first =
+        |index: &usize| !non_repeatable[..*index].iter().any(|earlier| earlier.output == non_repeatable[*index].output);
     let warning = |index: usize| {
-        let doubt = &doubts[index];
-        let same = || doubts.iter().filter(|other| other.output == doubt.output);
+        let doubt = &non_repeatable[index];
+        let same = || non_repeatable.iter().filter(|other| other.output == doubt.output);
         let far = |a: f64, b: f64| (a - b).abs() > FLIP * doubt.spread;
         let (output, expected, found) = (doubt.output.clone(), doubt.expected, doubt.found);
         let (times, points) = (same().count(), same().map(|doubt| doubt.suspects.len()).sum());
@@ -25,7 +26,7 @@ pub(crate) fn history(problem: &Problem, doubts: &[Doubt]) -> Vec<Warning> {
             false => Warning::NotRepeatable { output, expected, found, times, points, suspects },
         }
     };
-    (0..doubts.len()).filter(first).map(warning).collect()
+    (0..non_repeatable.len()).filter(first).map(warning).collect()
 }
 
 /// A point by the dimensions that are not at their nominal value.

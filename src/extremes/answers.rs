@@ -2,13 +2,12 @@
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
-use std::time::Instant;
 
-use crate::assembly::process::Doubt;
-use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
+use crate::assembly::{Ask, EvaluationError, NonRepeatable, Points, Responses, Run};
 use crate::evaluation::BATCH;
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
+use crate::time::Instant;
 
 /// Every point known so far, with what asking came to.
 pub(super) struct Answers<'a> {
@@ -33,13 +32,14 @@ pub(super) struct Failures {
 
 /// What asking came to.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Spent {
     /// In numbers.
     pub run: RunSummary,
     /// Whether points were not evaluated because the budget was spent.
     pub over_budget: bool,
     /// Where the model answered the nominal point otherwise than before.
-    pub doubts: Vec<Doubt>,
+    pub non_repeatable: Vec<NonRepeatable>,
 }
 
 impl<'a> Answers<'a> {
@@ -116,7 +116,7 @@ impl<'a> Answers<'a> {
         spent.evaluations = spent.evaluations.saturating_add_signed(out.extra());
         spent.cached += out.count_reused() as u64;
         spent.retried += out.count_retried() as u64;
-        self.spent.doubts.extend(out.doubts().iter().cloned());
+        self.spent.non_repeatable.extend(out.non_repeatable().iter().cloned());
     }
 
     /// A row that is still open was not finished: it was sent only if some of it was answered.

@@ -48,6 +48,7 @@ const REPEATED: usize = 4;
 
 /// What the search found for every characteristic, and what it took.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct SearchedExtremes {
     /// In the problem's order; None where no point in the box has a value.
     pub extremes: Vec<Option<Extremes>>,
@@ -57,6 +58,7 @@ pub struct SearchedExtremes {
 
 /// The least and the greatest value of one characteristic.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Extremes {
     /// The least value.
     pub least: Extreme,
@@ -76,6 +78,7 @@ pub struct Extremes {
 
 /// An interval that no assembly leaves.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ExtremesProof {
     /// The interval.
     pub bounds: [f64; 2],
@@ -94,6 +97,7 @@ impl Extremes {
 
 /// A value, and where it is.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Extreme {
     /// The value.
     pub value: f64,
@@ -103,6 +107,7 @@ pub struct Extreme {
 
 /// One dimension of an extreme.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Coordinate {
     /// The dimension.
     pub dimension: String,

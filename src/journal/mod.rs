@@ -15,8 +15,8 @@ use std::sync::{Mutex, PoisonError};
 
 use sha2::{Digest, Sha256};
 
-use crate::assembly::process::{Adapter, Process, ProcessFault, Settings};
-use crate::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Progress, Responses, Run, Signature};
+use crate::assembly::process::{Process, ProcessFault, Settings};
+use crate::assembly::{Ask, AssemblyFunction, EvaluationError, ModelInfo, Points, Progress, Responses, Run, Signature};
 use crate::summary::StopReason;
 
 /// A program whose answers are kept.
@@ -89,7 +89,7 @@ impl AssemblyFunction for Journaled {
         self.process.signature()
     }
 
-    fn prepare(&self, outputs: &[usize]) -> Result<Option<Adapter>, EvaluationError> {
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
         let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         if open.is_none() {
             *open = Some(self.opened(outputs)?);
@@ -171,7 +171,7 @@ impl AssemblyFunction for Journaled {
         let out = told.into_inner().unwrap_or_else(PoisonError::into_inner);
         out.spent(answers.extra());
         out.retried(answers.count_retried());
-        out.doubt(answers.doubts().iter().cloned());
+        out.note_non_repeatable(answers.non_repeatable().iter().cloned());
         if let Some(error) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
             refuse(out, &not_kept(&error));
         }

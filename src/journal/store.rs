@@ -34,6 +34,7 @@ const TABLES: &str = "
 /// What is wrong with a journal.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("journal {}: {fault}", path.display())]
+#[non_exhaustive]
 pub struct JournalError {
     /// The file.
     pub path: PathBuf,
@@ -84,6 +85,7 @@ pub struct Store {
 
 /// A model whose answers are kept.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct KnownModel {
     /// Its number in the file.
     pub id: i64,

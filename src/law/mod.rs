@@ -60,6 +60,7 @@ use transform::Transform;
 
 /// A number and what its computation leaves uncertain.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LawFigure {
     /// The number.
     pub value: f64,
@@ -161,6 +162,7 @@ pub enum LawError {
 
 /// What the law of a surface may cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LawOptions {
     /// Points of the sampled branch, in 16 replicates; rounded up to a power of two.
     pub points: usize,

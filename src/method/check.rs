@@ -27,6 +27,7 @@ pub(super) fn failed(known: &Known, point: &Point, characteristic: usize) -> boo
 ///
 /// What is left out and has no part in these, as an interaction that was not examined, adds its own variance.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SurrogateCheck {
     /// Points with a value.
     pub points: usize,

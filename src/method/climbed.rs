@@ -20,6 +20,7 @@ pub enum ClimbEnd {
 
 /// How `auto` came to its result.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Climbed {
     /// The relative error of sigma that was wanted.
     pub accuracy: f64,

@@ -6,6 +6,7 @@ use crate::problem::Problem;
 
 /// Evaluations and stages, if no point fails.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Cost {
     /// Points that are sent to the model.
     pub evaluations: usize,

@@ -21,7 +21,9 @@ const BENT: f64 = 0.3;
 const MOST: f64 = 0.5;
 
 /// The estimated error of each result, in its own unit; None where nothing is known.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ErrorEstimate {
     /// Of the mean.
     pub mean: Option<f64>,
@@ -32,6 +34,7 @@ pub struct ErrorEstimate {
     /// Of the kurtosis.
     pub kurtosis: Option<f64>,
     /// Of the share within the limits.
+    #[serde(rename = "yield")]
     pub yield_: Option<f64>,
     /// What it rests on.
     pub sources: Vec<ErrorSource>,

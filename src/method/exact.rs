@@ -8,6 +8,7 @@ use crate::surrogate::Univariate;
 
 /// One characteristic's derivatives at the means, as the assembly function knows them; None where there is none.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ExactDerivatives {
     /// By every dimension of the problem, in order; None too for those that were not asked for.
     pub first: Vec<Option<f64>>,

@@ -28,6 +28,7 @@ mod three_point;
 mod worst_case;
 
 pub use crate::method_kind::Method;
+pub use crate::plan::{Nodes, Spread, Stencil, corners};
 pub use auto::ACCURACY;
 pub(crate) use auto::climb_until;
 pub use check::SurrogateCheck;

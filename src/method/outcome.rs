@@ -1,5 +1,7 @@
 //! What a method found out.
 
+use serde::Serialize;
+
 use std::sync::Arc;
 
 use super::{Basis, Climbed, ExactDerivatives, Method, Order};
@@ -10,6 +12,7 @@ use crate::surrogate::{Surrogate, Univariate};
 
 /// What a method found out.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Outcome {
     /// The method that was asked for.
     pub asked: Method,
@@ -33,6 +36,7 @@ pub struct Outcome {
 
 /// What is known of one characteristic.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Fitted {
     /// Its value at the nominal dimensions.
     pub nominal: Option<f64>,
@@ -56,6 +60,7 @@ pub struct Fitted {
 
 /// Moments that were integrated from values, and what they are made of.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Integrated {
     /// The moments.
     pub moments: Moments,
@@ -71,6 +76,7 @@ pub struct Integrated {
 
 /// What one dimension does by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct MainEffect {
     /// Share of the variance that the best straight line explains.
     pub linear: f64,
@@ -82,6 +88,7 @@ pub struct MainEffect {
 
 /// What two dimensions do together, beyond what each does by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct InteractionEffect {
     /// Share of the variance.
     pub share: f64,
@@ -109,14 +116,19 @@ pub enum Lacking {
 }
 
 /// How far a surrogate misses the values that it was fitted to.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Residual {
     /// `sqrt(sum of squares / (points - coefficients))`, in the characteristic's unit; None where there are no more points
     /// than coefficients.
+    #[serde(rename = "residual_standard_error")]
     pub standard_error: Option<f64>,
     /// What that leaves uncertain of the mean, as a standard error; None where it is unknown or inputs are correlated.
+    #[serde(rename = "mean_standard_error")]
     pub mean: Option<f64>,
     /// The same of sigma.
+    #[serde(rename = "sigma_standard_error")]
     pub sigma: Option<f64>,
     /// Points that were fitted.
     pub points: usize,

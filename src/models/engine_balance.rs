@@ -10,14 +10,14 @@ use crate::elementary::{Cos, Elementary, Work, on_this_processor};
 mod input {
     pub const MP: usize = 0;
     pub const MR: usize = 1;
-    pub const OMEGA: usize = 2;
+    pub(crate) const OMEGA: usize = 2;
     pub const A: usize = 3;
     pub const R: usize = 4;
     pub const L: usize = 5;
-    pub const HP: usize = 6;
-    pub const HC: usize = 7;
+    pub(crate) const HP: usize = 6;
+    pub(crate) const HC: usize = 7;
     pub const T: usize = 8;
-    pub const PHI: [usize; 4] = [9, 10, 11, 12];
+    pub(crate) const PHI: [usize; 4] = [9, 10, 11, 12];
 }
 
 /// Sum of the cylinders' inertia forces along the cylinder axes, and their moment about the first cylinder:

@@ -10,14 +10,14 @@ use crate::elementary::{Cos, Elementary, Work, on_this_processor};
 mod input {
     pub const MP: usize = 0;
     pub const MR: usize = 1;
-    pub const OMEGA: usize = 2;
+    pub(crate) const OMEGA: usize = 2;
     pub const R: usize = 3;
     pub const L: usize = 4;
-    pub const HP: usize = 5;
-    pub const HC: usize = 6;
+    pub(crate) const HP: usize = 5;
+    pub(crate) const HC: usize = 6;
     pub const T: usize = 7;
-    pub const CYLINDERS: usize = 8;
-    pub const PHI: usize = 9;
+    pub(crate) const CYLINDERS: usize = 8;
+    pub(crate) const PHI: usize = 9;
     pub const Z: usize = 21;
 }
 

@@ -26,6 +26,8 @@ pub use pairwise::{Pairwise, Tables};
 pub use part::{JointCumulants, Term};
 pub(crate) use sum::exact;
 
+use serde::Serialize;
+
 use std::collections::BTreeMap;
 
 use crate::distribution::StandardMoments;
@@ -84,6 +86,7 @@ impl Moments {
 
 /// The moments of a sum of terms and products, and what each has contributed.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Contributions {
     /// Moments of the whole.
     pub moments: Moments,
@@ -102,7 +105,8 @@ pub struct Contributions {
 }
 
 /// Standard errors of moments that were sampled, from a surrogate and not from the model.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Sampled {
     /// Points.
     pub samples: usize,

@@ -50,6 +50,7 @@ pub struct Tables<'a> {
 
 /// The moments, and the uncorrelated parts.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Pairwise {
     /// Moments of the whole.
     pub moments: Moments,

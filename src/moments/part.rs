@@ -30,6 +30,7 @@ pub enum Term<'a> {
 /// `g = p u + h` with `E[u h] = 0`. Every cumulant is computed from `p` and `h`, so that a small curvature beside a large
 /// slope keeps its digits.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct JointCumulants {
     /// `E[g u]`: the slope of the best straight line.
     pub p: f64,

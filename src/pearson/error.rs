@@ -2,6 +2,7 @@
 
 /// The law with two values that has the least kurtosis of all laws with its skewness: mean 0, variance 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct TwoPoint {
     /// The two values, in sigmas from the mean.
     pub values: [f64; 2],

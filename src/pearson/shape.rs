@@ -1,8 +1,7 @@
 //! The coefficients of Pearson's equation from skewness and kurtosis, and what their signs say.
 
-use twofloat::TwoFloat;
-
 use super::PearsonError;
+use crate::elementary::Double;
 
 /// The members of the Pearson system, as people know them. A label: nothing is computed by it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -111,10 +110,6 @@ pub(super) struct Infinity {
     pub(super) r: f64,
 }
 
-fn product(a: f64, b: f64) -> TwoFloat {
-    TwoFloat::new_mul(a, b)
-}
-
 impl Shape {
     /// `kurtosis` is the sum of its two numbers, so that an excess keeps its digits.
     pub(super) fn new(skewness: f64, kurtosis: [f64; 2]) -> Result<Self, PearsonError> {
@@ -130,8 +125,8 @@ impl Shape {
         if rounded > LARGEST {
             return Err(PearsonError::TooLarge { kurtosis: rounded });
         }
-        let b2 = TwoFloat::new_add(kurtosis[0], kurtosis[1]);
-        let b1 = product(s, s);
+        let b2 = Double::sum(kurtosis[0], kurtosis[1]);
+        let b1 = Double::product(s, s);
         let gap = f64::from(b2 - 1.0 - b1);
         if gap <= 0.0 {
             return Err(PearsonError::infeasible(skewness, rounded));
@@ -140,7 +135,7 @@ impl Shape {
         let first = (b2 + 3.0) * s;
         let mut second = 2.0 * (b2 - 3.0) - 3.0 * b1;
         if f64::from(second).abs() < NOTHING {
-            second = TwoFloat::from(0.0);
+            second = Double::from(0.0);
         }
         let discriminant = f64::from(first * first - 4.0 * c0 * second);
         let [c0, first, second] = [c0, first, second].map(f64::from);

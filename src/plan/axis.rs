@@ -118,7 +118,7 @@ impl Axis {
     }
 
     /// The distance of the nearest node from the mean, in the dimension's unit.
-    pub fn nearest_step(&self) -> f64 {
+    pub(crate) fn nearest_step(&self) -> f64 {
         let nodes = self.slots.iter().map(|slot| self.nodes[slot[0] as usize].u.abs());
         self.scale * nodes.fold(f64::INFINITY, f64::min)
     }

@@ -24,7 +24,12 @@ const OUTERMOST: f64 = 0.36;
 /// probability, so that few of them reach far out along every dimension. For symmetric distributions the second point is the first
 /// mirrored at the means, and half the sum and half the difference of what is seen there are its even and its odd part.
 /// Dimensions known by moments alone stand at the nodes of their rule. `set` tells one such set from another.
-pub fn scattered(plan: &mut DifferencePlan, dimensions: &[Dimension], set: u64, pairs: usize) -> Vec<[Point; 2]> {
+pub(crate) fn scattered(
+    plan: &mut DifferencePlan,
+    dimensions: &[Dimension],
+    set: u64,
+    pairs: usize,
+) -> Vec<[Point; 2]> {
     let varying = plan.varying().to_vec();
     let levels = spread(varying.len(), set, pairs);
     let correlation = plan.inputs().correlation().cloned();

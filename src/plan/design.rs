@@ -33,7 +33,7 @@ pub struct Design {
 impl Design {
     /// For these dimensions, of which every characteristic can depend on those flagged in its row of `depends`. Dimensions
     /// without tolerance are moved only if `fixed_too`.
-    pub fn new(
+    pub(crate) fn new(
         dimensions: &[Dimension],
         correlation: Option<&Correlation>,
         depends: Vec<Vec<bool>>,
@@ -74,7 +74,7 @@ impl Design {
     }
 
     /// The point at which these dimensions have these values and all others their means; it is not wanted yet.
-    pub fn point(&mut self, at: &[(usize, f64)]) -> Point {
+    pub(crate) fn point(&mut self, at: &[(usize, f64)]) -> Point {
         let mut elsewhere = Vec::with_capacity(at.len());
         for &(dimension, x) in at {
             if let Some(node) = self.node(dimension, x) {
@@ -85,7 +85,7 @@ impl Design {
     }
 
     /// Wants a point.
-    pub fn want(&mut self, point: Point, purpose: Purpose) {
+    pub(crate) fn want(&mut self, point: Point, purpose: Purpose) {
         if self.wanted.insert(point.clone()) {
             self.points.push((point, purpose));
         }
@@ -93,7 +93,7 @@ impl Design {
 
     /// Makes these values steps of a dimension: those from which its derivatives are taken, and that a plan shows. A value
     /// that is the mean is no step.
-    pub fn steps(&mut self, dimension: usize, values: impl IntoIterator<Item = f64>) {
+    pub(crate) fn steps(&mut self, dimension: usize, values: impl IntoIterator<Item = f64>) {
         for x in values {
             if let Some(node) = self.node(dimension, x) {
                 self.axes[dimension].slots.push(vec![node]);
@@ -102,7 +102,7 @@ impl Design {
     }
 
     /// The pairs of positions on which some characteristic can depend.
-    pub fn pairs(&self) -> Vec<(usize, usize)> {
+    pub(crate) fn pairs(&self) -> Vec<(usize, usize)> {
         let n = self.varying.len();
         let matters = |&(j, k): &(usize, usize)| (0..self.depends.len()).any(|c| self.joint(c, j, k));
         (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k))).filter(matters).collect()

@@ -51,7 +51,7 @@ struct PairNodes {
 
 impl DifferencePlan {
     /// For these dimensions, of which every characteristic can depend on those flagged in its row of `depends`.
-    pub fn new(
+    pub(crate) fn new(
         dimensions: &[Dimension],
         correlation: Option<&Correlation>,
         depends: Vec<Vec<bool>>,
@@ -86,7 +86,7 @@ impl DifferencePlan {
 
     /// Two nodes more on the axis of a dimension that has a pair; whether there are such nodes. `dimension` is the one
     /// with this index in the problem.
-    pub fn refine(&mut self, dimension: &Dimension, index: usize) -> bool {
+    pub(crate) fn refine(&mut self, dimension: &Dimension, index: usize) -> bool {
         let refined = self.axes[index].refine(dimension, self.layout.step);
         let rule = self.axes[index].tail.as_ref().and_then(|tail| tail.rule.as_ref());
         if let (true, Some(rule), Ok(position)) = (refined, rule, self.varying.binary_search(&index)) {
@@ -96,7 +96,7 @@ impl DifferencePlan {
     }
 
     /// Examines these pairs of positions too.
-    pub fn examine(&mut self, pairs: impl IntoIterator<Item = (usize, usize)>) {
+    pub(crate) fn examine(&mut self, pairs: impl IntoIterator<Item = (usize, usize)>) {
         let pairs = pairs.into_iter().map(|(j, k)| (self.varying[j], self.varying[k]));
         match &mut self.layout.pairs {
             PairChoice::Listed(listed) => listed.extend(pairs),
@@ -105,12 +105,12 @@ impl DifferencePlan {
     }
 
     /// Evaluates every pair at all four corners from now on.
-    pub fn use_four_corners(&mut self) {
+    pub(crate) fn use_four_corners(&mut self) {
         self.layout.stencil = Stencil::FourPoint;
     }
 
     /// The point with these values of dimensions, every other one at its mean.
-    pub fn point_at(&mut self, values: impl IntoIterator<Item = (usize, f64)>) -> Point {
+    pub(crate) fn point_at(&mut self, values: impl IntoIterator<Item = (usize, f64)>) -> Point {
         let at = values.into_iter().filter_map(|(d, x)| {
             let node = self.axes[d].at_value(x)?;
             Some(At { dimension: d as u32, node })
@@ -119,14 +119,14 @@ impl DifferencePlan {
     }
 
     /// For every position its nodes on the left and on the right at which pairs stand, with their places in sigmas.
-    pub fn corners(&self, known: &Known) -> Vec<[Option<(At, f64)>; 2]> {
+    pub(crate) fn corners(&self, known: &Known) -> Vec<[Option<(At, f64)>; 2]> {
         let place = |(d, node): (usize, u32)| (At { dimension: d as u32, node }, self.axes[d].nodes[node as usize].u);
         let both = |(&d, nodes): (&usize, &PairNodes)| [nodes.left, nodes.right].map(|node| Some(place((d, node?))));
         self.varying.iter().zip(&self.pair_nodes(known)).map(both).collect()
     }
 
     /// Where a point lies, in sigmas: a value for every position.
-    pub fn standardised(&self, point: &Point) -> Vec<f64> {
+    pub(crate) fn standardised(&self, point: &Point) -> Vec<f64> {
         let mut u = vec![0.0; self.varying.len()];
         for at in point.at() {
             if let Ok(position) = self.varying.binary_search(&(at.dimension as usize)) {
@@ -136,49 +136,44 @@ impl DifferencePlan {
         u
     }
 
-    /// What it evaluates.
-    pub fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
     /// The dimensions that vary and on which some characteristic can depend: N of them.
-    pub fn varying(&self) -> &[usize] {
+    pub(crate) fn varying(&self) -> &[usize] {
         &self.varying
     }
 
     /// Their distributions, as far as moments need them, and how they vary together.
-    pub fn inputs(&self) -> &Inputs {
+    pub(crate) fn inputs(&self) -> &Inputs {
         &self.inputs
     }
 
     /// One dimension's nodes.
-    pub fn axis(&self, dimension: usize) -> &Axis {
+    pub(crate) fn axis(&self, dimension: usize) -> &Axis {
         &self.axes[dimension]
     }
 
     /// The point at which every dimension has its nominal value.
-    pub fn nominal(&self) -> &Point {
+    pub(crate) fn nominal(&self) -> &Point {
         &self.nominal
     }
 
     /// The coordinates of the means.
-    pub fn centre(&self) -> Vec<f64> {
+    pub(crate) fn centre(&self) -> Vec<f64> {
         self.axes.iter().map(|axis| axis.mean).collect()
     }
 
     /// Whether a characteristic can depend on a dimension.
-    pub fn depends(&self, characteristic: usize, dimension: usize) -> bool {
+    pub(crate) fn depends(&self, characteristic: usize, dimension: usize) -> bool {
         self.depends[characteristic][dimension]
     }
 
     /// Whether a characteristic can depend on the pair of dimensions at these positions.
-    pub fn joint(&self, characteristic: usize, j: usize, k: usize) -> bool {
+    pub(crate) fn joint(&self, characteristic: usize, j: usize, k: usize) -> bool {
         let row = &self.depends[characteristic];
         row[self.varying[j]] && row[self.varying[k]]
     }
 
     /// How many points there are in all, and in how many stages, if none fails.
-    pub fn cost(&self) -> (usize, usize) {
+    pub(crate) fn cost(&self) -> (usize, usize) {
         let nodes: usize = self.varying.iter().chain(&self.fixed).map(|&d| self.axes[d].slots.len()).sum();
         let on_an_axis = |point: &Point| match point.at() {
             [] => true,
@@ -198,7 +193,7 @@ impl DifferencePlan {
     }
 
     /// How many pairs matter to some characteristic.
-    pub fn possible_pairs(&self) -> usize {
+    pub(crate) fn possible_pairs(&self) -> usize {
         let n = self.varying.len();
         if self.depends.iter().any(|row| self.varying.iter().all(|&d| row[d])) {
             return n * n.saturating_sub(1) / 2;
@@ -211,7 +206,7 @@ impl DifferencePlan {
     }
 
     /// The next points, or None when nothing is left that could help.
-    pub fn next(&self, known: &Known) -> Option<Stage> {
+    pub(crate) fn next(&self, known: &Known) -> Option<Stage> {
         let mut stage = Builder { known, seen: HashSet::new(), stage: Stage::default() };
         stage.add(Point::Centre, Purpose::Centre);
         stage.add(self.nominal.clone(), Purpose::Nominal);
@@ -273,12 +268,12 @@ impl DifferencePlan {
     }
 
     /// The dimensions of which derivatives are wanted: those that vary, and those without tolerance if they were asked for.
-    pub fn moved(&self) -> Vec<usize> {
+    pub(crate) fn moved(&self) -> Vec<usize> {
         self.varying.iter().chain(&self.fixed).copied().collect()
     }
 
     /// The pairs examined, as positions `j < k`. The strongest can be told only from what is known of the axes.
-    pub fn pairs(&self, known: Option<&Known>) -> Vec<(usize, usize)> {
+    pub(crate) fn pairs(&self, known: Option<&Known>) -> Vec<(usize, usize)> {
         match known {
             None => self.pairs_by(None),
             Some(known) => self.pairs_by(Some(&|c, d| self.part(known, c, d))),
@@ -286,7 +281,7 @@ impl DifferencePlan {
     }
 
     /// The same, from the parts of characteristics by dimension wherever they come from.
-    pub fn pairs_by(&self, part: Option<&dyn Fn(usize, usize) -> Option<Univariate>>) -> Vec<(usize, usize)> {
+    pub(crate) fn pairs_by(&self, part: Option<&dyn Fn(usize, usize) -> Option<Univariate>>) -> Vec<(usize, usize)> {
         let n = self.varying.len();
         let all = (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k)));
         let mut pairs: Vec<(usize, usize)> = match &self.layout.pairs {
@@ -330,7 +325,7 @@ impl DifferencePlan {
     }
 
     /// One dimension's own part of a characteristic, through all its nodes that have a value; None when none has.
-    pub fn part(&self, known: &Known, characteristic: usize, dimension: usize) -> Option<Univariate> {
+    pub(crate) fn part(&self, known: &Known, characteristic: usize, dimension: usize) -> Option<Univariate> {
         if !self.depends[characteristic][dimension] {
             return Some(Univariate::of_coefficients(&[0.0, 0.0]));
         }
@@ -366,7 +361,7 @@ impl DifferencePlan {
     /// With `d = f(j, k) - f(j) - f(k) + f(centre)` at each corner,
     /// `A_jk = sum of sign(u_j u_k) d / sum of |u_j u_k|` over the corners that have a value: for all of them this is the
     /// usual formula with unequal steps, for fewer a one-sided one.
-    pub fn mixed(&self, known: &Known, characteristic: usize, pairs: &[(usize, usize)]) -> Vec<Option<Mixed>> {
+    pub(crate) fn mixed(&self, known: &Known, characteristic: usize, pairs: &[(usize, usize)]) -> Vec<Option<Mixed>> {
         let nodes = self.pair_nodes(known);
         let Some(centre) = known.value(&Point::Centre, characteristic) else { return vec![None; pairs.len()] };
         // Each axis value is needed by N - 1 pairs: looked up once.
@@ -399,7 +394,12 @@ impl DifferencePlan {
 
     /// For every pair its corners, where they have values, both up and both down first, then up and down, down and up: the two
     /// places in sigmas, and the difference of which [`mixed`](Self::mixed) is made.
-    pub fn twists(&self, known: &Known, characteristic: usize, pairs: &[(usize, usize)]) -> Vec<[Option<Corner>; 4]> {
+    pub(crate) fn twists(
+        &self,
+        known: &Known,
+        characteristic: usize,
+        pairs: &[(usize, usize)],
+    ) -> Vec<[Option<Corner>; 4]> {
         let nodes = self.pair_nodes(known);
         let centre = known.value(&Point::Centre, characteristic);
         let twist = |&(j, k): &(usize, usize)| {

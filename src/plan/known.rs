@@ -18,17 +18,17 @@ pub struct Known {
 
 impl Known {
     /// Nothing yet of `characteristics` characteristics.
-    pub fn nothing(characteristics: usize) -> Self {
+    pub(crate) fn nothing(characteristics: usize) -> Self {
         Self { characteristics, values: vec![Vec::new(); characteristics], ..Self::default() }
     }
 
     /// How many characteristics every point has.
-    pub fn characteristics(&self) -> usize {
+    pub(crate) fn characteristics(&self) -> usize {
         self.characteristics
     }
 
     /// Keeps one characteristic's answer at a point.
-    pub fn learn(&mut self, point: &Point, characteristic: usize, answer: Result<f64, EvaluationError>) {
+    pub(crate) fn learn(&mut self, point: &Point, characteristic: usize, answer: Result<f64, EvaluationError>) {
         let row = match self.row.get(point) {
             Some(&row) => row,
             None => {
@@ -48,45 +48,45 @@ impl Known {
     }
 
     /// Whether the point was evaluated, with whatever success.
-    pub fn tried(&self, point: &Point) -> bool {
+    pub(crate) fn tried(&self, point: &Point) -> bool {
         self.row.contains_key(point)
     }
 
     /// The value of a characteristic at a point, where it is known.
-    pub fn value(&self, point: &Point, characteristic: usize) -> Option<f64> {
+    pub(crate) fn value(&self, point: &Point, characteristic: usize) -> Option<f64> {
         let value = self.values[characteristic][*self.row.get(point)? as usize];
         (!value.is_nan()).then_some(value)
     }
 
     /// Every point that was evaluated, in order.
-    pub fn points(&self) -> &[Point] {
+    pub(crate) fn points(&self) -> &[Point] {
         &self.points
     }
 
     /// Every known value of a characteristic.
-    pub fn values(&self, characteristic: usize) -> impl Iterator<Item = f64> {
+    pub(crate) fn values(&self, characteristic: usize) -> impl Iterator<Item = f64> {
         self.values[characteristic].iter().copied().filter(|value| !value.is_nan())
     }
 
     /// Why a characteristic has no value at a point.
-    pub fn error(&self, point: &Point, characteristic: usize) -> Option<&EvaluationError> {
+    pub(crate) fn error(&self, point: &Point, characteristic: usize) -> Option<&EvaluationError> {
         self.errors.get(&(*self.row.get(point)?, characteristic as u32))
     }
 
     /// Whether any point failed for any characteristic.
-    pub fn has_failures(&self) -> bool {
+    pub(crate) fn has_failures(&self) -> bool {
         !self.errors.is_empty()
     }
 
     /// How many points lost at least one characteristic.
-    pub fn failed_points(&self) -> usize {
+    pub(crate) fn failed_points(&self) -> usize {
         let mut rows: Vec<u32> = self.errors.keys().map(|&(row, _)| row).collect();
         rows.dedup();
         rows.len()
     }
 
     /// Every error with its point and characteristic, in the order of evaluation.
-    pub fn errors(&self) -> impl Iterator<Item = (&Point, usize, &EvaluationError)> {
+    pub(crate) fn errors(&self) -> impl Iterator<Item = (&Point, usize, &EvaluationError)> {
         self.errors
             .iter()
             .map(|(&(row, characteristic), error)| (&self.points[row as usize], characteristic as usize, error))

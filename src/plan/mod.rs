@@ -15,13 +15,13 @@ mod pairs;
 mod point;
 mod stage;
 
-pub use axis::{Axis, Node};
-pub use checks::scattered;
+pub use axis::Axis;
+pub(crate) use checks::scattered;
 pub use design::Design;
 pub use difference::{Corner, DifferencePlan, Layout, Mixed};
 pub use factorial::corners;
 pub use known::Known;
-pub use nodes::{MovedNode, Nodes, Spread, Tail};
+pub use nodes::{MovedNode, Nodes, Spread};
 pub use pairs::{PairChoice, Stencil};
 pub use point::{At, Point};
 pub use stage::{Purpose, Stage};

@@ -26,13 +26,7 @@ pub enum Point {
 
 impl Point {
     /// With these dimensions elsewhere, in any order, each once.
-    ///
-    /// ```
-    /// use sensitol::plan::{At, Point};
-    /// let at = |dimension, node| At { dimension, node };
-    /// assert_eq!(Point::of(&[at(4, 0), at(2, 1)]), Point::of(&[at(2, 1), at(4, 0)]));
-    /// ```
-    pub fn of(at: &[At]) -> Self {
+    pub(crate) fn of(at: &[At]) -> Self {
         match *at {
             [] => Self::Centre,
             [one] => Self::One([one]),
@@ -47,12 +41,23 @@ impl Point {
     }
 
     /// The dimensions that are elsewhere.
-    pub fn at(&self) -> &[At] {
+    pub(crate) fn at(&self) -> &[At] {
         match self {
             Self::Centre => &[],
             Self::One(at) => at,
             Self::Two(at) => at,
             Self::Many(at) => at,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_of_the_dimensions_does_not_matter() {
+        let at = |dimension, node| At { dimension, node };
+        assert_eq!(Point::of(&[at(4, 0), at(2, 1)]), Point::of(&[at(2, 1), at(4, 0)]));
     }
 }

@@ -42,25 +42,9 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// All of them, in the order in which they are listed.
-    pub const ALL: [Self; 13] = [
-        Self::Centre,
-        Self::Nominal,
-        Self::Axis,
-        Self::Pair,
-        Self::Probe,
-        Self::Check,
-        Self::Noise,
-        Self::Sensitivity,
-        Self::Repair,
-        Self::Cut,
-        Self::Plane,
-        Self::Grid,
-        Self::Corner,
-    ];
-
     /// In words.
-    pub fn words(self) -> &'static str {
+    #[cfg(feature = "cli")]
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Centre => "all dimensions at their means",
             Self::Nominal => "all dimensions at their nominal values",

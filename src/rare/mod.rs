@@ -29,10 +29,9 @@ mod target;
 mod warnings;
 mod within;
 
-use std::time::Instant;
+use serde::Serialize;
 
-use crate::assembly::process::Doubt;
-use crate::assembly::{EvaluationError, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::characteristic::Characteristic;
 use crate::evaluation::history;
 use crate::method::{Method, MethodError, Options};
@@ -40,6 +39,7 @@ use crate::problem::Problem;
 use crate::sampling::{Estimate, SamplingError};
 use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::warning::Warning;
 use explore::Explored;
 use model::Model;
@@ -69,6 +69,7 @@ impl Default for RareOptions {
 
 /// What was found out about rare events.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RareEvents {
     /// The method of the surrogate.
     pub method: Method,
@@ -82,7 +83,7 @@ pub struct RareEvents {
     /// Whether what was wanted was reached; None where nothing was.
     pub reached: Option<bool>,
     /// Where the model answered the nominal point otherwise than before.
-    pub doubts: Vec<Doubt>,
+    pub non_repeatable: Vec<NonRepeatable>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<RareCharacteristic>,
     /// Where the estimates rest on little, and where points have no value.
@@ -91,6 +92,7 @@ pub struct RareEvents {
 
 /// What is known of one characteristic.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RareCharacteristic {
     /// The characteristic, with its limits.
     pub characteristic: Characteristic,
@@ -112,6 +114,7 @@ pub struct RareCharacteristic {
 
 /// What is known of what lies beyond one limit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Beyond {
     /// The limit.
     pub limit: f64,
@@ -135,7 +138,9 @@ pub struct Beyond {
 }
 
 /// The most likely assembly at a limit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct DesignPoint {
     /// How far it is from the middle, in standard deviations of independent normal variables.
     pub distance: f64,
@@ -274,7 +279,8 @@ pub fn rare_within(
     };
     let open = || reached != Some(true) && model.answered < options.samples && !targets.is_empty();
     let stopped = surrogate.stopped.or_else(|| open().then(|| run.why_open()));
-    let doubts: Vec<Doubt> = surrogate.doubts.iter().chain(&model.doubts).cloned().collect();
+    let non_repeatable: Vec<NonRepeatable> =
+        surrogate.non_repeatable.iter().chain(&model.non_repeatable).cloned().collect();
     let samples = search.points;
     let characteristics = search.characteristics(&model, stopped.is_some());
     let run = RunSummary { stopped, ..drawn.and(&spent) };
@@ -285,8 +291,8 @@ pub fn rare_within(
         samples,
         surrogate_evaluations: spent.evaluations,
         reached,
-        warnings: warnings.into_iter().chain(history(problem, &doubts)).collect(),
-        doubts,
+        warnings: warnings.into_iter().chain(history(problem, &non_repeatable)).collect(),
+        non_repeatable,
         characteristics,
     })
 }

@@ -1,11 +1,11 @@
 //! The model, asked at points of normal variables, and what was spent on it.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::space::{Columns, Space};
-use crate::assembly::process::Doubt;
-use crate::assembly::{Ask, EvaluationError, Points, Responses, Run};
+use crate::assembly::{Ask, EvaluationError, NonRepeatable, Points, Responses, Run};
 use crate::problem::Problem;
+use crate::time::Instant;
 
 /// Points that are evaluated between two looks at the clock.
 const BATCH: usize = 1 << 14;
@@ -29,7 +29,7 @@ pub(super) struct Model<'a> {
     pub(super) lost: Vec<(u64, Option<EvaluationError>)>,
     pub(super) in_model: Duration,
     /// Where it answered the nominal point otherwise than before.
-    pub(super) doubts: Vec<Doubt>,
+    pub(super) non_repeatable: Vec<NonRepeatable>,
 }
 
 /// What the model said.
@@ -71,7 +71,7 @@ impl<'a> Model<'a> {
             failed,
             lost,
             in_model: Duration::ZERO,
-            doubts: Vec::new(),
+            non_repeatable: Vec::new(),
         }
     }
 
@@ -98,7 +98,7 @@ impl<'a> Model<'a> {
             self.problem.function().evaluate(&Ask::values(&points, outputs), self.run, &mut out);
             self.in_model += begun.elapsed();
             self.extra += out.extra();
-            self.doubts.extend(out.doubts().iter().cloned());
+            self.non_repeatable.extend(out.non_repeatable().iter().cloned());
             self.reused += out.count_reused() as u64;
             self.retried += out.count_retried() as u64;
             self.stages += 1;

@@ -3,9 +3,7 @@
 //! An input is its own quantile function of a normal variable, and correlated ones are functions of correlated normal
 //! variables (Nataf's law, [`crate::correlation`]), which a factor of their matrix makes of independent ones.
 
-use faer::Mat;
-
-use crate::correlation::Transform;
+use crate::correlation::{Together, Transform};
 use crate::dimension::Dimension;
 use crate::distribution::{Probability, behind_normal};
 use crate::method::Outcome;
@@ -18,8 +16,8 @@ pub(super) type Columns = Vec<Vec<f64>>;
 /// The varying dimensions of a problem, N of them.
 pub(super) struct Space<'p> {
     inputs: Vec<Input<'p>>,
-    /// The correlated ones, and the factor of their normal variables.
-    correlated: Option<(Vec<usize>, Mat<f64>)>,
+    /// How some of them vary together.
+    correlated: Option<Together>,
 }
 
 struct Input<'p> {
@@ -47,7 +45,7 @@ impl<'p> Space<'p> {
         };
         let inputs = outcome.plan.varying().iter().map(input).collect::<Result<_, _>>()?;
         let correlation = outcome.plan.inputs().correlation();
-        let correlated = correlation.map(|correlation| (correlation.members().to_vec(), correlation.factor()));
+        let correlated = correlation.map(Together::of);
         Ok(Self { inputs, correlated })
     }
 
@@ -86,16 +84,6 @@ impl<'p> Space<'p> {
 
     /// The normal variables, correlated as the inputs want them.
     fn together(&self, normals: &Columns) -> Columns {
-        let mut columns = normals.clone();
-        let Some((members, factor)) = &self.correlated else { return columns };
-        for (j, &member) in members.iter().enumerate() {
-            let column = &mut columns[member];
-            column.fill(0.0);
-            for (k, &other) in members.iter().enumerate() {
-                let by = factor[(j, k)];
-                column.iter_mut().zip(&normals[other]).for_each(|(z, normal)| *z += by * normal);
-            }
-        }
-        columns
+        self.correlated.as_ref().map_or_else(|| normals.clone(), |together| together.apply(normals))
     }
 }

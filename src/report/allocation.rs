@@ -48,7 +48,7 @@ pub struct AllocationReport {
     /// By which one factor all tolerances may be multiplied until some requirement is just kept.
     pub loosest_scaling: BeforeAfter<Option<f64>>,
     /// The share of assemblies that keep all limits at once; null with fewer than two characteristics with limits.
-    pub joint_yield: BeforeAfter<Option<JointReport>>,
+    pub joint_yield: BeforeAfter<Option<JointYield>>,
     /// Every characteristic before and after.
     pub characteristics: Vec<AllocatedCharacteristic>,
     /// Cost against what is required.
@@ -212,21 +212,6 @@ pub struct ProofReport {
     pub closed_form: bool,
 }
 
-/// A share of a sample of the surrogates.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct JointReport {
-    /// The share.
-    #[serde(rename = "yield")]
-    pub yield_: f64,
-    /// Its standard error; null where all or none keep the limits.
-    pub standard_error: Option<f64>,
-    /// 95 % interval.
-    pub interval: [f64; 2],
-    /// Points of the surrogates.
-    pub samples: usize,
-}
-
 /// One characteristic before and after.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -348,10 +333,7 @@ impl AllocationReport {
                 closed_form: allocation.proof.closed_form,
             },
             loosest_scaling: BeforeAfter { before: allocation.loosest_before, after: allocation.loosest_after },
-            joint_yield: BeforeAfter {
-                before: allocation.joint[0].map(JointReport::of),
-                after: allocation.joint[1].map(JointReport::of),
-            },
+            joint_yield: BeforeAfter { before: allocation.joint[0], after: allocation.joint[1] },
             characteristics: (before.into_iter().enumerate())
                 .map(|(c, before)| AllocatedCharacteristic {
                     name: name(c),
@@ -367,17 +349,6 @@ impl AllocationReport {
             }),
             dimensions_table: table.map(|table| table.entries.clone()).filter(|table| !table.is_empty()),
             warnings,
-        }
-    }
-}
-
-impl JointReport {
-    fn of(joint: JointYield) -> Self {
-        Self {
-            yield_: joint.value,
-            standard_error: joint.standard_error,
-            interval: joint.interval,
-            samples: joint.samples,
         }
     }
 }

@@ -1,10 +1,14 @@
-//! The report of a comparison: as data and as CSV.
+//! The report of a comparison: as data and as a document.
 
 use serde::Serialize;
 
 use super::simulation::SimulatedReport;
-use super::{About, Head};
-use crate::compare::{Comparison, Contender, Errors, Figures, NotRunReason, Ran};
+use super::{About, Head, head};
+use crate::compare::{Comparison, Contender, Errors, Figures, NotRunReason, RESOLVED, Ran};
+use crate::document::number::{known, significant, yielded};
+use crate::document::{
+    Axis, Blocks, Cell, Chart, Columns, Document, Layer, Plot, PlotPoint, Scale, Section, Stroke, Table, Tone, Value,
+};
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
 
@@ -58,7 +62,7 @@ pub struct MethodReport {
     pub engine_s: f64,
     /// What it says.
     #[serde(flatten)]
-    pub figures: FiguresReport,
+    pub figures: Figures,
     /// How far that is off the reference.
     pub error_vs_reference: ErrorReport,
     /// Whether no other method has a smaller error for as many evaluations or fewer.
@@ -67,32 +71,15 @@ pub struct MethodReport {
     pub verdict: Option<Verdict>,
 }
 
-/// Moments and yield.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct FiguresReport {
-    /// First moment.
-    pub mean: Option<f64>,
-    /// Standard deviation.
-    pub sigma: Option<f64>,
-    /// Third standardised moment.
-    pub skewness: Option<f64>,
-    /// Fourth standardised moment.
-    pub kurtosis: Option<f64>,
-    /// Share within the limits.
-    #[serde(rename = "yield")]
-    pub yield_: Option<f64>,
-}
-
 /// How far a method is off.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ErrorReport {
     /// The mean in sigmas, sigma relative, the others as they are.
     #[serde(flatten)]
-    pub off: FiguresReport,
+    pub off: Figures,
     /// The reference's own standard errors in the same units.
-    pub reference_standard_error: FiguresReport,
+    pub reference_standard_error: Figures,
     /// Root of the sum of squares of the errors of mean and sigma.
     pub overall: Option<f64>,
     /// Whether the reference tells that from 0.
@@ -153,10 +140,10 @@ impl MethodReport {
             run: ran.run,
             evaluation_s: ran.evaluation.as_secs_f64(),
             engine_s: ran.engine.as_secs_f64(),
-            figures: FiguresReport::of(&ran.figures[c]),
+            figures: ran.figures[c],
             error_vs_reference: ErrorReport {
-                off: FiguresReport::of(off),
-                reference_standard_error: FiguresReport::of(reference),
+                off: *off,
+                reference_standard_error: *reference,
                 overall: ran.errors[c].overall(),
                 resolved: ran.errors[c].resolved(),
                 floor: ran.errors[c].floor(),
@@ -167,9 +154,123 @@ impl MethodReport {
     }
 }
 
-impl FiguresReport {
-    fn of(figures: &Figures) -> Self {
-        let Figures { mean, sigma, skewness, kurtosis, yield_ } = *figures;
-        Self { mean, sigma, skewness, kurtosis, yield_ }
+impl CompareReport {
+    /// What it says: for every characteristic a table (`comparison`), fewest evaluations first, and a chart of error over evaluations.
+    pub fn document(&self) -> Document {
+        let mut document = Document::titled(self.head.title.as_deref());
+        let stopped = head::beside(&self.run);
+        document.line(format!("reference: {} with {} points{stopped}", self.reference_method, self.reference_samples));
+        document.sections = self.characteristics.iter().map(ComparedReport::section).collect();
+        if !self.not_run.is_empty() {
+            let mut section = Section::default();
+            for one in &self.not_run {
+                let time = one.projected_s.map_or(String::new(), |time| format!(", {} s", significant(time, 2)));
+                let cost = one.evaluations.map_or(String::new(), |count| format!(" ({count} evaluations{time})"));
+                section.line(format!("not run: {}{cost}: {}", one.method, one.reason));
+            }
+            document.sections.push(section);
+        }
+        document
     }
+}
+
+impl ComparedReport {
+    fn section(&self) -> Section {
+        let mut section = Section::of(&self.name, self.reference.unit.as_deref());
+        section.words = ": how far off the reference, and which no other beats".to_owned();
+        let of = &self.reference;
+        section.remark(format!(
+            "Reference: mean {}, sigma {}, skewness {}, kurtosis {}, yield {}.",
+            known(of.mean, |mean| significant(mean, 7)),
+            known(of.sigma, |sigma| significant(sigma, 6)),
+            known(of.skewness, |skewness| significant(skewness, 4)),
+            known(of.kurtosis, |kurtosis| significant(kurtosis, 5)),
+            known(of.yield_, yielded),
+        ));
+        section.chart(Chart::Plot(self.plot()));
+        section.table(self.table());
+        if self.methods.iter().any(|method| !method.error_vs_reference.resolved) {
+            section.note("<: the reference is itself no surer than this, and does not tell the difference");
+        }
+        section
+    }
+
+    fn table(&self) -> Table {
+        let error = |off: Option<f64>, own: Option<f64>, factor: f64| {
+            // Below two standard errors of the reference, these.
+            let own = own.map(|own| RESOLVED * own);
+            Cell::number(off, |off| match own {
+                Some(own) if off <= own => format!("<{}", brief(own * factor)),
+                _ => brief(off * factor),
+            })
+        };
+        macro_rules! off {
+            ($figure:ident, $factor:expr) => {
+                move |method: &&MethodReport| {
+                    let of = &method.error_vs_reference;
+                    error(of.off.$figure, of.reference_standard_error.$figure, $factor)
+                }
+            };
+        }
+        let seconds = |seconds: f64| significant(seconds, 2);
+        let best = |method: &&MethodReport| {
+            let mark = if method.pareto { "●" } else { "" };
+            Cell::both(Value::Truth(Some(method.pareto)), mark).toned(Tone::Good)
+        };
+        Columns::default()
+            .data("characteristic", |_| Cell::text(&self.name))
+            .named("method", "method", |method: &&MethodReport| Cell::text(&method.method))
+            .column("evaluations", "points", |method| Cell::count(method.evaluations))
+            .data("cached", |method| Cell::count(method.cached))
+            .column("evaluation_s", "model s", move |method| Cell::number(method.evaluation_s, seconds))
+            .column("engine_s", "engine s", move |method| Cell::number(method.engine_s, seconds))
+            .data("mean", |method| Cell::data(method.figures.mean))
+            .data("sigma", |method| Cell::data(method.figures.sigma))
+            .data("skewness", |method| Cell::data(method.figures.skewness))
+            .data("kurtosis", |method| Cell::data(method.figures.kurtosis))
+            .data("yield", |method| Cell::data(method.figures.yield_))
+            .column("mean_off_sigmas", "mean/sigma", off!(mean, 1.0))
+            .column("sigma_off_relative", "sigma %", off!(sigma, 100.0))
+            .column("skewness_off", "skew", off!(skewness, 1.0))
+            .column("kurtosis_off", "kurtosis", off!(kurtosis, 1.0))
+            .column("yield_off", "yield %", off!(yield_, 100.0))
+            .data("overall", |method| Cell::data(method.error_vs_reference.overall))
+            .data("resolved", |method| Cell::both(Value::Truth(Some(method.error_vs_reference.resolved)), ""))
+            .named("pareto", "no other beats it", best)
+            .table("comparison", &self.methods)
+    }
+
+    /// Evaluations against error. Open circles are methods whose error the reference does not resolve; the dashed line is what it
+    /// resolves; the line joins the methods that no other beats.
+    fn plot(&self) -> Plot {
+        let floor = self.methods.first().map_or(0.0, |method| method.error_vs_reference.floor);
+        let point = |method: &MethodReport| {
+            let error = method.error_vs_reference.overall?.max(floor);
+            (error > 0.0 && method.evaluations > 0).then(|| PlotPoint {
+                at: [method.evaluations as f64, error],
+                name: method.method.clone(),
+                tip: String::new(),
+                strong: method.pareto,
+                filled: method.error_vs_reference.resolved,
+            })
+        };
+        let points: Vec<PlotPoint> = self.methods.iter().filter_map(point).collect();
+        let front: Vec<_> =
+            points.iter().filter(|point| point.strong).map(|point| (point.at[0], Some(point.at[1]))).collect();
+        let mut layers = Vec::new();
+        layers.extend((floor > 0.0).then_some(Layer::Mark(floor, "reference resolves")));
+        layers.extend((front.len() > 1).then_some(Layer::Curve(front, Stroke::Thin)));
+        layers.push(Layer::Points(points));
+        Plot {
+            name: self.name.clone(),
+            x: Axis::new("evaluations", Scale::Decades),
+            y: Axis::new("error of mean and sigma, in sigmas", Scale::Decades),
+            layers,
+        }
+    }
+}
+
+/// An error with two digits.
+fn brief(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e4).contains(&value) { significant(value, 2) } else { format!("{value:.0e}") }
 }

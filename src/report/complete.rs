@@ -50,7 +50,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
     // What sampling, resampling, searching and fitting left is null here, and there all the same.
     complete!(json, one => CharacteristicAnalysis {
         characteristic: "/name", nominal: "/nominal", moments: "/kurtosis", sampled: "/surrogate_sampling",
-        model_sampled: "/model_sampling", tails: "/tails", unfinished: "/unfinished", without_value: "/without_value",
+        model_sampled: "/model_sampling", surface_law: "/surface_law", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",
         error_estimate: "/error_estimate", residual: "/least_squares", law: "/distribution", capability: "/cpk",
         normal: "/normal_fit", sampling: "/sampling_interval", worst_case: "/worst_case/linear",
         extremes: "/worst_case/extremes", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
@@ -87,7 +87,7 @@ fn an_analysis_is_all_in_its_report() {
     // The surface is for pages that try other tolerances.
     complete!(json, &found => Analysis {
         method: "/method", varying: "/varying", run: "/evaluations", characteristics: "/characteristics/0",
-        account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
+        joint: "/joint_yield", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
     });
     characteristic(json.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 }
@@ -100,7 +100,7 @@ fn samples_are_all_in_their_reports() {
     // Doubts are told of as warnings.
     complete!(of, &found => Simulation {
         sampler: "/sampler", run: "/evaluations", samples: "/samples", surrogate_evaluations: "/surrogate_evaluations",
-        reached: "/reached", doubts: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
+        reached: "/reached", non_repeatable: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
     });
     simulated(of.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 
@@ -109,7 +109,7 @@ fn samples_are_all_in_their_reports() {
     run_of(&of, &found.run);
     complete!(of, &found => RareEvents {
         method: "/surrogate", run: "/evaluations", samples: "/samples", surrogate_evaluations: "/surrogate_evaluations",
-        reached: "/reached", doubts: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
+        reached: "/reached", non_repeatable: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
     });
     let one = of.pointer("/characteristics/0").unwrap();
     complete!(one, &found.characteristics[0] => RareCharacteristic {

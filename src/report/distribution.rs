@@ -20,6 +20,17 @@ const PROBABILITIES: [(&str, Tail); 7] = [
 /// Their names.
 pub(super) const NAMES: [&str; 7] = ["0.00135", "0.01", "0.05", "0.5", "0.95", "0.99", "0.99865"];
 
+/// Their names as estimates.
+pub(super) const QUANTILES: [&str; 7] = [
+    "quantile 0.00135",
+    "quantile 0.01",
+    "quantile 0.05",
+    "quantile 0.5",
+    "quantile 0.95",
+    "quantile 0.99",
+    "quantile 0.99865",
+];
+
 #[derive(Clone, Copy)]
 enum Tail {
     Below(f64),

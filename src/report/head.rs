@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-use super::number::plural;
-use super::{About, SCHEMA};
+use super::{About, SCHEMA, WarningReport};
+use crate::document::number::plural;
+use crate::document::{Block, Finding, Tone};
 use crate::summary::RunSummary;
 
 /// Versions, the study, and the command.
@@ -38,4 +39,18 @@ pub(super) fn beside(run: &RunSummary) -> String {
         + &some(run.retried, format!(", {} sent again", run.retried))
         + &some(run.failed, format!(", {} failed", plural(run.failed as usize, "point", "points")))
         + &stopped
+}
+
+/// The seed of a run, where there is one, as a part of a line.
+pub(super) fn seed(run: &RunSummary) -> String {
+    run.seed.map_or(String::new(), |seed| format!(", seed {seed}"))
+}
+
+/// The warnings about a characteristic, or those about no one of them.
+pub(super) fn findings(all: &[WarningReport], about: impl Fn(Option<&str>) -> bool) -> Vec<Block> {
+    let found = |one: &WarningReport| {
+        let actions = one.advice.iter().map(ToString::to_string).collect();
+        Block::Finding(Finding { code: one.code, message: one.message.clone(), actions, tone: Tone::Doubtful })
+    };
+    all.iter().filter(|one| about(one.characteristic.as_deref())).map(found).collect()
 }

@@ -1,93 +1,64 @@
-//! Reports: a versioned value with serde, and its text for people.
+//! Reports: a versioned value with serde, and the document that it is for people.
 
 mod allocation;
-mod allocation_csv;
-mod allocation_svg;
-mod allocation_text;
+mod allocation_document;
+mod analysis_document;
+mod bars;
 mod compare;
-mod compare_csv;
-mod compare_svg;
-mod compare_text;
 #[cfg(test)]
 mod complete;
 mod csv;
 mod distribution;
 mod estimate;
-mod extremes;
 mod head;
 #[cfg(feature = "html")]
 pub mod html;
-mod labels;
-mod limits;
-pub(crate) mod number;
-mod page;
 mod rare;
-mod rare_csv;
-mod rare_text;
 mod remainder;
 mod requirement;
 mod sampling;
 #[cfg(feature = "cli")]
 mod schema;
 mod simulation;
-mod simulation_csv;
-mod simulation_text;
-mod sketch;
 mod stack;
-mod svg;
+mod surface_law;
 mod sweep;
-mod sweep_csv;
-mod sweep_svg;
-mod sweep_text;
-mod table;
-mod text;
 mod verification;
 
 pub use allocation::{
     AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, BeforeAfter, ConfirmationReport,
-    ContributionReport, FrontReport, FrontRequirement, JointReport, KeptReport, PriceReport, ProofReport,
-    RecentredReport, WrittenAnew,
+    ContributionReport, FrontReport, FrontRequirement, KeptReport, PriceReport, ProofReport, RecentredReport,
+    WrittenAnew,
 };
-pub use allocation_csv::{allocation_csv, allocation_csv_names};
-pub use allocation_svg::allocation_svg;
-pub use allocation_text::allocation_text;
-pub use compare::{CompareReport, ComparedReport, ErrorReport, FiguresReport, MethodReport, NotRunReport};
-pub use compare_csv::compare_csv;
-pub use compare_svg::compare_svg;
-pub use compare_text::compare_text;
-pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv, stack_csv_of_studies};
+pub use analysis_document::law_text;
+pub use compare::{CompareReport, ComparedReport, ErrorReport, MethodReport, NotRunReport};
+pub use csv::{CsvFile, csv_file_names, csv_files, csv_tables, stack_csv, stack_csv_of_studies};
 pub use distribution::{DistributionReport, OptionalQuantiles, Quantiles};
-pub use estimate::{ErrorEstimateReport, ModelSamplingReport};
+pub use estimate::ModelSamplingReport;
 pub use head::Head;
-pub use limits::law_text;
-pub use page::{Detail, Style};
-pub use rare::{BeyondReport, DesignPointReport, RareCharacteristicReport, RareReport};
-pub use rare_csv::rare_csv;
-pub use rare_text::rare_text;
+pub use rare::{BeyondReport, RareCharacteristicReport, RareReport};
 pub use remainder::RemainderReport;
 pub use requirement::RequirementReport;
 pub use sampling::SamplingReport;
-pub use simulation::{EmpiricalReport, HistogramReport, SimulatedReport, SimulationReport, StandardErrors};
-pub use simulation_csv::simulation_csv;
-pub use simulation_text::simulation_text;
-pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_markdown, stack_text};
+pub use simulation::{EmpiricalReport, SimulatedReport, SimulationReport, StandardErrors};
+pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_document};
+pub use surface_law::SurfaceLawReport;
 pub use sweep::{ParameterReport, SweepReport, SweptPointReport, SweptReport};
-pub use sweep_csv::sweep_csv;
-pub use sweep_svg::sweep_svg;
-pub use sweep_text::sweep_text;
-pub use text::text;
-pub use verification::{FigureReport, SwitchReport, VarianceShareReport, VerificationReport, VerifiedFiguresReport};
+pub use verification::{SwitchReport, VarianceShareReport, VerificationReport, VerifiedFiguresReport};
 
 use serde::Serialize;
 
-use crate::analysis::{Account, Analysis, CharacteristicAnalysis, Missing, Tails};
+use crate::analysis::{Account, Analysis, CharacteristicAnalysis, Interaction, Sensitivity, YieldSource};
 use crate::capability::{Capability, Law};
 use crate::dimension::Dimension;
+use crate::document::number::{UNKNOWN, band, significant};
 use crate::extremes::{Extreme, Extremes};
-use crate::method::{Basis, DerivativeSource};
+use crate::method::{Basis, DerivativeSource, ErrorEstimate, Residual};
+use crate::moments::Sampled;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
+use crate::verification::Verified;
 use crate::warning::{Advice, Warning};
 
 /// The version of the JSON report's shape.
@@ -119,6 +90,9 @@ pub struct Report {
     pub correlation: Vec<CorrelationReport>,
     /// What was asked.
     pub characteristics: Vec<CharacteristicReport>,
+    /// The share of assemblies that keep the limits of all characteristics at once; null with fewer than two that have limits, and
+    /// where it is not known.
+    pub joint_yield: Option<Verified>,
     /// Where an assumption fails.
     pub warnings: Vec<WarningReport>,
 }
@@ -155,36 +129,6 @@ pub struct CorrelationReport {
     pub value: f64,
 }
 
-/// Standard errors of moments that were sampled from the surrogate of correlated inputs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct SurrogateSamplingReport {
-    /// Points, none of them evaluated by the model.
-    pub samples: usize,
-    /// Standard error of sigma.
-    pub sigma: f64,
-    /// Standard error of the skewness.
-    pub skewness: f64,
-    /// Standard error of the kurtosis.
-    pub kurtosis: f64,
-}
-
-/// How well a surface of least squares fits.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct LeastSquaresReport {
-    /// What it misses of the values, in the characteristic's unit; null without degrees of freedom.
-    pub residual_standard_error: Option<f64>,
-    /// Standard error of the mean that follows from it; null where it is unknown.
-    pub mean_standard_error: Option<f64>,
-    /// Standard error of sigma that follows from it.
-    pub sigma_standard_error: Option<f64>,
-    /// Points that it was fitted to.
-    pub points: usize,
-    /// Coefficients.
-    pub coefficients: usize,
-}
-
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -204,19 +148,19 @@ pub struct CharacteristicReport {
     /// Fourth standardised moment, 3 for a normal.
     pub kurtosis: Option<f64>,
     /// What sampling left uncertain of these; null where they are exact for the surrogate.
-    pub surrogate_sampling: Option<SurrogateSamplingReport>,
+    pub surrogate_sampling: Option<Sampled>,
     /// How well a surface of least squares fits; null where none was fitted.
-    pub least_squares: Option<LeastSquaresReport>,
+    pub least_squares: Option<Residual>,
     /// How far the results may be off, by what the method did not see; null without moments.
-    pub error_estimate: Option<ErrorEstimateReport>,
+    pub error_estimate: Option<ErrorEstimate>,
     /// Points of the model that the moments rest on, where `auto` did not trust its surrogate.
     pub model_sampling: Option<ModelSamplingReport>,
     /// What the model itself says of them; null where they were not verified.
     pub verification: Option<VerificationReport>,
     /// How far they may be off because measured dimensions are known by samples; null where nothing is measured.
     pub sampling_interval: Option<SamplingReport>,
-    /// What law and surface reject; null without limits, or where the surface is plainly normal.
-    pub tails: Option<Tails>,
+    /// What the law of its surface says; null where its moments follow from no surface.
+    pub surface_law: Option<SurfaceLawReport>,
     /// Whether planned points of it were not evaluated because the run was stopped.
     pub unfinished: bool,
     /// Evaluated points at which it has no value.
@@ -234,9 +178,9 @@ pub struct CharacteristicReport {
     /// With every mean off by half its half band, 1.5 sigma of 3, all the wrong way.
     pub mean_shift_rss: Option<f64>,
     /// Every dimension, in the study's order.
-    pub sensitivities: Vec<SensitivityReport>,
+    pub sensitivities: Vec<Sensitivity>,
     /// The interactions examined, strongest first.
-    pub interactions: Vec<InteractionReport>,
+    pub interactions: Vec<Interaction>,
     /// What the interactions make that are not listed one by one; null where all are.
     pub interactions_remainder: Option<RemainderReport>,
     /// How many interactions there can be.
@@ -262,6 +206,8 @@ pub struct CharacteristicReport {
     pub requirements: Vec<RequirementReport>,
     /// Within which the share is known that does; null where that is not known.
     pub yield_interval: Option<[f64; 2]>,
+    /// What the yield comes from: `proof`, `samples` of the model, `surface-law` or `pearson`; null without a yield.
+    pub yield_source: Option<YieldSource>,
     /// The share that does.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
@@ -279,8 +225,10 @@ pub struct CharacteristicReport {
     pub cpk_percentile: Option<f64>,
     /// Sigmas of a normal beyond which, on one side, as many lie as are rejected.
     pub sigma_level: Option<f64>,
+    /// What the Pearson distribution with the same moments would make of the limits.
+    pub pearson_fit: Option<FitReport>,
     /// What a normal distribution with the same mean and sigma would make of the limits.
-    pub normal_fit: Option<NormalFitReport>,
+    pub normal_fit: Option<FitReport>,
 }
 
 /// Intervals that no assembly leaves.
@@ -324,10 +272,10 @@ impl Serialize for PointReport {
     }
 }
 
-/// What a normal distribution with the same mean and sigma would make of the limits.
+/// What a distribution with the same moments would make of the limits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct NormalFitReport {
+pub struct FitReport {
     /// The share of assemblies within them.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
@@ -335,50 +283,6 @@ pub struct NormalFitReport {
     pub ppm_below: Option<f64>,
     /// Assemblies above the upper limit, per million.
     pub ppm_above: Option<f64>,
-}
-
-/// What one dimension does.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct SensitivityReport {
-    /// The dimension.
-    pub dimension: String,
-    /// First derivative at the mean.
-    pub first: Option<f64>,
-    /// Second derivative at the mean.
-    pub second: Option<f64>,
-    /// Whether both are exact rather than differences.
-    pub exact: bool,
-    /// Where the model was evaluated along it, off its mean and in its unit.
-    pub steps: Vec<f64>,
-    /// What rounding in the model may make of the two derivatives.
-    pub rounding: Option<[f64; 2]>,
-    /// Share of the variance along the best straight line.
-    pub linear_share: Option<f64>,
-    /// Share of the variance that curvature adds.
-    pub curvature_share: Option<f64>,
-    /// How far curvature moves the mean.
-    pub mean_shift: Option<f64>,
-}
-
-/// What two dimensions do together.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct InteractionReport {
-    /// The two.
-    pub dimensions: [String; 2],
-    /// Mixed second derivative at the means.
-    pub mixed: Option<f64>,
-    /// Why it is missing; null where it is not.
-    pub missing: Option<Missing>,
-    /// Whether it is exact rather than a difference.
-    pub exact: bool,
-    /// What rounding in the model may make of it.
-    pub rounding: Option<f64>,
-    /// Share of the variance.
-    pub share: Option<f64>,
-    /// How far it moves the mean: 0 unless the two are correlated.
-    pub mean_shift: Option<f64>,
 }
 
 /// A warning.
@@ -431,6 +335,7 @@ impl Report {
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             correlation: correlation(problem),
             characteristics: analysis.characteristics.iter().map(CharacteristicReport::of).collect(),
+            joint_yield: analysis.joint,
             warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
         }
     }
@@ -461,6 +366,15 @@ impl DimensionReport {
             sigma: dimension.sigma(),
         }
     }
+
+    /// Its tolerance as drawings have it.
+    fn tolerance(&self) -> String {
+        match self.tolerance {
+            Some(ends) => band(ends),
+            None if self.sigma > 0.0 => format!("sigma {}", significant(self.sigma, 4)),
+            None => UNKNOWN.to_owned(),
+        }
+    }
 }
 
 impl CharacteristicReport {
@@ -479,24 +393,13 @@ impl CharacteristicReport {
             sigma: moments.map(|moments| moments.sigma()),
             skewness: moments.and_then(|moments| moments.skewness()),
             kurtosis: moments.and_then(|moments| moments.kurtosis()),
-            surrogate_sampling: analysis.sampled.map(|sampled| SurrogateSamplingReport {
-                samples: sampled.samples,
-                sigma: sampled.sigma,
-                skewness: sampled.skewness,
-                kurtosis: sampled.kurtosis,
-            }),
-            least_squares: analysis.residual.map(|residual| LeastSquaresReport {
-                residual_standard_error: residual.standard_error,
-                mean_standard_error: residual.mean,
-                sigma_standard_error: residual.sigma,
-                points: residual.points,
-                coefficients: residual.coefficients,
-            }),
-            error_estimate: analysis.error_estimate.as_ref().map(ErrorEstimateReport::of),
+            surrogate_sampling: analysis.sampled,
+            least_squares: analysis.residual,
+            error_estimate: analysis.error_estimate.clone(),
             model_sampling: analysis.model_sampled.as_ref().map(ModelSamplingReport::of),
             verification: VerificationReport::of(analysis),
             sampling_interval: analysis.sampling.as_ref().map(SamplingReport::of),
-            tails: analysis.tails,
+            surface_law: analysis.surface_law.as_ref().map(SurfaceLawReport::of),
             unfinished: analysis.unfinished,
             without_value: analysis.without_value,
             constant: analysis.constant,
@@ -505,30 +408,8 @@ impl CharacteristicReport {
             rss: analysis.rss,
             inflated_rss: analysis.inflated_rss,
             mean_shift_rss: analysis.mean_shift_rss,
-            sensitivities: (analysis.sensitivities.iter())
-                .map(|sensitivity| SensitivityReport {
-                    dimension: sensitivity.dimension.clone(),
-                    first: sensitivity.first,
-                    second: sensitivity.second,
-                    exact: sensitivity.exact,
-                    steps: sensitivity.steps.clone(),
-                    rounding: sensitivity.rounding,
-                    linear_share: sensitivity.linear_share,
-                    curvature_share: sensitivity.curvature_share,
-                    mean_shift: sensitivity.mean_shift,
-                })
-                .collect(),
-            interactions: (analysis.interactions.iter())
-                .map(|interaction| InteractionReport {
-                    dimensions: interaction.dimensions.clone(),
-                    mixed: interaction.mixed,
-                    missing: interaction.missing,
-                    exact: interaction.exact,
-                    rounding: interaction.rounding,
-                    share: interaction.share,
-                    mean_shift: interaction.mean_shift,
-                })
-                .collect(),
+            sensitivities: analysis.sensitivities.clone(),
+            interactions: analysis.interactions.clone(),
             interactions_remainder: None,
             possible_interactions: analysis.possible_interactions,
             left_out_share: analysis.left_out_share,
@@ -541,6 +422,7 @@ impl CharacteristicReport {
             verdict: analysis.verdict(),
             requirements: analysis.requirements().iter().map(RequirementReport::of).collect(),
             yield_interval: analysis.yield_interval(),
+            yield_source: analysis.yield_source,
             yield_: of(|capability| capability.yield_()),
             ppm_below: of(|capability| capability.below.map(ppm)),
             ppm_above: of(|capability| capability.above.map(ppm)),
@@ -549,12 +431,16 @@ impl CharacteristicReport {
             cp_percentile: of(|capability| capability.cp_percentile),
             cpk_percentile: of(|capability| capability.cpk_percentile),
             sigma_level: of(|capability| capability.sigma_level()),
-            normal_fit: analysis.normal.map(|normal| NormalFitReport {
-                yield_: normal.yield_(),
-                ppm_below: normal.below.map(ppm),
-                ppm_above: normal.above.map(ppm),
-            }),
+            pearson_fit: analysis.pearson.as_ref().map(FitReport::of),
+            normal_fit: analysis.normal.as_ref().map(FitReport::of),
         }
+    }
+}
+
+impl FitReport {
+    fn of(fit: &Capability) -> Self {
+        let ppm = |share: Option<f64>| share.map(|share| 1e6 * share);
+        Self { yield_: fit.yield_(), ppm_below: ppm(fit.below), ppm_above: ppm(fit.above) }
     }
 }
 
@@ -581,9 +467,17 @@ impl WarningReport {
             characteristic: warning.characteristic().map(str::to_owned),
             dimension: warning.dimension().map(str::to_owned),
             message: warning.message(),
-            data: warning.data(),
+            data: fields(warning),
             advice: warning.advice(),
             at: Vec::new(),
         }
+    }
+}
+
+/// The fields of a warning.
+fn fields(warning: &Warning) -> serde_json::Map<String, serde_json::Value> {
+    match serde_json::to_value(warning.data()) {
+        Ok(serde_json::Value::Object(fields)) => fields,
+        other => unreachable!("the fields of warnings are plain data: {other:?}"),
     }
 }

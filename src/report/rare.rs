@@ -2,9 +2,13 @@
 
 use serde::Serialize;
 
+use super::head::{self, seed};
+use super::requirement::judged;
 use super::{About, CorrelationReport, DimensionReport, Head, RequirementReport, WarningReport, correlation};
+use crate::document::number::{known, plain, short, significant, yielded};
+use crate::document::{Blocks, Cell, Columns, Document, Line, Section, Table, Value};
 use crate::problem::Problem;
-use crate::rare::{Beyond, RareCharacteristic, RareEvents};
+use crate::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
 
@@ -100,17 +104,7 @@ pub struct BeyondReport {
     /// Points of a plain random sample that would have the same standard error.
     pub plain_samples: Option<f64>,
     /// The most likely assembly at the limit, as the surrogate has it.
-    pub design_point: Option<DesignPointReport>,
-}
-
-/// The most likely assembly at a limit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct DesignPointReport {
-    /// Its distance from the middle in standard deviations of independent normal variables.
-    pub distance: f64,
-    /// Every dimension's value, in the order of `dimensions`.
-    pub values: Vec<f64>,
+    pub design_point: Option<DesignPoint>,
 }
 
 impl RareReport {
@@ -169,10 +163,102 @@ impl BeyondReport {
             effective_samples: beyond.effective_samples,
             greatest_part: beyond.greatest_part,
             plain_samples: beyond.plain_samples,
-            design_point: beyond
-                .design_point
-                .as_ref()
-                .map(|point| DesignPointReport { distance: point.distance, values: point.values.clone() }),
+            design_point: beyond.design_point.clone(),
         }
     }
+}
+
+/// Dimensions of a design point that are shown: those that move farthest.
+const SHOWN: usize = 6;
+
+impl RareReport {
+    /// What it says: every probability with its interval (table `rare`), and the assembly in which it most likely comes about.
+    pub fn document(&self) -> Document {
+        let mut document = Document::titled(self.head.title.as_deref());
+        document.line(format!(
+            "importance sampling: {} points, {} evaluations with the {} surrogate{}{}",
+            self.samples,
+            self.run.evaluations,
+            self.surrogate,
+            seed(&self.run),
+            head::beside(&self.run)
+        ));
+        document.sections = self.characteristics.iter().map(|one| one.section(&self.dimensions)).collect();
+        document
+    }
+}
+
+/// A side of the limits: `below` or `above`, and what lies there.
+type Side<'r> = (&'static str, &'r BeyondReport);
+
+impl RareCharacteristicReport {
+    fn section(&self, dimensions: &[DimensionReport]) -> Section {
+        let mut section = Section::of(&self.name, self.unit.as_deref());
+        let sides = [("below", &self.below), ("above", &self.above)];
+        let sides: Vec<Side<'_>> = sides.into_iter().filter_map(|(side, of)| Some((side, of.as_ref()?))).collect();
+        section.table(self.table(&sides));
+        if sides.is_empty() {
+            let limited = self.lower.or(self.upper).is_some();
+            section.note(if limited { "its surrogate does not vary" } else { "no limit" });
+            return section;
+        }
+        for (side, of) in &sides {
+            if let Some([low, high]) = of.bounds {
+                let ([low, high], failed) = ([low, high].map(ppm), self.failed);
+                let all = format!("{high} if all {failed} do");
+                section.note(format!("{side}: {low} ppm if no point without a value lies there, {all}"));
+            }
+        }
+        if let Some([low, high]) = self.yield_interval {
+            let interval = format!("95 % interval {} to {}", yielded(low), yielded(high));
+            let target = judged(self.target_yield, self.verdict);
+            section.note(Line::from(format!("yield {}, {interval}", known(self.yield_, yielded))).and(target));
+        }
+        self.requirements.iter().filter_map(RequirementReport::line).for_each(|line| section.note(line));
+        for (side, of) in sides {
+            if let Some(point) = &of.design_point {
+                section.note(format!("most likely {side}, in sigmas off the means: {}", farthest(point, dimensions)));
+            }
+        }
+        section
+    }
+
+    fn table(&self, sides: &[Side<'_>]) -> Table {
+        let limit = |(side, of): &Side<'_>| Cell::both(Value::Empty, format!("{side} {}", plain(of.limit)));
+        let millionths =
+            |value: Option<f64>, digits: usize| Cell::number(value, |value| significant(1e6 * value, digits));
+        Columns::default()
+            .data("characteristic", |_| Cell::text(&self.name))
+            .data("unit", |_| Cell::optional(self.unit.as_deref()))
+            .data("side", |row: &Side<'_>| Cell::text(row.0))
+            .shown("", limit)
+            .data("limit", |row| Cell::data(row.1.limit))
+            .column("probability", "ppm", move |row| millionths(row.1.probability, 4))
+            .column("standard_error", "standard error", move |row| millionths(row.1.standard_error, 2))
+            .column("interval_low", "95 % interval", |row| Cell::number(row.1.interval[0], ppm))
+            .named("interval_high", "to", |row| Cell::number(row.1.interval[1], ppm))
+            .column("hits", "points there", |row| Cell::count(row.1.hits))
+            .data("effective_samples", |row| Cell::data(row.1.effective_samples))
+            .column("plain_samples", "plain sampling", |row| {
+                Cell::number(row.1.plain_samples, |samples| significant(samples, 2))
+            })
+            .table("rare", sides.iter().copied())
+    }
+}
+
+fn ppm(value: f64) -> String {
+    significant(1e6 * value, 3)
+}
+
+/// A design point in sigmas off the means, farthest first.
+fn farthest(point: &DesignPoint, dimensions: &[DimensionReport]) -> String {
+    let mut moved: Vec<(f64, String)> = (dimensions.iter().zip(&point.values))
+        .filter(|(dimension, _)| dimension.sigma > 0.0)
+        .map(|(dimension, value)| ((value - dimension.mean) / dimension.sigma, short(&dimension.name)))
+        .collect();
+    moved.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let rest = moved.len().saturating_sub(SHOWN);
+    let words = moved.iter().take(SHOWN).map(|(sigmas, name)| format!("{name} {sigmas:+.2}"));
+    let rest = if rest > 0 { format!(" and {rest} less") } else { String::new() };
+    format!("{}{rest}", words.collect::<Vec<_>>().join(", "))
 }

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::number::{UNKNOWN, share, significant};
+use crate::document::number::{known, significant, yielded};
+use crate::document::{Line, Tone};
 use crate::requirement::Requirement;
 use crate::verdict::{Judged, Verdict};
 
@@ -37,16 +38,16 @@ impl RequirementReport {
     }
 
     /// In a line: what there is, what is required, and the verdict. Of a target yield, which stands beside the yield, None.
-    pub(super) fn line(&self) -> Option<String> {
-        let number = |value: f64| if self.requirement == "yield" { share(1.0 - value) } else { significant(value, 4) };
-        let found = self.value.map_or(UNKNOWN.to_owned(), number);
+    pub(super) fn line(&self) -> Option<Line> {
+        let number = |value: f64| if self.requirement == "yield" { yielded(value) } else { significant(value, 4) };
+        let found = known(self.value, number);
         let required = match self.requirement {
             "yield" => return None,
             "cpk" => format!("Cpk of at least {}: {found}", number(self.required)),
             "sigma" => format!("sigma of at most {}: {found}", number(self.required)),
             name => format!("{name} within the limits: {found} of the room"),
         };
-        Some(format!("requires {required}, {}", loud(self.verdict)))
+        Some(Line::from(format!("requires {required}, ")).and(loud(self.verdict)))
     }
 }
 
@@ -55,12 +56,19 @@ pub(super) fn ends(interval: [f64; 2]) -> [Option<f64>; 2] {
     interval.map(|end| Some(end).filter(|end| end.is_finite()))
 }
 
-/// A verdict in a text, where a missed target is to be seen at once.
-pub(super) fn loud(verdict: Verdict) -> &'static str {
+/// A verdict in its tone; a missed target is to be seen at once, with colours or without.
+pub(super) fn loud(verdict: Verdict) -> Line {
     match verdict {
-        Verdict::Missed => "MISSED",
-        other => other.name(),
+        Verdict::Met => Line::toned("met", Tone::Good),
+        Verdict::Missed => Line::toned("MISSED", Tone::Bad),
+        Verdict::Inconclusive => Line::toned("inconclusive", Tone::Doubtful),
     }
+}
+
+/// The target yield and whether it is met, after the yield; empty without a target.
+pub(super) fn judged(target: Option<f64>, verdict: Option<Verdict>) -> Line {
+    let Some((target, verdict)) = target.zip(verdict) else { return Line::default() };
+    Line::from(format!(", target {}: ", yielded(target))).and(loud(verdict))
 }
 
 pub(super) fn word(requirement: Requirement) -> &'static str {

@@ -2,13 +2,7 @@
 
 use serde::Serialize;
 
-use super::CharacteristicReport;
-use super::number::{beside, share, unsigned_zero};
-use super::page::{Grid, Page, clean, short};
 use crate::analysis::SamplingInterval;
-
-/// Measured dimensions that the text names.
-const NAMED: usize = 3;
 
 /// Intervals that cover the true results, as far as the size of measured samples decides.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -63,51 +57,4 @@ impl SamplingReport {
             samples: interval.samples.clone(),
         }
     }
-}
-
-/// The intervals beside one another, below what they belong to.
-pub(super) fn sampling(page: &mut Page, one: &CharacteristicReport) {
-    let Some(interval) = &one.sampling_interval else { return };
-    let named: Vec<String> = interval
-        .samples
-        .iter()
-        .take(NAMED)
-        .map(|(name, count)| format!("{count} values of {}", short(&clean(name))))
-        .collect();
-    let more = interval.samples.len().saturating_sub(NAMED);
-    let more = if more > 0 { format!(" and {more} more samples") } else { String::new() };
-    page.line("");
-    page.line(&format!(
-        "  {} % intervals for {}{more}, by {} resamples",
-        100.0 * interval.level,
-        named.join(", "),
-        interval.resamples
-    ));
-    let scale = one.sigma.unwrap_or(0.0);
-    let limited = one.lower.is_some() || one.upper.is_some();
-    let range = |ends: Option<[f64; 2]>, text: &dyn Fn(f64) -> String| match ends {
-        Some([low, high]) => format!("{} .. {}", text(low), text(high)),
-        None => "unknown".to_owned(),
-    };
-    let value = |ends| range(ends, &|value| beside(value, scale));
-    let shape = |ends| range(ends, &|value| unsigned_zero(format!("{value:.4}")));
-    let kept = interval.rejected.map(|[low, high]| [high, low]);
-    let of_limits = |name: &str, text: String| if limited { [name.to_owned(), text] } else { Default::default() };
-    let rows = [
-        (
-            ["mean", "skewness"],
-            [value(interval.mean), shape(interval.skewness)],
-            of_limits("yield", range(kept, &share)),
-        ),
-        (
-            ["sigma", "kurtosis"],
-            [value(interval.sigma), shape(interval.kurtosis)],
-            of_limits("Cpk", range(interval.cpk, &|value| unsigned_zero(format!("{value:.3}")))),
-        ),
-    ];
-    let mut table = Grid::new([""; 6], "<<<<<<");
-    for ([a, b], [of_a, of_b], [c, of_c]) in rows {
-        table.row([a.to_owned(), of_a, b.to_owned(), of_b, c, of_c]);
-    }
-    page.print(&table);
 }

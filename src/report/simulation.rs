@@ -2,8 +2,15 @@
 
 use serde::Serialize;
 
-use super::distribution::{NAMES, OptionalQuantiles};
+use super::distribution::{NAMES, OptionalQuantiles, QUANTILES};
+use super::head::{self, findings, seed};
+use super::requirement::judged;
 use super::{About, CorrelationReport, DimensionReport, Head, RequirementReport, WarningReport, correlation};
+use crate::capability::Law;
+use crate::document::number::{estimated, index, known, limits, plain, significant, uncertainty, yielded};
+use crate::document::{Blocks, Cell, Chart, Columns, Document, Line, Section, Spread, Table};
+use crate::moments::Moments;
+use crate::pearson::Pearson;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
 use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation};
@@ -96,7 +103,7 @@ pub struct SimulatedReport {
     /// Distance of the nearer limit by three sigma.
     pub cpk: Option<f64>,
     /// The sample in intervals.
-    pub histogram: Option<HistogramReport>,
+    pub histogram: Option<Histogram>,
     /// The surrogate as control variate; null where there is none.
     pub control: Option<ControlReport>,
 }
@@ -150,22 +157,6 @@ pub struct EmpiricalReport {
     pub family: &'static str,
     /// Quantiles.
     pub quantiles: OptionalQuantiles,
-}
-
-/// A sample in intervals.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct HistogramReport {
-    /// One more than there are intervals, ascending.
-    pub edges: Vec<f64>,
-    /// How many values in each.
-    pub counts: Vec<u64>,
-}
-
-impl HistogramReport {
-    pub(super) fn of(Histogram { edges, counts }: &Histogram) -> Self {
-        Self { edges: edges.clone(), counts: counts.clone() }
-    }
 }
 
 impl SimulationReport {
@@ -239,12 +230,150 @@ impl SimulatedReport {
             ppm_above: one.above.map(|share| 1e6 * share),
             cp: one.cp,
             cpk: one.cpk,
-            histogram: one.histogram.as_ref().map(HistogramReport::of),
+            histogram: one.histogram.clone(),
             control: one.control.map(|control| ControlReport {
                 method: control.method.name(),
                 evaluations: control.evaluations,
                 reduction: Reduction { mean: control.mean, sigma: control.sigma },
             }),
+        }
+    }
+}
+
+/// Fewer intervals are no picture.
+const INTERVALS: usize = 5;
+
+impl SimulationReport {
+    /// What it says: every number with its standard error (table `estimates`), and the histogram (table `histogram`).
+    pub fn document(&self) -> Document {
+        let mut document = Document::titled(self.head.title.as_deref());
+        let (seed, rest) = (seed(&self.run), head::beside(&self.run));
+        document.line(format!("{}: {} points{seed}{rest}", self.method, self.samples));
+        document.sections = self.characteristics.iter().map(|one| one.section(&self.warnings)).collect();
+        document
+    }
+}
+
+/// An estimate: its name, its value, its standard error, its interval.
+type Row = (&'static str, Option<f64>, Option<f64>, Option<[f64; 2]>);
+
+impl SimulatedReport {
+    fn section(&self, warnings: &[WarningReport]) -> Section {
+        let mut section = Section::of(&self.name, self.unit.as_deref());
+        section.blocks = findings(warnings, |name| name == Some(&self.name));
+        section.table(self.estimates());
+        section.table(self.histogram_table());
+        if self.samples == 0 {
+            section.note("no point has a value");
+            return section;
+        }
+        if let Some(control) = &self.control {
+            let times = |value: Option<f64>, name: &str| value.map(|value| format!("{name} {}", significant(value, 3)));
+            let shrunk = [times(control.reduction.mean, "mean"), times(control.reduction.sigma, "sigma")];
+            let shrunk: Vec<String> = shrunk.into_iter().flatten().collect();
+            let shrunk = match shrunk.is_empty() {
+                true => String::new(),
+                false => format!(": standard errors shrunk by {}", shrunk.join(", ")),
+            };
+            section.note(format!("control: {} surrogate, {} evaluations{shrunk}", control.method, control.evaluations));
+        }
+        if let Some(yield_) = self.yield_ {
+            self.limits(&mut section, yield_);
+        }
+        self.requirements.iter().filter_map(RequirementReport::line).for_each(|line| section.note(line));
+        self.picture(&mut section);
+        section
+    }
+
+    fn limits(&self, section: &mut Section, yield_: f64) {
+        let interval = self
+            .standard_error
+            .yield_
+            .map_or(String::new(), |[low, high]| format!(", 95 % interval {} to {}", yielded(low), yielded(high)));
+        let target = judged(self.target_yield, self.verdict);
+        section.note(Line::from(format!("yield {}{interval}", yielded(yield_))).and(target));
+        if let Some([low, high]) = self.yield_bounds {
+            let (points, [low, high]) = (self.failed, [low, high].map(yielded));
+            section
+                .note(format!("{points} points have no value: {low} if all of these are rejected, {high} if none is"));
+        }
+        let ppm = |value: Option<f64>, side: &str| value.map(|value| format!("{} ppm {side}", significant(value, 4)));
+        let named = |value: Option<f64>, name: &str| value.map(|value| format!("{name} {}", index(value)));
+        let figures =
+            [ppm(self.ppm_below, "below"), ppm(self.ppm_above, "above"), named(self.cp, "Cp"), named(self.cpk, "Cpk")];
+        section.note(figures.into_iter().flatten().collect::<Vec<_>>().join("  "));
+        section.remark(format!(
+            "Limits {}; values seen from {} to {}.",
+            limits(self.lower, self.upper),
+            known(self.range.map(|[least, _]| least), plain),
+            known(self.range.map(|[_, greatest]| greatest), plain),
+        ));
+    }
+
+    fn estimates(&self) -> Table {
+        let errors = &self.standard_error;
+        let moments: [Row; 4] = [
+            ("mean", self.mean, errors.mean, None),
+            ("sigma", self.sigma, errors.sigma, None),
+            ("skewness", self.skewness, errors.skewness, None),
+            ("kurtosis", self.kurtosis, errors.kurtosis, None),
+        ];
+        let quantiles = QUANTILES.into_iter().zip(self.distribution.quantiles.0.iter().zip(&errors.quantiles.0));
+        let quantiles = quantiles.map(|(name, (value, error))| (name, value.1, error.1, None));
+        let seen = if self.samples == 0 { 0 } else { moments.len() + QUANTILES.len() };
+        let rest: [Row; 3] = [
+            ("yield", self.yield_, None, errors.yield_),
+            ("ppm_below", self.ppm_below, None, None),
+            ("ppm_above", self.ppm_above, None, None),
+        ];
+        Columns::default()
+            .data("characteristic", |_| Cell::text(&self.name))
+            .data("unit", |_| Cell::optional(self.unit.as_deref()))
+            .named("estimate", "", |row: &Row| Cell::text(row.0))
+            .named("value", "value", |row| Cell::number(row.1, |value| estimated(value, row.2)))
+            .column("standard_error", "standard error", |row| Cell::number(row.2, uncertainty))
+            .data("interval_low", |row| Cell::data(row.3.map(|[low, _]| low)))
+            .data("interval_high", |row| Cell::data(row.3.map(|[_, high]| high)))
+            .table("estimates", moments.into_iter().chain(quantiles).chain(rest))
+            .seen((0..seen).collect())
+    }
+
+    fn histogram_table(&self) -> Table {
+        let rows = self.histogram.iter().flat_map(|of| of.edges.windows(2).zip(&of.counts));
+        Columns::default()
+            .data("characteristic", |_| Cell::text(&self.name))
+            .data("from", |row: &(&[f64], &u64)| Cell::data(row.0[0]))
+            .data("to", |row| Cell::data(row.0[1]))
+            .data("count", |row| Cell::count(*row.1))
+            .table("histogram", rows)
+    }
+
+    /// The sample, and the Pearson curve of its own moments.
+    fn picture(&self, section: &mut Section) {
+        let Some(of) = self.histogram.as_ref().filter(|of| of.counts.len() >= INTERVALS) else { return };
+        let law = self.fitted();
+        let curve = law.as_ref().map_or(String::new(), |law| {
+            format!(" The line: the Pearson curve of its four moments ({}).", law.kind().name())
+        });
+        section.gap();
+        section.chart(Chart::Spread(Box::new(Spread {
+            bins: Some(of.clone()),
+            law,
+            sampled: true,
+            limits: [self.lower, self.upper],
+            places: self.mean.map(|mean| (mean, "mean", "mean")).into_iter().collect(),
+            sigma: self.sigma.unwrap_or(0.0),
+            label: format!("Histogram of {} with the standard error of every bar", self.name),
+            words: format!("The sample; each bar with one standard error.{curve}"),
+        })));
+    }
+
+    /// The distribution of the sample's own moments.
+    fn fitted(&self) -> Option<Pearson> {
+        let moments = Moments::new(self.mean?, self.sigma?, self.skewness?, self.kurtosis? - 3.0);
+        match Law::fit(&moments).ok()? {
+            Law::Pearson(law) => Some(*law),
+            Law::Point { .. } => None,
         }
     }
 }

@@ -10,10 +10,10 @@
 
 use std::fmt;
 
-use super::number::{beside, percent, plain, significant};
-use super::page::{Grid, Page, Style, clean, short};
-use super::text::tolerance;
-use super::{CharacteristicReport, DimensionReport, Report, SensitivityReport};
+use super::{CharacteristicReport, DimensionReport, Report};
+use crate::analysis::Sensitivity;
+use crate::document::number::{UNKNOWN, beside, limits, percent, plain, short, significant};
+use crate::document::{Blocks, Cell, Columns, Document, Line, Section, Table, Tone, Value};
 use crate::method::Method;
 
 /// A slope this near to 1 or -1 is a direction.
@@ -21,9 +21,6 @@ const DIRECTION: f64 = 1e-9;
 const SIGMAS: f64 = 3.0;
 /// A part of a half width that rounding may make.
 const ROUNDING: f64 = 1e-9;
-/// The longest line of a note.
-const LINE: usize = 96;
-const UNKNOWN: &str = "?";
 
 /// The stack of one characteristic. What is unknown is None.
 #[derive(Debug, Clone, PartialEq)]
@@ -213,7 +210,7 @@ impl TotalKind {
 }
 
 impl StackRow {
-    fn of(sensitivity: &SensitivityReport, dimension: &DimensionReport) -> Self {
+    fn of(sensitivity: &Sensitivity, dimension: &DimensionReport) -> Self {
         let (shift, reach) = (dimension.mean - dimension.nominal, SIGMAS * dimension.sigma);
         let deviations = dimension.tolerance.unwrap_or([shift - reach, shift + reach]);
         let contribution = sensitivity.first.map(|slope| (0.5 * slope * (deviations[1] - deviations[0])).abs());
@@ -229,13 +226,13 @@ impl StackRow {
 }
 
 /// Whether a dimension belongs into the table: it varies and is not known to do nothing, or is known to do something.
-fn matters(row: &SensitivityReport, dimension: &DimensionReport) -> bool {
+fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
     let idle = row.first == Some(0.0) && row.second.unwrap_or(0.0) == 0.0;
     !idle && (dimension.sigma > 0.0 || row.first.is_some())
 }
 
 /// `+`, `-`, or the slope where it is neither 1 nor -1.
-fn direction(row: &SensitivityReport) -> String {
+fn direction(row: &Sensitivity) -> String {
     let Some(slope) = row.first else { return UNKNOWN.to_owned() };
     let rounding = row.rounding.map_or(0.0, |[first, _]| 2.0 * first);
     let near = |value: f64| (slope - value).abs() <= DIRECTION.max(rounding);
@@ -296,7 +293,7 @@ fn shape(one: &CharacteristicReport, rows: &[StackRow]) -> Option<StackNote> {
     let joint = one.interactions.iter().filter(|pair| real(pair.mixed, pair.rounding));
     let interactions: f64 = joint.clone().filter_map(|pair| pair.share).sum();
     let varying =
-        |row: &SensitivityReport| rows.iter().any(|of| of.dimension.name == row.dimension && of.dimension.sigma > 0.0);
+        |row: &Sensitivity| rows.iter().any(|of| of.dimension.name == row.dimension && of.dimension.sigma > 0.0);
     let not_examined = one.sensitivities.iter().any(|row| varying(row) && row.curvature_share.is_none());
     if (curved.count() > 0 && known) || joint.count() > 0 {
         return Some(StackNote::Curved { share: curvature + interactions, mean_shift });
@@ -346,131 +343,84 @@ impl fmt::Display for StackNote {
     }
 }
 
-/// Stacks as text.
-pub fn stack_text(stacks: &[Stack], style: Style) -> String {
-    let mut page = Page::new(style);
-    for (index, stack) in stacks.iter().enumerate() {
-        if index > 0 {
-            page.line("");
-        }
-        page.line(&heading(stack));
-        let mut table = Grid::new(["", "direction", "nominal", "tolerance", "", "contribution", "share %"], "<>><<>>");
-        for row in &stack.rows {
-            table.row(cells(stack, row, short(&row.dimension.name)));
-        }
-        page.print(&table);
-        page.line("");
-        let mut totals = Grid::new(["", "middle", "half width", "from", "to", ""], "<>>>><");
-        for total in &stack.totals {
-            totals.row(total_cells(stack, total));
-        }
-        page.print(&totals);
-        for line in stack.notes.iter().flat_map(|note| wrapped(&note.to_string())) {
-            page.line(&format!("  {line}"));
-        }
+/// Stacks as a document: a section each, with what dimensions contribute and the totals (together the table `stack`).
+pub fn stack_document(stacks: &[Stack]) -> Document {
+    Document { sections: stacks.iter().map(Stack::section).collect(), ..Document::default() }
+}
+
+impl Stack {
+    fn section(&self) -> Section {
+        let mut section = Section::of(&format!("stack of {}", self.characteristic), self.unit.as_deref());
+        section.words = match self.limits {
+            [None, None] => String::new(),
+            [lower, upper] => format!(", {}", limits(lower, upper)),
+        };
+        let [rows, totals] = self.tables();
+        section.table(rows);
+        section.gap();
+        section.table(totals);
+        self.notes.iter().for_each(|note| section.wrapped(2, note.to_string()));
+        section
     }
-    page.finish()
-}
 
-/// Stacks as Markdown tables.
-pub fn stack_markdown(stacks: &[Stack]) -> String {
-    let line =
-        |cells: &[String]| format!("| {} |\n", cells.iter().map(|cell| escaped(cell)).collect::<Vec<_>>().join(" | "));
-    let mut text = String::new();
-    for (index, stack) in stacks.iter().enumerate() {
-        if index > 0 {
-            text.push('\n');
-        }
-        let unit = stack.unit.as_deref().map(|unit| format!(" ({})", escaped(&clean(unit)))).unwrap_or_default();
-        let name = escaped(&clean(&stack.characteristic));
-        text += &format!("**Stack of {name}**{unit}{}\n\n", limits(stack));
-        text += "| dimension | direction | nominal | tolerance | unit | contribution | share % |\n|---|--:|--:|---|---|--:|--:|\n";
-        for row in &stack.rows {
-            text += &line(&cells(stack, row, clean(&row.dimension.name)));
-        }
-        text += "\n| total | middle | half width | from | to | limits |\n|---|--:|--:|--:|--:|---|\n";
-        for total in &stack.totals {
-            text += &line(&total_cells(stack, total));
-        }
-        for note in &stack.notes {
-            text += &format!("\n{}\n", escaped(&note.to_string()));
-        }
+    /// Whether nothing says that the characteristic is not linear.
+    pub(super) fn straight(&self) -> bool {
+        let bent = |note: &StackNote| {
+            matches!(
+                note,
+                StackNote::Curved { .. } | StackNote::NotExamined | StackNote::InteractionsNotExamined { .. }
+            )
+        };
+        !self.rows.is_empty() && !self.notes.iter().any(bent)
     }
-    text
-}
 
-fn heading(stack: &Stack) -> String {
-    let unit = stack.unit.as_deref().map(|unit| format!(" [{}]", clean(unit))).unwrap_or_default();
-    format!("stack of {}{unit}{}", clean(&stack.characteristic), limits(stack))
-}
-
-fn limits(stack: &Stack) -> String {
-    match stack.limits {
-        [None, None] => String::new(),
-        [Some(lower), None] => format!(", above {}", plain(lower)),
-        [None, Some(upper)] => format!(", below {}", plain(upper)),
-        [Some(lower), Some(upper)] => format!(", {} .. {}", plain(lower), plain(upper)),
+    /// What dimensions contribute, and the totals. In CSV they are one table: of a total, `nominal` is the middle, and `lower` and
+    /// `upper` are its half width as deviations.
+    pub(super) fn tables(&self) -> [Table; 2] {
+        let scale = self.totals.iter().filter_map(|total| total.half_width).fold(0.0, f64::max);
+        let scaled = |value: Option<f64>| Cell::number(value, |value| beside(value, scale));
+        let end = |interval: Option<[f64; 2]>, end: usize| interval.map(|ends| ends[end]);
+        let rows = Columns::default()
+            .data("characteristic", |_| Cell::text(&self.characteristic))
+            .data("row", |_| Cell::text("dimension"))
+            .named("name", "dimension", |row: &&StackRow| Cell::name(&row.dimension.name))
+            .data("unit", |row| Cell::optional(row.dimension.unit.as_deref()))
+            .shown("direction", |row| Cell::both(Value::Number(row.slope), row.direction.as_str()))
+            .column("nominal", "nominal", |row| Cell::number(row.dimension.nominal, plain))
+            .data("lower", |row| Cell::data(row.deviations[0]))
+            .data("upper", |row| Cell::data(row.deviations[1]))
+            .shown("tolerance", |row| Cell::text(row.dimension.tolerance()))
+            .named("", "unit", |row| Cell::optional(row.dimension.unit.as_deref()))
+            .data("slope", |row| Cell::data(row.slope))
+            .column("contribution", "contribution", move |row| scaled(row.contribution))
+            .column("share", "share %", |row| Cell::number(row.share, percent))
+            .data("from", |_| Cell::empty())
+            .data("to", |_| Cell::empty())
+            .data("within_limits", |_| Cell::empty())
+            .table("stack", &self.rows);
+        let totals = Columns::default()
+            .data("characteristic", |_| Cell::text(&self.characteristic))
+            .data("row", |_| Cell::text("total"))
+            .named("name", "total", |total: &&StackTotal| Cell::text(total.kind.name()))
+            .data("unit", |_| Cell::optional(self.unit.as_deref()))
+            .column("nominal", "middle", move |total| scaled(total.middle))
+            .data("lower", |total| Cell::data(total.half_width.map(|half| -half)))
+            .column("upper", "half width", move |total| scaled(total.half_width))
+            .data("slope", |_| Cell::empty())
+            .data("contribution", |total| Cell::data(total.half_width))
+            .data("share", |_| Cell::empty())
+            .column("from", "from", move |total| scaled(end(total.interval(), 0)))
+            .column("to", "to", move |total| scaled(end(total.interval(), 1)))
+            .named("within_limits", "limits", |total| {
+                let keeps = self.keeps(total);
+                let line = match keeps {
+                    None => Line::default(),
+                    Some(true) => Line::toned("within the limits", Tone::Good),
+                    Some(false) => Line::toned("EXCEEDS the limits", Tone::Bad),
+                };
+                Cell::both(Value::Truth(keeps), line)
+            })
+            .table("stack", &self.totals);
+        [rows, totals]
     }
-}
-
-/// Lines of words that fit a page.
-fn wrapped(text: &str) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split(' ') {
-        let line = lines.last_mut().expect("never empty");
-        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > LINE {
-            lines.push(format!("  {word}"));
-        } else {
-            line.push_str(if line.is_empty() { "" } else { " " });
-            line.push_str(word);
-        }
-    }
-    lines
-}
-
-/// Numbers beside the widest total.
-fn scaled(stack: &Stack, value: Option<f64>) -> String {
-    let scale = stack.totals.iter().filter_map(|total| total.half_width).fold(0.0, f64::max);
-    value.map_or(UNKNOWN.to_owned(), |value| beside(value, scale))
-}
-
-fn cells(stack: &Stack, row: &StackRow, name: String) -> [String; 7] {
-    [
-        name,
-        row.direction.clone(),
-        plain(row.dimension.nominal),
-        tolerance(&row.dimension),
-        row.dimension.unit.as_deref().map(clean).unwrap_or_default(),
-        scaled(stack, row.contribution),
-        row.share.map_or(UNKNOWN.to_owned(), percent),
-    ]
-}
-
-fn total_cells(stack: &Stack, total: &StackTotal) -> [String; 6] {
-    let interval = total.interval();
-    let kept = match stack.keeps(total) {
-        None => "",
-        Some(true) => "within the limits",
-        Some(false) => "EXCEEDS the limits",
-    };
-    [
-        total.kind.name().to_owned(),
-        scaled(stack, total.middle),
-        scaled(stack, total.half_width),
-        scaled(stack, interval.map(|[from, _]| from)),
-        scaled(stack, interval.map(|[_, to]| to)),
-        kept.to_owned(),
-    ]
-}
-
-/// What Markdown would read as more than text.
-fn escaped(text: &str) -> String {
-    let mut escaped = String::new();
-    for c in text.chars() {
-        if ['|', '\\', '`', '*', '_', '<', '[', ']'].contains(&c) {
-            escaped.push('\\');
-        }
-        escaped.push(c);
-    }
-    escaped
 }

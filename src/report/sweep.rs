@@ -4,10 +4,15 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::distribution::NAMES;
+use super::distribution::{NAMES, QUANTILES};
+use super::head::{self, findings};
 use super::{About, Head, OptionalQuantiles, Quantiles, RequirementReport, WarningReport};
 use crate::analysis::CharacteristicAnalysis;
 use crate::capability::Law;
+use crate::document::number::{beside, known, limits, plain, plural, rejected, shape, short, significant};
+use crate::document::{
+    Axis, Blocks, Cell, Chart, Columns, Document, Layer, Plot, Scale, Section, Stroke, Table, Value,
+};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::sweep::Sweep;
@@ -127,6 +132,106 @@ impl SweepReport {
     }
 }
 
+impl SweepReport {
+    /// What it says: for every characteristic a chart, and a table (`sweep`) with a row for every value of the parameter.
+    pub fn document(&self) -> Document {
+        let mut document = Document::titled(self.head.title.as_deref());
+        document.line(format!(
+            "{}: {} in {} for {} of {}{}",
+            self.method.unwrap_or("nothing was done"),
+            plural(self.run.evaluations as usize, "evaluation", "evaluations"),
+            plural(self.run.stages as usize, "batch", "batches"),
+            plural(self.parameter.values.len(), "value", "values"),
+            short(&self.parameter.name),
+            head::beside(&self.run),
+        ));
+        document.sections = self.characteristics.iter().map(|one| self.section(one)).collect();
+        document
+    }
+
+    fn section(&self, one: &SweptReport) -> Section {
+        let of = &self.parameter;
+        let mut section = Section::of(&one.name, one.unit.as_deref());
+        section.words = format!(" over {}", with_unit(&short(&of.name), of.unit.as_deref()));
+        if one.lower.or(one.upper).is_some() {
+            section.remark(format!("Limits {}.", limits(one.lower, one.upper)));
+        }
+        section.blocks.extend(findings(&self.warnings, |name| name == Some(&one.name)));
+        section.chart(Chart::Plot(one.plot(with_unit(&of.name, of.unit.as_deref()))));
+        section.table(one.table(&of.name));
+        section
+    }
+}
+
+fn with_unit(name: &str, unit: Option<&str>) -> String {
+    unit.map_or(name.to_owned(), |unit| format!("{name} [{unit}]"))
+}
+
+impl SweptReport {
+    fn table(&self, parameter: &str) -> Table {
+        let rounded = |value: Option<f64>, point: &SweptPointReport| {
+            Cell::number(value, |value| match point.sigma.filter(|sigma| *sigma > 0.0) {
+                Some(sigma) => beside(value, sigma),
+                None => significant(value, 6),
+            })
+        };
+        let yielded = |point: &&SweptPointReport| {
+            let text = known(point.yield_, |_| rejected(point.ppm_below, point.ppm_above).unwrap_or_default());
+            Cell::both(Value::Number(point.yield_), text.trim_end_matches(" %"))
+        };
+        let mut columns = Columns::default()
+            .data("characteristic", |_| Cell::text(&self.name))
+            .data("unit", |_| Cell::optional(self.unit.as_deref()))
+            .data("parameter", |_| Cell::text(parameter))
+            .named("at", "at", |point: &&SweptPointReport| Cell::number(point.at, plain))
+            .column("nominal", "nominal", |point| rounded(point.nominal, point))
+            .column("mean", "mean", |point| rounded(point.mean, point))
+            .column("sigma", "sigma", |point| Cell::number(point.sigma, |sigma| significant(sigma, 5)))
+            .wide("skewness", "skewness", |point| Cell::number(point.skewness, shape))
+            .wide("kurtosis", "kurtosis", |point| Cell::number(point.kurtosis, shape))
+            .wide("rss", "rss", |point| rounded(point.rss, point));
+        for (index, key) in QUANTILES.into_iter().enumerate() {
+            let quantile = move |point: &&SweptPointReport| rounded(point.quantiles.0[index].1, point);
+            columns = match index {
+                0 => columns.column(key, "0.135 %", quantile),
+                3 => columns.column(key, "50 %", quantile),
+                6 => columns.column(key, "99.865 %", quantile),
+                _ => columns.data(key, quantile),
+            };
+        }
+        let columns = match self.lower.or(self.upper) {
+            Some(_) => columns.column("yield", "yield %", yielded),
+            None => columns.data("yield", yielded),
+        };
+        columns.table("sweep", &self.points)
+    }
+
+    /// Mean, nominal value and the band of all but 0.27 %, over the parameter.
+    fn plot(&self, parameter: String) -> Plot {
+        let over = |value: fn(&SweptPointReport) -> Option<f64>| {
+            self.points.iter().map(|point| (point.at, value(point))).collect::<Vec<_>>()
+        };
+        let mut layers = vec![
+            Layer::Band(self.points.iter().map(|point| (point.at, point.band())).collect()),
+            Layer::Curve(over(|point| point.nominal), Stroke::Dotted),
+            Layer::Curve(over(|point| point.mean), Stroke::Strong),
+        ];
+        layers.extend(self.lower.map(|limit| Layer::Mark(limit, "lower limit")));
+        layers.extend(self.upper.map(|limit| Layer::Mark(limit, "upper limit")));
+        let named = |point: &SweptPointReport| Some((point.band()?, point.mean?));
+        if let Some(([low, high], mean)) = self.points.iter().rev().find_map(named) {
+            let ends = [(mean, "mean"), (high, "99.865 %"), (low, "0.135 %")];
+            layers.extend(ends.map(|(at, name)| Layer::End(at, name)));
+        }
+        Plot {
+            name: self.name.clone(),
+            x: Axis::new(parameter, Scale::Linear(0.0)),
+            y: Axis::new(with_unit(&self.name, self.unit.as_deref()), Scale::Linear(0.05)),
+            layers,
+        }
+    }
+}
+
 /// Those of the study, then those of the analyses: of one kind about one thing, the first with the number of values.
 fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport> {
     let mut kinds: BTreeMap<(usize, &str), (WarningReport, Vec<f64>)> = BTreeMap::new();
@@ -144,8 +249,7 @@ fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport>
     let all = sweep.analyses.iter().flatten().count();
     let of_values = kinds.into_values().map(|(warning, at)| {
         let share = if at.len() == all { "every value".to_owned() } else { format!("{} of {all} values", at.len()) };
-        let message =
-            format!("At {share}, first at {parameter} = {}: {}", super::number::plain(at[0]), warning.message);
+        let message = format!("At {share}, first at {parameter} = {}: {}", plain(at[0]), warning.message);
         WarningReport { message, at, ..warning }
     });
     about.warnings.iter().map(WarningReport::of).chain(of_values).collect()
@@ -156,7 +260,11 @@ impl SweptPointReport {
         let moments = analysis.and_then(|analysis| analysis.moments);
         let capability = analysis.and_then(|analysis| analysis.capability);
         let law = analysis.and_then(|analysis| analysis.law.as_ref()).and_then(|law| law.as_ref().ok());
+        let surface = analysis.and_then(|analysis| analysis.surface_law.as_ref()?.quantiles);
         let quantiles = match law {
+            _ if let Some(surface) = surface => {
+                NAMES.iter().zip(surface).map(|(&name, figure)| (name, Some(figure.value))).collect()
+            }
             Some(Law::Point { at }) => NAMES.iter().map(|&name| (name, Some(*at))).collect(),
             Some(Law::Pearson(pearson)) => {
                 Quantiles::of(pearson).0.into_iter().map(|(name, value)| (name, Some(value))).collect()
@@ -186,10 +294,5 @@ impl SweptPointReport {
     pub fn band(&self) -> Option<[f64; 2]> {
         let of = |index: usize| self.quantiles.0.get(index).and_then(|(_, value)| *value);
         Some([of(0)?, of(NAMES.len() - 1)?])
-    }
-
-    /// The median.
-    pub fn median(&self) -> Option<f64> {
-        self.quantiles.0.get(NAMES.len() / 2).and_then(|(_, value)| *value)
     }
 }

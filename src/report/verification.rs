@@ -2,19 +2,8 @@
 
 use serde::Serialize;
 
-use super::page::Page;
 use crate::analysis::{CharacteristicAnalysis, VerificationKind};
 use crate::verification::{Crossing, Verified};
-
-/// A figure and its error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct FigureReport {
-    /// The value.
-    pub value: f64,
-    /// Its estimated error, of which three reach the truth.
-    pub error: f64,
-}
 
 /// How results were verified, and by what.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,7 +14,7 @@ pub struct VerificationReport {
     /// Points of the model.
     pub points: usize,
     /// The share of the assemblies that have a value; null where points do not tell.
-    pub valid_share: Option<FigureReport>,
+    pub valid_share: Option<Verified>,
     /// The share of the variance that the surface leaves unexplained.
     pub left: Option<f64>,
     /// By the model itself; null without a sample of it.
@@ -48,20 +37,20 @@ pub struct VerificationReport {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct VerifiedFiguresReport {
     /// First moment.
-    pub mean: Option<FigureReport>,
+    pub mean: Option<Verified>,
     /// Standard deviation.
-    pub sigma: Option<FigureReport>,
+    pub sigma: Option<Verified>,
     /// Third standardised moment.
-    pub skewness: Option<FigureReport>,
+    pub skewness: Option<Verified>,
     /// Fourth standardised moment.
-    pub kurtosis: Option<FigureReport>,
+    pub kurtosis: Option<Verified>,
     /// The share within the limits; by the surface with the error that checks give it, where there is no sample.
     #[serde(rename = "yield")]
-    pub yield_: Option<FigureReport>,
+    pub yield_: Option<Verified>,
     /// The share below the lower limit.
-    pub below: Option<FigureReport>,
+    pub below: Option<Verified>,
     /// The share above the upper limit.
-    pub above: Option<FigureReport>,
+    pub above: Option<Verified>,
 }
 
 /// A place at which a formula changes its form.
@@ -83,23 +72,16 @@ pub struct VarianceShareReport {
     /// The dimension.
     pub dimension: String,
     /// By itself.
-    pub first: FigureReport,
+    pub first: Verified,
     /// With all interactions in which it has a part.
-    pub total: FigureReport,
-}
-
-impl FigureReport {
-    fn of(figure: Verified) -> Self {
-        Self { value: figure.value, error: figure.error }
-    }
+    pub total: Verified,
 }
 
 impl VerificationReport {
     pub(super) fn of(one: &CharacteristicAnalysis) -> Option<Self> {
         let of = one.verification.as_ref()?;
-        let figure = |figure: Option<Verified>| figure.map(FigureReport::of);
-        let [mean, sigma, skewness, kurtosis] = of.figures.map(figure);
-        let [below, above] = of.beyond.map(figure);
+        let [mean, sigma, skewness, kurtosis] = of.figures;
+        let [below, above] = of.beyond;
         let switch = |found: &crate::verification::FoundSwitch| SwitchReport {
             name: found.switch.name(one.characteristic.name()),
             kind: match found.crossing {
@@ -112,8 +94,8 @@ impl VerificationReport {
         };
         let share = |(d, [first, total]): &(usize, [Verified; 2])| VarianceShareReport {
             dimension: one.sensitivities[*d].dimension.clone(),
-            first: FigureReport::of(*first),
-            total: FigureReport::of(*total),
+            first: *first,
+            total: *total,
         };
         Some(Self {
             kind: match of.kind {
@@ -122,21 +104,14 @@ impl VerificationReport {
                 VerificationKind::Exact { .. } => "exact",
             },
             points: of.points,
-            valid_share: figure(of.valid),
+            valid_share: of.valid,
             left: of.left,
-            figures: VerifiedFiguresReport { mean, sigma, skewness, kurtosis, yield_: figure(of.yield_), below, above },
+            figures: VerifiedFiguresReport { mean, sigma, skewness, kurtosis, yield_: of.yield_, below, above },
             switches: of.switches.as_ref().map(|found| found.iter().map(switch).collect()),
             unseen: of.unseen,
             shares: of.shares.as_ref().map(|shares| shares.iter().map(share).collect()),
             replaced: of.replaced,
             words: of.words(),
         })
-    }
-}
-
-/// One line of the text report.
-pub(super) fn verification(page: &mut Page, found: Option<&VerificationReport>) {
-    if let Some(found) = found {
-        page.line(&format!("  {}", found.words));
     }
 }

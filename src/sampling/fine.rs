@@ -125,7 +125,7 @@ impl Fine {
 
     /// How far the interpolation at this rank may be off: an eighth of the bin for a density that changes by all of itself from
     /// one neighbour to the other, and less as it changes less.
-    pub fn blur(&self, rank: f64) -> f64 {
+    pub(crate) fn blur(&self, rank: f64) -> f64 {
         let Some((bin, _)) = self.bin_of_rank(rank) else { return 0.0 };
         let density = |bin: usize| self.counts.get(bin).map_or(0.0, |&count| count as f64 / self.scale.width(bin));
         let [before, own, after] = [bin.checked_sub(1).map_or(0.0, density), density(bin), density(bin + 1)];

@@ -1,8 +1,11 @@
 //! What a simulation knows of one characteristic.
 
+use serde::Serialize;
+
 use super::control::Twin;
+use super::count::{Count, Replicate};
 use super::difference::{Difference, Shares, moments as controlled, shares};
-use super::tally::{Count, Replicate};
+use super::replicate::of_replicates;
 use crate::assembly::EvaluationError;
 use crate::capability::{self, TAIL};
 use crate::characteristic::{Characteristic, SpecLimits};
@@ -14,6 +17,7 @@ use crate::warning::Warning;
 
 /// Estimates for one characteristic, each with its standard error. What is unknown is None.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct SimulatedCharacteristic {
     /// The characteristic, with its limits.
     pub characteristic: Characteristic,
@@ -56,6 +60,7 @@ pub struct SimulatedCharacteristic {
 
 /// What a surrogate as control variate has done.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SurrogateControl {
     /// The method that it comes from.
     pub method: Method,
@@ -69,6 +74,7 @@ pub struct SurrogateControl {
 
 /// The share of assemblies that keep the limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct YieldEstimate {
     /// Among the points that have a value.
     pub value: f64,
@@ -79,7 +85,9 @@ pub struct YieldEstimate {
 }
 
 /// How many values lie in which interval.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Histogram {
     /// One more than there are intervals, ascending.
     pub edges: Vec<f64>,
@@ -94,8 +102,6 @@ pub const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
 const BEYOND: f64 = 5.0;
 /// Rejected assemblies in every replicate, on average, from which their differences are an interval of the yield.
 const REJECTED: u64 = 5;
-/// The 97.5 % quantile of Student's distribution with 15 degrees of freedom: for 16 replicates.
-const STUDENT: f64 = 2.131_449_545_559_323;
 /// Intervals of the histogram between the outer quantiles.
 const BINS: usize = 40;
 
@@ -290,14 +296,6 @@ fn moments(all: &Summary, replicates: &[Replicate]) -> [Option<Estimate>; 4] {
         }
     }
     estimates
-}
-
-/// The standard error of the mean of independent replicates, widened so that two of it are Student's 95 %; None where one
-/// has no value.
-pub(super) fn of_replicates(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
-    let values: Vec<f64> = values.collect::<Option<_>>()?;
-    let summary = Summary::of(&values);
-    (values.len() > 1).then(|| 0.5 * STUDENT * summary.sigma() / (values.len() as f64).sqrt())
 }
 
 /// A quantile; its standard error is half the distance of the quantiles one standard deviation of the binomial count below

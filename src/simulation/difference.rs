@@ -1,7 +1,7 @@
 //! The differences of model and surrogate, counted, and what they and the exact moments make together.
 
-use super::characteristic::of_replicates;
 use super::control::{Outside, Twin, sides};
+use super::replicate::of_replicates;
 use crate::moments::Sampled;
 use crate::sampling::{Estimate, FEWEST, Joint, wilson};
 

@@ -2,22 +2,24 @@
 
 mod characteristic;
 mod control;
+mod count;
 mod difference;
+mod replicate;
 mod surrogates;
 mod tally;
 
 pub use characteristic::{Histogram, QUANTILES, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rayon::prelude::*;
 
-use crate::assembly::process::Doubt;
-use crate::assembly::{Ask, EvaluationError, Responses, Run};
+use crate::assembly::{Ask, EvaluationError, NonRepeatable, Responses, Run};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, SamplingError};
 use crate::summary::RunSummary;
+use crate::time::Instant;
 use crate::warning::{Advice, Warning};
 use control::Control;
 pub(crate) use surrogates::{Surrogates, chosen};
@@ -69,6 +71,7 @@ const COSTLY: usize = 4096;
 
 /// What a simulation found out.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Simulation {
     /// How points were drawn.
     pub sampler: Sampler,
@@ -82,7 +85,7 @@ pub struct Simulation {
     /// Whether what was wanted was reached; None where nothing was.
     pub reached: Option<bool>,
     /// Where the model answered the nominal point otherwise than before.
-    pub doubts: Vec<Doubt>,
+    pub non_repeatable: Vec<NonRepeatable>,
     /// What is known of every characteristic, in the problem's order.
     pub characteristics: Vec<SimulatedCharacteristic>,
     /// Where points have no value, and where the model contradicted itself.
@@ -91,6 +94,7 @@ pub struct Simulation {
 
 /// How far a simulation is.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Pace {
     /// Points answered.
     pub samples: u64,

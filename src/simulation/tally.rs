@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use super::characteristic::{Evidence, SimulatedCharacteristic};
 use super::control::{Control, Twin};
+use super::count::{Count, Replicate};
 use super::difference::Difference;
 use super::{REPLICATES, Simulation, SimulationOptions};
-use crate::assembly::process::Doubt;
-use crate::assembly::{EvaluationError, Responses};
+use crate::assembly::{EvaluationError, NonRepeatable, Responses};
 use crate::characteristic::SpecLimits;
 use crate::evaluation::history;
 use crate::problem::Problem;
@@ -32,7 +32,7 @@ pub(super) struct Block {
     retried: u64,
     failed: u64,
     complete: bool,
-    doubts: Vec<Doubt>,
+    non_repeatable: Vec<NonRepeatable>,
     took: Duration,
 }
 
@@ -73,7 +73,7 @@ impl Block {
             retried: out.count_retried() as u64,
             failed: lost.len() as u64,
             complete: answered == out.rows(),
-            doubts: out.doubts().to_vec(),
+            non_repeatable: out.non_repeatable().to_vec(),
             took,
         }
     }
@@ -107,32 +107,6 @@ impl Column {
     }
 }
 
-/// One replicate of one characteristic.
-#[derive(Clone)]
-pub(super) struct Replicate {
-    pub(super) summary: Summary,
-    pub(super) outside: [u64; 2],
-    /// Nothing where no surrogate stands beside the model.
-    pub(super) difference: Difference,
-    pub(super) fine: Option<Fine>,
-}
-
-/// All of one characteristic.
-pub(super) struct Count {
-    pub(super) replicates: Vec<Replicate>,
-    pub(super) failed: u64,
-    pub(super) error: Option<EvaluationError>,
-}
-
-impl Count {
-    /// Of all replicates together.
-    pub(super) fn summary(&self) -> Summary {
-        let mut all = Summary::default();
-        self.replicates.iter().for_each(|replicate| all.merge(&replicate.summary));
-        all
-    }
-}
-
 pub(super) struct Tally<'a> {
     problem: &'a Problem,
     control: Option<&'a Control<'a>>,
@@ -142,7 +116,7 @@ pub(super) struct Tally<'a> {
     extra: i64,
     /// Of the points drawn.
     run: RunSummary,
-    doubts: Vec<Doubt>,
+    non_repeatable: Vec<NonRepeatable>,
     pub(super) stopped: bool,
 }
 
@@ -164,7 +138,7 @@ impl<'a> Tally<'a> {
             answered: 0,
             extra: 0,
             run: RunSummary::default(),
-            doubts: Vec::new(),
+            non_repeatable: Vec::new(),
             stopped: false,
         }
     }
@@ -191,7 +165,7 @@ impl<'a> Tally<'a> {
             self.run.failed += block.failed;
             self.run.in_model += block.took;
             self.stopped |= !block.complete;
-            self.doubts.extend(block.doubts);
+            self.non_repeatable.extend(block.non_repeatable);
             for ((count, lens), column) in self.counts.iter_mut().zip(&self.lenses).zip(block.columns) {
                 count.failed += column.failed;
                 count.error = count.error.take().or(column.error);
@@ -273,8 +247,8 @@ impl<'a> Tally<'a> {
             seed: Some(options.seed),
             ..self.run
         };
-        let before = surrogate.iter().flat_map(|evaluated| &evaluated.doubts).cloned();
-        let doubts: Vec<Doubt> = before.chain(self.doubts).collect();
+        let before = surrogate.iter().flat_map(|evaluated| &evaluated.non_repeatable).cloned();
+        let non_repeatable: Vec<NonRepeatable> = before.chain(self.non_repeatable).collect();
         let failures = characteristics.iter().filter_map(SimulatedCharacteristic::failures);
         Simulation {
             sampler: options.sampler,
@@ -282,8 +256,8 @@ impl<'a> Tally<'a> {
             samples: self.answered,
             surrogate_evaluations: surrogate.map(|_| spent.evaluations),
             reached,
-            warnings: failures.chain(history(self.problem, &doubts)).collect(),
-            doubts,
+            warnings: failures.chain(history(self.problem, &non_repeatable)).collect(),
+            non_repeatable,
             characteristics,
         }
     }

@@ -14,8 +14,9 @@ use super::implicit::{Implicit, implicit, placed};
 use super::model::{ModelOf, model, process};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
+use super::values::NominalEntry;
 use crate::allocation::Priced;
-use crate::assembly::formula::{Formula, is_reserved};
+use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
@@ -46,7 +47,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> 
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     let mut faults = Faults::default();
     faults.take(names(file, model));
-    let mut data = Data::of(&source.folder);
+    let mut data = Data::of(&source.place);
     let dimensions = faults.take(dimensions(file, model, &mut data)).unwrap_or_default();
     let formulas = faults.take(formulas(file, source)).unwrap_or_default();
     faults.take(characteristics(file, model, program));
@@ -65,6 +66,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> 
     let (characteristics, outputs) = characteristics(file, model, program)?;
     let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
     let mut warnings = aggregated(std::mem::take(&mut data.warnings));
+    warnings.extend(outside_limits(file));
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
@@ -75,7 +77,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> 
     let requirements = requirements(file, &problem)?;
     let problem = requiring(problem, &requirements)?;
     let mut files = data.files();
-    files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), &source.folder)));
+    files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), source.place.path())));
     Ok(Built { problem, options, costs, requirements, warnings, data: data.bytes(), files })
 }
 
@@ -176,7 +178,7 @@ fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, 
     let parsed =
         |(name, text, key): (&Spanned<String>, &'f Spanned<String>, String)| match Formula::parse(text.get_ref()) {
             Ok(formula) => Ok(Named { name: name.get_ref().clone(), text, key, formula }),
-            Err(error) => Err(in_formula(source, text.span(), key, error)),
+            Err(error) => Err(in_formula(source, text.span(), key, of_several_words(file, text.get_ref(), error))),
         };
     let parsed: Vec<Named<'f>> = own.chain(of_characteristics).filter_map(|one| faults.take(parsed(one))).collect();
     faults.none().map(|()| parsed)
@@ -354,9 +356,25 @@ fn compose(
                 None => (written.formulas[index].text.span(), written.formulas[index].key.clone()),
                 Some(index) => written.implicit.as_ref().expect("the formula came from here").places[index].clone(),
             };
-            in_formula(source, text, key, error)
+            let formula = written.formulas.get(index).map_or("", |named| named.text.get_ref());
+            in_formula(source, text, key, of_several_words(file, formula, error))
         }
     })
+}
+
+/// The fault of a formula, or that a name in it which reads as several needs backquotes.
+fn of_several_words(file: &StudyFile, formula: &str, error: FormulaError) -> FormulaError {
+    let dimensions = dimension::names(&file.dimensions);
+    let others = [file.constants.names(), file.formulas.names(), file.unknowns.names()].concat();
+    let names = dimensions.iter().chain(others).map(Spanned::get_ref);
+    let meant = names.filter(|name| !is_plain(name)).find_map(|name| {
+        let mut places = formula.match_indices(name.as_str()).map(|(at, _)| at..at + name.len());
+        places.find(|place| place.contains(&error.span.start)).map(|place| (name.clone(), place))
+    });
+    match meant {
+        Some((name, span)) => FormulaError { span, fault: FormulaFault::NeedsBackquotes { name } },
+        None => error,
+    }
 }
 
 /// Where the inputs of a built-in model come from: a dimension, a constant, or its own nominal value.
@@ -390,6 +408,17 @@ fn asked_of_program(
         }
     }
     asked
+}
+
+/// Dimensions whose nominal value lies outside the limits that they give themselves.
+fn outside_limits(file: &StudyFile) -> Option<Warning> {
+    let outside = file.dimensions.0.iter().filter_map(|(name, entry)| {
+        let (Some(nominal), Some(limits)) = (&entry.get_ref().nominal, &entry.get_ref().limits) else { return None };
+        let (NominalEntry::One(nominal), [lower, upper]) = (nominal.get_ref(), *limits.get_ref()) else { return None };
+        (*nominal < lower || *nominal > upper).then(|| name.get_ref().clone())
+    });
+    let dimensions: Vec<String> = outside.collect();
+    (!dimensions.is_empty()).then_some(Warning::NominalOutsideLimits { dimensions })
 }
 
 /// Constants, formulas and unknowns that no characteristic of the file needs.

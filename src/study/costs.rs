@@ -1,127 +1,20 @@
 //! `[costs]` and `require`: what tolerances cost, and what characteristics must keep.
 
-use std::fmt;
 use std::ops::Range;
-
-use serde::de::{Visitor, value};
-use serde::{Deserialize, Deserializer};
 
 use super::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, StudyFile};
-#[cfg(feature = "cli")]
-use super::schema;
+use super::price::{CostEntry, ProcessEntry, RequireEntry};
 use super::spanned::Spanned;
+use super::words::REQUIREMENTS;
 use crate::allocation::{CostError, Curve, CurveKind, Offer, Priced, Requirement};
 use crate::characteristic::Characteristic;
 use crate::names::nearest;
 use crate::problem::Problem;
 
-/// One line of `[costs]`.
-#[derive(Debug, Default, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[cfg_attr(feature = "cli", schemars(extend("oneOf" = schema::one_of(["model", "same_as", "processes"]))))]
-#[serde(deny_unknown_fields, expecting = "a table such as { model = \"reciprocal\", a = 1.0, b = 0.1 }")]
-pub(super) struct CostEntry {
-    /// The cost over the half band T: reciprocal a + b/T, reciprocal-power a + b/T^k, exponential a + b exp(-T/c).
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::cost_models())))]
-    model: Option<Spanned<String>>,
-    /// The cost that no tolerance saves.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
-    a: Option<Spanned<f64>>,
-    /// The factor of what falls as the tolerance opens.
-    b: Option<Spanned<f64>>,
-    /// Of a reciprocal power its exponent.
-    k: Option<Spanned<f64>>,
-    /// Of an exponential cost the half band over which it falls to 1/e.
-    c: Option<Spanned<f64>>,
-    /// Least half band; a tenth of the present one unless given.
-    min: Option<Spanned<f64>>,
-    /// Greatest half band; ten times the present one unless given.
-    max: Option<Spanned<f64>>,
-    /// The dimension with which this one shares tolerance and process; each part costs.
-    same_as: Option<Spanned<String>>,
-    /// The processes that compete for it.
-    processes: Option<Spanned<Vec<Spanned<ProcessEntry>>>>,
-}
-
-/// A process: one half band at one cost, or a range of them with a cost that follows.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, expecting = "a process such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }")]
-struct ProcessEntry {
-    /// Its name.
-    name: Spanned<String>,
-    /// The half band that it holds.
-    tolerance: Option<Spanned<f64>>,
-    /// What a part costs.
-    cost: Option<Spanned<f64>>,
-    /// The cost over a range of half bands, as of a dimension.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::cost_models())))]
-    model: Option<Spanned<String>>,
-    /// The cost that no tolerance saves.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
-    a: Option<Spanned<f64>>,
-    /// The factor of what falls as the tolerance opens.
-    b: Option<Spanned<f64>>,
-    /// Of a reciprocal power its exponent.
-    k: Option<Spanned<f64>>,
-    /// Of an exponential cost the half band over which it falls to 1/e.
-    c: Option<Spanned<f64>>,
-    /// Least half band that it holds.
-    min: Option<Spanned<f64>>,
-    /// Greatest half band that it holds.
-    max: Option<Spanned<f64>>,
-}
-
-/// `"worst-case"`, `"rss"`, or `{ yield = 0.9973 }`, `{ cpk = 1.33 }`, `{ sigma = 0.05 }`.
-#[derive(Debug)]
-pub(super) enum RequireEntry {
-    Word(String),
-    Table(RequireTable),
-}
-
-/// A number that is required.
-#[derive(Debug, Default, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[cfg_attr(feature = "cli", schemars(extend("oneOf" = schema::one_of(["yield", "cpk", "sigma"]))))]
-#[serde(deny_unknown_fields)]
-pub(super) struct RequireTable {
-    /// The least share of assemblies within the limits.
-    #[serde(rename = "yield")]
-    yield_: Option<Spanned<f64>>,
-    /// The least Cpk.
-    cpk: Option<Spanned<f64>>,
-    /// The greatest sigma.
-    sigma: Option<Spanned<f64>>,
-}
-
-/// The requirements that have a name.
-pub(super) const WORDS: [&str; 2] = ["worst-case", "rss"];
 /// The present half band by this, and times this, where no bound is given.
 const RANGE: f64 = 10.0;
-
-impl<'de> Deserialize<'de> for RequireEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Require;
-        impl<'de> Visitor<'de> for Require {
-            type Value = RequireEntry;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a requirement such as \"worst-case\", \"rss\" or { cpk = 1.33 },")
-            }
-
-            fn visit_str<E>(self, word: &str) -> Result<Self::Value, E> {
-                Ok(RequireEntry::Word(word.to_owned()))
-            }
-
-            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
-                RequireTable::deserialize(value::MapAccessDeserializer::new(map)).map(RequireEntry::Table)
-            }
-        }
-        deserializer.deserialize_any(Require)
-    }
-}
 
 /// What each characteristic must keep: what it says itself, or its target yield.
 pub(super) fn requirement(
@@ -138,8 +31,8 @@ pub(super) fn requirement(
                 "worst-case" => Requirement::WorstCase,
                 "rss" => Requirement::Rss,
                 found => {
-                    let nearest = nearest(found, WORDS).map(str::to_owned);
-                    let known = WORDS.iter().map(|&word| word.to_owned()).collect();
+                    let nearest = nearest(found, REQUIREMENTS).map(str::to_owned);
+                    let known = REQUIREMENTS.iter().map(|&word| word.to_owned()).collect();
                     let unknown =
                         StudyFault::UnknownWord { what: "requirement", found: found.to_owned(), nearest, known };
                     return Err(at(require.span(), unknown));

@@ -1,9 +1,9 @@
 //! Tables of measured values: CSV files beside a study.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use super::files::{FileRole, NamedFile};
+use super::place::{Place, Unread};
 use crate::names::nearest;
 use crate::warning::Warning;
 
@@ -15,6 +15,7 @@ const MISSING: [&str; 5] = ["", "-", "na", "n/a", "nan"];
 /// A file of measured values that cannot be used: file, line, column, what is wrong, and what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}{}{}: {problem}", self.file, self.line.map(|line| format!(", line {line}")).unwrap_or_default(), self.column())]
+#[non_exhaustive]
 pub struct DataFault {
     /// The file as the study names it.
     pub file: String,
@@ -35,6 +36,14 @@ pub enum DataProblem {
     Unreadable {
         /// The operating system's words.
         reason: String,
+    },
+    /// The study was given as text with its files, and this one is not among them.
+    #[error("no file of this name was given with the text of the study")]
+    NotGiven {
+        /// The most similar name.
+        nearest: Option<String>,
+        /// The names that were given.
+        known: Vec<String>,
     },
     /// The file is not text, or in another encoding.
     #[error("the file is not UTF-8 text")]
@@ -144,6 +153,8 @@ impl DataProblem {
         };
         match self {
             Self::Unreadable { .. } => Some("the path starts from the study file's folder".into()),
+            Self::NotGiven { nearest: Some(name), .. } => Some(format!("did you mean `{name}`?")),
+            Self::NotGiven { known, .. } => Some(format!("the files given are {}", known.join(", "))),
             Self::NotUtf8 => Some("save it as CSV in UTF-8".into()),
             Self::NoHeader { .. } => Some("write a line with names, such as d_mm, above the values".into()),
             Self::Empty => Some("the first line names the columns, such as d_mm".into()),
@@ -172,7 +183,7 @@ impl DataProblem {
 
 /// What the dimensions of a study read beside it, and what is odd about that.
 pub(super) struct Data<'s> {
-    folder: &'s Path,
+    place: &'s Place,
     /// Every file once, in the order of the dimensions.
     files: Vec<(NamedFile, Arc<[u8]>)>,
     pub(super) warnings: Vec<Warning>,
@@ -189,8 +200,8 @@ pub(super) struct Column {
 }
 
 impl<'s> Data<'s> {
-    pub(super) fn of(folder: &'s Path) -> Self {
-        Self { folder, files: Vec::new(), warnings: Vec::new() }
+    pub(super) fn of(place: &'s Place) -> Self {
+        Self { place, files: Vec::new(), warnings: Vec::new() }
     }
 
     /// The bytes of every file that was read.
@@ -220,17 +231,20 @@ impl<'s> Data<'s> {
     }
 
     fn read(&mut self, file: &str) -> Result<Arc<[u8]>, DataFault> {
-        let path = self.folder.join(file);
+        let path = self.place.path().join(file);
         if let Some((_, bytes)) = self.files.iter().find(|(known, _)| known.path == path) {
             return Ok(Arc::clone(bytes));
         }
-        let bytes: Arc<[u8]> = match std::fs::read(&path) {
-            Ok(bytes) => bytes.into(),
-            Err(error) => {
-                let problem = Box::new(DataProblem::Unreadable { reason: error.to_string() });
-                return Err(DataFault { file: file.to_owned(), line: None, column: None, problem });
-            }
-        };
+        let bytes = self.place.read(file).map_err(|unread| {
+            let problem = Box::new(match unread {
+                Unread::Failed(error) => DataProblem::Unreadable { reason: error.to_string() },
+                Unread::NotGiven { known } => {
+                    let nearest = nearest(file, known.iter().map(String::as_str)).map(str::to_owned);
+                    DataProblem::NotGiven { nearest, known }
+                }
+            });
+            DataFault { file: file.to_owned(), line: None, column: None, problem }
+        })?;
         let named = NamedFile { role: FileRole::Measured, written: file.to_owned(), path };
         self.files.push((named, Arc::clone(&bytes)));
         Ok(bytes)

@@ -49,7 +49,7 @@ impl std::error::Error for Error {}
 
 impl de::Error for Error {
     fn custom<T: Display>(message: T) -> Self {
-        Self::new(StudyFault::Syntax { message: message.to_string() })
+        Self::new(StudyFault::Syntax { message: message.to_string(), slip: None })
     }
 
     fn invalid_type(found: de::Unexpected<'_>, expected: &dyn de::Expected) -> Self {

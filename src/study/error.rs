@@ -4,7 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::data::DataFault;
-use super::file::CORRELATIONS;
+use super::slip::{Slip, percent};
+use super::words::CORRELATIONS;
 use crate::allocation::{CostError, RequirementError};
 use crate::assembly::NoColumn;
 use crate::assembly::formula::FormulaFault;
@@ -22,6 +23,7 @@ use crate::warning::Advice;
 /// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}{}{}{}", self.place(), self.fault, self.help().map(|help| format!(" ({help})")).unwrap_or_default(), self.others())]
+#[non_exhaustive]
 pub struct StudyError {
     /// The file's name as it was given.
     pub file: String,
@@ -126,6 +128,8 @@ pub enum StudyFault {
     Syntax {
         /// The parser's words.
         message: String,
+        /// What was probably meant.
+        slip: Option<Slip>,
     },
     /// A key that means nothing here.
     #[error("there is no key `{key}` here")]
@@ -275,6 +279,12 @@ pub enum StudyFault {
     /// Answers evaluated elsewhere, for a study that asks nobody.
     #[error("points that were evaluated elsewhere are the answers of a [model] command, and the study has none")]
     NothingExternal,
+    /// This build of the library runs no external programs.
+    #[error("`{program}` cannot be run: external programs are not part of this build")]
+    NoPrograms {
+        /// The program of the study.
+        program: String,
+    },
     /// There is nothing to evaluate.
     #[error("the study has no {what}")]
     Nothing {
@@ -338,6 +348,8 @@ impl StudyFault {
             Self::WrongType { expected, .. } if expected == CORRELATIONS => {
                 Some("write three lines for each pair:\n[[correlation]]\nbetween = [\"a\", \"b\"]\nvalue = 0.9".into())
             }
+            Self::Syntax { slip, .. } => slip.as_ref().map(ToString::to_string),
+            Self::WrongType { expected, found } => Slip::of_value(expected, found).map(|slip| slip.to_string()),
             Self::IsFolder { within: None } => Some("name the study file in it".into()),
             Self::UnknownKey { nearest: Some(name), .. } | Self::UnknownWord { nearest: Some(name), .. } => {
                 Some(meant(name))
@@ -365,6 +377,9 @@ impl StudyFault {
                 DistributionError::InfiniteMoment { .. } | DistributionError::Pearson(_),
             )) => Some("leave model out: the values themselves have all moments".into()),
             Self::Data(fault) => fault.problem.help(),
+            Self::Limits(LimitsError::ImpossibleYield { value }) if *value > 1.0 && *value <= 100.0 => {
+                Some(format!("write {} for {value} %", percent(*value)))
+            }
             Self::Limits(LimitsError::Swapped { .. }) | Self::Cost(CostError::Swapped { .. }) => {
                 Some("exchange them".into())
             }

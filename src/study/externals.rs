@@ -8,6 +8,7 @@ use crate::assembly::process::Listener;
 
 /// How the external programs of a study are treated.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct Externals {
     /// Where their answers are kept.
     pub journal: JournalPlace,

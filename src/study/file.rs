@@ -3,10 +3,11 @@
 use std::fmt;
 use std::marker::PhantomData;
 
-use super::costs::{CostEntry, RequireEntry};
+use super::price::{CostEntry, RequireEntry};
 #[cfg(feature = "cli")]
-use super::schema;
+use super::registry;
 use super::spanned::Spanned;
+use super::words::CORRELATIONS;
 use serde::de::{MapAccess, SeqAccess, Visitor, value};
 use serde::{Deserialize, Deserializer};
 
@@ -86,12 +87,12 @@ pub(super) struct DimensionEntry {
     pub(super) unit: Option<String>,
     /// How it is distributed: the name of a kind, or a table with its parameters.
     #[serde(default, deserialize_with = "distribution")]
-    #[cfg_attr(feature = "cli", schemars(schema_with = "schema::distribution", extend("default" = "normal")))]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::distribution::<DistributionEntry>", extend("default" = "normal")))]
     pub(super) distribution: Option<Spanned<DistributionEntry>>,
     /// Standard deviation: half the band by sigmas unless given, and none of a kind whose sigma follows from its band.
     pub(super) sigma: Option<Spanned<f64>>,
     /// How many sigmas half the tolerance band has.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::SIGMAS)))]
+    #[cfg_attr(feature = "cli", schemars(extend("default" = super::words::SIGMAS)))]
     pub(super) sigmas: Option<Spanned<f64>>,
     /// Process capability, another way to say sigmas: cp = sigmas/3.
     pub(super) cp: Option<Spanned<f64>>,
@@ -105,7 +106,7 @@ pub(super) struct DimensionEntry {
     /// The column of the measured file, by the name in its first line; its only one where it is left out.
     pub(super) column: Option<Spanned<String>>,
     /// What is made of measured values: empirical, each with the same probability, or the pearson law with their moments.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::measured_models(), "default" = schema::measured_models()[0])))]
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::measured_models(), "default" = registry::measured_models()[0])))]
     pub(super) model: Option<Spanned<String>>,
     /// Evaluation step in sigmas, in place of the nodes that suit the distribution.
     pub(super) step: Option<Spanned<f64>>,
@@ -137,7 +138,7 @@ impl PartEntry {
 #[serde(deny_unknown_fields)]
 pub(super) struct DistributionEntry {
     /// The kind of distribution.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::kinds())))]
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::kinds())))]
     pub(super) kind: String,
     /// Of a triangular distribution its most probable value; the band's middle unless given.
     pub(super) mode: Option<Spanned<f64>>,
@@ -169,7 +170,7 @@ pub(super) struct PartEntry {
     pub(super) limits: Option<Spanned<[f64; 2]>>,
     /// How it is distributed: the name of a kind, or a table with its parameters.
     #[serde(default, deserialize_with = "distribution")]
-    #[cfg_attr(feature = "cli", schemars(schema_with = "schema::distribution", extend("default" = "normal")))]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::distribution::<DistributionEntry>", extend("default" = "normal")))]
     pub(super) distribution: Option<Spanned<DistributionEntry>>,
     /// Standard deviation.
     pub(super) sigma: Option<Spanned<f64>>,
@@ -223,9 +224,6 @@ pub(super) struct CharacteristicEntry {
     pub(super) require: Option<Spanned<RequireEntry>>,
 }
 
-/// What correlations are, where something else stands.
-pub(super) const CORRELATIONS: &str = "a list, each pair of dimensions below its own [[correlation]],";
-
 /// Every `[[correlation]]`, in the order of the file.
 #[derive(Debug, Default)]
 pub(super) struct Correlations(pub(super) Vec<Spanned<CorrelationEntry>>);
@@ -244,28 +242,28 @@ pub(super) struct CorrelationEntry {
 /// `[model]`.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[cfg_attr(feature = "cli", schemars(extend("oneOf" = schema::one_of(["builtin", "command"]))))]
+#[cfg_attr(feature = "cli", schemars(extend("oneOf" = registry::one_of(["builtin", "command"]))))]
 #[serde(
     deny_unknown_fields,
     expecting = "a table such as { builtin = \"engine-balance\" } or { command = [\"python3\", \"gap.py\"] }"
 )]
 pub(super) struct ModelEntry {
     /// A built-in model, by name: `sensitol models` lists them.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::built_in_models())))]
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::built_in_models())))]
     pub(super) builtin: Option<Spanned<String>>,
     /// A program and its arguments, each a text of its own, run in the study's folder; it speaks the adapter protocol.
     pub(super) command: Option<Spanned<Vec<String>>>,
     /// Processes side by side.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::program().workers)))]
+    #[cfg_attr(feature = "cli", schemars(extend("default" = registry::program().workers)))]
     pub(super) workers: Option<Spanned<u64>>,
     /// Seconds that an evaluation may take.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::program().timeout.as_secs())))]
+    #[cfg_attr(feature = "cli", schemars(extend("default" = registry::program().timeout.as_secs())))]
     pub(super) timeout_s: Option<Spanned<f64>>,
     /// Seconds that the program may take to start.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::program().start_timeout.as_secs())))]
+    #[cfg_attr(feature = "cli", schemars(extend("default" = registry::program().start_timeout.as_secs())))]
     pub(super) start_timeout_s: Option<Spanned<f64>>,
     /// How often a point that failed is tried again.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = schema::program().retries)))]
+    #[cfg_attr(feature = "cli", schemars(extend("default" = registry::program().retries)))]
     pub(super) retries: Option<Spanned<u64>>,
     /// How many answers are replayed in a fresh process, to see whether they depend on the points before; 0 for none. By default 5 %, at
     /// least 5, and 2 more.
@@ -280,7 +278,7 @@ pub(super) struct ModelEntry {
 #[serde(deny_unknown_fields, expecting = "a table of options")]
 pub(super) struct AnalysisEntry {
     /// The method.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::methods(), "default" = Options::default().method.name())))]
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::methods(), "default" = Options::default().method.name())))]
     pub(super) method: Option<Spanned<String>>,
     /// Wanted relative error of sigma, for auto.
     #[cfg_attr(feature = "cli", schemars(extend("default" = ACCURACY)))]
@@ -298,17 +296,17 @@ pub(super) struct AnalysisEntry {
     /// The interactions that six-n examines: strongest, adjacent, or a list of pairs of names.
     pub(super) pairs: Option<Spanned<PairsEntry>>,
     /// How six-n evaluates an interaction.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::stencils())))]
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::stencils())))]
     pub(super) stencil: Option<Spanned<String>>,
     /// How many nodes the quadrature rules of dimension-reduction have, univariate or bivariate.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = [3, 5, 7], "default" = 5)))]
     pub(super) nodes: Option<Spanned<u64>>,
     /// Sensitivities of all dimensions, at two evaluations more for each without tolerance, or of the varying ones alone.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::sensitivities(), "default" = "varying")))]
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::sensitivities(), "default" = "varying")))]
     pub(super) sensitivities: Option<Spanned<String>>,
     /// Where derivatives come from, for sensitivities and moments alike. Left out: exact sensitivities where the model gives them,
     /// moments by differences.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = schema::derivatives())))]
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::derivatives())))]
     pub(super) derivatives: Option<Spanned<String>>,
     /// Whether the true extremes in the box of the tolerance bands are searched too.
     #[cfg_attr(feature = "cli", schemars(extend("default" = false)))]
@@ -316,8 +314,8 @@ pub(super) struct AnalysisEntry {
     /// Seed of random numbers, for what draws some.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::SEED)))]
     pub(super) seed: Option<Spanned<u64>>,
-    /// Verifies every figure by the model itself: a cheap model is sampled, a costly one evaluated at this many check points, 18 at
-    /// most; 0 for no verification.
+    /// How many check points of a costly model verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
+    /// verification.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::VERIFY)))]
     pub(super) verify: Option<u64>,
 }

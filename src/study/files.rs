@@ -7,6 +7,7 @@ use super::spanned::Spanned;
 
 /// A file that a study names.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct NamedFile {
     /// What it is to the study.
     pub role: FileRole,

@@ -50,23 +50,31 @@ mod implicit;
 mod lines;
 mod model;
 mod options;
+mod place;
+mod price;
+#[cfg(feature = "cli")]
+mod registry;
 mod rewrite;
 #[cfg(feature = "cli")]
 mod schema;
+mod slip;
 mod source;
 mod spanned;
 mod sweep;
 mod tree;
 mod values;
+mod words;
+pub(crate) mod write;
 
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};
 pub use files::{FileRole, NamedFile};
+pub use place::{Format, StudyText};
 pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "cli")]
 pub use schema::schema;
-pub use source::Format;
+pub use slip::Slip;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -79,6 +87,7 @@ use crate::method::Options;
 use crate::problem::Problem;
 use crate::warning::Warning;
 use error::Faults;
+use place::Place;
 use source::Source;
 use tree::Tree;
 
@@ -110,7 +119,7 @@ pub struct Study {
     text: Arc<str>,
     format: Format,
     name: String,
-    folder: PathBuf,
+    place: Place,
 }
 
 impl Study {
@@ -185,7 +194,7 @@ impl Study {
         match std::str::from_utf8(&bytes) {
             Ok(text) => {
                 let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-                Self::parse(text, format, &name, folder.to_owned(), externals, parameter)
+                Self::parse(text, format, &name, Place::folder(folder), externals, parameter)
             }
             Err(error) => {
                 let offset = error.valid_up_to();
@@ -211,23 +220,32 @@ impl Study {
     /// # Ok::<(), sensitol::Error>(())
     /// ```
     pub fn from_toml(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Toml, name, PathBuf::from("."), Externals::default(), None)
+        Self::from_text(StudyText::toml(name, text))
     }
 
     /// From JSON text; `name` stands for the file in errors.
     pub fn from_json(text: &str, name: &str) -> Result<Self, StudyError> {
-        Self::parse(text, Format::Json, name, PathBuf::from("."), Externals::default(), None)
+        Self::from_text(StudyText::json(name, text))
+    }
+
+    /// From text in memory, with the files that it names.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn from_text(study: StudyText) -> Result<Self, StudyError> {
+        let StudyText { format, name, text, files, externals, parameter } = study;
+        Self::parse(&text, format, &name, Place::memory(files), externals, parameter.as_deref())
     }
 
     fn parse(
         text: &str,
         format: Format,
         name: &str,
-        folder: PathBuf,
+        place: Place,
         externals: Externals,
         parameter: Option<&str>,
     ) -> Result<Self, StudyError> {
-        let source = Source { name: name.to_owned(), text: Arc::from(text), folder, externals };
+        let source = Source { name: name.to_owned(), text: Arc::from(text), place, externals };
         let failed = |faults: Faults| {
             StudyError::of(faults.0, &source.name, &source.text).expect("a study that fails has a fault")
         };
@@ -255,7 +273,7 @@ impl Study {
             files: built.files,
             format,
             name: source.name,
-            folder: source.folder,
+            place: source.place,
             text: source.text,
             sha256: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
         })

@@ -8,7 +8,9 @@ use super::error::{Fault, StudyFault, fault};
 use super::file::ModelEntry;
 use super::source::Source;
 use super::spanned::Spanned;
-use crate::assembly::process::{Greeting, Process, Settings};
+#[cfg(feature = "process")]
+use crate::assembly::process::Process;
+use crate::assembly::process::{Greeting, Settings};
 use crate::assembly::{AssemblyFunction, GivenAnswers, Input, Output, Signature};
 use crate::models::Model;
 use crate::names::UnknownName;
@@ -101,13 +103,13 @@ fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) 
         }
     };
     let file = |file: &Spanned<String>| {
-        let path = source.folder.join(file.get_ref());
+        let path = source.place.path().join(file.get_ref());
         if path.is_file() { Ok(path) } else { Err(fault(file.span(), "model.files", StudyFault::MissingFile { path })) }
     };
     let files = entry.files.iter().flatten().map(file).collect::<Result<_, _>>()?;
     let defaults = Settings::new(command.get_ref().iter());
     let settings = Settings {
-        folder: source.folder.clone(),
+        folder: source.place.path().to_owned(),
         workers: count(&entry.workers, "workers", 1, 1, WORKERS, "between 1 and 1024")? as usize,
         retries: count(&entry.retries, "retries", u64::from(defaults.retries), 0, 1000, "between 0 and 1000")? as u32,
         verify: match &entry.verify {
@@ -138,6 +140,17 @@ pub(super) fn process(
         let given = GivenAnswers::new(signature, Arc::clone(table));
         return Ok(Arc::new(given.map_err(StudyFault::MissingColumn)?));
     }
+    started(program, signature, greeting, source)
+}
+
+/// The program, and the journal that keeps its answers.
+#[cfg(feature = "process")]
+fn started(
+    program: &Program,
+    signature: Signature,
+    greeting: Greeting,
+    source: &Source,
+) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
     let process = Process::new(signature, greeting, program.settings.clone());
     #[cfg(feature = "journal")]
     if let Some(path) = source.externals.journal.path(&source.name) {
@@ -146,4 +159,11 @@ pub(super) fn process(
     #[cfg(not(feature = "journal"))]
     let _ = (source, &program.files);
     Ok(Arc::new(process))
+}
+
+/// Without the feature `process` no program is run.
+#[cfg(not(feature = "process"))]
+fn started(program: &Program, _: Signature, _: Greeting, _: &Source) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
+    let _ = &program.files;
+    Err(StudyFault::NoPrograms { program: program.settings.argv.first().cloned().unwrap_or_default() })
 }

@@ -5,12 +5,10 @@ use std::str::FromStr;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{AnalysisEntry, PairsEntry};
 use super::spanned::Spanned;
+use super::words::SENSITIVITIES;
 use crate::method::{Accuracies, MethodError, Options, Pairs};
 use crate::names::UnknownName;
 use crate::problem::Problem;
-
-/// Which sensitivities can be asked for.
-pub(super) const SENSITIVITIES: [&str; 2] = ["all", "varying"];
 
 /// What stands for this word under a key of `[analysis]`.
 fn named<T: FromStr<Err = UnknownName>>(word: &Spanned<String>, key: &str) -> Result<T, Fault> {

@@ -3,19 +3,20 @@
 //! Only the numbers concerned are replaced in the text, at their places. What is written is read again and must say what was
 //! wanted.
 
-use std::fmt::Write;
 use std::ops::Range;
 
 use super::Study;
 use super::error::StudyError;
 use super::externals::{Externals, JournalPlace};
-use super::source::Format;
+use super::place::Format;
 use super::tree::{Key, Tree, Value};
+use super::write;
 use crate::dimension::{Dimension, about_middle};
 use crate::problem::Problem;
 
 /// A study written anew.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Rewritten {
     /// The whole text.
     pub text: String,
@@ -127,7 +128,7 @@ impl Study {
 
     fn read_again(&self, text: &str) -> Result<Self, RewriteError> {
         let externals = Externals { journal: JournalPlace::Nowhere, ..Externals::default() };
-        Self::parse(text, self.format, &self.name, self.folder.clone(), externals, None)
+        Self::parse(text, self.format, &self.name, self.place.clone(), externals, None)
             .map_err(|error| RewriteError::Unreadable(Box::new(error)))
     }
 
@@ -142,16 +143,12 @@ impl Study {
         let widest = of_names().map(|(key, _)| width(key)).max().unwrap_or(0);
         for (key, line) in of_names() {
             let name = &self.text[key.span.clone()];
-            let pad = " ".repeat(widest - width(key));
             let written = match self.text[line.span.clone()].starts_with('{') {
                 true => self.text[line.span.clone()].to_owned(),
                 // A section of its own, as the table that it is.
                 false => inline(&self.text, line),
             };
-            let _ = match self.format {
-                Format::Toml => writeln!(text, "{name}{pad} = {written}"),
-                Format::Json => writeln!(text, "{name}:{pad} {written},"),
-            };
+            text += &write::entry(self.format, name, widest - width(key), &written);
         }
         text
     }
@@ -160,8 +157,8 @@ impl Study {
 /// A table of its own on one line.
 fn inline(text: &str, line: &Tree) -> String {
     let Value::Table(keys) = &line.value else { return String::new() };
-    let one = |(key, value): &(Key, Tree)| format!("{} = {}", &text[key.span.clone()], &text[value.span.clone()]);
-    format!("{{ {} }}", keys.iter().map(one).collect::<Vec<_>>().join(", "))
+    let of = |span: &Range<usize>| &text[span.clone()];
+    write::inline(keys.iter().map(|(key, value)| write::pair(Format::Toml, of(&key.span), of(&value.span))))
 }
 
 impl Tree {
@@ -210,20 +207,17 @@ impl Entry<'_> {
                     let [lower, upper] = self.band(factor);
                     let from = rounded(nominal.1 + lower, width, true);
                     let to = rounded(nominal.1 + upper, width, false);
-                    replace(format!("[{from}, {to}]"));
+                    replace(write::array([from, to]));
                 }
                 ("fit", _) if scales => {
                     let [lower, upper] = self.band(factor);
                     let (lower, upper) = (rounded(lower, width, true), rounded(upper, width, false));
-                    let tolerance = match self.format {
-                        Format::Toml => format!("tolerance = [{lower}, {upper}]"),
-                        Format::Json => format!("\"tolerance\": [{lower}, {upper}]"),
-                    };
+                    let tolerance = write::pair(self.format, "tolerance", &write::array([lower, upper]));
                     edits.push((key.span.start..value.span.end, tolerance));
                     fit = true;
                 }
-                ("sigma", Value::Number(sigma)) if scales => replace(format!("{:?}", sigma * factor)),
-                ("sigma", Value::Integer(sigma)) if scales => replace(format!("{:?}", *sigma as f64 * factor)),
+                ("sigma", Value::Number(sigma)) if scales => replace(write::number(sigma * factor)),
+                ("sigma", Value::Integer(sigma)) if scales => replace(write::number(*sigma as f64 * factor)),
                 ("distribution", Value::Table(parameters)) => {
                     for (key, value) in parameters {
                         match (key.name.as_str(), &value.value) {
@@ -238,7 +232,7 @@ impl Entry<'_> {
                                 let from_middle = mode - self.old.nominal() - 0.5 * (lower + upper);
                                 let [low, high] = self.band(factor);
                                 let mode = nominal.1 + 0.5 * (low + high) + from_middle * factor;
-                                edits.push((value.span.clone(), format!("{mode:?}")));
+                                edits.push((value.span.clone(), write::number(mode)));
                             }
                             _ => {}
                         }
@@ -259,11 +253,8 @@ impl Entry<'_> {
         let inline = self.text[self.line.span.clone()].starts_with('{');
         let at = keys.first().map_or(self.line.span.start + 1, |(key, _)| key.span.start);
         let comma = if keys.is_empty() { " " } else { ", " };
-        let text = match (self.format, inline) {
-            (Format::Json, _) => format!("\"nominal\": {nominal}{comma}"),
-            (Format::Toml, true) => format!("nominal = {nominal}{comma}"),
-            (Format::Toml, false) => format!("nominal = {nominal}\n"),
-        };
+        let end = if self.format == Format::Json || inline { comma } else { "\n" };
+        let text = write::pair(self.format, "nominal", nominal) + end;
         edits.push((at..at, text));
     }
 
@@ -271,7 +262,7 @@ impl Entry<'_> {
     fn nominal(&self) -> (String, f64) {
         let value = self.new.nominal();
         if self.old.nominal() == value {
-            return (format!("{value:?}"), value);
+            return (write::number(value), value);
         }
         let decimals = (4 - self.new.sigma().log10().floor() as i32).clamp(0, 15) as usize;
         let text = format!("{value:.decimals$}");
@@ -291,7 +282,7 @@ impl Entry<'_> {
         match written {
             Value::Text(_) => {
                 let percent = 100.0 / self.new.nominal().abs();
-                format!("\"{}%\"", rounded(percent * end, percent * width, up))
+                write::quoted(&format!("{}%", rounded(percent * end, percent * width, up)))
             }
             _ => rounded(end, width, up),
         }

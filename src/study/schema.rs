@@ -7,20 +7,13 @@ use std::borrow::Cow;
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use super::costs::{RequireEntry, RequireTable, WORDS};
-pub(super) use super::dimension::SIGMAS;
-use super::dimension::{self, MODELS};
-use super::file::{
-    CorrelationEntry, Correlations, DistributionEntry, Entries, PairsEntry, StudyFile, TermEntry, UnknownEntry,
-};
+use super::file::{CorrelationEntry, Correlations, Entries, PairsEntry, StudyFile, TermEntry, UnknownEntry};
+use super::price::{RequireEntry, RequireTable};
 use super::values::{Deviation, NominalEntry, ToleranceEntry};
-use crate::allocation::CurveKind;
-use crate::assembly::process::Settings;
-use crate::method::{ALL as METHODS, DerivativeSource, Pairs};
-use crate::models;
-use crate::plan::Stencil;
+use super::words::REQUIREMENTS;
+use crate::method::Pairs;
 
 /// The schema of study files, draft 2020-12, in TOML and JSON alike.
 ///
@@ -68,56 +61,6 @@ fn tidy(value: &mut Value) {
         Value::Array(items) => items.iter_mut().for_each(tidy),
         _ => {}
     }
-}
-
-/// The names of all methods.
-pub(super) fn methods() -> Vec<&'static str> {
-    METHODS.iter().map(|method| method.name()).collect()
-}
-
-/// The names of all built-in models.
-pub(super) fn built_in_models() -> Vec<&'static str> {
-    models::ALL.iter().map(|model| model.name).collect()
-}
-
-/// The names of all stencils.
-pub(super) fn stencils() -> Vec<&'static str> {
-    Stencil::NAMES.to_vec()
-}
-
-/// Which sensitivities can be asked for.
-pub(super) fn sensitivities() -> Vec<&'static str> {
-    super::options::SENSITIVITIES.to_vec()
-}
-
-/// The sources of derivatives.
-pub(super) fn derivatives() -> Vec<&'static str> {
-    DerivativeSource::NAMES.to_vec()
-}
-
-/// How external programs are run unless the study says otherwise.
-pub(super) fn program() -> Settings {
-    Settings::new([""])
-}
-
-/// The kinds of distribution.
-pub(super) fn kinds() -> Vec<&'static str> {
-    dimension::kinds().map(|(name, _)| name).collect()
-}
-
-/// What can be made of measured values.
-pub(super) fn measured_models() -> Vec<&'static str> {
-    MODELS.to_vec()
-}
-
-/// The names of all cost models.
-pub(super) fn cost_models() -> Vec<&'static str> {
-    CurveKind::NAMED.iter().map(|(name, _)| *name).collect()
-}
-
-/// Exactly one of these keys must be there.
-pub(super) fn one_of<const N: usize>(keys: [&str; N]) -> Value {
-    keys.iter().map(|key| json!({ "required": [key] })).collect()
 }
 
 impl<T: JsonSchema> JsonSchema for Entries<T> {
@@ -186,23 +129,6 @@ impl JsonSchema for NominalEntry {
             ],
         })
     }
-}
-
-/// The name of a kind, or a table with the parameters that it knows.
-pub(super) fn distribution(generator: &mut SchemaGenerator) -> Schema {
-    let all = DistributionEntry::json_schema(generator).to_value();
-    let table = |(name, knows): (&'static str, &'static [&'static str])| {
-        let mut properties: Map<String, Value> =
-            knows.iter().map(|&key| (key.to_owned(), all["properties"][key].clone())).collect();
-        properties.insert(
-            "kind".to_owned(),
-            json!({ "description": all["properties"]["kind"]["description"], "const": name }),
-        );
-        json!({ "type": "object", "properties": properties, "required": ["kind"], "additionalProperties": false })
-    };
-    let mut forms = vec![json!({ "description": "The kind of distribution.", "type": "string", "enum": kinds() })];
-    forms.extend(dimension::kinds().map(table));
-    json_schema!({ "anyOf": forms })
 }
 
 impl JsonSchema for UnknownEntry {
@@ -276,7 +202,7 @@ impl JsonSchema for RequireEntry {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "anyOf": [{ "type": "string", "enum": WORDS }, generator.subschema_for::<RequireTable>()],
+            "anyOf": [{ "type": "string", "enum": REQUIREMENTS }, generator.subschema_for::<RequireTable>()],
         })
     }
 }

@@ -1,29 +1,20 @@
 //! The text of a study file, and places in it.
 
 use std::ops::Range;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::error::{Fault, StudyFault, fault};
 use super::externals::Externals;
+use super::place::Place;
 use crate::assembly::formula::FormulaError;
-
-/// The two formats of one schema.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// A `.toml` file.
-    Toml,
-    /// A `.json` file.
-    Json,
-}
 
 /// A study file's name and text.
 #[derive(Clone)]
 pub(super) struct Source {
     pub(super) name: String,
     pub(super) text: Arc<str>,
-    /// The folder that relative paths start from.
-    pub(super) folder: PathBuf,
+    /// Where the files are that it names.
+    pub(super) place: Place,
     pub(super) externals: Externals,
 }
 

@@ -6,6 +6,7 @@ use jsonc_parser::ast;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Fault, StudyFault, fault};
+use super::slip::Slip;
 
 /// A value and its place in the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +51,11 @@ impl Tree {
             let key = error.span().map(|span| text[span].trim_matches(['"', '\'']).to_owned());
             let found = match key {
                 Some(key) if error.message().contains("duplicate key") => StudyFault::DuplicateKey { key },
-                _ => StudyFault::Syntax { message: error.message().lines().collect::<Vec<_>>().join("; ") },
+                _ => {
+                    let message = error.message().lines().collect::<Vec<_>>().join("; ");
+                    let slip = error.span().and_then(|span| Slip::of_syntax(text, &span, &message));
+                    StudyFault::Syntax { message, slip }
+                }
             };
             Fault { span: error.span(), key: String::new(), fault: Box::new(found) }
         })?;
@@ -71,7 +76,9 @@ impl Tree {
         };
         let parsed = jsonc_parser::parse_to_ast(text, &Default::default(), &strict).map_err(|error| {
             let range = error.range();
-            fault(range.start..range.end, "", StudyFault::Syntax { message: error.kind().to_string() })
+            let (span, message) = (range.start..range.end, error.kind().to_string());
+            let slip = Slip::of_syntax(text, &span, &message);
+            fault(span, "", StudyFault::Syntax { message, slip })
         })?;
         match &parsed.value {
             Some(value) => json_value(value),

@@ -12,7 +12,7 @@ pub struct Univariate {
 
 impl Univariate {
     /// The highest degree.
-    pub const DEGREE: usize = 4;
+    pub(crate) const DEGREE: usize = 4;
 
     /// A part of which the first coefficients are known: up to four.
     pub fn of_coefficients(known: &[f64]) -> Self {
@@ -96,7 +96,7 @@ impl Univariate {
     }
 
     /// Whether nothing but the slope is above this part of it.
-    pub fn is_straight(&self, part: f64) -> bool {
+    pub(crate) fn is_straight(&self, part: f64) -> bool {
         let [slope, higher @ ..] = self.coefficients;
         higher.iter().all(|coefficient| coefficient.abs() <= part * slope.abs())
     }

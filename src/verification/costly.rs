@@ -36,6 +36,7 @@ pub struct Target<'s> {
 
 /// What the check points say of one characteristic.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CheckedFigures {
     /// Errors of mean, sigma, skewness and kurtosis; None where the model has no value at some point, or no surface is known.
     pub errors: Option<[f64; 4]>,
@@ -55,6 +56,7 @@ pub struct CheckedFigures {
 
 /// What checking came to.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Checked {
     /// For every characteristic.
     pub characteristics: Vec<CheckedFigures>,

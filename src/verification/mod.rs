@@ -23,6 +23,8 @@ pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
 
+use serde::Serialize;
+
 use crate::problem::Problem;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
@@ -34,7 +36,8 @@ use sample::Sample;
 pub(crate) const CORE: usize = 1 << 15;
 
 /// A figure as the model itself gives it, and its error: three of it reach the truth whenever three standard errors do.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Verified {
     /// The value.
     pub value: f64,
@@ -44,6 +47,7 @@ pub struct Verified {
 
 /// What sampling the model says of one characteristic.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SampledFigures {
     /// Points evaluated.
     pub points: usize,
@@ -59,6 +63,9 @@ pub struct SampledFigures {
     pub yield_: Option<Verified>,
     /// The share below the lower limit, and above the upper one.
     pub beyond: [Option<Verified>; 2],
+    /// How much more of the model than of its surface lies within the limits, below and above them; None where no surface was given,
+    /// and where some points have no value.
+    pub difference: Option<[Verified; 3]>,
     /// The share of the assemblies that have a value.
     pub valid: Verified,
     /// The switches that are met; None where the model does not tell where it changes its form.
@@ -100,7 +107,7 @@ impl Verified {
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub fn verify_by_sampling(problem: &Problem, seed: u64) -> Vec<SampledFigures> {
-    (0..problem.characteristics().len()).map(|c| verify_characteristic(problem, c, seed, CORE)).collect()
+    (0..problem.characteristics().len()).map(|c| verify_characteristic(problem, c, seed, CORE, None)).collect()
 }
 
 /// The likeliest points beyond those switches of a cheap model that are seldom met, in independent normal variables of the dimensions at
@@ -160,15 +167,21 @@ pub fn variance_shares(problem: &Problem, characteristic: usize, seed: u64) -> O
     Some(model.dimensions().zip(shares::shares(&model, seed)?).collect())
 }
 
-/// One characteristic, by so many points in the core.
-pub(crate) fn verify_characteristic(problem: &Problem, c: usize, seed: u64, core: usize) -> SampledFigures {
+/// One characteristic, by so many points in the core, beside its surface over these dimensions.
+pub(crate) fn verify_characteristic(
+    problem: &Problem,
+    c: usize,
+    seed: u64,
+    core: usize,
+    beside: Option<(&[usize], &Surrogate)>,
+) -> SampledFigures {
     let model = Model::new(problem, c);
     let limits = problem.characteristics()[c].limits();
     let [low, high] = [limits.lower().unwrap_or(f64::NEG_INFINITY), limits.upper().unwrap_or(f64::INFINITY)];
     if model.len() == 0 {
         return constant(&model, [low, high]);
     }
-    let sample = Sample::draw(&model, seed, core);
+    let sample = Sample::draw(&model, seed, core, beside.filter(|_| limits.exist()));
     let sides = sample.sides.clone();
     let beyond = [[f64::NEG_INFINITY, low.next_down()], [high.next_up(), f64::INFINITY]];
     let figures = sample.figures(&[[low, high], beyond[0], beyond[1]]);
@@ -185,6 +198,7 @@ pub(crate) fn verify_characteristic(problem: &Problem, c: usize, seed: u64, core
         kurtosis: known(3).filter(|_| varies),
         yield_: known(4).filter(|_| limits.exist()),
         beyond: [known(5).filter(|_| limits.lower().is_some()), known(6).filter(|_| limits.upper().is_some())],
+        difference: sample.difference(&[[low, high], beyond[0], beyond[1]]),
         valid: Verified { value: figures.valid.0, error: figures.valid.1 },
         switches: sides.switches,
         switches_complete: sides.complete,
@@ -209,6 +223,7 @@ fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
             share(value < low).filter(|_| known && limited[0]),
             share(value > high).filter(|_| known && limited[1]),
         ],
+        difference: None,
         valid: Verified { value: f64::from(u8::from(known)), error: 0.0 },
         switches: None,
         switches_complete: true,

@@ -3,6 +3,7 @@
 use super::space::{Columns, Space};
 use crate::assembly::{Ask, Responses, Run};
 use crate::problem::Problem;
+use crate::surrogate::Surrogate;
 
 pub(super) struct Model<'p> {
     problem: &'p Problem,
@@ -46,6 +47,17 @@ impl<'p> Model<'p> {
         let mut out = Responses::open(points.rows(), 1);
         self.problem.function().evaluate(&Ask::values(&points, &outputs), &Run::to_the_end(), &mut out);
         out.column(0).to_vec()
+    }
+
+    /// The values of a surface over the dimensions at `varying`, of which those that this characteristic does not depend on have no
+    /// part in it; None when a part is unknown.
+    pub(super) fn surface(&self, z: &Columns, varying: &[usize], surrogate: &Surrogate) -> Option<Vec<f64>> {
+        let own: Vec<usize> = self.dimensions().collect();
+        let columns = self.space.standardised(z);
+        let nothing = vec![0.0; z.first().map_or(0, Vec::len)];
+        let column = |d: &usize| own.iter().position(|of| of == d).map_or(&nothing, |place| &columns[place]);
+        let all: Vec<&Vec<f64>> = varying.iter().map(column).collect();
+        Some(surrogate.rises(&all)?.into_iter().map(|rise| surrogate.centre + rise).collect())
     }
 
     /// The margins of the switches at some points; None where the function does not tell.

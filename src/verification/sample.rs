@@ -14,12 +14,14 @@
 
 use rayon::prelude::*;
 
+use super::Verified;
 use super::figures::{MOMENTS, effective, jackknife, moments, standard, student, totals};
 use super::model::Model;
 use super::sides::{Sides, sides};
 use super::space::Columns;
 use super::strata::{HalfSpace, between, unit};
 use crate::sampling::Normals;
+use crate::surrogate::Surrogate;
 
 /// Randomisations.
 pub(super) const REPLICATES: usize = 16;
@@ -41,6 +43,8 @@ struct Part {
     replicate: usize,
     values: Vec<f64>,
     weights: Vec<f64>,
+    /// The surface's values at the same points; empty where none is known.
+    surface: Vec<f64>,
 }
 
 /// The points of one characteristic.
@@ -63,7 +67,7 @@ pub(super) struct Figures {
 
 impl Sample {
     /// Of so many points in the core.
-    pub(super) fn draw(model: &Model<'_>, seed: u64, core: usize) -> Self {
+    pub(super) fn draw(model: &Model<'_>, seed: u64, core: usize, beside: Option<(&[usize], &Surrogate)>) -> Self {
         let normals = Normals::new(model.len(), seed);
         let pilot = normals.columns(1 << 33, PILOT);
         let known = model.values(&pilot);
@@ -94,7 +98,8 @@ impl Sample {
             };
             let z: Columns = z.iter().map(|column| kept(column)).collect();
             let weights = kept(&weights).into_iter().map(|weight| weight / rows as f64).collect();
-            Part { replicate, values: model.values(&z), weights }
+            let surface = beside.and_then(|(varying, surrogate)| model.surface(&z, varying, surrogate));
+            Part { replicate, values: model.values(&z), weights, surface: surface.unwrap_or_default() }
         };
         let parts: Vec<Part> = (0..REPLICATES * strata).into_par_iter().map(part).collect();
         let core = rows(strata - 1);
@@ -151,6 +156,31 @@ impl Sample {
         let failed = total > 0.0 && values.len() < all().count();
         let off = if failed { (student * jackknife(share, &sums)[0]).hypot(self.one) } else { self.one };
         Figures { values: of(&totals(&sums)), errors, valid: (weights.iter().sum::<f64>() / total, off) }
+    }
+
+    /// How much more of the model than of the surface lies within each interval, ends included: `mean(1_model - 1_surface)`; None
+    /// without a surface, and where some points have no value, so that the shares are of other assemblies.
+    pub(super) fn difference<const N: usize>(&self, intervals: &[[f64; 2]; N]) -> Option<[Verified; N]> {
+        let whole = |part: &Part| part.surface.len() == part.values.len() && part.values.iter().all(|y| y.is_finite());
+        if !self.parts.iter().all(whole) {
+            return None;
+        }
+        let mut sums = vec![vec![0.0; REPLICATES]; N + 1];
+        for part in &self.parts {
+            let points = part.values.iter().zip(&part.surface).zip(&part.weights);
+            for ((model, surface), weight) in points {
+                let within = |[low, high]: &[f64; 2], y: &f64| f64::from(u8::from(low <= y && y <= high));
+                for (sum, interval) in sums.iter_mut().zip(intervals) {
+                    sum[part.replicate] += weight * (within(interval, model) - within(interval, surface));
+                }
+                sums[N][part.replicate] += weight;
+            }
+        }
+        let shares = |total: &[f64]| total[..N].iter().map(|sum| sum / total[N]).collect::<Vec<f64>>();
+        let (values, errors) = (shares(&totals(&sums)), jackknife(shares, &sums));
+        let student = student(REPLICATES);
+        // As for a share: that no point disagrees does not mean that none does.
+        Some(std::array::from_fn(|i| Verified { value: values[i], error: (student * errors[i]).hypot(self.one) }))
     }
 
     /// Whether no point has a value.

@@ -52,6 +52,7 @@ pub enum Crossing {
 
 /// A switch on both sides of which there are assemblies within eight sigmas.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FoundSwitch {
     /// Where it stands.
     pub switch: Switch,

@@ -4,9 +4,8 @@
 //! normal variables (Nataf's law, [`crate::correlation`]), which a factor of their matrix makes of independent ones. Correlated
 //! inputs need no case of their own: everything here and after lives in `z`.
 
-use faer::Mat;
-
 use crate::assembly::Points;
+use crate::correlation::Together;
 use crate::distribution::{Distribution, Normal, PearsonLaw, Probability, behind_normal};
 use crate::problem::Problem;
 
@@ -22,8 +21,8 @@ const PER_UNIT: f64 = 64.0;
 /// Some of the varying dimensions of a problem, N of them.
 pub(crate) struct Space<'p> {
     inputs: Vec<Input<'p>>,
-    /// The positions of the correlated ones, and the factor of their normal variables.
-    correlated: Option<(Vec<usize>, Mat<f64>)>,
+    /// How some of them vary together.
+    correlated: Option<Together>,
     /// All dimensions of the problem at their means.
     centre: Vec<f64>,
 }
@@ -57,7 +56,7 @@ impl<'p> Space<'p> {
         let correlation = problem.correlation().and_then(|correlation| correlation.among(dimensions));
         Self {
             inputs: dimensions.iter().map(input).collect(),
-            correlated: correlation.map(|correlation| (correlation.members().to_vec(), correlation.factor())),
+            correlated: correlation.as_ref().map(Together::of),
             centre: problem.dimensions().iter().map(|dimension| dimension.mean()).collect(),
         }
     }
@@ -94,19 +93,7 @@ impl<'p> Space<'p> {
 
     /// The normal variables, correlated as the inputs want them.
     fn together(&self, normals: &Columns) -> Columns {
-        let mut columns = normals.clone();
-        let Some((members, factor)) = &self.correlated else { return columns };
-        for (j, &member) in members.iter().enumerate() {
-            let column = &mut columns[member];
-            column.fill(0.0);
-            for (k, &other) in members.iter().enumerate() {
-                let by = factor[(j, k)];
-                if by != 0.0 {
-                    column.iter_mut().zip(&normals[other]).for_each(|(z, normal)| *z += by * normal);
-                }
-            }
-        }
-        columns
+        self.correlated.as_ref().map_or_else(|| normals.clone(), |together| together.apply(normals))
     }
 }
 

@@ -29,6 +29,8 @@ pub enum Advice {
     },
     /// Allow more evaluations.
     RaiseBudget,
+    /// Check nominal values and limits.
+    CheckLimits,
     /// Allow as many evaluations as are needed.
     SetBudget,
     /// Allow more time.
@@ -138,6 +140,7 @@ impl fmt::Display for Advice {
                 return write!(f, "Append the answers to the points of {file}, and run again.");
             }
             Self::RaiseBudget => "Allow more evaluations.",
+            Self::CheckLimits => "Check nominal value and limits.",
             Self::SetBudget => "Allow that many evaluations.",
             Self::RaiseTimeLimit => "Allow more time.",
             Self::LimitTime => "Set a time limit.",

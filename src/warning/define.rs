@@ -39,12 +39,8 @@ macro_rules! warnings {
             }
 
             /// The fields by name; numbers that are not finite are null.
-            pub fn data(&self) -> Map<String, Value> {
-                match self {
-                    $( Self::$variant { $($($field),*)? } => Map::from_iter([
-                        $($( (stringify!($field).to_owned(), value($field)), )*)?
-                    ]), )*
-                }
+            pub fn data(&self) -> WarningData<'_> {
+                WarningData(self)
             }
 
             /// The characteristic that it concerns; None where it concerns none or all.
@@ -65,6 +61,17 @@ macro_rules! warnings {
                     $( Self::$variant { $($($field),*)? } => { $($( dimension!($field $field found); )*)? } )*
                 }
                 found
+            }
+
+            /// Every field with its name.
+            fn fields<M: SerializeMap>(&self, map: &mut M) -> Result<(), M::Error> {
+                let _ = &map;
+                match self {
+                    $( Self::$variant { $($($field),*)? } => {
+                        $($( map.serialize_entry(stringify!($field), $field)?; )*)?
+                    } )*
+                }
+                Ok(())
             }
 
             fn text(&self) -> Text {

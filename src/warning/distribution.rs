@@ -21,15 +21,14 @@ pub(super) fn near_infeasible_moments(characteristic: &str, skewness: &f64, kurt
     .advise(Advice::Sample { points: None })
 }
 
-pub(super) fn tails_missed(characteristic: &str, law: &f64, surface: &f64, points: &usize) -> Text {
+pub(super) fn pearson_differs(characteristic: &str, pearson: &f64, rejected: &f64, error: &f64) -> Text {
+    let ppm = |share: &f64| format!("{:.0}", 1e6 * share);
+    let known = if *error < 5e-7 { ppm(rejected) } else { format!("{} ± {}", ppm(rejected), ppm(error)) };
     say(format!(
-        "The yield of `{characteristic}` is unreliable: the Pearson fit gives {:.0} ppm rejects, the fitted surface {:.0} ppm ({points} \
-         points). The estimated error of the yield includes the difference.",
-        1e6 * law,
-        1e6 * surface
+        "The Pearson fit of `{characteristic}` would reject {} ppm, and {known} ppm are rejected: its four moments do not determine its \
+         tails. The yield and the quantiles are not those of the fit.",
+        ppm(pearson)
     ))
-    .advise(Advice::Sample { points: None })
-    .advise(Advice::SampleRareEvents)
 }
 
 pub(super) fn several_modes(characteristic: &str, coefficient: &f64) -> Text {

@@ -28,17 +28,23 @@ mod text;
 
 pub use advice::Advice;
 pub use aggregate::aggregated;
-pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind, StopCause};
+pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
 
-use serde::ser::SerializeStruct;
+use serde::ser::{SerializeMap, SerializeStruct};
 use serde::{Serialize, Serializer};
-use serde_json::{Map, Value};
+
+use crate::summary::StopReason;
 
 use text::Text;
 
 warnings! {
     /// None of the analysed characteristics can depend on these dimensions.
     UnusedDimension = "unused-dimension" by study::unused_dimension {
+        /// The dimensions.
+        dimensions: Vec<String>,
+    };
+    /// Nominal values that lie outside the limits of their own dimensions.
+    NominalOutsideLimits = "nominal-outside-limits" by study::nominal_outside_limits {
         /// The dimensions.
         dimensions: Vec<String>,
     };
@@ -426,16 +432,16 @@ warnings! {
         /// Fourth standardised moment.
         kurtosis: f64,
     };
-    /// The Pearson fit and the surface reject different shares.
-    TailsMissed = "tails-missed" by distribution::tails_missed {
+    /// The Pearson fit rejects another share than what is known to be rejected.
+    PearsonDiffers = "pearson-differs" by distribution::pearson_differs {
         /// The characteristic.
         characteristic: String,
         /// The share that the Pearson fit rejects.
-        law: f64,
-        /// The share of the surface's points that are rejected.
-        surface: f64,
-        /// The number of these points.
-        points: usize,
+        pearson: f64,
+        /// The share that is rejected.
+        rejected: f64,
+        /// Its error.
+        error: f64,
     };
     /// The moments are those of a distribution with several peaks.
     SeveralModes = "several-modes" by distribution::several_modes {
@@ -524,7 +530,9 @@ warnings! {
     /// The run was stopped before its end.
     Stopped = "stopped" by run::stopped {
         /// What stopped it.
-        cause: StopCause,
+        cause: StopReason,
+        /// The time limit in seconds, where that stopped it and is known.
+        limit_s: Option<f64>,
         /// How much was done until then.
         done: u64,
         /// How much there was to do, where that is known.
@@ -581,7 +589,14 @@ impl Serialize for Warning {
     }
 }
 
-/// As `data` has it.
-fn value(of: &impl Serialize) -> Value {
-    serde_json::to_value(of).expect("the fields of warnings are plain data")
+/// The fields of a warning by name; it serialises as a map.
+#[derive(Debug, Clone, Copy)]
+pub struct WarningData<'a>(&'a Warning);
+
+impl Serialize for WarningData<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        self.0.fields(&mut map)?;
+        map.end()
+    }
 }

@@ -1,24 +1,31 @@
 //! Warnings about the course of a run.
 
 use super::text::{Text, lines, say};
-use super::{Advice, Counted, StopCause};
+use super::{Advice, Counted};
+use crate::summary::StopReason;
 
-pub(super) fn stopped(cause: &StopCause, done: &u64, planned: &Option<u64>, counted: &Counted) -> Text {
+pub(super) fn stopped(
+    cause: &StopReason,
+    limit_s: &Option<f64>,
+    done: &u64,
+    planned: &Option<u64>,
+    counted: &Counted,
+) -> Text {
     let amount = match planned {
         Some(planned) => format!("{done} of {planned} {}", counted.noun(*planned)),
         None => format!("{done} {}", counted.noun(*done)),
     };
     let rest = if *done == 0 { "There is no result." } else { "The result covers only what was done until then." };
     match cause {
-        StopCause::TimeLimit { limit_s } => {
-            say(format!("The time limit of {limit_s} s ended the run after {amount}. {rest}"))
-                .advise(Advice::RaiseTimeLimit)
+        StopReason::TimeLimit => {
+            let limit = limit_s.map(|limit| format!(" of {limit} s")).unwrap_or_default();
+            say(format!("The time limit{limit} ended the run after {amount}. {rest}")).advise(Advice::RaiseTimeLimit)
         }
-        StopCause::Budget => {
+        StopReason::Budget => {
             say(format!("The budget ended the run after {amount}. {rest}")).advise(Advice::RaiseBudget)
         }
-        StopCause::Interrupted => say(format!("The run was interrupted after {amount}. {rest}")),
-        StopCause::Requested => say(format!("The calling program ended the run after {amount}. {rest}")),
+        StopReason::Interrupted => say(format!("The run was interrupted after {amount}. {rest}")),
+        StopReason::Requested => say(format!("The calling program ended the run after {amount}. {rest}")),
     }
 }
 

@@ -15,6 +15,21 @@ pub(super) fn unused_dimension(dimensions: &[String]) -> Text {
     .advise(Advice::CheckNames)
 }
 
+pub(super) fn nominal_outside_limits(dimensions: &[String]) -> Text {
+    let (of, their) = match dimensions {
+        [_] => ("nominal value of", "its own limits"),
+        _ => ("nominal values of", "their own limits"),
+    };
+    say(format!(
+        "The {of} {} outside {their}. The limits count; the nominal values only say where the drawing begins.",
+        match dimensions {
+            [_] => format!("{} lies", names(dimensions)),
+            many => format!("{} dimensions lie ({})", many.len(), names(dimensions)),
+        }
+    ))
+    .advise(Advice::CheckLimits)
+}
+
 pub(super) fn unused_name(kind: &NameKind, unused: &[String]) -> Text {
     let message = format!("No characteristic uses the {} {}.", kind.noun(unused.len()), names(unused));
     say(message).advise(Advice::CheckNames)

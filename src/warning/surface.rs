@@ -157,7 +157,11 @@ pub(super) fn pole(characteristic: &str, switch: &str, probability: &f64) -> Tex
 }
 
 pub(super) fn figure_off(characteristic: &str, figure: &&'static str, value: &f64, model: &f64, error: &f64) -> Text {
-    let [value, model, error] = [(value, 5), (model, 5), (error, 2)].map(|(of, digits)| significant(*of, digits));
+    // Two digits of the difference, at least.
+    let places = (value.abs() / (value - model).abs()).log10().ceil();
+    let digits = if places.is_finite() { (places.max(3.0) as i32 + 2).min(15) } else { 5 };
+    let [value, model, error] =
+        [(value, digits), (model, digits), (error, 2)].map(|(of, digits)| significant(*of, digits));
     say(format!(
         "The {figure} of `{characteristic}` is {value} by the method, and {model} by the model itself, with an error of {error}."
     ))

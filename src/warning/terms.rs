@@ -99,24 +99,6 @@ impl NameKind {
     }
 }
 
-/// What stopped a run before its end.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum StopCause {
-    /// The time limit.
-    TimeLimit {
-        /// The limit in seconds.
-        limit_s: f64,
-    },
-    /// The evaluations that it was given.
-    Budget,
-    /// The user.
-    Interrupted,
-    /// The program that called it.
-    Requested,
-}
-
 /// What the progress of a run counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

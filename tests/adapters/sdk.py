@@ -108,5 +108,35 @@ def a_heartbeat_beats_while_the_model_works():
             assert lines[-1]["y"] == [3.5] and lines[-1]["where"] == host and lines[-1]["cost_s"] >= 0.3, lines[-1]
 
 
+SIDE_BY_SIDE = f"""
+import sys, threading
+sys.path.insert(0, {str(ROOT / "adapters/python")!r})
+from sensitol_adapter import adapter
+
+both = threading.Barrier(2, timeout=30)
+
+@adapter(threads=2)
+def twice(a):
+    if a < 0:
+        raise RuntimeError("negative")
+    both.wait()
+    return 2 * a
+
+twice.serve()
+"""
+
+
+def threads_evaluate_side_by_side():
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "model.py"
+        path.write_text(SIDE_BY_SIDE)
+        with client(["python3", path], folder, [None], {"a": 1.0}, ["twice"]) as model:
+            # Neither of two points ends before the other has begun; the one that fails waits for none.
+            model.process.stdin.write('{"id":1,"x":[1.0]}\n{"id":2,"x":[2.0]}\n{"id":3,"x":[-1.0]}\n')
+            model.process.stdin.flush()
+            answers = {answer["id"]: answer for answer in (json.loads(model.process.stdout.readline()) for _ in range(3))}
+            assert answers[1]["y"] == [2.0] and answers[2]["y"] == [4.0] and "negative" in answers[3]["error"], answers
+
+
 if __name__ == "__main__":
-    run([imported_modules_are_part_of_the_version, a_heartbeat_beats_while_the_model_works, setup_may_say_what_there_is, a_slow_answer_does_not_wait_for_the_next])
+    run([threads_evaluate_side_by_side, imported_modules_are_part_of_the_version, a_heartbeat_beats_while_the_model_works, setup_may_say_what_there_is, a_slow_answer_does_not_wait_for_the_next])

@@ -30,8 +30,9 @@ fn free(d: usize, curve: Curve, min: f64, max: f64) -> Priced {
     Priced::new(vec![d], vec![Offer::between(curve, min, max).unwrap()]).unwrap()
 }
 
+/// Closures say nothing of their degree: without a sample of them the surface of a linear one is exact, and so is its yield.
 fn options(method: Method) -> AllocationOptions {
-    AllocationOptions { analysis: Options::from(method), ..AllocationOptions::default() }
+    AllocationOptions { analysis: Options { verify: Some(0), ..method.into() }, ..AllocationOptions::default() }
 }
 
 /// Tolerances at the border of what is allowed are met where the errors are nothing, and inconclusive otherwise; never missed.
@@ -404,7 +405,9 @@ fn the_optimum_of_a_curved_model_holds_when_it_is_simulated() {
         assert!(after >= required);
         let [low, high] = one.yield_.unwrap().interval;
         assert!(after > low && after < high, "{:?} {:?}", of, one.yield_);
-        binding += usize::from(after < required + 1e-6);
+        // What is not known of the yield is kept beside it.
+        let [least, _] = of.after.unwrap().interval.unwrap();
+        binding += usize::from(least < required + 1e-6);
     }
     assert!(binding >= 1, "the optimum is at a limit");
 }

@@ -10,6 +10,7 @@ const LAYERS: &[&[&str]] = &[
     &["cli"],
     &["error"],
     &["study", "report"],
+    &["document"],
     &["compare", "rare", "sweep", "allocation"],
     &["analysis", "probe"],
     &["simulation"],
@@ -31,7 +32,7 @@ const LAYERS: &[&[&str]] = &[
     &["dimension", "characteristic"],
     &["distribution", "fits", "requirement"],
     &["pearson", "method_kind"],
-    &["names", "elementary", "summary"],
+    &["names", "elementary", "summary", "time"],
 ];
 
 fn layer(module: &str) -> usize {

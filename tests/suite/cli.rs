@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use sensitol::report::{About, Detail, Report, Style, text};
+use sensitol::document::terminal::text;
+use sensitol::document::{Detail, Style};
+use sensitol::report::{About, Report};
 
 use super::support::repository;
 
@@ -418,6 +420,49 @@ fn colours_are_for_terminals() {
     assert!(!coloured(&warns, &[("NO_COLOR", "1")]));
 }
 
+/// A name is plain, whatever word it is: the page differs from that of other names of the same length in the names alone.
+#[test]
+fn names_that_are_verdicts_are_plain() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = folder.path().join("study.toml");
+    let shown = |command: &[&str], dimension: &str, characteristic: &str| {
+        let text = format!(
+            "[dimensions]\n{dimension} = {{ nominal = 1, tolerance = 0.3 }}\nother = {{ nominal = 2, tolerance = 0.1 }}\n\
+             [characteristics]\n{characteristic} = {{ formula = \"{dimension} + other\", lower = 2.7, target_yield = 0.9 }}\n\
+             [costs]\n{dimension} = {{ model = \"reciprocal\", b = 1 }}\n"
+        );
+        std::fs::write(&study, text).unwrap();
+        let (study, [name, rest @ ..]) = (study.to_str().unwrap(), command) else {
+            unreachable!("a command has a name")
+        };
+        let over = format!("{dimension}=0.9:1.1:3");
+        let rest: Vec<&str> = rest.iter().map(|&word| if word == "OVER" { &over } else { word }).collect();
+        let arguments = [&[*name, study, "--color", "always", "-v"][..], &rest].concat();
+        String::from_utf8(sensitol(&arguments).output().unwrap().stdout).unwrap()
+    };
+    let commands: [&[&str]; 6] = [
+        &["analyze"],
+        &["analyze", "--stack", "text"],
+        &["simulate", "--samples", "1000"],
+        &["simulate", "--rare"],
+        &["sweep", "--over", "OVER"],
+        &["allocate"],
+    ];
+    let mut coloured = 0;
+    for (dimension, characteristic) in [("met", "MISSED"), ("optimal", "met"), ("infeasible", "inconclusive")] {
+        let plain = |name: &str, letter: &str| letter.repeat(name.len());
+        let [a, b] = [plain(dimension, "q"), plain(characteristic, "Q")];
+        for command in commands {
+            let named = shown(command, dimension, characteristic);
+            let other = shown(command, &a, &b);
+            coloured += other.matches('\u{1b}').count();
+            assert!(named.contains(characteristic), "{command:?}: {named}");
+            assert_eq!(named, other.replace(&a, dimension).replace(&b, characteristic), "{command:?}");
+        }
+    }
+    assert!(coloured > 0, "verdicts are coloured all the same");
+}
+
 /// Verdicts have a colour on a terminal, and where colours are asked for; never in a file or a pipe otherwise.
 #[test]
 fn verdicts_are_coloured() {
@@ -583,7 +628,8 @@ fn reports_fit_their_width() {
         let study = sensitol::Study::read(&repository(&format!("examples/{name}/study.toml"))).unwrap();
         let analysis = sensitol::analyze(&study.problem, &study.options).unwrap();
         let report = Report::of(&study.problem, &analysis, About::default());
-        let of = |width: usize| text(&report, Style { detail: Detail::Full, unicode: true, color: false, width });
+        let of =
+            |width: usize| text(&report.document(), Style { detail: Detail::Full, unicode: true, color: false, width });
         let numbers = |text: &str| -> BTreeSet<String> {
             let words = text.split(|c: char| c.is_whitespace() || ",;:()".contains(c));
             words.filter(|word| word.parse::<f64>().is_ok()).map(str::to_owned).collect()

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use sensitol::plan::Stencil;
+use sensitol::method::Stencil;
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Method, Options, Study, Warning, analyze};
 
@@ -221,7 +221,8 @@ fn one_digit(error: f64) -> String {
 /// What the suite leaves to `tests/adapters/run` is shown there.
 #[test]
 fn examples_that_need_an_installation_are_run_elsewhere() {
-    let scripts = ["freecad", "spreadsheet", "opencascade"].map(|name| read(&format!("tests/adapters/{name}.py")));
+    let scripts = ["freecad", "spreadsheet", "opencascade", "um_bridge", "octave", "fmi", "cluster"]
+        .map(|name| read(&format!("tests/adapters/{name}.py")));
     for example in INSTALLED {
         assert!(scripts.iter().any(|script| script.contains(&format!("shown(\"{example}\")"))), "{example}");
     }
@@ -255,6 +256,10 @@ fn documents() -> Vec<String> {
         "adapters/freecad/README.md",
         "adapters/spreadsheet/README.md",
         "adapters/opencascade/README.md",
+        "adapters/umbridge/README.md",
+        "adapters/octave/README.md",
+        "adapters/fmi/README.md",
+        "adapters/dask/README.md",
     ];
     let own = own.map(str::to_owned);
     let pages = ["docs", "docs/how-to", "docs/reference"].into_iter().flat_map(pages);

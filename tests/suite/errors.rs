@@ -1,9 +1,9 @@
 //! Errors: all of the library fit into one type, and names that mean nothing say what was meant.
 
+use sensitol::UnknownName;
 use sensitol::method::Pairs;
+use sensitol::method::Stencil;
 use sensitol::models::Model;
-use sensitol::names::UnknownName;
-use sensitol::plan::Stencil;
 use sensitol::sampling::Sampler;
 use sensitol::{DerivativeSource, Error, Method};
 
@@ -44,7 +44,7 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::fits::FitError,
         sensitol::journal::JournalError,
         sensitol::law::LawError,
-        sensitol::names::UnknownName,
+        sensitol::UnknownName,
         sensitol::pearson::PearsonError,
         sensitol::rare::RareError,
         sensitol::sampling::SamplingError,

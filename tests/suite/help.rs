@@ -57,6 +57,7 @@ fn every_command_refuses_what_is_wrong() {
         &["completions", "tcsh"],
         &["man", "analyze"],
         &["probe", "nowhere.toml"],
+        &["evaluate", "nowhere.toml"],
         &["journal", "show", "nowhere.sqlite"],
         &["journal", "export", "nowhere.sqlite"],
         &["journal", "forget", "nowhere.sqlite"],

@@ -120,7 +120,7 @@ fn what_a_replay_costs() {
         let rows: Vec<[f64; DIMENSIONS]> = (1..=points).map(|i| [1.0 + 1e-3 * i as f64, 1.0, 1.0, 1.0]).collect();
         let mut out = Responses::open(points, 1);
         process.evaluate(&Ask::values(&Points::from_rows(&rows), &[0]), &Run::to_the_end(), &mut out);
-        assert!((0..points).all(|row| out.value(row, 0).is_some()) && out.doubts().is_empty());
+        assert!((0..points).all(|row| out.value(row, 0).is_some()) && out.non_repeatable().is_empty());
         out.extra()
     };
     // Without any, sentinels alone: one at the end, and one for every 64 points of a window of four.

@@ -180,7 +180,7 @@ fn the_command_line_writes_pages() {
         assert!(of_folder.starts_with("exit 2") && of_folder.contains("cannot be written"), "{of_folder}");
     }
     let page = std::fs::read_to_string(path("simulate.html")).unwrap();
-    assert!(page.contains("importance-sampling") && page.contains("most likely assembly above"), "{page}");
+    assert!(page.contains("importance sampling") && page.contains("most likely above"), "{page}");
 }
 
 fn study_title(path: &str) -> String {

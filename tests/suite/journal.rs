@@ -179,7 +179,7 @@ fn doubtful_answers_are_not_kept() {
         out
     };
     let first = ask();
-    assert!(!first.doubts().is_empty());
+    assert!(!first.non_repeatable().is_empty());
     let mut store = Store::open(&folder.path().join("a.sqlite")).unwrap();
     let known = store.models().unwrap().remove(0);
     let kept = store.answers(known.id).unwrap();

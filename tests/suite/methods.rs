@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use sensitol::distribution::{CentralMoments, StandardMoments};
+use sensitol::method::Stencil;
 use sensitol::method::{ALL, MethodError, Pairs};
-use sensitol::plan::Stencil;
 use sensitol::warning::Advice;
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, analyze};
 

@@ -4,7 +4,7 @@ use sensitol::RunSummary;
 use sensitol::StopReason;
 use sensitol::distribution::{CentralMoments, Normal, Uniform};
 use sensitol::method::Pairs;
-use sensitol::plan::{Nodes, Spread, Stencil};
+use sensitol::method::{Nodes, Spread, Stencil};
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, analyze};
 
 use super::support::{Asked, close, normals, refusing, relative, standard};

@@ -307,7 +307,7 @@ fn children_that_flip_are_found_out() {
     let out = at(&model(guarded("flips", &[])), &a);
     // The point that flips the model flips the fresh child too: its own answer stays doubtful, all others are right.
     right_but(&a, &out, &[3]);
-    let [first, second] = out.doubts() else { panic!("{:?}", out.doubts()) };
+    let [first, second] = out.non_repeatable() else { panic!("{:?}", out.non_repeatable()) };
     assert_eq!(
         (first.output.as_str(), first.expected, first.found, first.suspects.len()),
         ("sum", Some(3.0), Some(-3.0), 5)
@@ -318,7 +318,7 @@ fn children_that_flip_are_found_out() {
     let out = at(&model(guarded("poisoned-by-errors", &[])), &a);
     right_but(&a, &out, &[2]);
     assert_eq!(fault(&out, 2, 0), ProcessFault::NoValue { message: "does not assemble".into() });
-    assert_eq!((out.doubts().len(), out.doubts()[0].output.as_str()), (2, "product"));
+    assert_eq!((out.non_repeatable().len(), out.non_repeatable()[0].output.as_str()), (2, "product"));
     // One whose answer to the nominal point has another shape: as bad as another value.
     let a = [1.0, 2.0, 13.0, 4.0];
     let out = at(&model(guarded("misshapen-later", &[])), &a);
@@ -326,10 +326,10 @@ fn children_that_flip_are_found_out() {
     let a = [1.0, 2.0, 13.0, 4.0, 5.0];
     // A model that never answers alike ends all the same, and says so.
     let out = at(&model(guarded("always-flips", &[])), &a);
-    assert!(!out.doubts().is_empty());
+    assert!(!out.non_repeatable().is_empty());
     // One that always does costs one evaluation more.
     let out = at(&model(guarded("good", &[])), &a);
-    assert_eq!((out.doubts().len(), out.extra()), (0, 1));
+    assert_eq!((out.non_repeatable().len(), out.extra()), (0, 1));
     right_but(&a, &out, &[]);
 }
 
@@ -344,12 +344,12 @@ fn samples_of_a_model_that_flips_are_doubted() {
         let problem = problem.asking([Characteristic::new("sum").with_limits(limits)]).unwrap();
         let random = simulate(&problem, &SimulationOptions { samples: 200, ..SimulationOptions::default() }).unwrap();
         let rare = rare(&problem, &RareOptions { samples: 200, ..RareOptions::default() });
-        (random.doubts, rare.map(|rare| rare.doubts))
+        (random.non_repeatable, rare.map(|rare| rare.non_repeatable))
     };
     let (random, rare) = of("always-flips");
     assert!(!random.is_empty() && random.iter().all(|doubt| doubt.output == "sum"), "{random:?}");
     // Without any answer that repeats there is no estimate at all.
-    assert!(rare.is_err() || rare.is_ok_and(|doubts| !doubts.is_empty()));
+    assert!(rare.is_err() || rare.is_ok_and(|non_repeatable| !non_repeatable.is_empty()));
     let (random, rare) = of("good");
     assert!(random.is_empty() && rare.unwrap().is_empty(), "{random:?}");
 }

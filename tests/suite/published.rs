@@ -1,7 +1,7 @@
 //! The published cases, to the digits that the design states, and the same cases against quadrature.
 
 use sensitol::assembly::{Ask, Points, Responses, Run};
-use sensitol::plan::Stencil;
+use sensitol::method::Stencil;
 use sensitol::{Analysis, CharacteristicAnalysis, Method, Options, Study, analyze};
 
 use super::support::{close, data, relative, repository};

@@ -8,9 +8,9 @@ use sensitol::correlation::Pair;
 use sensitol::distribution::{
     CentralMoments, Distribution, Exponential, Lognormal, Measured, Mixture, Normal, Part, Rule, Triangular, Uniform,
 };
+use sensitol::method::Stencil;
 use sensitol::method::{Basis, MethodError, Pairs};
 use sensitol::moments::Tables;
-use sensitol::plan::Stencil;
 use sensitol::{Analysis, Closure, DerivativeSource, Dimension, Method, Moments, Options, Problem, Warning, analyze};
 
 use super::support::{Asked, close, data, normals, refusing, relative, standard};

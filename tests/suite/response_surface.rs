@@ -6,7 +6,7 @@ use std::sync::Arc;
 use sensitol::correlation::Pair;
 use sensitol::distribution::Exponential;
 use sensitol::method::Basis;
-use sensitol::plan::corners;
+use sensitol::method::corners;
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, Warning, analyze};
 
 use super::support::{Asked, close, refusing, relative, standard};

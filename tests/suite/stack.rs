@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
-use sensitol::report::{About, Report, StackNote, TotalKind, csv_file_names, csv_files, stack_csv};
+use sensitol::document::markdown::markdown;
+use sensitol::report::{About, Report, StackNote, TotalKind, csv_file_names, csv_files, stack_csv, stack_document};
 use sensitol::{Method, Options, Study, analyze};
 
 use super::support::{close, relative, repository};
@@ -238,7 +239,7 @@ fn names_are_safe_in_files() {
     let report = report(study, Method::Full);
     let rows = read(&stack_csv(&report.stacks()));
     assert!(rows.iter().all(|row| row.len() == 13) && rows[1][2] == "a,\"b\"\n", "{rows:?}");
-    let markdown = sensitol::report::stack_markdown(&report.stacks());
+    let markdown = markdown(&stack_document(&report.stacks()));
     assert!(!markdown.contains('\u{1b}') && markdown.contains("y\\|z\\_") && markdown.contains("m\\|m"), "{markdown}");
     for table_line in markdown.lines().filter(|line| line.starts_with('|')) {
         let bars = table_line.matches('|').count() - table_line.matches("\\|").count();

@@ -12,7 +12,15 @@ pub fn repository(path: &str) -> PathBuf {
 }
 
 /// Examples that need more than the repository has; `tests/adapters/run` runs their console blocks where that is installed.
-pub const INSTALLED: [&str; 3] = ["stacked-blocks-freecad", "stack-up-workbook", "spot-weld-opencascade"];
+pub const INSTALLED: [&str; 7] = [
+    "stacked-blocks-freecad",
+    "stack-up-workbook",
+    "spot-weld-opencascade",
+    "cantilever-umbridge",
+    "four-bar-octave",
+    "oscillator-fmi",
+    "stacked-blocks-dask",
+];
 
 /// The studies of all examples, with the folder's name; what an adapter wants to know of its document is no study.
 pub fn example_studies() -> Vec<(String, PathBuf)> {
@@ -22,7 +30,8 @@ pub fn example_studies() -> Vec<(String, PathBuf)> {
         for file in std::fs::read_dir(folder.path()).unwrap() {
             let path = file.unwrap().path();
             let study = path.extension().is_some_and(|extension| extension == "toml" || extension == "json");
-            if study && !std::fs::read_to_string(&path).unwrap().lines().any(|line| line.starts_with("document =")) {
+            let own = |line: &str| ["document =", "servers ="].iter().any(|key| line.starts_with(key));
+            if study && !std::fs::read_to_string(&path).unwrap().lines().any(own) {
                 studies.push((folder.file_name().to_string_lossy().into_owned(), path));
             }
         }

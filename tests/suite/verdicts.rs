@@ -51,8 +51,7 @@ fn a_stopped_run_says_so_and_meets_nothing() {
     assert!(done["stopped"].is_null());
     // 60 x 0.1 x 0.1 and 0.1.
     relative(done["characteristics"][0]["sigma"].as_f64().unwrap(), 0.37f64.sqrt(), 1e-9);
-    // The law and the surface differ by 7 % of all assemblies, so that two errors of the yield reach the target.
-    assert_eq!(done["characteristics"][0]["verdict"], "inconclusive");
+    assert_eq!(done["characteristics"][0]["verdict"], "missed");
 
     // Six points of two seconds, and three seconds for all: however fast the machine is, it is not done.
     slow(folder.path(), 2.0);
@@ -154,9 +153,13 @@ fn allocate_analyze_and_simulate_say_the_same() {
         let simulated = verdicts(&simulated);
         for one in &found {
             assert!(analyzed.contains(one), "{study}: {one:?} of {analyzed:?}");
-            // A sample may decide what the errors of an analysis leave open; it never refutes what was decided.
+            // A sample may decide what the errors of an analysis leave open, or leave open what lies as near its target as an optimum
+            // does: 0.006 % beside the 0.03 % of 100 000 points. It never refutes what was decided.
             let sampled = simulated.iter().find(|other| (&other.0, &other.1) == (&one.0, &one.1)).unwrap();
-            assert!(one.2 == "inconclusive" || sampled.2 == one.2, "{study}: {one:?}, sampled {sampled:?}");
+            assert!(
+                one.2 == "inconclusive" || sampled.2 == "inconclusive" || sampled.2 == one.2,
+                "{study}: {one:?}, sampled {sampled:?}"
+            );
         }
         let worst = if analyzed.iter().all(|(.., verdict)| verdict == "met") { 0 } else { 1 };
         assert_eq!(json(&["analyze", written, "--json", "--check"]).0, worst, "{study}");

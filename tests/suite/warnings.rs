@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, StopCause, Warning, aggregated};
-use sensitol::{Method, Study, analyze};
+use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, Warning, aggregated};
+use sensitol::{Method, StopReason, Study, analyze};
 
 fn text(text: &str) -> String {
     text.to_owned()
@@ -30,7 +30,10 @@ fn every() -> Vec<Warning> {
         failure: failure.map(text),
         bounds,
     };
-    let stopped = |cause, done, planned| Warning::Stopped { cause, done, planned, counted: Counted::Points };
+    let stopped = |cause, limit_s, done, planned| {
+        let counted = Counted::Points;
+        Warning::Stopped { cause, limit_s, done, planned, counted }
+    };
     let resolved = |figure, error, budget| Warning::UnderResolved {
         characteristic: characteristic(),
         figure,
@@ -43,6 +46,8 @@ fn every() -> Vec<Warning> {
     vec![
         Warning::UnusedDimension { dimensions: names(1) },
         Warning::UnusedDimension { dimensions: names(997) },
+        Warning::NominalOutsideLimits { dimensions: names(1) },
+        Warning::NominalOutsideLimits { dimensions: names(2) },
         Warning::UnusedName { kind: NameKind::Constant, names: names(1) },
         Warning::UnusedName { kind: NameKind::Formula, names: names(2) },
         Warning::UnusedName { kind: NameKind::Unknown, names: names(30) },
@@ -170,7 +175,7 @@ fn every() -> Vec<Warning> {
             reason: text("the kurtosis 0.9 is not above 1"),
         },
         Warning::NearInfeasibleMoments { characteristic: characteristic(), skewness: 0.0, kurtosis: 1.02 },
-        Warning::TailsMissed { characteristic: characteristic(), law: 1017e-6, surface: 3372e-6, points: 65_536 },
+        Warning::PearsonDiffers { characteristic: characteristic(), pearson: 1017e-6, rejected: 3415e-6, error: 30e-6 },
         Warning::SeveralModes { characteristic: characteristic(), coefficient: 0.8 },
         Warning::Switch {
             characteristic: characteristic(),
@@ -216,9 +221,10 @@ fn every() -> Vec<Warning> {
         },
         Warning::NothingToWrite,
         Warning::NotWritten { reason: text("`a` has its tolerance in a list") },
-        stopped(StopCause::TimeLimit { limit_s: 2.6 }, 11, None),
-        stopped(StopCause::TimeLimit { limit_s: 1.0 }, 1, Some(7)),
-        stopped(StopCause::Interrupted, 0, None),
+        stopped(StopReason::TimeLimit, Some(2.6), 11, None),
+        stopped(StopReason::TimeLimit, Some(1.0), 1, Some(7)),
+        stopped(StopReason::TimeLimit, None, 3, None),
+        stopped(StopReason::Interrupted, None, 0, None),
         Warning::Long { expected_s: 7200.0 },
         Warning::MissingPoints { count: 1, written: None },
         Warning::MissingPoints { count: 12, written: Some(text("next.csv")) },
@@ -281,7 +287,7 @@ fn the_fields_are_data() {
         let json = serde_json::to_value(&warning).unwrap();
         let keys: BTreeSet<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
         assert_eq!(keys, ["advice", "characteristic", "code", "data", "dimension", "message"].into());
-        assert_eq!(json["data"], serde_json::Value::Object(warning.data()));
+        assert_eq!(json["data"], serde_json::to_value(warning.data()).unwrap());
         let actions = json["advice"].as_array().unwrap();
         assert_eq!(actions.len(), warning.advice().len());
         assert!(actions.iter().all(|advice| advice["action"].is_string()), "{json}");
@@ -290,19 +296,20 @@ fn the_fields_are_data() {
             assert!(known && json["characteristic"] == characteristic, "{json}");
         }
     }
-    let tails = Warning::TailsMissed { characteristic: text("gap"), law: 1e-3, surface: 3e-3, points: 65_536 };
-    let data = serde_json::json!({ "characteristic": "gap", "law": 1e-3, "surface": 3e-3, "points": 65_536 });
-    assert_eq!(serde_json::Value::Object(tails.data()), data);
+    let fit = Warning::PearsonDiffers { characteristic: text("gap"), pearson: 1e-3, rejected: 3e-3, error: 1e-5 };
+    let data = serde_json::json!({ "characteristic": "gap", "pearson": 1e-3, "rejected": 3e-3, "error": 1e-5 });
+    assert_eq!(serde_json::to_value(fit.data()).unwrap(), data);
     let stopped = Warning::Stopped {
-        cause: StopCause::TimeLimit { limit_s: 2.5 },
+        cause: StopReason::TimeLimit,
+        limit_s: Some(2.5),
         done: 11,
         planned: None,
         counted: Counted::Evaluations,
     };
     let data = serde_json::json!({
-        "cause": { "kind": "time-limit", "limit_s": 2.5 }, "done": 11, "planned": null, "counted": "evaluations"
+        "cause": "time-limit", "limit_s": 2.5, "done": 11, "planned": null, "counted": "evaluations"
     });
-    assert_eq!(serde_json::Value::Object(stopped.data()), data);
+    assert_eq!(serde_json::to_value(stopped.data()).unwrap(), data);
     assert_eq!(serde_json::to_value(Advice::SmallerStep { dimension: None }).unwrap()["action"], "smaller-step");
 }
 
@@ -340,7 +347,7 @@ fn warnings_of_one_kind_become_one() {
     ];
     let joined = aggregated(all);
     assert_eq!(joined.len(), 4, "{joined:?}");
-    let others = |warning: &Warning| warning.data()["others"].clone();
+    let others = |warning: &Warning| serde_json::to_value(warning.data()).unwrap()["others"].clone();
     assert_eq!((joined[0].dimension(), others(&joined[0])), (Some("b"), serde_json::json!(["a", "c"])));
     assert_eq!(others(&joined[1]), serde_json::json!(["a:c"]));
     assert_eq!((joined[2].characteristic(), others(&joined[2])), (Some("step"), serde_json::json!([])));

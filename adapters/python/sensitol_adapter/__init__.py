@@ -13,7 +13,7 @@ See PROTOCOL.md in the folder above for what goes over the wire.
 """
 
 from ._adapter import Adapter, NoValue, adapter
-from ._declared import Declaration, load
+from ._declared import Declaration, Settings, load
 
-__all__ = ["Adapter", "Declaration", "NoValue", "adapter", "load"]
+__all__ = ["Adapter", "Declaration", "NoValue", "Settings", "adapter", "load"]
 __version__ = "0.1.0"

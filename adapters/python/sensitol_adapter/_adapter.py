@@ -6,6 +6,7 @@ import json
 import logging
 import math
 import os
+import queue
 import socket
 import sys
 import threading
@@ -53,6 +54,8 @@ class Adapter:
     inputs          what a function with `**values` takes; without it that takes every name. The study may leave these out
     units           a dict from dimension to unit; a study that states another one is refused
     isolated        points do not share the process's fate, as on a cluster: after a crash all of them go out again together
+    threads         points evaluated side by side, where the function may be called by several threads: it waits for servers or
+                    programs. Every answer is written as soon as it is there
     heartbeat       seconds between signs of life. Points that wait in the window are then not late, and each evaluation says when
                     it starts, on which host, and what it took. Without it the model must be silent between answers
     setup           called once, before the model is ready; with a parameter it is given the engine's first line. It may
@@ -61,7 +64,7 @@ class Adapter:
 
     def __init__(
         self, function, *, name=None, version=None, outputs=None, window=64, batch=False, gradients=False, names=None,
-        inputs=None, units=None, setup=None, isolated=False, heartbeat=None,
+        inputs=None, units=None, setup=None, isolated=False, heartbeat=None, threads=1,
     ):  # fmt: skip
         self.function = function
         self.name = name or function.__name__
@@ -76,6 +79,9 @@ class Adapter:
         if heartbeat is not None and not heartbeat > 0:
             raise ValueError("heartbeat is a time in seconds, above 0")
         self.heartbeat = heartbeat
+        if threads > 1 and batch:
+            raise ValueError("a batch is one call: it has no threads")
+        self.threads = threads
         self.inputs = list(inputs) if inputs is not None else None
         self.units = dict(units or {})
         self.setup = setup
@@ -124,11 +130,33 @@ class Adapter:
             _write(answers, [ready])
             if self.heartbeat is not None:
                 threading.Thread(target=_beat, args=(answers, self.heartbeat), daemon=True).start()
+            if self.threads > 1:
+                _side_by_side(self.threads, session, lines, answers)
+                return
             for requests in lines.batches():
                 for done in session.answers(requests):
                     _write(answers, done)
         except (BrokenPipeError, KeyboardInterrupt):
             pass
+
+
+def _side_by_side(threads, session, lines, answers):
+    """Points of the window on several threads. When the engine is gone, nobody waits for what is under way."""
+    waiting = queue.SimpleQueue()
+
+    def work():
+        while True:
+            for done in session.answers([waiting.get()]):
+                try:
+                    _write(answers, done)
+                except OSError:
+                    return
+
+    for _ in range(threads):
+        threading.Thread(target=work, daemon=True).start()
+    for requests in lines.batches():
+        for request in requests:
+            waiting.put(request)
 
 
 def _own_modules():

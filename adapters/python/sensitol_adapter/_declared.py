@@ -10,8 +10,8 @@ import sys
 _TRIED = "SENSITOL_ADAPTER_INTERPRETERS"
 
 
-class Declaration:
-    """A TOML or JSON file beside a document that says what of it are dimensions and characteristics.
+class Settings:
+    """A TOML or JSON file that says what an adapter is to do.
 
     Every fault is a `ValueError` that names the file and the key.
     """
@@ -23,13 +23,9 @@ class Declaration:
             self.table = json.loads(text) if self.path.suffix == ".json" else _toml(text)
         except ValueError as error:
             raise ValueError(f"{self.path}: {error}") from None
+        if not isinstance(self.table, dict):
+            raise ValueError(f"{self.path}: a table of keys is expected")
         self.check(self.table, keys, "the file")
-        document = self.table.get("document")
-        if not isinstance(document, str):
-            raise ValueError(f"{self.path}: `document` is missing: the file that this is about")
-        self.document = self.path.parent / document
-        if not self.document.is_file():
-            raise ValueError(f"{self.path}: there is no document {self.document}")
 
     def _text(self, path):
         try:
@@ -63,6 +59,19 @@ class Declaration:
     def fault(self, entry, text):
         """An error about one entry."""
         return ValueError(f"{self.path}: `{entry}`: {text}")
+
+
+class Declaration(Settings):
+    """A file beside a document that says what of it are dimensions and characteristics."""
+
+    def __init__(self, path, keys):
+        super().__init__(path, keys)
+        document = self.table.get("document")
+        if not isinstance(document, str):
+            raise ValueError(f"{self.path}: `document` is missing: the file that this is about")
+        self.document = self.path.parent / document
+        if not self.document.is_file():
+            raise ValueError(f"{self.path}: there is no document {self.document}")
 
 
 def _toml(text):

@@ -5,6 +5,7 @@ use std::ops::Range;
 /// A formula that cannot be read, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}")]
+#[non_exhaustive]
 pub struct FormulaError {
     /// Byte range in the formula's text.
     pub span: Range<usize>,
@@ -90,6 +91,12 @@ pub enum FormulaFault {
         /// The deepest that is read.
         limit: usize,
     },
+    /// A name that has to stand in backquotes.
+    #[error("{name} is one name, and reads as several here")]
+    NeedsBackquotes {
+        /// The name.
+        name: String,
+    },
     /// A name that nothing bears.
     #[error("nothing is named `{name}`")]
     UndefinedName {
@@ -130,6 +137,10 @@ impl FormulaFault {
             Self::BareFunction { name } => {
                 Some(format!("write `{name}(...)`; a dimension of this name has to be renamed"))
             }
+            Self::NeedsBackquotes { name } => Some(format!("write it in backquotes: `{name}`")),
+            Self::UndefinedName { nearest: Some(name), .. } if !is_plain(name) => {
+                Some(format!("did you mean {name}? Write it in backquotes: `{name}`"))
+            }
             Self::UndefinedName { nearest: name @ Some(_), .. } => nearest(name),
             Self::UndefinedName { .. } => Some(
                 "formulas know dimensions, constants, unknowns, other formulas and the model's outputs; \
@@ -142,9 +153,29 @@ impl FormulaFault {
     }
 }
 
+/// Whether a name can stand in a formula as it is.
+pub(crate) fn is_plain(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_alphabetic() || c == '_') && name.chars().all(|c| c.is_alphanumeric() || c == '_')
+}
+
+/// Characters of a formula that are shown in a message.
+const SHOWN: usize = 80;
+
+/// A part of a formula, without its middle where that is long.
+fn shown(part: &str) -> String {
+    let count = part.chars().count();
+    if count <= SHOWN {
+        return part.to_owned();
+    }
+    let head: String = part.chars().take(SHOWN / 2).collect();
+    let tail: String = part.chars().skip(count - SHOWN / 2).collect();
+    format!("{head} ... {tail}")
+}
+
 /// A formula that has no value at one point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("`{}` in formula `{name}`: {reason}", &.text[.span.clone()])]
+#[error("`{}` in formula `{name}`: {reason}", shown(&.text[.span.clone()]))]
+#[non_exhaustive]
 pub struct FormulaFailure {
     /// The name of the formula or characteristic.
     pub name: String,

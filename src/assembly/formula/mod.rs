@@ -29,6 +29,8 @@ mod set;
 mod slopes;
 mod switches;
 
+#[cfg(feature = "study")]
+pub(crate) use error::is_plain;
 pub use error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
 pub(crate) use functions::{Binary, Unary};
 pub use interval::Interval;

@@ -102,7 +102,7 @@ impl FormulaSet {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn with_unnamed<'n>(
+    pub(crate) fn with_unnamed<'n>(
         formulas: Vec<(String, Formula)>,
         named: usize,
         meanings: impl IntoIterator<Item = (&'n str, Meaning)>,
@@ -156,15 +156,6 @@ impl FormulaSet {
             }
         }
         used
-    }
-
-    /// The names of variables and constants that formula uses itself.
-    pub fn outside_names(&self, formula: usize) -> impl Iterator<Item = &str> {
-        let entry = &self.formulas[formula];
-        entry.references.iter().filter_map(|(&node, reference)| match (reference, &entry.formula.nodes[node].0) {
-            (Reference::Outside(_), Node::Name(name)) => Some(name.as_str()),
-            _ => None,
-        })
     }
 
     /// Evaluates some formulas on `rows` rows; `variable` gives a variable's column, `result` gets the position in

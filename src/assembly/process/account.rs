@@ -6,6 +6,7 @@ use super::error::{ProcessError, ProcessFault};
 
 /// Starts, failures and what they cost, since the model was made.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct EvaluatorAccount {
     /// Processes that were started, the first one of every worker included.
     pub starts: u64,

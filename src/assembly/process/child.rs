@@ -13,6 +13,7 @@ use process_wrap::std::{ChildWrapper, CommandWrap};
 
 use super::error::{Exit, ProcessFault, Quoted, StderrTail};
 use super::protocol::Line;
+use super::settings::Listener;
 
 /// The longest line that is read: a hundred thousand characteristics fit into it.
 pub(super) const LONGEST: usize = 16 << 20;
@@ -37,9 +38,6 @@ pub(super) enum What {
     Closed,
 }
 
-/// Hears every line that a child writes to stderr.
-pub type Listener = Arc<dyn Fn(&str) + Send + Sync>;
-
 pub(super) struct Child {
     pub(super) number: u64,
     /// Ends the child's group when this process is gone, however; None where it cannot be had.
@@ -52,6 +50,11 @@ pub(super) struct Child {
     closed: Option<Instant>,
     stderr: Arc<Mutex<VecDeque<String>>>,
     readers: Vec<JoinHandle<()>>,
+}
+
+/// A thread, where the system has one.
+fn thread<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> std::io::Result<JoinHandle<T>> {
+    std::thread::Builder::new().spawn(work)
 }
 
 impl Child {
@@ -82,19 +85,30 @@ impl Child {
         let (requests, lines) = channel::<Vec<u8>>();
         let mut stdin = process.stdin().take().expect("stdin is a pipe");
         // A child that never reads blocks this thread, and nobody else.
-        std::thread::spawn(move || {
+        let write = move || {
             for line in lines {
                 if stdin.write_all(&line).and_then(|()| stdin.flush()).is_err() {
                     break;
                 }
             }
-        });
+        };
         let stdout = process.stdout().take().expect("stdout is a pipe");
         let events = events.clone();
-        let out = std::thread::spawn(move || read(stdout, number, &events));
         let stderr = Arc::new(Mutex::new(VecDeque::new()));
         let (pipe, tail) = (process.stderr().take().expect("stderr is a pipe"), Arc::clone(&stderr));
-        let err = std::thread::spawn(move || listen(pipe, &tail, listener.as_ref()));
+        let streams = thread(write).and_then(|_| {
+            let out = thread(move || read(stdout, number, &events))?;
+            Ok(vec![out, thread(move || listen(pipe, &tail, listener.as_ref()))?])
+        });
+        let readers = match streams {
+            Ok(readers) => readers,
+            Err(error) => {
+                // The child reads the end of its input; nothing of it is waited for.
+                let _ = process.start_kill();
+                let reason = format!("there is no thread for its streams: {error}");
+                return Err(ProcessFault::NotStarted { program: program.clone(), reason });
+            }
+        };
         #[cfg(unix)]
         let guard = Guard::of(process.id());
         Ok(Self {
@@ -105,7 +119,7 @@ impl Child {
             requests: Some(requests),
             closed: None,
             stderr,
-            readers: vec![out, err],
+            readers,
         })
     }
 

@@ -6,6 +6,7 @@ use std::time::Duration;
 /// Why a process gave no value. Each names what was seen, and quotes the last lines that it wrote to stderr.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}{stderr}")]
+#[non_exhaustive]
 pub struct ProcessError {
     /// What went wrong.
     pub fault: ProcessFault,
@@ -162,6 +163,7 @@ impl fmt::Display for Exit {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Quoted(pub String);
 
+#[cfg(feature = "process")]
 impl Quoted {
     /// As many characters as an error message bears.
     const LENGTH: usize = 120;

@@ -3,16 +3,16 @@
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use super::Settings;
 use super::account::EvaluatorAccount;
 use super::batch::Batch;
 use super::child::{Child, Event, What};
 use super::error::{ProcessError, ProcessFault, Quoted, StderrTail};
-use super::protocol::{Adapter, Hello, Line, VERSION, request};
+use super::protocol::{Hello, Line, VERSION, request};
 use super::sentinel::{Reference, SENTINEL, interval, values};
+use super::settings::Settings;
 use super::suspicion::Answers;
 use super::worker::{Sent, Worker};
-use crate::assembly::{Points, Responses, Run};
+use crate::assembly::{ModelInfo, Points, Responses, Run};
 
 /// How often a stop is looked for.
 const TICK: Duration = Duration::from_millis(50);
@@ -39,7 +39,7 @@ pub(super) struct Pool {
     next_point: u64,
     /// Starts in a row that failed.
     failed_starts: u32,
-    adapter: Option<Adapter>,
+    adapter: Option<ModelInfo>,
     pub(super) reference: Reference,
     pub(super) account: EvaluatorAccount,
     /// Answers so far, of which some are replayed.
@@ -105,7 +105,7 @@ impl Pool {
     }
 
     /// Starts one child and waits until it is ready: whether the model can be used at all.
-    pub(super) fn prepare(&mut self) -> Result<&Adapter, ProcessError> {
+    pub(super) fn prepare(&mut self) -> Result<&ModelInfo, ProcessError> {
         while self.adapter.is_none() {
             if matches!(self.slots[0].state, State::Empty | State::Pausing(_)) {
                 self.start(0)?;
@@ -373,7 +373,7 @@ impl Pool {
                         other => other.to_string(),
                     });
                     let window = line.window.unwrap_or(1).max(1);
-                    self.adapter = Some(Adapter { name, version, window });
+                    self.adapter = Some(ModelInfo { name, version, window });
                     self.failed_starts = 0;
                     let slot = &mut self.slots[index];
                     if let Some(lost) = slot.lost.take() {
@@ -486,9 +486,9 @@ impl Pool {
             let troubled = values.contains(&None);
             if is_nominal && !self.walking {
                 // The study's own evaluation of the nominal point is the first sentinel.
-                let doubts =
+                let non_repeatable =
                     self.reference.check(values, &self.hello.characteristics, &batch.coordinates(&worker.unchecked));
-                batch.out.doubt(doubts);
+                batch.out.note_non_repeatable(non_repeatable);
             }
             let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
             if self.settings.sentinels && !self.walking && !is_nominal && !again {
@@ -522,8 +522,8 @@ impl Pool {
         let last = !worker.under_way.iter().any(|sent| sent.row == SENTINEL);
         let rows = worker.unchecked.clone();
         let suspects = batch.as_ref().map(|batch| batch.coordinates(&rows)).unwrap_or_default();
-        let doubts = self.reference.check(found, &self.hello.characteristics, &suspects);
-        if doubts.is_empty() {
+        let non_repeatable = self.reference.check(found, &self.hello.characteristics, &suspects);
+        if non_repeatable.is_empty() {
             if last {
                 worker.troubled = false;
                 worker.unchecked.clear();
@@ -532,7 +532,7 @@ impl Pool {
         }
         worker.child.kill();
         if let Some(batch) = batch {
-            batch.out.doubt(doubts);
+            batch.out.note_non_repeatable(non_repeatable);
             batch.distrust(&rows);
         }
         self.pause(index);

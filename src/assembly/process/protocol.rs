@@ -119,17 +119,6 @@ impl Line {
     }
 }
 
-/// What a child says of itself when it is ready.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Adapter {
-    /// Its name.
-    pub name: Option<String>,
-    /// Its version.
-    pub version: Option<String>,
-    /// Points that may be under way in one child.
-    pub window: usize,
-}
-
 impl Hello {
     pub(super) fn line(&self) -> Vec<u8> {
         let mut line = serde_json::to_vec(self).expect("names and numbers are JSON");

@@ -9,8 +9,7 @@ use super::error::{ProcessError, ProcessFault, StderrTail};
 use super::pool::Pool;
 use super::sentinel::agree;
 use super::suspicion::moved;
-use crate::assembly::process::Doubt;
-use crate::assembly::{EvaluationError, Points, Responses, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
 
 /// Equal steps of a walk.
 const STEPS: usize = 3;
@@ -210,7 +209,7 @@ impl Pool {
             }
             let spread = self.reference.spread(output);
             let name = self.hello.characteristics[output].clone();
-            out.doubt([Doubt { output: name, expected: second, found: first, spread, suspects: vec![point.to_vec()] }]);
+            out.note_non_repeatable([NonRepeatable::new(name, [second, first], spread, vec![point.to_vec()])]);
             match second.filter(|_| self.alike_at(output, second, third)) {
                 Some(value) => out.set(row, output, value),
                 None => {

@@ -1,6 +1,7 @@
 //! Whether a model still answers as it did: the nominal point, evaluated again.
 
 use super::protocol::Line;
+use crate::assembly::NonRepeatable;
 
 /// In place of a row: the point is the nominal one, evaluated again.
 pub(super) const SENTINEL: usize = usize::MAX;
@@ -11,21 +12,6 @@ const POINTS: usize = 50;
 const NOISE: f64 = 1e-7;
 /// and this part of themselves.
 const ROUNDING: f64 = 1e-12;
-
-/// A child answered the nominal point otherwise than before.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Doubt {
-    /// The output.
-    pub output: String,
-    /// What it was at first; None where it had no value.
-    pub expected: Option<f64>,
-    /// What it is now.
-    pub found: Option<f64>,
-    /// How far the output has been seen to vary.
-    pub spread: f64,
-    /// The points that the child had answered since it was last right; they are evaluated again.
-    pub suspects: Vec<Vec<f64>>,
-}
 
 /// What is known of the nominal point, and of how far answers vary.
 #[derive(Debug, Default)]
@@ -78,14 +64,19 @@ impl Reference {
     }
 
     /// The first answer to the nominal point is what later ones are held against: whether this one is like it.
-    pub(super) fn check(&mut self, found: Vec<Option<f64>>, names: &[String], suspects: &[Vec<f64>]) -> Vec<Doubt> {
+    pub(super) fn check(
+        &mut self,
+        found: Vec<Option<f64>>,
+        names: &[String],
+        suspects: &[Vec<f64>],
+    ) -> Vec<NonRepeatable> {
         let Some(nominal) = &self.nominal else {
             self.nominal = Some(found);
             return Vec::new();
         };
         let doubt = |(output, (&expected, found)): (usize, (&Option<f64>, Option<f64>))| {
             let spread = self.spread(output);
-            (!agree(expected, found, spread, 0.0)).then(|| Doubt {
+            (!agree(expected, found, spread, 0.0)).then(|| NonRepeatable {
                 output: names[output].clone(),
                 expected,
                 found,

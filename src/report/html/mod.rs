@@ -4,22 +4,10 @@
 //! numbers alone, and data for the page's script stand in a block of JSON in which no `<` is left. What may run is told to the
 //! browser by a content-security policy: this script and this style, known by their hashes, and nothing else.
 
-mod allocated;
 mod analysis;
-mod chart;
-mod comparison;
-mod rare;
-mod sampled;
-mod swept;
-mod warned;
 mod what_if;
 
-pub use allocated::allocate_html;
 pub use analysis::analyze_html;
-pub use comparison::compare_html;
-pub use rare::rare_html;
-pub use sampled::simulate_html;
-pub use swept::sweep_html;
 pub use what_if::{Line, WhatIf};
 
 use minijinja::syntax::SyntaxConfig;
@@ -28,24 +16,19 @@ use minijinja::{Environment, UndefinedBehavior, Value};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use super::{Head, WarningReport};
+use super::head::findings;
+use super::{AllocationReport, CompareReport, Head, RareReport, SimulationReport, SweepReport, WarningReport};
+use crate::document::Document;
+use crate::document::html::{blocks, head as summary, sections};
+use crate::document::number::significant;
 use crate::summary::RunSummary;
-use warned::Warned;
 
 const STYLE: &str = include_str!("page.css");
 /// The mathematics of the what-if, and then what shows it.
 const SCRIPT: &str =
     concat!(include_str!("what_if.js"), include_str!("pearson.js"), include_str!("live.js"), include_str!("page.js"));
-const TEMPLATES: [(&str, &str); 8] = [
-    ("parts.html", include_str!("parts.html")),
-    ("page.html", include_str!("page.html")),
-    ("analysis.html", include_str!("analysis.html")),
-    ("simulation.html", include_str!("simulation.html")),
-    ("rare.html", include_str!("rare.html")),
-    ("comparison.html", include_str!("comparison.html")),
-    ("allocation.html", include_str!("allocation.html")),
-    ("sweep.html", include_str!("sweep.html")),
-];
+const TEMPLATES: [(&str, &str); 2] =
+    [("page.html", include_str!("page.html")), ("what_if.html", include_str!("what_if.html"))];
 
 /// What every page begins with, and the page's own content.
 #[derive(Serialize)]
@@ -59,8 +42,11 @@ struct Page<'p, T: Serialize> {
     /// JSON for the script, without any `<`.
     data: String,
     facts: Vec<Fact>,
-    /// Warnings of no characteristic in particular.
-    warnings: Vec<Warned<'p>>,
+    /// What is said before everything else, then of each thing, and warnings of no characteristic in particular; all of it markup.
+    head: String,
+    sections: String,
+    warnings: String,
+    /// What a template adds.
     of: T,
 }
 
@@ -77,7 +63,7 @@ fn fact(name: &'static str, text: impl Into<String>) -> Fact {
 
 /// The facts that every report ends with.
 fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
-    let seconds = |time: std::time::Duration| format!("{} s", super::number::significant(time.as_secs_f64(), 3));
+    let seconds = |time: std::time::Duration| format!("{} s", significant(time.as_secs_f64(), 3));
     let mut facts = vec![fact("known answers", run.cached.to_string())];
     if run.retried > 0 {
         facts.push(fact("sent again", run.retried.to_string()));
@@ -92,12 +78,50 @@ fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
     facts
 }
 
+/// A simulation as one page of HTML: every estimate with its standard error, the histogram with the error of every bar.
+pub fn simulate_html(report: &SimulationReport) -> String {
+    page(&report.head, &report.run, &report.document(), &report.warnings)
+}
+
+/// Rare events as one page of HTML: every probability with its interval, and the assembly in which it most likely comes about.
+pub fn rare_html(report: &RareReport) -> String {
+    page(&report.head, &report.run, &report.document(), &report.warnings)
+}
+
+/// A comparison as one page of HTML: evaluations against error, and a table for every characteristic.
+pub fn compare_html(report: &CompareReport) -> String {
+    page(&report.head, &report.run, &report.document(), &[])
+}
+
+/// A sweep as one page of HTML: mean and band over the parameter, and a table for every characteristic.
+pub fn sweep_html(report: &SweepReport) -> String {
+    page(&report.head, &report.run, &report.document(), &report.warnings)
+}
+
+/// An allocation as one page of HTML: what it saves first, then tolerances, costs and requirements before and after.
+pub fn allocate_html(report: &AllocationReport) -> String {
+    page(&report.head, &report.run, &report.document(), &report.warnings)
+}
+
+/// A page of a document.
+fn page(head: &Head, run: &RunSummary, document: &Document, warnings: &[WarningReport]) -> String {
+    let parts = [summary(document), sections(document)];
+    render("page.html", head, provenance(head, run), parts, others(document, warnings), None, ())
+}
+
+/// Warnings that stand in no section of their own, as markup.
+fn others(document: &Document, warnings: &[WarningReport]) -> String {
+    let told = |name: &str| document.sections.iter().any(|section| section.name == name);
+    blocks(&findings(warnings, |name| name.is_none_or(|name| !told(name))))
+}
+
 /// A page from its template.
 fn render<T: Serialize>(
     template: &str,
     head: &Head,
     facts: Vec<Fact>,
-    warnings: Vec<&WarningReport>,
+    [first, sections]: [String; 2],
+    warnings: String,
     data: Option<String>,
     of: T,
 ) -> String {
@@ -117,7 +141,9 @@ fn render<T: Serialize>(
         script,
         data: data.unwrap_or_default(),
         facts,
-        warnings: warnings.into_iter().map(Warned::of).collect(),
+        head: first,
+        sections,
+        warnings,
         of,
     };
     let mut environment = Environment::new();
@@ -129,11 +155,6 @@ fn render<T: Serialize>(
     }
     let template = environment.get_template(template).expect("the templates are part of the program");
     template.render(Value::from(Serde(&page))).expect("the templates fit what they are given")
-}
-
-/// A drawing as part of a page: what it names its own format by asks for nothing, and is left out all the same.
-fn inline(svg: &str) -> String {
-    svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1)
 }
 
 /// As a content-security policy names a script or style.

@@ -110,9 +110,10 @@ struct Pairs {
     a: Vec<f64>,
 }
 
-/// How far the interval of a yield reaches on either side.
+/// How far the interval of a yield reaches on either side of the Pearson fit, which is what the page computes: where the fit is off,
+/// both ends may lie on one side of it.
 fn reach(found: &CharacteristicAnalysis) -> Option<[f64; 2]> {
-    let (value, [low, high]) = found.capability?.yield_().zip(found.yield_interval().filter(|_| !found.unfinished))?;
+    let (value, [low, high]) = found.pearson?.yield_().zip(found.yield_interval().filter(|_| !found.unfinished))?;
     Some([value - low, high - value])
 }
 

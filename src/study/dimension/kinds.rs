@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::{DimensionEntry, DistributionEntry};
 use super::super::spanned::Spanned;
+use super::super::words::{KINDS, Kind, SIGMAS};
 use super::conflict;
 use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, shift, sigma, sigmas};
 use crate::dimension::DimensionFault;
@@ -17,51 +18,6 @@ use crate::names::nearest;
 
 /// A distribution from a dimension's entry, nominal value and tolerance.
 pub(super) type OfBand = fn(&DimensionEntry, f64, Option<[f64; 2]>) -> Result<Spread, Fault>;
-
-/// A kind of distribution by its name in study files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Normal,
-    TruncatedNormal,
-    Uniform,
-    Triangular,
-    Trapezoidal,
-    Beta,
-    Lognormal,
-    Gamma,
-    Weibull,
-    Exponential,
-    Rayleigh,
-    Mixture,
-    /// Told by the key `moments`, not by a name.
-    Moments,
-}
-
-/// Name, the parameters that a kind knows, and what to write instead of others.
-type Known = (&'static str, Kind, &'static [&'static str], &'static str);
-
-const NOTHING: &str = "it has no parameters of its own";
-const ORIGIN: &str = "it knows `origin`";
-const KINDS: [Known; 12] = [
-    ("normal", Kind::Normal, &[], NOTHING),
-    ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
-    ("uniform", Kind::Uniform, &[], NOTHING),
-    ("triangular", Kind::Triangular, &["mode"], "it knows `mode`"),
-    ("trapezoidal", Kind::Trapezoidal, &["top"], "it knows `top`"),
-    ("beta", Kind::Beta, &["alpha", "beta"], "it knows `alpha` and `beta`"),
-    ("lognormal", Kind::Lognormal, &["origin"], ORIGIN),
-    ("gamma", Kind::Gamma, &["origin"], ORIGIN),
-    ("weibull", Kind::Weibull, &["origin"], ORIGIN),
-    ("exponential", Kind::Exponential, &["origin"], ORIGIN),
-    ("rayleigh", Kind::Rayleigh, &["origin"], ORIGIN),
-    ("mixture", Kind::Mixture, &["parts"], "it knows `parts`"),
-];
-
-/// The names of all kinds, with the parameters that each knows.
-#[cfg(feature = "cli")]
-pub(in crate::study) fn kinds() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
-    KINDS.iter().map(|known| (known.0, known.2))
-}
 
 /// The distribution of this line; None when it does not vary.
 pub(super) fn distribution(
@@ -175,7 +131,7 @@ fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option
     let middle = nominal + offset;
     let distribution = match kind {
         Kind::TruncatedNormal => {
-            let per_band = per_band.map_or(super::spread::SIGMAS, |(_, _, sigmas)| sigmas);
+            let per_band = per_band.map_or(SIGMAS, |(_, _, sigmas)| sigmas);
             shared(TruncatedNormal::about(middle, half, shift(entry), half / per_band))
         }
         Kind::Triangular => shared(Triangular::about(middle, half, lean(entry, nominal, offset, half)?)),

@@ -7,6 +7,7 @@ use super::super::data::{Column, Data, DataFault, DataProblem};
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
 use super::super::spanned::Spanned;
+use super::super::words::MEASURED_MODELS;
 use crate::dimension::DimensionFault;
 use crate::distribution::{Distribution, DistributionError, Measured, PearsonLaw, Resample, outliers};
 use crate::names::nearest;
@@ -21,8 +22,6 @@ const SMALL: usize = 30;
 const RESOLUTION: f64 = 0.6;
 /// Lines and values that a warning names.
 const NAMED: usize = 5;
-/// What can be made of the values.
-pub(in crate::study) const MODELS: [&str; 2] = ["empirical", "pearson"];
 
 /// A law, and the column that it follows from.
 pub(super) struct Law {
@@ -107,8 +106,8 @@ fn is_pearson(entry: &DimensionEntry) -> Result<bool, Fault> {
         "empirical" => Ok(false),
         "pearson" => Ok(true),
         found => {
-            let nearest = nearest(found, MODELS).map(str::to_owned);
-            let known = MODELS.map(str::to_owned).to_vec();
+            let nearest = nearest(found, MEASURED_MODELS).map(str::to_owned);
+            let known = MEASURED_MODELS.map(str::to_owned).to_vec();
             let what = "model of measured values";
             Err(fault(model.span(), "model", StudyFault::UnknownWord { what, found: found.to_owned(), nearest, known }))
         }

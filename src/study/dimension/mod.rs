@@ -16,12 +16,6 @@ use super::file::{DimensionEntry, Entries};
 use super::spanned::Spanned;
 use super::values::NominalEntry;
 use crate::dimension::{Dimension, DimensionError};
-#[cfg(feature = "cli")]
-pub(super) use kinds::kinds;
-#[cfg(feature = "cli")]
-pub(super) use measured::MODELS;
-#[cfg(feature = "cli")]
-pub(super) use spread::SIGMAS;
 use spread::Spread;
 
 /// The distribution of this line; None when it does not vary. Parts of a mixture are such lines again.

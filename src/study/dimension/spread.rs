@@ -6,11 +6,10 @@ use std::sync::Arc;
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
 use super::super::spanned::Spanned;
+use super::super::words::SIGMAS;
 use super::conflict;
 use crate::distribution::Distribution;
 
-/// Sigmas within half a tolerance band, unless the study says otherwise.
-pub(in crate::study) const SIGMAS: f64 = 3.0;
 /// Two ways of giving sigma agree when they differ by no more than this.
 const AGREE: f64 = 1e-9;
 

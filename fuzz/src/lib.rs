@@ -1,0 +1,5 @@
+//! What no input may do: panic, hang, or break a promise. Each target is a function of bytes.
+
+mod targets;
+
+pub use targets::{TARGETS, Target};

@@ -1,0 +1,199 @@
+//! One function a surface. A broken promise is a panic.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use sensitol::assembly::formula::{Formula, FormulaSet, Jet, Meaning};
+use sensitol::fits::deviations;
+use sensitol::journal::Store;
+use sensitol::pearson::Pearson;
+use sensitol::{Options, Study, analyze};
+
+/// A surface and what is done to it.
+pub struct Target {
+    /// Its name, and that of its corpus.
+    pub name: &'static str,
+    /// What an input is given to.
+    pub run: fn(&[u8]),
+}
+
+/// All of them.
+pub const TARGETS: [Target; 9] = [
+    Target { name: "study_toml", run: study_toml },
+    Target { name: "study_json", run: study_json },
+    Target { name: "formula", run: formula },
+    Target { name: "measured_csv", run: measured_csv },
+    Target { name: "protocol", run: protocol },
+    Target { name: "journal", run: journal },
+    Target { name: "pearson", run: pearson },
+    Target { name: "fits", run: fits },
+    Target { name: "command_line", run: command_line },
+];
+
+fn text(bytes: &[u8]) -> Option<&str> {
+    std::str::from_utf8(bytes).ok()
+}
+
+/// Numbers from bytes, any eight of them one.
+fn numbers(bytes: &[u8]) -> Vec<f64> {
+    bytes.as_chunks::<8>().0.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect()
+}
+
+fn study_toml(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    read(Study::from_toml(text, "fuzz.toml"));
+}
+
+fn study_json(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    read(Study::from_json(text, "fuzz.json"));
+}
+
+/// A fault can be shown, with a place inside the text; a study that is read and small can be analysed.
+fn read(study: Result<Study, sensitol::StudyError>) {
+    match study {
+        Err(error) => {
+            for error in std::iter::once(&error).chain(&error.more) {
+                let _ = (error.to_string(), error.help(), error.line_column());
+                if let Some(span) = &error.span {
+                    assert!(span.end <= error.text.len() && error.text.get(span.clone()).is_some(), "{error:?}");
+                }
+            }
+        }
+        Ok(study) if study.files.is_empty() && study.problem.dimensions().len() <= 8 => {
+            let options = Options::from(sensitol::Method::SecondOrder);
+            if let Ok(analysis) = analyze(&study.problem, &options) {
+                for one in &analysis.characteristics {
+                    if let Some(moments) = &one.moments {
+                        assert!(moments.sigma >= 0.0, "{moments:?}");
+                    }
+                }
+            }
+        }
+        Ok(_) => {}
+    }
+}
+
+/// The value equals that of the derivatives' program, and lies in the interval over a box around the point.
+fn formula(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    let Ok(formula) = Formula::parse(text) else { return };
+    let names: Vec<String> = formula.names().map(|(name, _)| name.to_owned()).collect();
+    let mut known: Vec<&str> = names.iter().map(String::as_str).collect();
+    known.sort_unstable();
+    known.dedup();
+    let meanings: Vec<(&str, Meaning)> =
+        known.iter().enumerate().map(|(index, name)| (*name, Meaning::Variable(index))).collect();
+    let Ok(set) = FormulaSet::new(vec![("y".to_owned(), formula)], meanings) else { return };
+    let at = |index: usize| 0.25 + 1.75 * (index % 7) as f64;
+    let columns: Vec<[f64; 1]> = (0..known.len()).map(|index| [at(index)]).collect();
+    let mut value = f64::NAN;
+    set.evaluate(&[0], 1, |index| &columns[index], |_, _, found| value = found);
+    let jet = set.jets(&[0], |index| Jet::variable(at(index), [1.0, 0.0])).swap_remove(0);
+    let same = value == jet.value() || (value.is_nan() && jet.value().is_nan());
+    assert!(same, "{text}: {value} and {}", jet.value());
+    let region: Vec<[f64; 2]> = (0..known.len()).map(|index| [at(index) - 0.01, at(index) + 0.01]).collect();
+    let bounds = set.bounds(0, &region);
+    if value.is_finite() {
+        let held = bounds.value.lower() <= value && value <= bounds.value.upper();
+        assert!(held, "{text}: {value} outside {:?}", bounds.value);
+    }
+    let _ = set.explain(0, at);
+}
+
+fn measured_csv(bytes: &[u8]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("pin.csv"), bytes).expect("a file");
+    let study = "[dimensions]\na = { measured = \"pin.csv\" }\nb = { measured = \"pin.csv\", column = \"b\" }\n\
+                 [characteristics]\ny = { formula = \"a + b\" }\n";
+    let path = folder.path().join("study.toml");
+    std::fs::write(&path, study).expect("a file");
+    if let Err(error) = Study::read(&path) {
+        let _ = (error.to_string(), error.help());
+    }
+}
+
+/// A program that answers with these bytes, whatever it is asked.
+fn protocol(bytes: &[u8]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("answers"), bytes).expect("a file");
+    let study = "[dimensions]\na = { nominal = 1, tolerance = 0.1 }\n[characteristics]\ny = {}\n\
+                 [model]\ncommand = [\"cat\", \"answers\"]\ntimeout_s = 1\nstart_timeout_s = 1\n";
+    let path = folder.path().join("study.toml");
+    std::fs::write(&path, study).expect("a file");
+    let Ok(study) = Study::read(&path) else { return };
+    if let Err(error) = analyze(&study.problem, &Options::from(sensitol::Method::Rss)) {
+        let _ = error.to_string();
+    }
+}
+
+/// A file that is no journal is refused or read; it is never a panic, and never longer than before.
+fn journal(bytes: &[u8]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("answers.sensitol");
+    std::fs::write(&path, bytes).expect("a file");
+    let Ok(store) = Store::open_existing(&path) else { return };
+    for model in store.models().unwrap_or_default() {
+        let _ = store.answers(model.id);
+    }
+}
+
+/// The law rises, its quantiles invert it, and its two tails are one.
+fn pearson(bytes: &[u8]) {
+    let [skewness, kurtosis, x, p, ..] = numbers(bytes)[..] else { return };
+    let (skewness, kurtosis) = (skewness % 8.0, kurtosis % 80.0);
+    let Ok(law) = Pearson::new(0.0, 1.0, skewness, kurtosis) else { return };
+    let (x, p) = (x % 50.0, p.abs() % 1.0);
+    if !x.is_finite() || !(p > 1e-12 && p < 1.0 - 1e-12) {
+        return;
+    }
+    let (below, above) = (law.cdf(x), law.sf(x));
+    assert!((0.0..=1.0).contains(&below) && (0.0..=1.0).contains(&above), "{law:?} at {x}: {below} {above}");
+    assert!((below + above - 1.0).abs() < 1e-9, "{law:?} at {x}: {below} + {above}");
+    assert!(law.cdf(x + 0.5) >= below - 1e-13, "{law:?} falls after {x}");
+    let quantile = law.quantile(p);
+    assert!((law.cdf(quantile) - p).abs() < 1e-8, "{law:?}: quantile of {p} is {quantile}, {}", law.cdf(quantile));
+}
+
+fn fits(bytes: &[u8]) {
+    let Some((size, class)) = bytes.split_first_chunk::<8>() else { return };
+    let (size, Some(class)) = (f64::from_le_bytes(*size), text(class)) else { return };
+    match deviations(size, class) {
+        Ok([lower, upper]) => assert!(lower < upper && (upper - lower) < 10.0, "{size} {class}: {lower} {upper}"),
+        Err(error) => _ = (error.to_string(), error.help()),
+    }
+}
+
+/// Words of a command line, one a line; where they name the study as STUDY, it is there.
+fn command_line(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let study = folder.path().join("study.toml");
+    let written = "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\nb = { nominal = 9, tolerance = 0.2 }\n\
+                   [characteristics]\ngap = { formula = \"a - b + 0.1*a*b\", lower = 9, target_yield = 0.9 }\n\
+                   [costs]\na = { reciprocal = 1, bounds = [0.01, 1] }\n";
+    std::fs::write(&study, written).expect("a file");
+    let place = study.display().to_string();
+    let words: Vec<&str> = text.lines().filter(|word| harmless(word)).take(24).collect();
+    let [command, rest @ ..] = &words[..] else { return };
+    // Those that end by themselves and write nowhere but where they are told to.
+    if !["analyze", "simulate", "compare", "allocate", "plan", "check", "sweep", "pearson"].contains(command) {
+        return;
+    }
+    let mut all = vec!["sensitol".to_owned(), (*command).to_owned()];
+    all.extend(rest.iter().map(|word| word.replace("STUDY", &place)));
+    all.extend(["--color", "never"].map(str::to_owned));
+    if *command != "check" {
+        all.extend(["-o".to_owned(), folder.path().join("report").display().to_string()]);
+    }
+    let _: ExitCode = sensitol::cli::run(all.into_iter().map(Into::into));
+}
+
+/// No word that writes elsewhere, and no number that asks for hours.
+fn harmless(word: &str) -> bool {
+    let long = word.chars().filter(char::is_ascii_digit).count() > 4;
+    let file =
+        ["-o", "--out", "--csv", "--svg", "--html", "--write", "--journal"].iter().any(|flag| word.starts_with(flag));
+    let path = word.contains('/') && Path::new(word).parent().is_some_and(|parent| parent.components().count() > 0);
+    !(long || file || path)
+}

@@ -1,0 +1,209 @@
+//! What the law of a surface, and the interval of a yield, make of the room for a required yield.
+//!
+//! Trial tolerances are judged by four moments: fast, and not what is required. At a station the true room is known: the largest
+//! sigma at which the surface law, about its mean and with its shape, leaves just the share beyond the limits that may be rejected.
+//!
+//! ```text
+//! R(r)     = P(y < m + r (L - m)) + P(y > m + r (U - m))          limits moved to r times their distance from the mean m
+//! s_law    = sigma/r with R(r) = q                                 q: what may be rejected, less what is not known
+//! ln kappa = ln(s_law/s_Pearson) + sum_j g_j ln(T_j/T_j0)          g_j: how both change with a tolerance
+//! ```
+//!
+//! `kappa s_Pearson` has the value and the slopes of the law where the station is, so that what the rounds converge to is an optimum
+//! by the law. The slopes of tails come from the law itself ([`SurfaceLaw::tail_derivatives`]), and where a shape follows its
+//! tolerance in another way from differences along held contours. Source: N. M. Alexandrov, R. M. Lewis, "An overview of first-order
+//! model management for engineering optimization", Optimization and Engineering 2 (2001).
+
+use crate::characteristic::SpecLimits;
+use crate::law::{HeldTail, LawTail, SurfaceLaw};
+use crate::moments::Moments;
+
+/// What is not known may take all of what may be rejected but this part: then nothing more can be shown.
+const LEFT: f64 = 0.1;
+/// Farther than this from the station, in `ln T`, a slope is not followed.
+const FAR: f64 = 0.7;
+/// Steps in `ln T` of differences along held contours: their truncation is 1e-8, and so is the rounding of a law known to 1e-12.
+const STEP: f64 = 1e-4;
+/// A root of the share to this part of it.
+const NEAR: f64 = 1e-13;
+const STEPS: usize = 60;
+
+/// How a varying dimension follows its tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Follows {
+    /// About its mean, with its shape.
+    Similar,
+    /// In another way.
+    Otherwise,
+    /// Not at all, or without a part in the characteristic.
+    Still,
+}
+
+/// A characteristic about a station, at factors of the tolerances of all dimensions.
+pub(super) struct About<'r> {
+    pub(super) law: &'r SurfaceLaw,
+    pub(super) limits: SpecLimits,
+    /// How many dimensions there are.
+    pub(super) dimensions: usize,
+    /// The varying ones, in the order of the surface's parts.
+    pub(super) varying: Vec<(usize, Follows)>,
+    pub(super) moments: &'r dyn Fn(&[f64]) -> Option<Moments>,
+    pub(super) law_at: &'r dyn Fn(&[f64]) -> Option<SurfaceLaw>,
+    /// The room by four moments.
+    pub(super) room: &'r dyn Fn(&Moments) -> Option<f64>,
+}
+
+/// The room by the law in place of the room by four moments.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Correction {
+    /// `ln kappa` at the station.
+    ln: f64,
+    /// Its slopes by `ln T` of every dimension.
+    slopes: Vec<f64>,
+}
+
+impl Correction {
+    /// The room by four moments as it is.
+    pub(super) fn none(dimensions: usize) -> Self {
+        Self { ln: 0.0, slopes: vec![0.0; dimensions] }
+    }
+
+    /// What may be rejected where so much of the yield is not known.
+    pub(super) fn allowed(required: f64, reach: f64) -> f64 {
+        let rejected = 1.0 - required;
+        (rejected - reach).max(LEFT * rejected)
+    }
+
+    /// By what the room by four moments is multiplied at these factors of the tolerances.
+    pub(super) fn factor(&self, factors: &[f64]) -> f64 {
+        let along = |(slope, factor): (&f64, &f64)| match *slope {
+            0.0 => 0.0,
+            slope => slope * factor.ln().clamp(-FAR, FAR),
+        };
+        (self.ln + self.slopes.iter().zip(factors).map(along).sum::<f64>()).exp()
+    }
+
+    /// The slope of its logarithm by `ln T` of a dimension.
+    pub(super) fn slope(&self, dimension: usize, factors: &[f64]) -> f64 {
+        if factors[dimension].ln().abs() < FAR { self.slopes[dimension] } else { 0.0 }
+    }
+
+    /// At a station; None where the mean lies beyond a limit, or the law answers nothing.
+    pub(super) fn of(about: &About<'_>, rejected: f64) -> Option<Self> {
+        let About { law, limits, room, .. } = *about;
+        let n = about.dimensions;
+        let ones = vec![1.0; n];
+        let moments = (about.moments)(&ones)?;
+        let (mean, sigma) = (moments.mean(), moments.sigma());
+        let sides: Vec<(LawTail, f64, HeldTail)> = [
+            (LawTail::Lower, limits.lower().map(|lower| lower - mean)),
+            (LawTail::Upper, limits.upper().map(|upper| upper - mean)),
+        ]
+        .into_iter()
+        .filter_map(|(tail, distance)| Some((tail, distance?, law.hold(mean + distance?, tail))))
+        .collect();
+        let outside = |(tail, distance, _): &(LawTail, f64, HeldTail)| match tail {
+            LawTail::Lower => *distance >= 0.0,
+            LawTail::Upper => *distance <= 0.0,
+        };
+        if sides.is_empty() || sides.iter().any(outside) || sigma <= 0.0 {
+            return None;
+        }
+        let beyond = |law: &SurfaceLaw, mean: f64, r: f64| -> f64 {
+            sides.iter().map(|(_, distance, held)| held.tail(law, mean + r * distance).value).sum()
+        };
+        let fitted = room(&moments)?;
+        let r = root(&|r| beyond(law, mean, r), rejected, sigma / fitted)?;
+        // d R/d ln r: the density at both moved limits by how they move.
+        let density: f64 =
+            sides.iter().map(|(_, distance, _)| -law.density(mean + r * distance).value * r * distance.abs()).sum();
+        let mut slopes: Vec<f64> = vec![0.0; n];
+        let own: Vec<Option<Vec<f64>>> = (sides.iter())
+            .map(|(tail, distance, _)| {
+                let found = law.tail_derivatives(mean + r * distance, *tail)?;
+                Some(found.iter().map(|figure| figure.value).collect())
+            })
+            .collect();
+        let moving = about.varying.iter().enumerate().filter(|(_, (_, follows))| *follows != Follows::Still);
+        for (position, &(d, follows)) in moving {
+            let mut trial = ones.clone();
+            let mut at = |step: f64| {
+                trial[d] = step.exp();
+                let moments = (about.moments)(&trial)?;
+                let room = room(&moments)?;
+                Some((moments, room, trial.clone()))
+            };
+            let (Some((up, room_up, more)), Some((down, room_down, less))) = (at(STEP), at(-STEP)) else { continue };
+            let slope = |up: f64, down: f64| (up - down) / (2.0 * STEP);
+            let by_mean = slope(up.mean(), down.mean());
+            let exact = (follows == Follows::Similar).then(|| {
+                let each = sides.iter().zip(&own).map(|((tail, distance, _), own)| {
+                    // The limit moves with the mean, outward or inward.
+                    let sign = if *tail == LawTail::Lower { 1.0 } else { -1.0 };
+                    let moved = sign * law.density(mean + r * distance).value * (1.0 - r) * by_mean;
+                    let own = own.as_ref()?.get(position)?;
+                    Some(own + moved)
+                });
+                each.sum::<Option<f64>>()
+            });
+            let by_law: Option<f64> = exact.flatten().filter(|slope: &f64| slope.is_finite()).or_else(|| {
+                let (more, less) = ((about.law_at)(&more)?, (about.law_at)(&less)?);
+                // The distance of a limit from the mean changes with the mean.
+                let at = |law: &SurfaceLaw, mean_here: f64| -> f64 {
+                    let moved = mean_here - mean;
+                    sides
+                        .iter()
+                        .map(|(_, distance, held)| held.tail(law, mean_here + r * (distance - moved)).value)
+                        .sum()
+                };
+                Some(slope(at(&more, up.mean()), at(&less, down.mean())))
+            });
+            let Some(by_law) = by_law.filter(|_| density < 0.0) else { continue };
+            let by_sigma = slope(up.sigma().ln(), down.sigma().ln());
+            // ln s = ln sigma - ln r, and r answers a change of the share at fixed r.
+            slopes[d] = by_sigma + by_law / density - slope(room_up.ln(), room_down.ln());
+        }
+        let ln = (sigma / r / fitted).ln();
+        (ln.is_finite() && slopes.iter().all(|slope: &f64| slope.is_finite())).then_some(Self { ln, slopes })
+    }
+}
+
+/// Where a decreasing share is `rejected`, near `start`.
+fn root(share: &dyn Fn(f64) -> f64, rejected: f64, start: f64) -> Option<f64> {
+    let gap = |ln: f64| (share(ln.exp()).max(f64::MIN_POSITIVE) / rejected).ln();
+    let (mut low, mut high) = (start.ln(), start.ln());
+    let (mut at_low, mut at_high) = (gap(low), gap(low));
+    for _ in 0..STEPS {
+        match (at_low >= 0.0, at_high <= 0.0) {
+            (true, true) => break,
+            (false, _) => (low, at_low) = (low - 0.1, gap(low - 0.1)),
+            (_, false) => (high, at_high) = (high + 0.1, gap(high + 0.1)),
+        }
+    }
+    if !(at_low >= 0.0 && at_high <= 0.0) {
+        return None;
+    }
+    let mut side = 0;
+    for _ in 0..STEPS {
+        if at_low == 0.0 || high - low < NEAR {
+            break;
+        }
+        // Regula falsi with the Illinois rule.
+        let secant = low + (high - low) * at_low / (at_low - at_high);
+        let middle = if secant > low && secant < high { secant } else { 0.5 * (low + high) };
+        let at = gap(middle);
+        if at.abs() < NEAR {
+            return Some(middle.exp());
+        }
+        if at > 0.0 {
+            (low, at_low) = (middle, at);
+            at_high *= if side == 1 { 0.5 } else { 1.0 };
+            side = 1;
+        } else {
+            (high, at_high) = (middle, at);
+            at_low *= if side == -1 { 0.5 } else { 1.0 };
+            side = -1;
+        }
+    }
+    Some((0.5 * (low + high)).exp())
+}

@@ -1,0 +1,232 @@
+//! The law of a characteristic's surface: the shares beyond its limits, and its quantiles.
+
+use std::sync::Arc;
+
+use super::counted::counted;
+use crate::capability::{Law, TAIL};
+use crate::correlation::Correlation;
+use crate::distribution::{Distribution, Normal};
+use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, SurfaceLaw};
+use crate::method::Outcome;
+use crate::moments::Interactions;
+use crate::problem::Problem;
+use crate::surrogate::{Surrogate, Univariate};
+
+/// The probabilities of the quantiles of reports, lowest first, each by the tail that it leaves.
+pub const QUANTILES: [(LawTail, f64); 7] = [
+    (LawTail::Lower, TAIL),
+    (LawTail::Lower, 0.01),
+    (LawTail::Lower, 0.05),
+    (LawTail::Lower, 0.5),
+    (LawTail::Upper, 0.05),
+    (LawTail::Upper, 0.01),
+    (LawTail::Upper, TAIL),
+];
+/// Where the outer two and the median stand among them.
+const OUTER: [usize; 3] = [0, 3, 6];
+
+/// Variance that a surface leaves out, by its own: below this part it moves no probability by more than 1e-10.
+const IDLE: f64 = 1e-10;
+/// Points of a limit in the sampled branch,
+const POINTS: usize = 1 << 12;
+/// and terms of the surface, from which on there are fewer.
+const TERMS: usize = 1 << 10;
+const FEWEST: usize = 1 << 9;
+/// Measured values of one input from which on every point of a contour is a long sum: the surface is counted at points instead.
+const ATOMS: usize = 64;
+/// A quantile is found within this part of sigma,
+const NEAR: f64 = 1e-7;
+/// in so many steps from the quantile of the Pearson fit, or by the law's own search.
+const STEPS: usize = 8;
+
+/// What the law of a surface says of a characteristic.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceShares {
+    /// How the law is computed.
+    pub branch: Branch,
+    /// The share below the lower limit; None without one.
+    pub below: Option<LawFigure>,
+    /// The share above the upper limit; None without one.
+    pub above: Option<LawFigure>,
+    /// At the probabilities of [`QUANTILES`]; None where the law could only be counted at points.
+    pub quantiles: Option<[LawFigure; 7]>,
+}
+
+impl SurfaceShares {
+    /// None where the moments do not follow from a surface, or nothing but moments is known of an input. Quantiles are sought from
+    /// those of `fit`. With the law itself, where it answers.
+    ///
+    /// A variance that the surface leaves out is a normal input beside it; not in the shares where a sample of the model is `beside`,
+    /// which knows what is left out.
+    pub(super) fn of(
+        problem: &Problem,
+        outcome: &Outcome,
+        c: usize,
+        fit: Option<&Law>,
+        beside: bool,
+    ) -> Option<(Self, Option<SurfaceLaw>)> {
+        let fitted = &outcome.fitted[c];
+        if fitted.integrated.is_some() {
+            return None;
+        }
+        let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+        let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
+        let measured = inputs.iter().filter_map(|law| law.probability());
+        if measured.map(|law| law.atoms().len()).any(|atoms| atoms > ATOMS) {
+            return Some((Self::counted(problem, outcome, c)?, None));
+        }
+        let correlation = outcome.plan.inputs().correlation();
+        let points = points(&surrogate);
+        let whole = match law(&surrogate, &inputs, correlation, points) {
+            Ok(law) => law,
+            Err(LawError::NoVariance | LawError::NoEigenvalues) => {
+                return Some((Self::counted(problem, outcome, c)?, None));
+            }
+            Err(_) => return None,
+        };
+        let limits = problem.characteristics()[c].limits();
+        let (below, above) = (limits.lower().map(|y| whole.below(y)), limits.upper().map(|y| whole.above(y)));
+        let known = |figure: &LawFigure| figure.value.is_finite() && figure.error.is_finite();
+        if ![below, above].iter().flatten().all(known) {
+            return Some((Self::counted(problem, outcome, c)?, None));
+        }
+        let full = match unexplained.filter(|_| beside) {
+            Some(_) => {
+                let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
+                law(&surrogate, &inputs, correlation, points).ok()
+            }
+            None => None,
+        };
+        let quantiles = quantiles(full.as_ref().unwrap_or(&whole), fit);
+        Some((Self { branch: whole.branch(), below, above, quantiles }, Some(whole)))
+    }
+
+    fn counted(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Self> {
+        let [below, above] = counted(problem, outcome, c)?;
+        Some(Self { branch: Branch::Sampled, below, above, quantiles: None })
+    }
+
+    /// The numerical error of the share within the limits.
+    pub fn error(&self) -> f64 {
+        [self.below, self.above].iter().flatten().map(|figure| figure.error).fold(0.0, f64::hypot)
+    }
+
+    /// The share beyond the limits; None without any.
+    pub fn rejected(&self) -> Option<f64> {
+        let beyond = [self.below, self.above];
+        beyond.iter().any(Option::is_some).then(|| beyond.iter().flatten().map(|figure| figure.value).sum::<f64>())
+    }
+
+    /// The share within the limits; None without any.
+    pub fn yield_(&self) -> Option<f64> {
+        self.rejected().map(|rejected| 1.0 - rejected)
+    }
+
+    /// The lower, the middle and the upper quantile by which a process is judged.
+    pub(super) fn capability_quantiles(&self) -> Option<[f64; 3]> {
+        self.quantiles.map(|all| OUTER.map(|index| all[index].value))
+    }
+}
+
+/// The law of a characteristic's surface itself; None where there is no surface, or nothing but moments is known of an input.
+pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
+    let (surrogate, inputs) = surface(problem, outcome, c, None)?;
+    Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation()))
+}
+
+/// The law of a surface over these inputs, with as many points as reports take.
+pub(crate) fn law_over(
+    surrogate: &Surrogate,
+    inputs: &[Arc<dyn Distribution>],
+    correlation: Option<&Correlation>,
+) -> Result<SurfaceLaw, LawError> {
+    law(surrogate, inputs, correlation, points(surrogate))
+}
+
+/// A surface and the distributions of its inputs, beside a variance that it leaves out.
+fn surface(
+    problem: &Problem,
+    outcome: &Outcome,
+    c: usize,
+    unexplained: Option<f64>,
+) -> Option<(Surrogate, Vec<Arc<dyn Distribution>>)> {
+    let inputs = outcome.plan.varying().iter().map(|&d| problem.dimensions()[d].law().cloned());
+    Some(with(outcome.fitted[c].surrogate.as_ref()?, inputs.collect::<Option<_>>()?, unexplained))
+}
+
+fn points(surrogate: &Surrogate) -> usize {
+    let terms = surrogate.parts.len() + surrogate.interactions.pairs().len();
+    (POINTS * TERMS / terms.max(TERMS)).max(FEWEST)
+}
+
+/// The surface beside what it leaves out, as a normal input of its own.
+fn with(
+    own: &Surrogate,
+    mut inputs: Vec<Arc<dyn Distribution>>,
+    unexplained: Option<f64>,
+) -> (Surrogate, Vec<Arc<dyn Distribution>>) {
+    let mut surrogate = own.clone();
+    let least = IDLE * own.parts.iter().flatten().map(|part| part.largest().powi(2)).sum::<f64>();
+    let normal = Normal::new(0.0, 1.0).ok();
+    if let (Some(variance), Some(normal)) = (unexplained.filter(|&variance| variance > least), normal) {
+        inputs.push(Arc::new(normal));
+        surrogate.parts.push(Some(Univariate::of_coefficients(&[variance.sqrt()])));
+        surrogate.interactions = Interactions::of_pairs(inputs.len(), own.interactions.pairs());
+    }
+    (surrogate, inputs)
+}
+
+fn law(
+    surrogate: &Surrogate,
+    inputs: &[Arc<dyn Distribution>],
+    correlation: Option<&Correlation>,
+    points: usize,
+) -> Result<SurfaceLaw, LawError> {
+    SurfaceLaw::of(surrogate, inputs, correlation, &LawOptions { points, ..LawOptions::default() })
+}
+
+/// All quantiles of reports; None where one of them is unknown.
+fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
+    let mut found = [LawFigure { value: f64::NAN, error: f64::INFINITY, proven: false }; 7];
+    for (figure, (tail, p)) in found.iter_mut().zip(QUANTILES) {
+        let start = fit.map(|fit| match tail {
+            LawTail::Lower => fit.quantile(p),
+            LawTail::Upper => fit.upper_quantile(p),
+        });
+        *figure = quantile(law, tail, p, start);
+        if !figure.value.is_finite() {
+            return None;
+        }
+    }
+    Some(found)
+}
+
+/// By secants of the logarithm of the tail from a place that is nearly right, which takes three or four limits.
+fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64, start: Option<f64>) -> LawFigure {
+    let sigma = law.sigma();
+    let own = || law.quantile(tail, p);
+    let Some(start) = start.filter(|_| sigma > 0.0 && !law.is_step_function()) else { return own() };
+    let outward = if tail == LawTail::Upper { 1.0 } else { -1.0 };
+    let gap = |y: f64| {
+        let figure = law.tail(y, tail);
+        (libm::log(figure.value / p), figure.error / figure.value)
+    };
+    let mut last = (start, gap(start).0);
+    // Of a normal law half a sigma of its own tail: a step that need only be of the right size.
+    let mut at = start + outward * sigma * last.1.clamp(-1.0, 1.0) * 0.3;
+    for _ in 0..STEPS {
+        let (here, error) = gap(at);
+        let slope = (here - last.1) / (at - last.0);
+        let step = -here / slope;
+        if here == 0.0 || (slope * outward < 0.0 && step.abs() <= NEAR * sigma) {
+            let by = if here == 0.0 { 0.0 } else { step };
+            return LawFigure { value: at + by, error: (error / slope.abs()).max(NEAR * sigma), proven: false };
+        }
+        if !(slope * outward < 0.0 && step.abs() < sigma) {
+            return own();
+        }
+        last = (at, here);
+        at += step;
+    }
+    own()
+}

@@ -1,0 +1,30 @@
+//! What a yield may come from.
+
+use serde::Serialize;
+
+/// What a yield comes from, best first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum YieldSource {
+    /// It is proven.
+    Proof,
+    /// Points of the model itself.
+    Samples,
+    /// The law of the fitted surface.
+    SurfaceLaw,
+    /// The Pearson distribution with the four moments.
+    Pearson,
+}
+
+impl YieldSource {
+    /// In a sentence.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Proof => "proof",
+            Self::Samples => "points of the model",
+            Self::SurfaceLaw => "the surface law",
+            Self::Pearson => "the Pearson fit",
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! What an assembly function says of itself, and what was seen of its answers: the same for every kind of function.
+
+/// What an external model says of itself when it is ready.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct ModelInfo {
+    /// Its name.
+    pub name: Option<String>,
+    /// Its version.
+    pub version: Option<String>,
+    /// Points that may be under way in it at once.
+    pub window: usize,
+}
+
+impl ModelInfo {
+    /// A model that takes so many points at once, without name and version.
+    pub fn of_window(window: usize) -> Self {
+        Self { window, ..Self::default() }
+    }
+
+    /// The same, with a name.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self { name: Some(name.into()), ..self }
+    }
+
+    /// The same, with a version.
+    #[must_use]
+    pub fn version(self, version: impl Into<String>) -> Self {
+        Self { version: Some(version.into()), ..self }
+    }
+}
+
+/// A model answered one point otherwise than before: the nominal point, or one that was asked again to see whether it repeats.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct NonRepeatable {
+    /// The output.
+    pub output: String,
+    /// What it was at first; None where it had no value.
+    pub expected: Option<f64>,
+    /// What it is now.
+    pub found: Option<f64>,
+    /// How far the output has been seen to vary.
+    pub spread: f64,
+    /// The points whose answers are not trusted for that.
+    pub suspects: Vec<Vec<f64>>,
+}
+
+impl NonRepeatable {
+    /// An output that varies by `spread` was `expected` and is now `found`, so that the answers at `suspects` are not trusted.
+    pub fn new(
+        output: impl Into<String>,
+        [expected, found]: [Option<f64>; 2],
+        spread: f64,
+        suspects: Vec<Vec<f64>>,
+    ) -> Self {
+        Self { output: output.into(), expected, found, spread, suspects }
+    }
+}

@@ -1,0 +1,109 @@
+//! The external program as assembly function.
+
+use std::sync::{Mutex, PoisonError};
+
+use super::account::EvaluatorAccount;
+use super::error::ProcessError;
+use super::pool::Pool;
+use super::protocol::{Hello, VERSION};
+use super::settings::{Greeting, Settings};
+use crate::assembly::{Ask, AssemblyFunction, EvaluationError, ModelInfo, Responses, Run, Signature};
+
+/// An external program as assembly function.
+///
+/// Evaluations: one for each point, and one more for each time that it is tried again. Children start with the first
+/// point or with [`prepare`](AssemblyFunction::prepare), and end with this value.
+pub struct Process {
+    signature: Signature,
+    settings: Settings,
+    greeting: Greeting,
+    pool: Mutex<Option<Pool>>,
+}
+
+impl Process {
+    /// A program that is asked for the outputs of `signature` at points of its inputs.
+    ///
+    /// # Panics
+    /// When `argv` is empty, or there are not as many nominal values as inputs.
+    pub fn new(signature: Signature, greeting: Greeting, settings: Settings) -> Self {
+        assert!(!settings.argv.is_empty(), "a program has a name");
+        assert_eq!(signature.inputs.len(), greeting.nominal.len(), "every dimension has a nominal value");
+        let signature = Signature { costly: true, ..signature };
+        Self { signature, settings, greeting, pool: Mutex::new(None) }
+    }
+
+    /// What the program says of itself; starts it if need be.
+    ///
+    /// # Errors
+    /// When it does not start, or does not serve the study.
+    pub fn adapter(&self, outputs: &[usize]) -> Result<ModelInfo, ProcessError> {
+        self.with_pool(outputs, |pool| pool.prepare().cloned())
+    }
+
+    /// What became of its processes so far: nothing where none was started.
+    pub fn account(&self) -> EvaluatorAccount {
+        let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.as_ref().map(|pool| pool.account.clone()).unwrap_or_default()
+    }
+
+    /// How it is run.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What its first line says beside names.
+    pub fn greeting(&self) -> &Greeting {
+        &self.greeting
+    }
+
+    fn with_pool<T>(&self, outputs: &[usize], act: impl FnOnce(&mut Pool) -> T) -> T {
+        let names: Vec<String> = outputs.iter().map(|&output| self.signature.outputs[output].name.clone()).collect();
+        let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        // Children are told once what they are asked for; another question takes others.
+        if pool.as_ref().is_none_or(|pool| !pool.asks(&names)) {
+            let account = pool.take().map(|pool| pool.account.clone()).unwrap_or_default();
+            let mut fresh = Pool::new(self.settings.clone(), self.hello(names));
+            fresh.account = account;
+            *pool = Some(fresh);
+        }
+        act(pool.as_mut().expect("it was just made"))
+    }
+
+    fn hello(&self, characteristics: Vec<String>) -> Hello {
+        let value = |value: f64| serde_json::Number::from_f64(value).map_or(serde_json::Value::Null, Into::into);
+        Hello {
+            sensitol: VERSION,
+            dimensions: self.signature.inputs.iter().map(|input| input.name.clone()).collect(),
+            units: self.signature.inputs.iter().map(|input| input.unit.clone()).collect(),
+            nominal: self.greeting.nominal.clone(),
+            constants: self.greeting.constants.iter().map(|(name, number)| (name.clone(), value(*number))).collect(),
+            characteristics,
+            optional: self.greeting.optional.clone(),
+        }
+    }
+}
+
+impl AssemblyFunction for Process {
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
+        self.adapter(outputs).map(Some).map_err(|error| Box::new(error).into())
+    }
+
+    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
+        self.with_pool(ask.outputs, |pool| {
+            pool.evaluate(ask.points, run, out);
+            if run.stopped() || run.abandoned() {
+                return;
+            }
+            if let Some(changed) = pool.confirm(ask.points, out, run)
+                && !changed.is_empty()
+            {
+                run.withdraw(&changed);
+                run.finished(&changed, out);
+            }
+        });
+    }
+}

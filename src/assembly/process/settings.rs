@@ -1,0 +1,60 @@
+//! How a program is run, and what it is told first.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Hears every line that a child writes to stderr.
+pub type Listener = Arc<dyn Fn(&str) + Send + Sync>;
+
+/// How a program is run.
+#[derive(Clone)]
+pub struct Settings {
+    /// The program and its arguments; never a shell line. A program with a folder in its name is looked for from `folder`.
+    pub argv: Vec<String>,
+    /// Its working folder.
+    pub folder: PathBuf,
+    /// Children side by side.
+    pub workers: usize,
+    /// How long the oldest point under way in a child may take.
+    pub timeout: Duration,
+    /// How long a child may take to say that it is ready.
+    pub start_timeout: Duration,
+    /// How often a point that failed is tried again.
+    pub retries: u32,
+    /// Whether the nominal point is evaluated again every so often, to see whether the model still answers as it did.
+    pub sentinels: bool,
+    /// How many answers are replayed in a fresh process, reached from the nominal point in small steps, to see whether they depend on
+    /// the points before them: by default 5 %, 5 at the least, and 2 more. 0 for none; only with `sentinels`.
+    pub verify: Option<usize>,
+    /// Hears every line that a child writes to stderr.
+    pub listener: Option<Listener>,
+}
+
+impl Settings {
+    /// One child in the current folder, a minute for each answer and for the start, one retry.
+    pub fn new(argv: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self {
+            argv: argv.into_iter().map(Into::into).collect(),
+            folder: PathBuf::from("."),
+            workers: 1,
+            timeout: Duration::from_secs(60),
+            start_timeout: Duration::from_secs(60),
+            retries: 1,
+            sentinels: true,
+            verify: None,
+            listener: None,
+        }
+    }
+}
+
+/// What the first line to a child says beside the names that are asked for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Greeting {
+    /// The nominal value of every dimension.
+    pub nominal: Vec<f64>,
+    /// Names and values of constants.
+    pub constants: Vec<(String, f64)>,
+    /// Dimensions and constants that the program need not know.
+    pub optional: Vec<String>,
+}

@@ -1,0 +1,177 @@
+//! Charts as data.
+
+use super::Line;
+use crate::pearson::Pearson;
+use crate::simulation::Histogram;
+
+/// A drawing.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Chart {
+    /// Values over others.
+    Plot(Plot),
+    /// How a value is distributed.
+    Spread(Box<Spread>),
+    /// Amounts beside one another.
+    Bars(Bars),
+}
+
+/// Amounts beside one another, on one scale from 0 to 100.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Bars {
+    /// What they show, for those who do not see them.
+    pub caption: String,
+    /// The bars.
+    pub rows: Vec<Bar>,
+    /// Places marked on every bar.
+    pub marks: Vec<f64>,
+    /// What the fills stand for.
+    pub legend: Vec<(Fill, &'static str)>,
+}
+
+/// A bar of several parts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bar {
+    /// What it belongs to.
+    pub name: String,
+    /// Its parts: fill, beginning and width.
+    pub parts: Vec<(Fill, [f64; 2])>,
+    /// The amount.
+    pub text: String,
+    /// What is to be said of it.
+    pub remark: Line,
+}
+
+/// How a part of a bar is filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fill {
+    /// What a straight line makes.
+    Linear,
+    /// What curvature makes.
+    Curvature,
+    /// What an interaction makes.
+    Interaction,
+    /// An interval within the limits.
+    Span,
+    /// An interval that exceeds them.
+    Over,
+}
+
+/// How a value is distributed: a density, a histogram, or one over the other.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Spread {
+    /// The density.
+    pub law: Option<Pearson>,
+    /// The histogram.
+    pub bins: Option<Histogram>,
+    /// Whether a terminal shows the histogram, rather than the density.
+    pub sampled: bool,
+    /// Lower and upper limit.
+    pub limits: [Option<f64>; 2],
+    /// Places that are marked on pages: value, kind (`mean` or `quantile`), name.
+    pub places: Vec<(f64, &'static str, &'static str)>,
+    /// The standard deviation, by which numbers are rounded.
+    pub sigma: f64,
+    /// What it shows, for those who do not see it.
+    pub label: String,
+    /// What stands below it.
+    pub words: String,
+}
+
+/// Values over others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plot {
+    /// What it is about.
+    pub name: String,
+    /// Across.
+    pub x: Axis,
+    /// Upwards.
+    pub y: Axis,
+    /// What is drawn, one over the other.
+    pub layers: Vec<Layer>,
+}
+
+/// An axis. It reaches over everything that is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// What it shows.
+    pub label: String,
+    /// Its scale.
+    pub scale: Scale,
+    /// Where numbers stand beside it; round ones where there are none.
+    pub ticks: Vec<(f64, String)>,
+}
+
+/// The scale of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Scale {
+    /// Even steps, with this part of the extent as margin.
+    Linear(f64),
+    /// Whole powers of ten.
+    Decades,
+}
+
+/// Something that is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Layer {
+    /// An area between two values, open where they are unknown.
+    Band(Vec<(f64, Option<[f64; 2]>)>),
+    /// A line, broken where its value is unknown.
+    Curve(Vec<(f64, Option<f64>)>, Stroke),
+    /// Circles.
+    Points(Vec<PlotPoint>),
+    /// A dashed line across, named beside the chart.
+    Mark(f64, &'static str),
+    /// A name beside the chart.
+    End(f64, &'static str),
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stroke {
+    /// What is to be looked at.
+    Strong,
+    /// What joins points.
+    Thin,
+    /// What it is compared with.
+    Dotted,
+}
+
+/// A circle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlotPoint {
+    /// Its place.
+    pub at: [f64; 2],
+    /// The name beside it; empty where it has none.
+    pub name: String,
+    /// What a pointer shows; empty for nothing.
+    pub tip: String,
+    /// Whether it is to be looked at.
+    pub strong: bool,
+    /// Whether it is filled.
+    pub filled: bool,
+}
+
+impl Axis {
+    /// An axis with round numbers.
+    pub fn new(label: impl Into<String>, scale: Scale) -> Self {
+        Self { label: label.into(), scale, ticks: Vec::new() }
+    }
+}
+
+impl Plot {
+    /// All values along the horizontal axis (0) or the vertical one (1) that are drawn.
+    pub(super) fn values(&self, axis: usize) -> Vec<f64> {
+        let of = |layer: &Layer| -> Vec<f64> {
+            match (layer, axis) {
+                (Layer::Band(points), 0) => points.iter().map(|point| point.0).collect(),
+                (Layer::Band(points), _) => points.iter().filter_map(|point| point.1).flatten().collect(),
+                (Layer::Curve(points, _), 0) => points.iter().map(|point| point.0).collect(),
+                (Layer::Curve(points, _), _) => points.iter().filter_map(|point| point.1).collect(),
+                (Layer::Points(points), axis) => points.iter().map(|point| point.at[axis]).collect(),
+                (Layer::Mark(at, _), 1) => vec![*at],
+                (Layer::Mark(..) | Layer::End(..), _) => Vec::new(),
+            }
+        };
+        self.layers.iter().flat_map(of).collect()
+    }
+}

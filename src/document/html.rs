@@ -1,0 +1,164 @@
+//! Documents as fragments of HTML: the page around them has the style sheet that their classes stand in.
+
+use super::svg::{drawn, escaped};
+use super::{Bar, Bars, Block, Cell, Chart, Document, Fill, Flow, Line, Section, Table, Tone, spread};
+use crate::names::clean;
+
+/// A section for what is said before all others, and one for every section.
+pub fn html(document: &Document) -> String {
+    head(document) + &sections(document)
+}
+
+/// What is said before all others.
+pub fn head(document: &Document) -> String {
+    format!(
+        "<section aria-labelledby=\"summary\">\n<h2 id=\"summary\">Summary</h2>\n{}</section>\n",
+        blocks(&document.head)
+    )
+}
+
+/// A section for every section.
+pub fn sections(document: &Document) -> String {
+    document.sections.iter().enumerate().map(|(index, one)| section(index, one)).collect()
+}
+
+fn section(index: usize, section: &Section) -> String {
+    let body = blocks(&section.blocks);
+    if section.name.is_empty() {
+        return format!("<section>\n{body}</section>\n");
+    }
+    let unit = section.unit.as_deref().map(|unit| format!(" <small>[{}]</small>", escaped(unit))).unwrap_or_default();
+    let title = format!("<h2 id=\"kc-title-{index}\">{}{unit}</h2>\n", escaped(&section.name));
+    let remark = match section.words.trim_start_matches([',', ':', ' ']) {
+        "" => String::new(),
+        remark => format!("<p class=\"note\">{}</p>\n", escaped(remark)),
+    };
+    format!(
+        "<section id=\"kc-{index}\" class=\"kc\" aria-labelledby=\"kc-title-{index}\">\n{title}{remark}{body}</section>\n"
+    )
+}
+
+/// Bars in the rows of a table.
+fn bars(bars: &Bars) -> String {
+    let class = |fill: Fill| match fill {
+        Fill::Linear => "linear",
+        Fill::Curvature => "curvature",
+        Fill::Interaction => "interaction",
+        Fill::Span => "span",
+        Fill::Over => "over",
+    };
+    // Amounts of several kinds fill the height; intervals leave room for the marks, and are remarked on.
+    let (kind, place) = match bars.legend.is_empty() {
+        true => ("spans", "y=\"2\" height=\"6\""),
+        false => ("pareto", "height=\"10\""),
+    };
+    let mark = |at: &f64| format!("<path class=\"limit\" d=\"M{at} 0V10\"/>");
+    let marks: String = bars.marks.iter().map(mark).collect();
+    let caption = escaped(&bars.caption);
+    let mut text = format!("<table class=\"{kind}\"><caption class=\"sr\">{caption}</caption><tbody>\n");
+    for Bar { name, parts, text: amount, remark } in &bars.rows {
+        let part = |&(fill, [x, width]): &(Fill, [f64; 2])| {
+            format!("<rect class=\"{}\" x=\"{x}\" width=\"{width}\" {place}/>", class(fill))
+        };
+        let parts: String = parts.iter().map(part).collect();
+        let svg = format!(
+            "<svg class=\"bar\" viewBox=\"0 0 100 10\" preserveAspectRatio=\"none\" aria-hidden=\"true\">{parts}{marks}</svg>"
+        );
+        let remark = if kind == "spans" { format!("<td>{}</td>", toned(remark)) } else { String::new() };
+        let (name, amount) = (escaped(name), escaped(amount));
+        text += &format!(
+            "<tr><th scope=\"row\">{name}</th><td class=\"grow\">{svg}</td><td class=\"n\">{amount}</td>{remark}</tr>\n"
+        );
+    }
+    text += "</tbody></table>\n";
+    if !bars.legend.is_empty() {
+        let key = |&(fill, name): &(Fill, &str)| format!("<li class=\"key {}\">{name}</li>", class(fill));
+        text += &format!("<ul class=\"legend\">{}</ul>\n", bars.legend.iter().map(key).collect::<String>());
+    }
+    text
+}
+
+/// Blocks one after the other; findings beside one another are one list.
+pub fn blocks(blocks: &[Block]) -> String {
+    let mut text = String::new();
+    for part in blocks.chunk_by(|a, b| matches!((a, b), (Block::Finding(_), Block::Finding(_)))) {
+        match part {
+            [Block::Finding(_), ..] => {
+                text += &format!("<ul class=\"warnings\">\n{}</ul>\n", part.iter().map(block).collect::<String>());
+            }
+            _ => text.extend(part.iter().map(block)),
+        }
+    }
+    text
+}
+
+fn block(block: &Block) -> String {
+    match block {
+        Block::Gap => String::new(),
+        Block::Paragraph(one) if one.flow == Flow::Verbatim => format!("<pre>{}</pre>\n", escaped(&one.line.text())),
+        Block::Paragraph(one) => {
+            let class = if one.indent > 0 { " class=\"note\"" } else { "" };
+            format!("<p{class}>{}</p>\n", toned(&one.line))
+        }
+        Block::Aside(aside) if aside.title.is_empty() => blocks(&aside.blocks),
+        Block::Aside(aside) => format!("<h3>{}</h3>\n{}", aside.title, blocks(&aside.blocks)),
+        Block::List(list) => {
+            format!("<p class=\"note\">{}: {}</p>\n", escaped(list.title.trim()), escaped(&list.words.join(" ")))
+        }
+        Block::Table(one) => table(one),
+        Block::Chart(Chart::Plot(one)) => {
+            // What a drawing names its own format by asks for nothing, and is left out all the same.
+            let svg = drawn(&[one], &one.name).replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+            format!("<div class=\"trade\">{svg}</div>\n")
+        }
+        Block::Chart(Chart::Bars(one)) => bars(one),
+        Block::Chart(Chart::Spread(one)) => spread::figure(one).unwrap_or_default(),
+        Block::Finding(one) => {
+            let actions: String =
+                one.actions.iter().map(|action| format!(" <span>{}</span>", escaped(action))).collect();
+            format!("<li><strong>{}</strong> {}{actions}</li>\n", one.code, escaped(&one.message))
+        }
+    }
+}
+
+/// Text in which what has a tone stands out.
+fn toned(line: &Line) -> String {
+    let span = |span: &super::Span| {
+        let text = escaped(&clean(&span.text));
+        match span.tone {
+            Tone::Plain => text,
+            Tone::Good => format!("<span class=\"badge good\">{text}</span>"),
+            Tone::Doubtful => format!("<span class=\"badge unsure\">{text}</span>"),
+            Tone::Bad => format!("<span class=\"badge bad\">{text}</span>"),
+        }
+    };
+    line.0.iter().map(span).collect()
+}
+
+/// A table with the columns that pages show; the first names its row unless it is a number.
+pub fn table(table: &Table) -> String {
+    let places = table.places(|column| column.page);
+    if table.view.is_empty() || places.is_empty() || table.most[1] == 0 {
+        return String::new();
+    }
+    let class = |place: usize| if table.right(place) { " class=\"n\"" } else { "" };
+    let mut text = "<div class=\"wide\"><table>\n".to_owned();
+    if places.iter().any(|&place| !table.columns[place].heading.is_empty()) {
+        let title = |&place: &usize| {
+            format!("<th scope=\"col\"{}>{}</th>", class(place), escaped(table.columns[place].heading))
+        };
+        text += &format!("<thead><tr>{}</tr></thead>\n", places.iter().map(title).collect::<String>());
+    }
+    text += "<tbody>\n";
+    for &index in table.view.iter().take(table.most[1]) {
+        let cell = |(rank, &place): (usize, &usize)| {
+            let of: &Cell = &table.rows[index][place];
+            match rank == 0 && !table.right(place) {
+                true => format!("<th scope=\"row\">{}</th>", toned(&of.on_page())),
+                false => format!("<td{}>{}</td>", class(place), toned(&of.on_page())),
+            }
+        };
+        text += &format!("<tr>{}</tr>\n", places.iter().enumerate().map(cell).collect::<String>());
+    }
+    text + "</tbody></table></div>\n"
+}

@@ -1,0 +1,262 @@
+//! A report as a document: what it says, apart from how it is shown.
+//!
+//! A command fills a [`Document`] once. A writer shows it: [`terminal`], [`csv`], [`markdown`], [`html`] or [`svg`]. Every piece of text and
+//! every cell carries a [`Tone`], so that a writer colours by meaning, not by the words that it finds.
+
+mod chart;
+pub mod csv;
+pub mod html;
+mod labels;
+pub mod markdown;
+pub mod number;
+mod sketch;
+mod spread;
+pub mod svg;
+mod table;
+pub mod terminal;
+
+pub use chart::{Axis, Bar, Bars, Chart, Fill, Layer, Plot, PlotPoint, Scale, Spread, Stroke};
+pub(crate) use spread::Extent;
+pub use table::{Cell, Column, Columns, Table, Value};
+pub use terminal::{Detail, Style};
+
+/// What a piece of text means for the reader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Tone {
+    /// Nothing in particular.
+    #[default]
+    Plain,
+    /// As it should be.
+    Good,
+    /// Neither shown to be good nor to be bad.
+    Doubtful,
+    /// Not as it should be.
+    Bad,
+}
+
+/// A piece of text in one tone.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Span {
+    /// The text.
+    pub text: String,
+    /// Its tone.
+    pub tone: Tone,
+}
+
+/// A line of text: pieces, each in its tone.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Line(pub Vec<Span>);
+
+/// How a line that is too long for the page goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flow {
+    /// In the next line, on pages narrower than [`Style::WIDTH`].
+    Folded,
+    /// In the next line, on every page.
+    Wrapped,
+    /// It stays as it is, to be copied.
+    Verbatim,
+}
+
+/// A paragraph.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Paragraph {
+    /// What it says.
+    pub line: Line,
+    /// Spaces before it in a terminal.
+    pub indent: usize,
+    /// How it is broken into lines.
+    pub flow: Flow,
+}
+
+/// Words after a title, shortened to a few lines unless everything is shown.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct List {
+    /// What they are.
+    pub title: String,
+    /// The words; one that ends with `;` ends a group.
+    pub words: Vec<String>,
+}
+
+/// Something that the reader should know of a result: a warning, and what to do about it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// The code of the warning.
+    pub code: &'static str,
+    /// What happened, and what it means.
+    pub message: String,
+    /// What to do.
+    pub actions: Vec<String>,
+    /// How serious it is.
+    pub tone: Tone,
+}
+
+/// A part that only pages have.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Aside {
+    /// Its heading; empty for none.
+    pub title: &'static str,
+    /// What it says.
+    pub blocks: Vec<Block>,
+}
+
+/// A part of a document.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// An empty line in a terminal.
+    Gap,
+    /// Text.
+    Paragraph(Paragraph),
+    /// What pages say beside, for which a terminal has no room.
+    Aside(Aside),
+    /// Words after a title.
+    List(List),
+    /// A table.
+    Table(Table),
+    /// A drawing.
+    Chart(Chart),
+    /// A warning. Terminals have it from stderr.
+    Finding(Finding),
+}
+
+/// What a document says of one thing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section {
+    /// The thing, by the name that it has in the study.
+    pub name: String,
+    /// Its unit.
+    pub unit: Option<String>,
+    /// What follows the name and the unit.
+    pub words: String,
+    /// What is said.
+    pub blocks: Vec<Block>,
+}
+
+/// A document.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Document {
+    /// Its title.
+    pub title: Option<String>,
+    /// What it says before its sections.
+    pub head: Vec<Block>,
+    /// Its sections; the first may be about everything, without a name.
+    pub sections: Vec<Section>,
+}
+
+impl Line {
+    /// A line of one piece.
+    pub fn toned(text: impl Into<String>, tone: Tone) -> Self {
+        Self(vec![Span { text: text.into(), tone }])
+    }
+
+    /// The line with more after it.
+    pub fn and(mut self, more: impl Into<Line>) -> Self {
+        self.0.extend(more.into().0);
+        self
+    }
+
+    /// The whole text.
+    pub fn text(&self) -> String {
+        self.0.iter().map(|span| span.text.as_str()).collect()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.0.iter().all(|span| span.text.is_empty())
+    }
+}
+
+impl<T: Into<String>> From<T> for Line {
+    fn from(text: T) -> Self {
+        Self::toned(text, Tone::Plain)
+    }
+}
+
+/// What can be put down: blocks one after the other.
+pub trait Blocks {
+    /// The blocks so far.
+    fn blocks(&mut self) -> &mut Vec<Block>;
+
+    /// An empty line.
+    fn gap(&mut self) {
+        self.blocks().push(Block::Gap);
+    }
+
+    /// A line at the margin.
+    fn line(&mut self, line: impl Into<Line>) {
+        self.blocks().push(Block::Paragraph(Paragraph { line: line.into(), indent: 0, flow: Flow::Folded }));
+    }
+
+    /// A line below what it belongs to.
+    fn note(&mut self, line: impl Into<Line>) {
+        self.blocks().push(Block::Paragraph(Paragraph { line: line.into(), indent: 2, flow: Flow::Folded }));
+    }
+
+    /// Text of any length, this far from the margin.
+    fn wrapped(&mut self, indent: usize, line: impl Into<Line>) {
+        self.blocks().push(Block::Paragraph(Paragraph { line: line.into(), indent, flow: Flow::Wrapped }));
+    }
+
+    /// Words after a title.
+    fn list(&mut self, title: &str, words: Vec<String>) {
+        self.blocks().push(Block::List(List { title: title.to_owned(), words }));
+    }
+
+    /// Blocks for pages only, below a heading unless that is empty.
+    fn aside(&mut self, title: &'static str, blocks: Vec<Block>) {
+        self.blocks().push(Block::Aside(Aside { title, blocks }));
+    }
+
+    /// A line for pages only.
+    fn remark(&mut self, line: impl Into<Line>) {
+        let mut blocks = Vec::new();
+        Blocks::line(&mut blocks, line);
+        self.aside("", blocks);
+    }
+
+    /// A table.
+    fn table(&mut self, table: Table) {
+        self.blocks().push(Block::Table(table));
+    }
+
+    /// A drawing.
+    fn chart(&mut self, chart: Chart) {
+        self.blocks().push(Block::Chart(chart));
+    }
+}
+
+impl Blocks for Document {
+    fn blocks(&mut self) -> &mut Vec<Block> {
+        &mut self.head
+    }
+}
+
+impl Blocks for Section {
+    fn blocks(&mut self) -> &mut Vec<Block> {
+        &mut self.blocks
+    }
+}
+
+impl Blocks for Vec<Block> {
+    fn blocks(&mut self) -> &mut Vec<Block> {
+        self
+    }
+}
+
+impl Section {
+    /// An empty section about this.
+    pub fn of(name: &str, unit: Option<&str>) -> Self {
+        Self { name: name.to_owned(), unit: unit.map(str::to_owned), ..Self::default() }
+    }
+}
+
+impl Document {
+    /// An empty document of this title.
+    pub fn titled(title: Option<&str>) -> Self {
+        Self { title: title.map(str::to_owned), ..Self::default() }
+    }
+
+    /// All blocks, in order.
+    pub fn all(&self) -> impl Iterator<Item = &Block> {
+        self.head.iter().chain(self.sections.iter().flat_map(|section| &section.blocks))
+    }
+}

@@ -1,0 +1,188 @@
+//! Numbers and names for people: rounded to what they are worth, the sign for what is unknown, and what is too small to be shown.
+
+use crate::names::clean;
+
+/// In place of what is unknown.
+pub(crate) const UNKNOWN: &str = "-";
+
+/// Names longer than this are shortened in their middle.
+const NAME: usize = 30;
+
+/// Shares of the variance below this are not shown one by one.
+pub(crate) const NEWS: f64 = 1e-4;
+
+/// A count with what is counted.
+pub(crate) fn plural(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// A yield in percent, with three digits of what is rejected.
+pub(crate) fn share(rejected: f64) -> String {
+    let percent = 100.0 * rejected;
+    if percent <= 0.0 {
+        return "100 %".to_owned();
+    }
+    let decimals = (2.0 - percent.log10().floor()).clamp(2.0, 12.0) as usize;
+    let text = format!("{:.decimals$}", 100.0 - percent);
+    match text.trim_end_matches('0') {
+        "100." => "100 %".to_owned(),
+        "0." => "0 %".to_owned(),
+        _ => format!("{text} %"),
+    }
+}
+
+/// As many decimals as show `digits` significant digits of `scale`; None where that takes an exponent.
+pub(crate) fn decimals(scale: f64, digits: i32) -> Option<usize> {
+    if scale == 0.0 || !scale.is_finite() {
+        return Some(0);
+    }
+    let magnitude = scale.abs().log10().floor() as i32;
+    usize::try_from((digits - 1 - magnitude).max(0)).ok().filter(|&decimals| decimals <= 9)
+}
+
+/// `digits` significant digits, with an exponent where the number is very large or very small.
+pub(crate) fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    // Rounded first, so that 0.9999999 counts as 1.
+    let rounded = format!("{value:.*e}", digits - 1);
+    let magnitude: i32 = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
+    if !(-4..9).contains(&magnitude) {
+        return shortened(&rounded);
+    }
+    let decimals = (digits as i32 - 1 - magnitude).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// The number as it was written in the study, within reason.
+pub(crate) fn plain(value: f64) -> String {
+    let text = format!("{value}");
+    // A tolerance computed from limits has a tail of rounding errors that nobody wrote.
+    let text = if text.len() > 10 { trimmed(&significant(value, 8)) } else { text };
+    let exponent = shortened(&format!("{value:e}"));
+    if exponent.len() + 2 < text.len() { exponent } else { text }
+}
+
+/// A mean beside its sigma: as many digits as sigma has five of.
+pub(crate) fn beside(value: f64, sigma: f64) -> String {
+    match decimals(sigma, 5) {
+        Some(decimals) if value.abs() < 1e9 => unsigned_zero(format!("{value:.decimals$}")),
+        _ => {
+            let ratio = (value / sigma).abs().max(1.0).log10().floor();
+            let digits = if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 };
+            significant(value, digits)
+        }
+    }
+}
+
+/// `-0.00` says no more than `0.00`.
+pub(crate) fn unsigned_zero(text: String) -> String {
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|c| c == '0' || c == '.') => zero.to_owned(),
+        _ => text,
+    }
+}
+
+/// A share in percent.
+pub(crate) fn percent(share: f64) -> String {
+    match 100.0 * share {
+        nothing if nothing.abs() < 1e-12 => "0".to_owned(),
+        small if small.abs() < 0.005 => "<0.01".to_owned(),
+        percent => format!("{percent:.2}"),
+    }
+}
+
+/// Without the zeros at the end of a mantissa.
+fn shortened(text: &str) -> String {
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => format!("{}e{exponent}", trimmed(mantissa)),
+        None => text.to_owned(),
+    }
+}
+
+fn trimmed(text: &str) -> String {
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text.to_owned()
+    }
+}
+
+/// A name on one line that does not push everything else off it.
+pub(crate) fn short(name: &str) -> String {
+    shortened_to(&clean(name), NAME)
+}
+
+/// Without its middle, where it is longer than `most` characters.
+pub(super) fn shortened_to(name: &str, most: usize) -> String {
+    let count = name.chars().count();
+    if count <= most {
+        return name.to_owned();
+    }
+    let head: String = name.chars().take(most / 2).collect();
+    let tail: String = name.chars().skip(count - (most - most / 2 - 1)).collect();
+    format!("{head}…{tail}")
+}
+
+/// A number, or the sign for unknown.
+pub(crate) fn known(value: Option<f64>, show: impl FnOnce(f64) -> String) -> String {
+    value.map_or(UNKNOWN.to_owned(), show)
+}
+
+/// Skewness and kurtosis.
+pub(crate) fn shape(value: f64) -> String {
+    unsigned_zero(format!("{value:.4}"))
+}
+
+/// Cp, Cpk and the like.
+pub(crate) fn index(value: f64) -> String {
+    unsigned_zero(format!("{value:.3}"))
+}
+
+/// A yield in percent, by itself.
+pub(crate) fn yielded(yield_: f64) -> String {
+    share(1.0 - yield_)
+}
+
+/// Limits in words.
+pub(crate) fn limits(lower: Option<f64>, upper: Option<f64>) -> String {
+    match (lower, upper) {
+        (None, None) => String::new(),
+        (Some(lower), None) => format!("above {}", plain(lower)),
+        (None, Some(upper)) => format!("below {}", plain(upper)),
+        (Some(lower), Some(upper)) => format!("{} .. {}", plain(lower), plain(upper)),
+    }
+}
+
+/// The yield that leaves these parts per million; None where both are unknown.
+pub(crate) fn rejected(below: Option<f64>, above: Option<f64>) -> Option<String> {
+    below.or(above)?;
+    Some(share(1e-6 * (below.unwrap_or(0.0) + above.unwrap_or(0.0))))
+}
+
+/// A number as a sample of this standard error knows it: two digits of the error.
+pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
+    match error {
+        Some(error) if error > 0.0 && error.is_finite() => {
+            let decimals = (1.0 - error.log10().floor()).clamp(0.0, 15.0) as usize;
+            unsigned_zero(format!("{value:.decimals$}"))
+        }
+        Some(_) => plain(value),
+        None => significant(value, 4),
+    }
+}
+
+/// A standard error.
+pub(crate) fn uncertainty(error: f64) -> String {
+    significant(error, 2)
+}
+
+/// The ends of a tolerance band as drawings have them.
+pub(crate) fn band([lower, upper]: [f64; 2]) -> String {
+    if lower == -upper {
+        return format!("± {}", plain(upper));
+    }
+    let signed = |value: f64| if value >= 0.0 { format!("+{}", plain(value)) } else { plain(value) };
+    format!("{} / {}", signed(lower), signed(upper))
+}

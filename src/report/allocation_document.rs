@@ -1,0 +1,428 @@
+//! The report of an allocation as a document.
+
+use super::allocation::{
+    AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, ContributionReport, FrontRequirement,
+    KeptReport, PriceReport,
+};
+use super::requirement::loud;
+use super::{CharacteristicReport, head};
+use crate::allocation::JointYield;
+use crate::document::number::{beside, index, known, plain, rejected, share, short, significant, yielded};
+use crate::document::{
+    Axis, Block, Blocks, Cell, Chart, Columns, Document, Flow, Layer, Line, Paragraph, Plot, PlotPoint, Scale, Section,
+    Stroke, Table, Tone, Value,
+};
+use crate::verdict::Verdict;
+
+/// A smaller residual is rounding.
+const LEAST: f64 = 1e-12;
+/// Digits of a cost.
+const COST: usize = 5;
+/// Labels along the chart of the front: more would stand in one another's way.
+const LABELS: usize = 6;
+/// Dimensions that are named as the reason why a requirement cannot be kept.
+const NAMED: usize = 5;
+
+impl AllocationReport {
+    /// What it says: what it came to, tolerances (table `tolerances`), requirements (table `requirements`), characteristics, the front
+    /// (table `front`), and what to paste into the study.
+    pub fn document(&self) -> Document {
+        let mut document = Document::titled(self.head.title.as_deref());
+        self.heading(&mut document.head);
+        self.attainable.iter().for_each(|one| unattainable(&mut document.head, one));
+        // Without tolerances that were found there is nothing to show of them, and CSV has the header all the same.
+        let mut tolerances = self.tolerances();
+        if self.cost_after.is_none() {
+            tolerances.view.clear();
+        }
+        let groups = [vec![tolerances], vec![self.recentred()], vec![self.requirements()]];
+        for (group, tables) in groups.into_iter().enumerate() {
+            let shown = tables.iter().any(|table| !table.view.is_empty());
+            let mut section = Section::default();
+            tables.into_iter().for_each(|table| section.table(table));
+            if group == 2 {
+                self.shadow_prices.iter().for_each(|price| self.prices(&mut section, price));
+            }
+            match shown {
+                true => document.sections.push(section),
+                false => document.head.extend(section.blocks),
+            }
+        }
+        let mut section = Section::default();
+        section.table(self.before_after());
+        self.loosest(&mut section);
+        self.joint(&mut section);
+        self.confirmed_by_samples(&mut section);
+        section.table(self.front_points());
+        document.sections.push(section);
+        if !self.front.is_empty() {
+            let mut section = Section::default();
+            section.chart(Chart::Plot(self.plot()));
+            section.table(self.front_table());
+            document.sections.push(section);
+        }
+        if let Some(entries) = &self.dimensions_table {
+            let text = format!("[dimensions]\n{}", entries.trim_end_matches('\n'));
+            let mut section = Section::default();
+            section.blocks.push(Block::Paragraph(Paragraph { line: text.into(), indent: 0, flow: Flow::Verbatim }));
+            document.sections.push(section);
+        }
+        document
+    }
+
+    fn status_tone(&self) -> Tone {
+        match self.status {
+            "optimal" => Tone::Good,
+            "infeasible" => Tone::Bad,
+            _ => Tone::Doubtful,
+        }
+    }
+
+    fn heading(&self, page: &mut Vec<Block>) {
+        let cost = match (self.cost_before, self.cost_after) {
+            (before, Some(after)) => {
+                let saved = before.map_or(String::new(), |before| {
+                    let part = 100.0 * (1.0 - after / before);
+                    let word = if part < 0.0 { "more" } else { "less" };
+                    format!(" instead of {}, {} % {word}", money(before), significant(part.abs(), 3))
+                });
+                format!("cost {}{saved}", money(after))
+            }
+            (Some(before), None) => format!("cost {} before", money(before)),
+            (None, None) => "nominal values moved".to_owned(),
+        };
+        page.line(Line::toned(self.status, self.status_tone()).and(format!(": {cost}")));
+        page.line(format!(
+            "{} evaluations in {} rounds{}{}",
+            self.run.evaluations,
+            self.rounds,
+            head::beside(&self.run),
+            if self.confirmed && self.cost_after.is_some() { ", confirmed by the model" } else { "" }
+        ));
+        let proof = &self.proof;
+        if let Some(gap) = proof.gap {
+            let basis = if proof.bound_is_exact == Some(true) { "" } else { ", as far as a sample of choices tells" };
+            let than = match gap <= 1e-9 {
+                true => format!("{basis} ("),
+                false => {
+                    let (bound, gap) = (known(proof.bound, money), significant(100.0 * gap, 2));
+                    format!(" than {bound}{basis}: a gap of {gap} % (")
+                }
+            };
+            page.line(format!("no choice of processes costs less{than}{} nodes)", proof.nodes));
+        }
+        if let Some(residual) = proof.kkt_residual {
+            let closed = if proof.closed_form { ", Lagrange's solution in closed form" } else { "" };
+            // The next power of ten, and no more than doubles tell.
+            let within = 10f64.powi(residual.max(LEAST).log10().ceil() as i32);
+            page.line(format!("conditions of Karush, Kuhn and Tucker kept within {within:.0e}{closed}"));
+        }
+    }
+
+    fn tolerances(&self) -> Table {
+        let side = |band: Option<[f64; 2]>, end: usize| Cell::data(band.map(|band| band[end]));
+        let most = |one: &AllocatedReport, of: &dyn Fn(&ContributionReport) -> Option<f64>| {
+            let share = one.contributions.iter().filter_map(of).reduce(f64::max);
+            Cell::number(share, |share| format!("{:.1}", 100.0 * share))
+        };
+        let shares = if self.characteristics.len() == 1 { "share %" } else { "most %" };
+        Columns::default()
+            .named("dimension", "dimension", |one: &&AllocatedReport| Cell::name(&one.dimension))
+            .data("unit", |one| Cell::optional(one.unit.as_deref()))
+            .column("before", "before", |one| {
+                Cell::both(Value::Number(Some(one.before)), band(one.before, one.deviations.before))
+            })
+            .column("after", "after", |one| {
+                Cell::both(Value::Number(Some(one.after)), band(one.after, one.deviations.after))
+            })
+            .shown("", |one| Cell::optional(one.unit.as_deref()))
+            .data("lower_before", move |one| side(one.deviations.before, 0))
+            .data("upper_before", move |one| side(one.deviations.before, 1))
+            .data("lower_after", move |one| side(one.deviations.after, 0))
+            .data("upper_after", move |one| side(one.deviations.after, 1))
+            .column("cost_before", "cost", |one| Cell::number(one.cost_before, money))
+            .column("cost_after", "after", |one| Cell::number(one.cost_after, money))
+            .shown(shares, move |one| most(one, &|one| one.before))
+            .shown("after", move |one| most(one, &|one| one.after))
+            .data("process", |one| Cell::optional(one.process.as_deref()))
+            .data("at_bound", |one| Cell::optional(one.at_bound))
+            .shown("", |one| {
+                let bound = one.at_bound.map(|bound| format!("at its {bound}"));
+                Cell::text(one.process.clone().into_iter().chain(bound).collect::<Vec<_>>().join(", "))
+            })
+            .table("tolerances", &self.tolerances)
+    }
+
+    fn recentred(&self) -> Table {
+        Columns::default()
+            .shown("nominal", |one: &&super::RecentredReport| Cell::name(&one.dimension))
+            .shown("before", |one| Cell::number(one.before, plain))
+            .shown("after", |one| Cell::number(one.after, |after| beside(after, (after - one.before).abs())))
+            .shown("", |one| Cell::optional(one.unit.as_deref()))
+            .table("", &self.recentred)
+    }
+
+    fn requirements(&self) -> Table {
+        let price = |one: &KeptReport, of: fn(&PriceReport) -> Option<f64>| {
+            Cell::data(self.shadow_prices.iter().find(|price| price.characteristic == one.characteristic).and_then(of))
+        };
+        let truth = |met: Option<bool>| Cell::both(Value::Truth(met), "");
+        Columns::default()
+            .column("characteristic", "required", |one: &&KeptReport| Cell::name(&one.characteristic))
+            .data("requirement", |one| Cell::text(one.requirement))
+            .data("required", |one| Cell::data(one.required))
+            .shown("", |one| Cell::text(wanted(one)))
+            .column("before", "before", |one| Cell::number(one.before, |value| measure(one.requirement, value)))
+            .column("after", "after", |one| Cell::number(one.after, |value| measure(one.requirement, value)))
+            .data("met_before", move |one| truth(one.met_before))
+            .data("met", move |one| truth(one.met))
+            .column("verdict", "", |one| {
+                let value = one.verdict.map_or(Value::Empty, |verdict| Value::Text(Verdict::name(verdict).to_owned()));
+                let before = loud(one.verdict_before).and(" before");
+                // Where nothing was found there is only what was.
+                Cell::both(value, one.verdict.map_or(before.clone(), |verdict| loud(verdict).and(", ").and(before)))
+            })
+            .data("price_both", move |one| price(one, |price| price.both))
+            .data("price_lower", move |one| price(one, |price| price.lower))
+            .data("price_upper", move |one| price(one, |price| price.upper))
+            .data("price_sigma", move |one| price(one, |price| price.sigma))
+            .table("requirements", &self.requirements)
+    }
+
+    /// What it saves when a limit gives way by a step that people can picture.
+    fn prices(&self, section: &mut Section, price: &PriceReport) {
+        let one = self.characteristics.iter().find(|one| one.name == price.characteristic);
+        let unit = one.and_then(|one| one.unit.as_deref());
+        let sigma = one.and_then(|one| one.after.as_ref().or(Some(&one.before))).and_then(|after| after.sigma);
+        let step = match unit {
+            Some("mm") => 0.001,
+            _ => 10f64.powf(sigma.filter(|sigma| *sigma > 0.0).map_or(0.0, f64::log10).floor() - 1.0),
+        };
+        let by = format!("{}{}", plain(step), unit.map(|unit| format!(" {unit}")).unwrap_or_default());
+        let part = |what: &str, price: Option<f64>| {
+            price.map(|price| format!("{what} by {by} saves {}", significant(price * step, 3)))
+        };
+        let two = one.is_some_and(|one| one.before.lower.is_some() && one.before.upper.is_some());
+        let all = [
+            part("both limits wider", price.both.filter(|_| two)),
+            part("the lower limit lower", price.lower),
+            part("the upper limit higher", price.upper),
+            part("a larger sigma", price.sigma),
+        ];
+        let all: Vec<String> = all.into_iter().flatten().collect();
+        if !all.is_empty() {
+            section.note(format!("{}: {}", short(&price.characteristic), all.join(", ")));
+        }
+    }
+
+    fn before_after(&self) -> Table {
+        type Row<'r> = (Option<&'r AllocatedCharacteristic>, &'static str, &'r CharacteristicReport);
+        let rows = self.characteristics.iter().flat_map(|one| {
+            let after = one.after.as_ref().map(|after| (None, "after", after));
+            std::iter::once((Some(one), "before", &one.before)).chain(after)
+        });
+        let name = |one: &AllocatedCharacteristic| {
+            let unit = one.unit.as_deref().map(|unit| format!(" [{unit}]")).unwrap_or_default();
+            Cell::text(format!("{}{unit}", short(&one.name)))
+        };
+        let scaled = |of: &CharacteristicReport, value: Option<f64>| {
+            Cell::number(value, |value| beside(value, of.sigma.unwrap_or(0.0)))
+        };
+        Columns::default()
+            .shown("", move |row: &Row<'_>| row.0.map_or_else(Cell::empty, name))
+            .shown("", |row| Cell::text(row.1))
+            .shown("mean", move |row| scaled(row.2, row.2.mean))
+            .shown("sigma", move |row| scaled(row.2, row.2.sigma))
+            .shown("Cpk", |row| Cell::known(row.2.cpk, index))
+            .shown("yield", |row| {
+                Cell::known(row.2.yield_, |_| rejected(row.2.ppm_below, row.2.ppm_above).unwrap_or_default())
+            })
+            .table("", rows)
+    }
+
+    fn loosest(&self, section: &mut Section) {
+        if self.requirements.is_empty() {
+            return;
+        }
+        let of = |factor: Option<f64>| factor.map_or("no one factor".to_owned(), |factor| format!("{factor:.4}"));
+        let after = match self.loosest_scaling.after {
+            None => String::new(),
+            after => format!(", after by {}", of(after)),
+        };
+        section.line(format!(
+            "all tolerances together may be multiplied, before by {}{after}, until a requirement is just kept",
+            of(self.loosest_scaling.before)
+        ));
+    }
+
+    fn joint(&self, section: &mut Section) {
+        let of = |joint: &JointYield| {
+            let error = joint.standard_error.map(|error| format!(" ± {}", significant(100.0 * error, 2)));
+            format!("{:.4}{} %", 100.0 * joint.value, error.unwrap_or_default())
+        };
+        let text = match [&self.joint_yield.before, &self.joint_yield.after].map(|joint| joint.as_ref().map(of)) {
+            [Some(before), Some(after)] => format!("{before} before, {after} after"),
+            [Some(one), None] | [None, Some(one)] => one,
+            [None, None] => return,
+        };
+        section.line(format!("all limits at once are kept by {text} (sampled from the surrogates, standard error)"));
+    }
+
+    fn confirmed_by_samples(&self, section: &mut Section) {
+        let Some(confirmation) = &self.confirmation else { return };
+        for one in &confirmation.characteristics {
+            let Some((value, interval)) = one.yield_.zip(one.standard_error.yield_) else { continue };
+            let [low, high] = interval.map(yielded);
+            let (name, value, points) = (short(&one.name), yielded(value), confirmation.samples);
+            section.line(format!(
+                "{name}: {value} of {points} points of the model keep the limits, 95 % interval {low} .. {high}"
+            ));
+        }
+    }
+
+    /// The front for people.
+    fn front_table(&self) -> Table {
+        type Row = (FrontRequirement, Option<f64>);
+        let rows = self.front.iter().filter_map(|point| Some((point.required.first()?.clone(), point.cost)));
+        Columns::default()
+            .shown("required", |(first, _): &Row| {
+                Cell::text(match first.requirement {
+                    "yield" => yielded(first.required),
+                    _ => format!("Cpk {}", significant(first.required, 4)),
+                })
+            })
+            .shown("cost", |(_, cost)| Cell::number(*cost, money))
+            .shown("", |(_, cost)| Cell::text(if cost.is_none() { "cannot be kept" } else { "" }).toned(Tone::Bad))
+            .table("", rows)
+    }
+
+    /// The front for programs: a row for every dimension at every point.
+    fn front_points(&self) -> Table {
+        type Row<'r> = (u64, &'r FrontRequirement, Option<f64>, Option<(&'r str, f64)>);
+        let rows = self.front.iter().enumerate().flat_map(|(place, point)| {
+            point.required.iter().flat_map(move |wanted| {
+                let names = self.tolerances.iter().map(|one| one.dimension.as_str());
+                let held = point.tolerances.iter().flat_map(move |all| names.clone().zip(all));
+                let held = held.map(|(name, &tolerance)| Some((name, tolerance)));
+                let none = point.tolerances.is_none().then_some(None);
+                held.chain(none).map(move |tolerance| (place as u64 + 1, wanted, point.cost, tolerance))
+            })
+        });
+        Columns::default()
+            .data("point", |row: &Row<'_>| Cell::count(row.0))
+            .data("characteristic", |row| Cell::text(&row.1.characteristic))
+            .data("requirement", |row| Cell::text(row.1.requirement))
+            .data("required", |row| Cell::data(row.1.required))
+            .data("cost", |row| Cell::data(row.2))
+            .data("dimension", |row| Cell::optional(row.3.map(|(name, _)| name)))
+            .data("tolerance", |row| Cell::data(row.3.map(|(_, tolerance)| tolerance)))
+            .table("front", rows)
+    }
+
+    /// What is required across, by the digits of what is rejected, or the Cpk; cost upwards. The open circle is what the tolerances
+    /// before keep and cost.
+    fn plot(&self) -> Plot {
+        let front: Vec<(f64, f64, String)> = (self.front.iter())
+            .filter_map(|point| {
+                let wanted = point.required.first()?;
+                let (place, label) = placed(wanted.requirement, wanted.required);
+                Some((place, point.cost?, label))
+            })
+            .collect();
+        let first = self.front.first().and_then(|point| point.required.first());
+        let before = first.and_then(|first| {
+            let one = self.requirements.iter().find(|one| one.characteristic == first.characteristic)?;
+            let (had, cost) = (one.before?, self.cost_before?);
+            (had < 1.0 - 1e-12 || first.requirement != "yield").then(|| [placed(first.requirement, had).0, cost])
+        });
+        let circle = |at: [f64; 2], strong: bool, name: &str, tip: String| PlotPoint {
+            at,
+            name: name.to_owned(),
+            tip,
+            strong,
+            filled: strong,
+        };
+        let points = front.iter().map(|(place, cost, label)| {
+            circle([*place, *cost], true, "", format!("{label}: {}", significant(*cost, 6)))
+        });
+        let points = points.chain(before.map(|at| circle(at, false, "before", String::new()))).collect();
+        let every = front.len().div_ceil(LABELS).max(1);
+        let mut x =
+            Axis::new(format!("{} required", first.map_or("yield", |wanted| wanted.requirement)), Scale::Linear(0.05));
+        x.ticks = front.iter().step_by(every).map(|(place, _, label)| (*place, label.clone())).collect();
+        let line = front.iter().map(|(place, cost, _)| (*place, Some(*cost))).collect();
+        Plot {
+            name: self.head.title.clone().unwrap_or_else(|| "Cost against what is required".to_owned()),
+            x,
+            y: Axis::new("cost", Scale::Linear(0.05)),
+            layers: vec![Layer::Curve(line, Stroke::Thin), Layer::Points(points)],
+        }
+    }
+}
+
+fn money(cost: f64) -> String {
+    significant(cost, COST)
+}
+
+fn unattainable(page: &mut Vec<Block>, one: &AttainableReport) {
+    let (name, required) = (short(&one.characteristic), required(one.requirement, one.required));
+    let best = one.best.map_or("unknown".to_owned(), |best| measure(one.requirement, best));
+    page.line(format!("`{name}` cannot keep {required}: the best that there is is {best}"));
+    if one.together {
+        page.line("it could by itself: together with the other requirements it cannot");
+    }
+    if !one.because.is_empty() {
+        let names: Vec<String> = one.because.iter().take(NAMED).map(|name| format!("`{}`", short(name))).collect();
+        let more = if one.because.len() > NAMED { ", ..." } else { "" };
+        page.line(format!("dimensions without a cost break it by themselves: {}{more}", names.join(", ")));
+    }
+}
+
+fn required(requirement: &str, required: f64) -> String {
+    match requirement {
+        "yield" => format!("a yield of {}", yielded(required)),
+        "cpk" => format!("a Cpk of {}", plain(required)),
+        "sigma" => format!("a sigma of {}", plain(required)),
+        "rss" => "its limits by rss".to_owned(),
+        _ => "its limits in the worst case".to_owned(),
+    }
+}
+
+/// What there is, in the requirement's own measure.
+fn measure(requirement: &str, value: f64) -> String {
+    match requirement {
+        "yield" => yielded(value),
+        "cpk" => format!("{value:.4}"),
+        "sigma" => significant(value, 6),
+        _ => format!("{} % of the room", significant(100.0 * value, 5)),
+    }
+}
+
+fn wanted(one: &KeptReport) -> String {
+    match one.requirement {
+        "yield" => format!("yield {}", yielded(one.required)),
+        "cpk" => format!("Cpk {}", plain(one.required)),
+        "sigma" => format!("sigma {}", plain(one.required)),
+        other => other.to_owned(),
+    }
+}
+
+/// Where a requirement lies along the chart, and its label.
+fn placed(requirement: &str, required: f64) -> (f64, String) {
+    match requirement {
+        "yield" => {
+            let rejected = (1.0 - required).max(f64::MIN_POSITIVE);
+            (-rejected.log10(), share(rejected))
+        }
+        _ => (required, significant(required, 3)),
+    }
+}
+
+/// A tolerance as drawings have it.
+fn band(half: f64, deviations: Option<[f64; 2]>) -> String {
+    let signed = |value: f64| format!("{}{}", if value >= 0.0 { "+" } else { "" }, significant(value, 4));
+    match deviations {
+        Some([lower, upper]) if (lower + upper).abs() > 1e-9 * half => format!("{} / {}", signed(lower), signed(upper)),
+        _ => format!("± {}", significant(half, 4)),
+    }
+}

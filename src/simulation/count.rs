@@ -1,0 +1,31 @@
+//! What was counted of one characteristic.
+
+use super::difference::Difference;
+use crate::assembly::EvaluationError;
+use crate::sampling::{Fine, Summary};
+
+/// One replicate of one characteristic.
+#[derive(Clone)]
+pub(super) struct Replicate {
+    pub(super) summary: Summary,
+    pub(super) outside: [u64; 2],
+    /// Nothing where no surrogate stands beside the model.
+    pub(super) difference: Difference,
+    pub(super) fine: Option<Fine>,
+}
+
+/// All of one characteristic.
+pub(super) struct Count {
+    pub(super) replicates: Vec<Replicate>,
+    pub(super) failed: u64,
+    pub(super) error: Option<EvaluationError>,
+}
+
+impl Count {
+    /// Of all replicates together.
+    pub(super) fn summary(&self) -> Summary {
+        let mut all = Summary::default();
+        self.replicates.iter().for_each(|replicate| all.merge(&replicate.summary));
+        all
+    }
+}

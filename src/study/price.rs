@@ -1,0 +1,111 @@
+//! `[costs]` and `require` as they are written.
+
+use std::fmt;
+
+use serde::de::{Visitor, value};
+use serde::{Deserialize, Deserializer};
+
+#[cfg(feature = "cli")]
+use super::registry;
+use super::spanned::Spanned;
+
+/// One line of `[costs]`.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", schemars(extend("oneOf" = registry::one_of(["model", "same_as", "processes"]))))]
+#[serde(deny_unknown_fields, expecting = "a table such as { model = \"reciprocal\", a = 1.0, b = 0.1 }")]
+pub(super) struct CostEntry {
+    /// The cost over the half band T: reciprocal a + b/T, reciprocal-power a + b/T^k, exponential a + b exp(-T/c).
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::cost_models())))]
+    pub(super) model: Option<Spanned<String>>,
+    /// The cost that no tolerance saves.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
+    pub(super) a: Option<Spanned<f64>>,
+    /// The factor of what falls as the tolerance opens.
+    pub(super) b: Option<Spanned<f64>>,
+    /// Of a reciprocal power its exponent.
+    pub(super) k: Option<Spanned<f64>>,
+    /// Of an exponential cost the half band over which it falls to 1/e.
+    pub(super) c: Option<Spanned<f64>>,
+    /// Least half band; a tenth of the present one unless given.
+    pub(super) min: Option<Spanned<f64>>,
+    /// Greatest half band; ten times the present one unless given.
+    pub(super) max: Option<Spanned<f64>>,
+    /// The dimension with which this one shares tolerance and process; each part costs.
+    pub(super) same_as: Option<Spanned<String>>,
+    /// The processes that compete for it.
+    pub(super) processes: Option<Spanned<Vec<Spanned<ProcessEntry>>>>,
+}
+
+/// A process: one half band at one cost, or a range of them with a cost that follows.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a process such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }")]
+pub(super) struct ProcessEntry {
+    /// Its name.
+    pub(super) name: Spanned<String>,
+    /// The half band that it holds.
+    pub(super) tolerance: Option<Spanned<f64>>,
+    /// What a part costs.
+    pub(super) cost: Option<Spanned<f64>>,
+    /// The cost over a range of half bands, as of a dimension.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::cost_models())))]
+    pub(super) model: Option<Spanned<String>>,
+    /// The cost that no tolerance saves.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
+    pub(super) a: Option<Spanned<f64>>,
+    /// The factor of what falls as the tolerance opens.
+    pub(super) b: Option<Spanned<f64>>,
+    /// Of a reciprocal power its exponent.
+    pub(super) k: Option<Spanned<f64>>,
+    /// Of an exponential cost the half band over which it falls to 1/e.
+    pub(super) c: Option<Spanned<f64>>,
+    /// Least half band that it holds.
+    pub(super) min: Option<Spanned<f64>>,
+    /// Greatest half band that it holds.
+    pub(super) max: Option<Spanned<f64>>,
+}
+
+/// `"worst-case"`, `"rss"`, or `{ yield = 0.9973 }`, `{ cpk = 1.33 }`, `{ sigma = 0.05 }`.
+#[derive(Debug)]
+pub(super) enum RequireEntry {
+    Word(String),
+    Table(RequireTable),
+}
+
+/// A number that is required.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", schemars(extend("oneOf" = registry::one_of(["yield", "cpk", "sigma"]))))]
+#[serde(deny_unknown_fields)]
+pub(super) struct RequireTable {
+    /// The least share of assemblies within the limits.
+    #[serde(rename = "yield")]
+    pub(super) yield_: Option<Spanned<f64>>,
+    /// The least Cpk.
+    pub(super) cpk: Option<Spanned<f64>>,
+    /// The greatest sigma.
+    pub(super) sigma: Option<Spanned<f64>>,
+}
+
+impl<'de> Deserialize<'de> for RequireEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Require;
+        impl<'de> Visitor<'de> for Require {
+            type Value = RequireEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a requirement such as \"worst-case\", \"rss\" or { cpk = 1.33 },")
+            }
+
+            fn visit_str<E>(self, word: &str) -> Result<Self::Value, E> {
+                Ok(RequireEntry::Word(word.to_owned()))
+            }
+
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+                RequireTable::deserialize(value::MapAccessDeserializer::new(map)).map(RequireEntry::Table)
+            }
+        }
+        deserializer.deserialize_any(Require)
+    }
+}

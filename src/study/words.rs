@@ -1,0 +1,57 @@
+//! Words and numbers of study files that their types, their readers and their schema share.
+
+/// Sigmas that half a tolerance band has unless the study says otherwise.
+pub(super) const SIGMAS: f64 = 3.0;
+/// What can be made of measured values; the first one unless the study says otherwise.
+pub(super) const MEASURED_MODELS: [&str; 2] = ["empirical", "pearson"];
+/// Which sensitivities can be asked for.
+pub(super) const SENSITIVITIES: [&str; 2] = ["all", "varying"];
+/// The requirements that have a name.
+pub(super) const REQUIREMENTS: [&str; 2] = ["worst-case", "rss"];
+/// What `[[correlation]]` must be.
+pub(super) const CORRELATIONS: &str = "a list, each pair of dimensions below its own [[correlation]],";
+
+/// A kind of distribution by its name in study files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Normal,
+    TruncatedNormal,
+    Uniform,
+    Triangular,
+    Trapezoidal,
+    Beta,
+    Lognormal,
+    Gamma,
+    Weibull,
+    Exponential,
+    Rayleigh,
+    Mixture,
+    /// Told by the key `moments`, not by a name.
+    Moments,
+}
+
+/// Name, the parameters that a kind knows, and what to write instead of others.
+pub(super) type Known = (&'static str, Kind, &'static [&'static str], &'static str);
+
+const NOTHING: &str = "it has no parameters of its own";
+const ORIGIN: &str = "it knows `origin`";
+pub(super) const KINDS: [Known; 12] = [
+    ("normal", Kind::Normal, &[], NOTHING),
+    ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
+    ("uniform", Kind::Uniform, &[], NOTHING),
+    ("triangular", Kind::Triangular, &["mode"], "it knows `mode`"),
+    ("trapezoidal", Kind::Trapezoidal, &["top"], "it knows `top`"),
+    ("beta", Kind::Beta, &["alpha", "beta"], "it knows `alpha` and `beta`"),
+    ("lognormal", Kind::Lognormal, &["origin"], ORIGIN),
+    ("gamma", Kind::Gamma, &["origin"], ORIGIN),
+    ("weibull", Kind::Weibull, &["origin"], ORIGIN),
+    ("exponential", Kind::Exponential, &["origin"], ORIGIN),
+    ("rayleigh", Kind::Rayleigh, &["origin"], ORIGIN),
+    ("mixture", Kind::Mixture, &["parts"], "it knows `parts`"),
+];
+
+/// The names of all kinds, with the parameters that each knows.
+#[cfg(feature = "cli")]
+pub(super) fn kinds() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+    KINDS.iter().map(|known| (known.0, known.2))
+}
