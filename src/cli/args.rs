@@ -310,7 +310,7 @@ pub(super) struct SimulateArgs {
     pub(super) check: bool,
 
     /// Write the report as one HTML page
-    #[arg(long, value_name = "FILE.html", conflicts_with = "rare", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,
 
     /// Write estimates and histogram as CSV files into DIR, which is made where it is missing

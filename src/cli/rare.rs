@@ -10,6 +10,7 @@ use super::simulate::{sampling, surrogate};
 use crate::document::terminal::text;
 use crate::method::Options;
 use crate::rare::{RareCharacteristic, RareOptions, rare_within};
+use crate::report::html::rare_html;
 use crate::report::{RareCharacteristicReport, RareReport, csv_tables};
 use crate::study::Study;
 use crate::warning::{Counted, Warning};
@@ -22,6 +23,7 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     let destination = files.output(&asked.output)?;
     let names = ["rare.csv".to_owned()];
     let folder = files.folder(asked.csv.as_deref(), &names)?;
+    let page = files.file(asked.html.as_deref())?;
     let costly = study.problem.function().signature().costly;
     let options = RareOptions {
         samples: asked.samples.unwrap_or(SAMPLES[usize::from(costly)]),
@@ -38,6 +40,7 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     let written =
         destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &["rare"]))));
+    let written = written.and(page.map_or(Ok(()), |page| page.write(&rare_html(&report))));
     for warning in &report.warnings {
         look.tell(warning);
     }

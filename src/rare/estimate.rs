@@ -36,6 +36,8 @@ pub(super) struct Weighed {
     /// Logarithms of the weights of the others, and the sum of those without a value.
     others: Vec<f64>,
     unknown: f64,
+    /// The most that lies beyond where no point does, as far as that is known otherwise.
+    most: Option<f64>,
 }
 
 impl Default for Weighed {
@@ -49,6 +51,7 @@ impl Default for Weighed {
             hits: 0,
             others: Vec::new(),
             unknown: 0.0,
+            most: None,
         }
     }
 }
@@ -63,6 +66,17 @@ struct Stage {
 
 /// Stages that differ by more than so many squared standard errors, on average, do not agree by chance.
 const APART: f64 = 4.0;
+
+/// A stage confirms the standard error of all points by one that is up to so many times that which its number of points allows,
+const CONFIRMING: f64 = 1.5;
+/// and by a value no more than so many standard errors of the difference away.
+const AGREEING: f64 = 3.0;
+
+/// A standard error that few points bear is itself uncertain, by about the root of one by their number: the interval is wider by so many times
+/// that.
+const UNSURE: f64 = 5.0;
+/// A single point that bears more than this widens the interval by its part.
+const ALONE: f64 = 0.1;
 
 /// A probability, as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -116,6 +130,38 @@ impl Weighed {
         self.stages.push(stage);
     }
 
+    /// Takes what lies beyond to be no more than this, should no point lie there.
+    pub(super) fn bound(&mut self, most: Option<f64>) {
+        self.most = most;
+    }
+
+    /// Begins anew.
+    pub(super) fn forget(&mut self) {
+        *self = Self { most: self.most, ..Self::default() };
+    }
+
+    /// The part of the sum that points of these logarithms of weights bear.
+    pub(super) fn part(&self, logarithms: impl Iterator<Item = f64>) -> f64 {
+        logarithms.map(|weight| (weight - self.scale).exp()).sum::<f64>() / self.sum
+    }
+
+    /// Whether the last stage by itself agrees with those before, and has the standard error that its part of the points allows, half as
+    /// much again at most.
+    pub(super) fn confirmed(&self, wanted: f64) -> bool {
+        let Some((last, before)) = self.stages.split_last().filter(|(_, before)| !before.is_empty()) else {
+            return false;
+        };
+        let all = before.iter().fold(Stage::default(), |all, stage| Stage {
+            points: all.points + stage.points,
+            sum: all.sum + stage.sum,
+            variance: all.variance + stage.variance,
+        });
+        let apart = (last.sum / last.points - all.sum / all.points).abs();
+        let error = (last.variance.sqrt() / last.points).hypot(all.variance.sqrt() / all.points);
+        let allowed = CONFIRMING * wanted * (self.points as f64 / last.points).sqrt();
+        last.variance.sqrt() <= allowed * last.sum && apart <= AGREEING * error
+    }
+
     /// Measures all sums by a greater weight, whose logarithm this is.
     fn rescale(&mut self, scale: f64) {
         if scale > self.scale {
@@ -145,7 +191,7 @@ impl Weighed {
 
     /// The mean of the weights beyond; its standard error is that of the mean.
     ///
-    /// The interval is lognormal where many points bear it alike, and that of a weighted count where few do or their weights
+    /// The interval is lognormal where many points bear it, wider by what these leave uncertain of the standard error, and that of a weighted count where few do or their weights
     /// differ widely (Fay and Feuer 1997; with a greater weight than any seen in the second case).
     /// What lies next to the farthest of them, where no point was beyond, may hold as much as no hit leaves room for: the
     /// two are joined as Zou and Donner (2008) do. What lies farther is taken to be as the points say: empty.
@@ -156,7 +202,8 @@ impl Weighed {
         let n = self.points as f64;
         if self.hits == 0 {
             let heaviest = self.others.iter().copied().fold(f64::NEG_INFINITY, f64::max).exp();
-            let interval = [0.0, (UNSEEN * heaviest.max(self.unknown) / n).min(1.0)];
+            let most = (UNSEEN * heaviest.max(self.unknown) / n).min(1.0);
+            let interval = [0.0, self.most.map_or(most, |bound| bound.min(most))];
             let bounds = [0.0, (self.unknown / n).min(1.0)];
             return Some(Found { points: self.seen(), interval, bounds, ..Found::default() });
         }
@@ -164,13 +211,16 @@ impl Weighed {
         let error = self.variance().sqrt() / n;
         let effective = self.sum * self.sum / self.squares;
         let heavy = self.spread() / HEAVY;
-        let [low, high] = match effective >= MANY && heavy <= 1.0 {
-            true => {
-                let ratio = (Z * error / value).exp();
-                [value / ratio, value * ratio]
+        let ratio = (Z * error / value * (1.0 + UNSURE / effective.sqrt())).exp();
+        let [low, high] = match (effective >= MANY, heavy <= 1.0) {
+            (true, true) => [value / ratio, value * ratio],
+            (many, _) => {
+                let [low, high] = counted(value, self.squares / (n * n), heavy.max(1.0) / n);
+                if many { [low.min(value / ratio), high.max(value * ratio)] } else { [low, high] }
             }
-            false => counted(value, self.squares / (n * n), heavy.max(1.0) / n),
         };
+        let alone = Some(1.0 / self.sum).filter(|&part| part > ALONE).unwrap_or(0.0);
+        let [low, high] = [low * (1.0 - alone).max(0.0), high * (1.0 + alone)];
         let unseen = UNSEEN * self.next() / n;
         let high = value + (high - value).hypot(unseen);
         let probability = |scaled: f64| (scaled.ln() + self.scale).exp().min(1.0);

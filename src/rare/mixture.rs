@@ -1,4 +1,4 @@
-//! The density that points are drawn from: a mixture of densities beyond the limits, near them, and the inputs' own.
+//! The density that points are drawn from: a mixture of densities beyond the limits, near them, the inputs' own and a wider one.
 //!
 //! With `a` the direction of a design point and `c = a.z`, a component draws what is across from the inputs' own law (spread
 //! where the limit bends) and `c` from the tail of a normal variable beyond `t - shift`, where `t` is the crossing of the
@@ -9,14 +9,15 @@
 //! ```
 //!
 //! so that a perfect surrogate leaves nothing to chance, and a poor one costs accuracy only: whatever `t` is, it is the same
-//! where points are drawn and where they are weighed.
+//! where points are drawn and where they are weighed. At a place that the model itself showed, `t` is the distance of that place on
+//! every line: a half-space.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
-use super::place::{FARTHEST, Place};
+use super::place::{BEFORE, FARTHEST, Place, PlaceKind};
 use super::space::Columns;
 use super::target::Target;
 use crate::distribution::standard_normal;
@@ -38,23 +39,36 @@ const LAYERS: [(f64, f64); 9] = [
 const LEVELS: [f64; 5] = [0.1, 1e-2, 1e-4, 1e-6, 1e-9];
 /// What is more likely than this needs no component but the inputs' own density.
 const LIKELY: f64 = 0.2;
-/// The part of the points from the inputs' own density.
-const OWN: f64 = 0.05;
+/// The parts of the points from the inputs' own density and from a wider one, where that many points are to spare and where they are not.
+/// They find what nothing else knows of, and bound the weights there.
+const SPARE: [f64; 2] = [0.1, 0.1];
+const SCARCE: [f64; 2] = [0.05, 0.03];
+/// So many points are enough to spare some.
+const MANY: u64 = 2000;
+/// How much wider the wide density is, and the variables up to which it is drawn from: of 12, one point in 130 times the density.
+const WIDTH: f64 = 1.5;
+const FEW_VARIABLES: usize = 12;
+/// The part of the points of a target for the half-spaces that the model itself showed, where the surrogate has places too.
+const SHOWN: f64 = 0.5;
 /// Rows that are drawn and weighed together.
 const ROWS: usize = 512;
 
-/// One component: None is the inputs' own density.
+/// One component.
 #[derive(Debug, Clone, Copy)]
-struct Beyond {
-    place: usize,
-    shift: f64,
+enum Component {
+    /// The inputs' own density.
+    Plain,
+    /// The same with all standard deviations wider by [`WIDTH`].
+    Wide,
+    /// Beyond the shifted limit at a place.
+    Beyond { place: usize, shift: f64 },
 }
 
 /// All components.
 pub(super) struct Mixture<'a> {
     targets: &'a [Target<'a>],
     places: Vec<Place>,
-    components: Vec<Option<Beyond>>,
+    components: Vec<Component>,
     /// The parts of the components at first.
     pub(super) parts: Vec<f64>,
     dimensions: usize,
@@ -74,42 +88,86 @@ fn edge(crossing: f64, shift: f64) -> f64 {
 }
 
 impl<'a> Mixture<'a> {
-    /// For these targets, all of which get the same part.
-    pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>) -> Self {
+    /// For these targets, all of which get the same part, and about so many points.
+    pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>, points: u64) -> Self {
         let dimensions = targets.first().map_or(0, |target| target.space.len());
-        let mut mixture = Self { targets, places, components: vec![None], parts: vec![OWN], dimensions };
-        let each = (1.0 - OWN) / targets.len() as f64;
+        let [plain, wide] = if points < MANY { SCARCE } else { SPARE };
+        let (components, parts) = match dimensions <= FEW_VARIABLES {
+            true => (vec![Component::Plain, Component::Wide], vec![plain, wide]),
+            false => (vec![Component::Plain], vec![plain + wide]),
+        };
+        let mut mixture = Self { targets, places, components, parts, dimensions };
+        let each = (1.0 - plain - wide) / targets.len() as f64;
         for target in 0..targets.len() {
-            let of: Vec<usize> = (0..mixture.places.len()).filter(|&p| mixture.places[p].target == target).collect();
-            let crossed = |p: usize| match mixture.places[p] {
-                Place { crossed: true, distance, .. } => standard_normal::sf(distance),
-                Place { .. } => 0.0,
-            };
-            let total: f64 = of.iter().map(|&p| crossed(p)).sum();
-            // Not less than a tenth of an equal part: the nearest place need not be the whole story.
-            let even = if total > 0.0 { 0.1 } else { 1.0 };
-            let part = |p: usize| if total > 0.0 { 0.9 * crossed(p) / total } else { 0.0 } + even / of.len() as f64;
-            let parts: Vec<f64> = of.iter().map(|&p| each * part(p)).collect();
-            of.iter().zip(parts).for_each(|(&place, part)| mixture.add(place, part));
+            mixture.share(target, each);
         }
         let left = 1.0 - mixture.parts.iter().sum::<f64>();
         mixture.parts[0] += left;
         mixture
     }
 
+    /// Shares a part out among the places of a target.
+    fn share(&mut self, target: usize, part: f64) {
+        let of = |shown: bool| -> Vec<usize> {
+            let mine = |place: &Place| place.target == target && (place.kind == PlaceKind::HalfSpace) == shown;
+            (0..self.places.len()).filter(|&p| mine(&self.places[p])).collect()
+        };
+        let (known, shown) = (of(false), of(true));
+        let shown_part = match (known.is_empty(), shown.is_empty()) {
+            (_, true) => 0.0,
+            (true, false) => 1.0,
+            (false, false) => SHOWN,
+        };
+        let probability = |p: usize| match self.places[p].crossed() {
+            true => standard_normal::sf(self.places[p].distance),
+            false => 0.0,
+        };
+        // As their probabilities, but not less than a tenth of an equal part: the nearest place need not be the whole story.
+        let total: f64 = known.iter().map(|&p| probability(p)).sum();
+        let even = if total > 0.0 { 0.1 } else { 1.0 };
+        let by = |p: usize| if total > 0.0 { 0.9 * probability(p) / total } else { 0.0 } + even / known.len() as f64;
+        let of_known = known.iter().map(|&p| (p, part * (1.0 - shown_part) * by(p)));
+        // Half evenly, and half as the roots of their probabilities: how much lies in a half-space is not known.
+        let roots: f64 = shown.iter().map(|&p| probability(p).sqrt()).sum();
+        let root = |p: usize| if roots > 0.0 { 0.5 * probability(p).sqrt() / roots } else { 0.0 };
+        let of_shown = shown.iter().map(|&p| (p, part * shown_part * (0.5 / shown.len() as f64 + root(p))));
+        let parts: Vec<(usize, f64)> = of_known.chain(of_shown).collect();
+        parts.into_iter().for_each(|(place, part)| self.add(place, part));
+    }
+
     fn add(&mut self, place: usize, part: f64) {
-        let Place { distance, crossed, .. } = self.places[place];
+        let Place { distance, kind, .. } = self.places[place];
         let probability = standard_normal::sf(distance);
-        let layers: Vec<(f64, f64)> = match crossed {
-            true => LAYERS.iter().map(|&(times, part)| (times * probability, part)).collect(),
-            false => LEVELS.iter().map(|&level| (level, 1.0 / LEVELS.len() as f64)).collect(),
+        let layers: Vec<(f64, f64)> = match kind {
+            PlaceKind::Surrogate => LAYERS.iter().map(|&(times, part)| (times * probability, part)).collect(),
+            PlaceKind::Way => LEVELS.iter().map(|&level| (level, 1.0 / LEVELS.len() as f64)).collect(),
+            PlaceKind::HalfSpace => {
+                self.components.push(Component::Beyond { place, shift: BEFORE });
+                return self.parts.push(part);
+            }
         };
         for (level, of) in layers {
             if level <= LIKELY && level > 0.0 {
-                self.components.push(Some(Beyond { place, shift: distance - standard_normal::upper_quantile(level) }));
+                let shift = distance - standard_normal::upper_quantile(level);
+                self.components.push(Component::Beyond { place, shift });
                 self.parts.push(part * of);
             }
         }
+    }
+
+    /// How many components there are that no place has: the first ones.
+    pub(super) fn without_place(&self) -> usize {
+        self.components.iter().take_while(|component| !matches!(component, Component::Beyond { .. })).count()
+    }
+
+    /// The logarithm of the weight that each point has with the parts as they are at first.
+    pub(super) fn weights(&self, points: &Columns) -> Vec<f64> {
+        let weight = |heights: Vec<f64>| {
+            let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let sum: f64 = self.parts.iter().zip(&heights).map(|(part, height)| part * (height - highest).exp()).sum();
+            -highest - sum.ln()
+        };
+        self.heights(points).into_iter().map(weight).collect()
     }
 
     /// How many components.
@@ -135,10 +193,17 @@ impl<'a> Mixture<'a> {
         (0..self.dimensions).map(|j| blocks.iter().flat_map(|block| block[j].iter().copied()).collect()).collect()
     }
 
-    fn block(&self, component: Option<Beyond>, rows: usize, rng: &mut Xoshiro256PlusPlus) -> Columns {
+    fn block(&self, component: Component, rows: usize, rng: &mut Xoshiro256PlusPlus) -> Columns {
         let mut columns: Columns =
             (0..self.dimensions).map(|_| (0..rows).map(|_| rng.sample(StandardNormal)).collect()).collect();
-        let Some(Beyond { place, shift }) = component else { return columns };
+        let (place, shift) = match component {
+            Component::Plain => return columns,
+            Component::Wide => {
+                columns.iter_mut().flatten().for_each(|z| *z *= WIDTH);
+                return columns;
+            }
+            Component::Beyond { place, shift } => (place, shift),
+        };
         let place = &self.places[place];
         for (direction, spread) in &place.spreads {
             let across = along(&columns, direction);
@@ -163,8 +228,12 @@ impl<'a> Mixture<'a> {
             let last = rows.min(first + ROWS);
             let part: Columns = points.iter().map(|column| column[first..last].to_vec()).collect();
             let crossings: Vec<Crossing> = self.places.iter().map(|place| self.crossing(place, &part)).collect();
-            let height = |row: usize, component: &Option<Beyond>| {
-                let Some(Beyond { place, shift }) = *component else { return 0.0 };
+            let height = |row: usize, component: &Component| {
+                let (place, shift) = match *component {
+                    Component::Plain => return 0.0,
+                    Component::Wide => return self.wide(&part, row),
+                    Component::Beyond { place, shift } => (place, shift),
+                };
                 let Crossing { along, crossing, spread } = &crossings[place];
                 let edge = edge(crossing[row], shift);
                 if along[row] > edge { spread[row] - standard_normal::sf(edge).ln() } else { f64::NEG_INFINITY }
@@ -173,6 +242,12 @@ impl<'a> Mixture<'a> {
             (0..last - first).map(row).collect::<Vec<Vec<f64>>>()
         };
         firsts.par_iter().flat_map_iter(of).collect()
+    }
+
+    /// The logarithm of the height of the wide density: `N(0, s^2)` by `N(0, 1)`.
+    fn wide(&self, points: &Columns, row: usize) -> f64 {
+        let square: f64 = points.iter().map(|column| column[row] * column[row]).sum();
+        0.5 * square * (1.0 - 1.0 / (WIDTH * WIDTH)) - self.dimensions as f64 * WIDTH.ln()
     }
 
     /// On the line through every point in the direction of the place: where the surrogate crosses the limit, near where it
@@ -186,9 +261,9 @@ impl<'a> Mixture<'a> {
                 *spread -= 0.5 * across * across * (1.0 / (by * by) - 1.0) + by.ln();
             }
         }
-        let crossing = match place.crossed {
-            true => self.secant(place, points, &along_it),
-            false => vec![place.distance; rows],
+        let crossing = match place.kind {
+            PlaceKind::Surrogate => self.secant(place, points, &along_it),
+            PlaceKind::Way | PlaceKind::HalfSpace => vec![place.distance; rows],
         };
         Crossing { along: along_it, crossing, spread }
     }

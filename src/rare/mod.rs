@@ -10,11 +10,16 @@
 //! ```
 //!
 //! is unbiased whatever the surrogate is worth (the balance heuristic: Veach and Guibas 1995; Owen and Zhou 2000); a poor one
-//! makes the weights unequal and the interval wide. After every stage the parts follow the rejects that were seen. What no
-//! stage comes near, a second kind of reject far from all that the surrogate knows, only the inputs' own part can find: one
-//! point of twenty.
+//! makes the weights unequal and the interval wide. After every stage the parts follow the rejects that were seen.
+//!
+//! A surrogate that is wrong does not know where it is wrong. Before points are drawn, some of the model itself are evaluated as the
+//! inputs vary and up to three times as wide, and beside switches that the model tells of. Rejects among them that the surrogate's
+//! components do not cover get components of their own: half-spaces at the likeliest point of the limit near them. So do rejects that
+//! a stage finds by its plain and wide points where no place is.
 
+mod border;
 mod estimate;
+mod explore;
 mod mixture;
 mod model;
 mod place;
@@ -36,6 +41,7 @@ use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::warning::Warning;
+use explore::Explored;
 use model::Model;
 use place::{Place, places};
 use search::Search;
@@ -112,7 +118,8 @@ pub struct RareCharacteristic {
 pub struct Beyond {
     /// The limit.
     pub limit: f64,
-    /// The probability beyond it; None where no point lies there.
+    /// The probability beyond it; None where no point lies there: its interval is then a bound, which takes it for a half-space that none of
+    /// the explored points met.
     pub probability: Option<Estimate>,
     /// 95 % interval.
     pub interval: [f64; 2],
@@ -126,8 +133,7 @@ pub struct Beyond {
     pub greatest_part: Option<f64>,
     /// Points of a plain random sample that would have the same standard error.
     pub plain_samples: Option<f64>,
-    /// The most likely assembly at the limit, as the surrogate has it; None where it does not reach the limit, or lies beyond
-    /// it at the means already.
+    /// The most likely assembly at the limit, as the surrogate and rejects of the model show it; None where none is known.
     pub design_point: Option<DesignPoint>,
 }
 
@@ -233,7 +239,11 @@ pub fn rare_within(
     let mut model = Model::new(problem, &space, run);
     let places: Vec<Place> = targets.iter().enumerate().flat_map(|(index, target)| places(index, target)).collect();
     let places = correct(places, &targets, (options.samples / 4) as usize, &mut model);
-    let mut search = Search::new(&targets, places);
+    let mut search = Search::new(&targets, places, options.samples);
+    if !targets.is_empty() {
+        let explored = Explored::new(&targets, &search.reached(), options.samples, !options.seed, &mut model);
+        search.learn(&explored, (options.samples / 10) as usize, &mut model);
+    }
     let (mut done, mut reached) = (surrogates.outcome.evaluated.stopped.is_some() || targets.is_empty(), None);
     while !done {
         let left = options.samples.saturating_sub(model.answered);
@@ -244,12 +254,12 @@ pub fn rare_within(
         };
         done = search.stage(stage.min(left) as usize, options.seed, &mut model);
         let shortfall = search.shortfall();
-        reached = options.until.map(|wanted| shortfall <= wanted);
+        reached = options.until.map(|wanted| shortfall <= wanted && search.confirmed(wanted));
         let more = options.until.map_or(f64::INFINITY, |wanted| (shortfall / wanted).powi(2).max(1.0));
         let expected = (search.points as f64 * more).min((search.points + left) as f64);
         pace(Pace { samples: search.points, expected, elapsed: begun.elapsed() });
         done |= model.answered >= options.samples || reached == Some(true) || run.stopped();
-        if !done && search.stages <= LEARNING {
+        if !done && (search.stages <= LEARNING || options.until.is_some()) {
             let left = options.samples - model.answered;
             search.follow((left / 4) as usize, &mut model);
         }

@@ -45,6 +45,11 @@ impl Answers {
         Some(self.columns[characteristic][row]).filter(|value| !value.is_nan())
     }
 
+    /// The values of all rows, None where there is none.
+    pub(super) fn values(&self, characteristic: usize) -> impl Iterator<Item = Option<f64>> + '_ {
+        self.columns[characteristic].iter().map(|&value| Some(value).filter(|value| !value.is_nan()))
+    }
+
     pub(super) fn answered(&self, row: usize) -> bool {
         self.answered[row]
     }

@@ -7,15 +7,28 @@ use super::target::Target;
 
 /// Farther out nothing has a probability that a double knows.
 pub(super) const FARTHEST: f64 = 37.0;
+/// How far a half-space begins before its place, in sigmas: the place is known to some hundredths, and a limit may bend towards the means.
+pub(super) const BEFORE: f64 = 0.3;
 /// The most places of one target.
 const PLACES: usize = 12;
 /// A place this much less probable than the nearest adds nothing.
-const FAINT: f64 = 1e-3;
+pub(super) const FAINT: f64 = 1e-3;
 /// Dimensions up to which the bend of the limit is looked at: the square of them times the surrogate's cost.
 const BENT: usize = 40;
 /// Dimensions, and pairs of them, along which places are looked for beside the steepest way.
 const AXES: usize = 8;
 const DIAGONALS: usize = 4;
+
+/// How a place was found, and what is drawn there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum PlaceKind {
+    /// The surrogate crosses the limit there: points follow its crossings.
+    Surrogate,
+    /// Only a way on which the surrogate comes near.
+    Way,
+    /// The model itself crosses there: points are drawn from the half-space that begins a little before.
+    HalfSpace,
+}
 
 /// A direction in which a limit is crossed.
 #[derive(Debug, Clone)]
@@ -25,8 +38,7 @@ pub(super) struct Place {
     pub(super) direction: Vec<f64>,
     /// How far out, in sigmas.
     pub(super) distance: f64,
-    /// Whether the limit is crossed there; else it is only the way on which the surrogate comes nearest.
-    pub(super) crossed: bool,
+    pub(super) kind: PlaceKind,
     /// The surrogate's margin at the crossing: 0 for its own, other where the model crosses elsewhere.
     pub(super) offset: f64,
     /// Directions across, of length 1, in which points are spread otherwise than the inputs are, by so much.
@@ -47,7 +59,8 @@ pub(super) fn places(index: usize, target: &Target<'_>) -> Vec<Place> {
         let direction: Vec<f64> = point.iter().map(|z| z / distance).collect();
         if !found.iter().any(|place| dot(&place.direction, &direction) > 0.9) {
             let spreads = spreads(target, &point, distance);
-            found.push(Place { target: index, direction, distance, crossed: true, offset: 0.0, spreads });
+            let kind = PlaceKind::Surrogate;
+            found.push(Place { target: index, direction, distance, kind, offset: 0.0, spreads });
         }
     }
     found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -67,13 +80,30 @@ pub(super) fn places(index: usize, target: &Target<'_>) -> Vec<Place> {
 impl Place {
     /// A way on which no crossing is known.
     pub(super) fn uncrossed(target: usize, direction: Vec<f64>) -> Self {
-        Self { target, direction, distance: 0.0, crossed: false, offset: 0.0, spreads: Vec::new() }
+        Self { target, direction, distance: 0.0, kind: PlaceKind::Way, offset: 0.0, spreads: Vec::new() }
+    }
+
+    /// The half-space beside a point of the limit.
+    pub(super) fn half_space(target: usize, point: &[f64]) -> Option<Self> {
+        let distance = length(point);
+        let direction = unit(point.to_vec())?;
+        Some(Self { target, direction, distance, kind: PlaceKind::HalfSpace, offset: 0.0, spreads: Vec::new() })
+    }
+
+    /// Whether a limit is crossed there.
+    pub(super) fn crossed(&self) -> bool {
+        self.kind != PlaceKind::Way
+    }
+
+    /// Whether a point lies in the half-space that begins a little before the place.
+    pub(super) fn holds(&self, point: &[f64]) -> bool {
+        self.crossed() && dot(&self.direction, point) > self.distance - BEFORE
     }
 
     /// Where the model is looked at on the way out to a place, in sigmas.
     pub(super) fn stations(&self) -> Vec<f64> {
         let mut stations = vec![1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 8.0];
-        if self.crossed {
+        if self.crossed() {
             stations.retain(|t| (t - self.distance).abs() > 0.25);
             stations.push(self.distance);
         }
@@ -111,7 +141,7 @@ impl Place {
         };
         let crossing = ways.iter().zip(&along).position(|(&t, margin)| margin + residual(t) >= 0.0);
         if let Some(at) = crossing {
-            (self.distance, self.offset, self.crossed) = (ways[at], along[at], true);
+            (self.distance, self.offset, self.kind) = (ways[at], along[at], PlaceKind::Surrogate);
         }
         crossing.is_some()
     }
@@ -255,6 +285,6 @@ pub(super) fn unit(mut direction: Vec<f64>) -> Option<Vec<f64>> {
     (size > 0.0 && size.is_finite()).then_some(direction)
 }
 
-fn length(a: &[f64]) -> f64 {
+pub(super) fn length(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }

@@ -1,14 +1,16 @@
 //! Points drawn and weighed, stage after stage.
 
 use super::estimate::{Weighed, best_parts};
+use super::explore::Explored;
 use super::mixture::Mixture;
 use super::model::{Answers, Model};
-use super::place::{Place, dot, unit};
+use super::place::{FAINT, Place, PlaceKind, dot, unit};
 use super::space::Columns;
 use super::target::Target;
 use super::within::within;
-use super::{Beyond, DesignPoint, RareCharacteristic, correct};
+use super::{Beyond, DesignPoint, RareCharacteristic, border, correct};
 use crate::characteristic::Characteristic;
+use crate::distribution::standard_normal;
 use crate::sampling::Estimate;
 
 /// Rejects by which the parts of the components are chosen, at most.
@@ -17,6 +19,15 @@ const GUIDES: usize = 2000;
 const FEW: usize = 8;
 /// What of the parts stays as it was at first, whatever was seen.
 const KEPT: f64 = 0.25;
+
+/// The most half-spaces of a target.
+const HALF_SPACES: usize = 10;
+/// A reject that the components draw with a weight of no more than so many times the probability needs no place of its own.
+const DENSE: f64 = 30.0;
+/// Where rejects that no place holds bear more than this of a sum, stages before they were known say little.
+const STRAYED: f64 = 0.05;
+/// The part of a component without a place stays at least this much of its first.
+const WATCHING: f64 = 0.5;
 
 /// What has been drawn and answered so far.
 pub(super) struct Search<'a> {
@@ -28,6 +39,8 @@ pub(super) struct Search<'a> {
     /// Points drawn and answered.
     pub(super) points: u64,
     pub(super) stages: u64,
+    /// About how many points there will be.
+    expected: u64,
 }
 
 /// Points of one stage, the components in turn, so that those of any beginning are shared out alike.
@@ -40,10 +53,75 @@ struct Drawn {
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>) -> Self {
-        let mixture = Mixture::new(targets, places);
+    /// Of so many points.
+    pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>, expected: u64) -> Self {
+        let mixture = Mixture::new(targets, places, expected);
         let (weighed, guides) = (vec![Weighed::default(); targets.len()], vec![Vec::new(); targets.len()]);
-        Self { targets, mixture, weighed, guides, points: 0, stages: 0 }
+        Self { targets, mixture, weighed, guides, points: 0, stages: 0, expected }
+    }
+
+    /// Whether some place of each target crosses its limit.
+    pub(super) fn reached(&self) -> Vec<bool> {
+        let places = self.mixture.places();
+        let crossed = |target: usize| places.iter().any(|place| place.target == target && place.crossed());
+        (0..self.targets.len()).map(crossed).collect()
+    }
+
+    /// Takes half-spaces beside explored rejects that the surrogate's components do not cover, and the bounds where there are none.
+    pub(super) fn learn(&mut self, explored: &Explored, budget: usize, model: &mut Model<'_>) {
+        let mut found = Vec::new();
+        let each = budget / self.targets.len().max(1);
+        for (index, target) in self.targets.iter().enumerate() {
+            self.weighed[index].bound(explored.bound(target));
+            found.extend(self.half_spaces(index, &explored.rejects(target), each, model));
+        }
+        self.take(found);
+    }
+
+    /// Half-spaces for rejects, of which the first is nearest to the means, within a budget of evaluations.
+    fn half_spaces(&self, index: usize, rejects: &[Vec<f64>], budget: usize, model: &mut Model<'_>) -> Vec<Place> {
+        let (target, allowed) = (&self.targets[index], model.answered + budget as u64);
+        let mine = || self.mixture.places().iter().filter(|place| place.target == index && place.crossed());
+        let held = |found: &[Place], point: &[f64]| {
+            mine().any(|place| place.holds(point)) || found.iter().any(|place| place.holds(point))
+        };
+        let room = HALF_SPACES.saturating_sub(mine().filter(|place| place.kind == PlaceKind::HalfSpace).count());
+        let mut probability: f64 = mine().map(|place| standard_normal::sf(place.distance)).sum();
+        let columns = (0..model.space.len()).map(|j| rejects.iter().map(|point| point[j]).collect()).collect();
+        let weights = self.mixture.weights(&columns);
+        let cost = border::cost(model.space.len()) as u64;
+        let mut found: Vec<Place> = Vec::new();
+        for (reject, weight) in rejects.iter().zip(weights) {
+            let known =
+                self.weighed[index].found().and_then(|found| found.probability).map_or(0.0, |known| known.value);
+            let dense = weight <= (DENSE * probability.max(known)).ln();
+            if dense || held(&found, reject) {
+                continue;
+            }
+            if found.len() >= room || model.answered + cost > allowed {
+                break;
+            }
+            let point = border::bisected(target, reject, model);
+            // Beside a place that is a thousand times as likely it adds nothing.
+            let faint = Place::half_space(index, &point)
+                .is_none_or(|place| standard_normal::sf(place.distance) < FAINT * probability);
+            if faint || held(&found, &point) {
+                continue;
+            }
+            let point = border::nearest(target, point, model);
+            if let Some(place) = Place::half_space(index, &point) {
+                probability += standard_normal::sf(place.distance);
+                found.push(place);
+            }
+        }
+        found
+    }
+
+    fn take(&mut self, more: Vec<Place>) {
+        if !more.is_empty() {
+            let places = self.mixture.places().iter().cloned().chain(more).collect();
+            self.mixture = Mixture::new(self.targets, places, self.expected);
+        }
     }
 
     /// Draws and weighs so many points; whether some of them were not answered.
@@ -55,7 +133,11 @@ impl<'a> Search<'a> {
         (0..points).any(|row| !answers.answered(row))
     }
 
-    /// Adds a place for every target whose rejects lie on average in a direction in which there is none.
+    /// Adds a place for every target whose rejects lie on average in a direction in which there is none, and half-spaces for rejects that
+    /// no place holds.
+    ///
+    /// Where such rejects bear much of the sum, it begins anew: the stages that come are unbiased whatever led to their places, and
+    /// those before did not draw where it matters.
     pub(super) fn follow(&mut self, budget: usize, model: &mut Model<'_>) {
         let mut places = self.mixture.places().to_vec();
         let before = places.len();
@@ -72,10 +154,32 @@ impl<'a> Search<'a> {
             }
         }
         let added = correct(places.split_off(before), self.targets, budget, model);
-        places.extend(added.into_iter().filter(|place| place.crossed));
+        places.extend(added.into_iter().filter(|place| place.crossed()));
         if places.len() > before {
-            self.mixture = Mixture::new(self.targets, places);
+            self.mixture = Mixture::new(self.targets, places, self.expected);
         }
+        let mut found = Vec::new();
+        for index in 0..self.targets.len() {
+            let mut strayed: Vec<&Vec<f64>> = self.strayed(index);
+            strayed.sort_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
+            let strayed: Vec<Vec<f64>> = strayed.into_iter().cloned().collect();
+            found.push(self.half_spaces(index, &strayed, budget / self.targets.len(), model));
+        }
+        for (index, places) in found.iter().enumerate().filter(|(_, places)| !places.is_empty()) {
+            let part = |guide: &&(f64, Vec<f64>)| places.iter().any(|place| place.holds(&guide.1));
+            let logarithms = self.guides[index].iter().filter(part).map(|guide| guide.0);
+            if self.weighed[index].part(logarithms) > STRAYED {
+                self.weighed[index].forget();
+            }
+        }
+        self.take(found.into_iter().flatten().collect());
+    }
+
+    /// Rejects drawn so far that no place holds.
+    fn strayed(&self, index: usize) -> Vec<&Vec<f64>> {
+        let held =
+            |point: &Vec<f64>| self.mixture.places().iter().any(|place| place.target == index && place.holds(point));
+        self.guides[index].iter().map(|guide| &guide.1).filter(|point| !held(point)).collect()
     }
 
     /// How the next points are shared out among the components: as at first, or as the rejects so far say.
@@ -86,7 +190,13 @@ impl<'a> Search<'a> {
             let best = if guides.len() < FEW { first.clone() } else { best_parts(&self.heights(guides), first) };
             parts.iter_mut().zip(best).for_each(|(part, best)| *part += best / self.guides.len() as f64);
         }
-        parts.iter().zip(first).map(|(part, first)| (1.0 - KEPT) * part + KEPT * first).collect()
+        let mut parts: Vec<f64> =
+            parts.iter().zip(first).map(|(part, first)| (1.0 - KEPT) * part + KEPT * first).collect();
+        for (part, first) in parts.iter_mut().zip(first).take(self.mixture.without_place()) {
+            *part = part.max(WATCHING * first);
+        }
+        let total: f64 = parts.iter().sum();
+        parts.into_iter().map(|part| part / total).collect()
     }
 
     /// Weights with the heights of all components instead of the points, all as logarithms.
@@ -148,6 +258,11 @@ impl<'a> Search<'a> {
         self.weighed.iter().map(relative).fold(0.0, f64::max)
     }
 
+    /// Whether the last stage by itself confirms the standard errors of all: it is independent of the moment at which these were small.
+    pub(super) fn confirmed(&self, wanted: f64) -> bool {
+        self.weighed.iter().all(|weighed| weighed.confirmed(wanted))
+    }
+
     /// What is known of every characteristic.
     pub(super) fn characteristics(self, model: &Model<'_>, unfinished: bool) -> Vec<RareCharacteristic> {
         let space = model.space;
@@ -156,7 +271,8 @@ impl<'a> Search<'a> {
             let index = self.targets.iter().position(same)?;
             let found = self.weighed[index].found()?;
             let found = if self.targets[index].kept { found.complement() } else { found };
-            let place = self.mixture.places().iter().find(|place| place.target == index && place.crossed);
+            let mine = self.mixture.places().iter().filter(|place| place.target == index && place.crossed());
+            let place = mine.min_by(|a, b| a.distance.total_cmp(&b.distance));
             let design_point = place.map(|place| {
                 let normals = place.direction.iter().map(|part| vec![part * place.distance]).collect();
                 let mut values = model.middle();

@@ -110,6 +110,16 @@ pub fn verify_by_sampling(problem: &Problem, seed: u64) -> Vec<SampledFigures> {
     (0..problem.characteristics().len()).map(|c| verify_characteristic(problem, c, seed, CORE, None)).collect()
 }
 
+/// The likeliest points beyond those switches of a cheap model that are seldom met, in independent normal variables of the dimensions at
+/// `varying`; none where the model does not tell its switches.
+pub(crate) fn seldom_points(problem: &Problem, c: usize, varying: &[usize], seed: u64) -> Vec<Vec<f64>> {
+    let model = Model::over(problem, c, varying);
+    let found = sides::sides(&model, &Normals::new(varying.len(), seed), 1.0);
+    let point =
+        |space: strata::HalfSpace| space.direction.iter().map(|part| part * (space.from + sides::BEFORE)).collect();
+    found.half_spaces.into_iter().map(point).collect()
+}
+
 /// The share of a characteristic's variance that a surface over the dimensions at `varying` leaves unexplained, by 1024 points of the
 /// model; None where the surface has no value, or the model none at any point.
 pub(crate) fn unexplained(

@@ -20,7 +20,7 @@ const SELDOM: f64 = 1.0 / 128.0;
 const PLACES: usize = 4;
 const MOST: usize = 6;
 /// How far a half-space begins before its design point, in sigmas.
-const BEFORE: f64 = 0.5;
+pub(super) const BEFORE: f64 = 0.5;
 /// Steps of Hasofer and Lind, the step of their differences, and where the line is searched about each.
 const STEPS: usize = 12;
 const STEP: f64 = 1e-3;

@@ -361,7 +361,7 @@ fn limits_on_the_far_side() {
 #[test]
 fn a_limit_that_is_out_of_reach_is_a_bound() {
     let line = || Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
-    for distance in [28.0, 33.0] {
+    for distance in [28.0, 33.0, 100.0] {
         let found = found(&limited(line(), Some(-distance), Some(4.0)), 500, 1, Method::Full);
         let one = &found.characteristics[0];
         let (below, above) = (one.below.as_ref().unwrap(), one.above.as_ref().unwrap());
@@ -371,6 +371,16 @@ fn a_limit_that_is_out_of_reach_is_a_bound() {
         let [low, high] = one.yield_interval.unwrap();
         assert!(low <= 1.0 - tail(4.0) && 1.0 - tail(4.0) <= high, "{low} {high}");
     }
+    // A limit of nature, 100 sigma away. Forty of the explored points are six times as wide: a half-space that none of
+    // them meets is 6 Phi^-1(0.025^(1/40)) = 8.1 sigma away at least, 3e-16.
+    let size = Problem::new([Dimension::normal("size", 10.0, 0.3).unwrap()], Closure::scalar("y", |x| x[0])).unwrap();
+    let natural = found(&limited(size, Some(0.0), Some(10.4)), 500, 1, Method::Full);
+    let one = &natural.characteristics[0];
+    let below = one.below.as_ref().unwrap();
+    assert!(below.probability.is_none() && below.hits == 0 && below.interval[1] < 4e-16, "{below:?}");
+    let [low, high] = one.yield_interval.unwrap();
+    assert!(low <= 1.0 - tail(4.0) && 1.0 - tail(4.0) <= high && 1.0 - low < 2.0 * tail(4.0), "{low} {high}");
+    assert!(one.yield_.is_some_and(|value| low <= value && value <= high));
     // Where the surrogate reaches the limit, the bound says so.
     let [below, _] = sides(&found(&limited(line(), Some(-28.0), None), 500, 1, Method::Full));
     assert!(below.clone().is_some_and(|below| below.hits > 0 && below.interval == [0.0, 1e-150]), "{below:?}");

@@ -17,7 +17,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::head::findings;
-use super::{AllocationReport, CompareReport, Head, SimulationReport, SweepReport, WarningReport};
+use super::{AllocationReport, CompareReport, Head, RareReport, SimulationReport, SweepReport, WarningReport};
 use crate::document::Document;
 use crate::document::html::{blocks, head as summary, sections};
 use crate::document::number::significant;
@@ -80,6 +80,11 @@ fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
 
 /// A simulation as one page of HTML: every estimate with its standard error, the histogram with the error of every bar.
 pub fn simulate_html(report: &SimulationReport) -> String {
+    page(&report.head, &report.run, &report.document(), &report.warnings)
+}
+
+/// Rare events as one page of HTML: every probability with its interval, and the assembly in which it most likely comes about.
+pub fn rare_html(report: &RareReport) -> String {
     page(&report.head, &report.run, &report.document(), &report.warnings)
 }
 
