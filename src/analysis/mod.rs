@@ -106,7 +106,8 @@ pub(crate) fn analyze_keeping(
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
     // A cheap model that is verified is sampled anyway, and by points that need no surface.
-    let sampled = options.verify.unwrap_or(Options::VERIFY) > 0 && !problem.function().signature().costly;
+    let signature = problem.function().signature();
+    let sampled = options.verification(signature) > 0 && !signature.costly;
     let fallback = match sampled {
         true => fallback::Spent::default(),
         false => fallback::fall_back(problem, &outcome, left, &mut characteristics, run),

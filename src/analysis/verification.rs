@@ -50,7 +50,7 @@ pub(super) fn verify(
     characteristics: &mut [CharacteristicAnalysis],
     run: &Run<'_>,
 ) -> RunSummary {
-    let most = options.verify.unwrap_or(Options::VERIFY);
+    let most = options.verification(problem.function().signature());
     if most == 0 || outcome.evaluated.stopped.is_some() || run.stopped() {
         return RunSummary::default();
     }

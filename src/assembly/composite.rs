@@ -134,6 +134,7 @@ impl Composite {
             assembler: conditions.as_ref().map(|conditions| Assembler::new(conditions, &formulas, named, given)),
             signature: Signature {
                 costly: model.as_ref().is_some_and(|model| model.function.signature().costly),
+                cheap: model.as_ref().is_none_or(|model| model.function.signature().cheap),
                 inputs,
                 ..Signature::default()
             },

@@ -9,6 +9,9 @@ pub struct Signature {
     pub outputs: Vec<Output>,
     /// Whether an evaluation costs so much that answers are worth keeping on disk.
     pub costly: bool,
+    /// Whether tens of thousands of evaluations go unnoticed, as with formulas: results are then verified by a sample of the function
+    /// itself. Of a function of somebody else, such as a closure, neither is known.
+    pub cheap: bool,
 }
 
 /// One coordinate of a point.

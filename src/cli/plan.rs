@@ -11,7 +11,7 @@ use super::files::Files;
 use super::output::{Look, json};
 use super::{points, study};
 use crate::document::number::plural;
-use crate::method::{DerivativeSource, Options};
+use crate::method::DerivativeSource;
 use crate::plan::{Known, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
@@ -90,7 +90,7 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         rounds: stages,
         largest_batch: first.points.len().max(evaluations.saturating_sub(first.points.len())),
         stages: vec![of_stage(&first)],
-        checks: match study.options.verify.unwrap_or(Options::VERIFY) {
+        checks: match study.options.verification(study.problem.function().signature()) {
             0 => Some(0),
             most => study.problem.function().signature().costly.then_some(most.min(MOST_CHECKS)),
         },

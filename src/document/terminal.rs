@@ -321,7 +321,7 @@ mod tests {
         let page = shown(|page| page.table(table), Style { color: false, ..STYLE });
         let lines: Vec<&str> = page.lines().collect();
         let expected =
-            ["  a            1.250", "  a nam…long   1.250", "  a         a word or two", "  a na…ng   a word or two"];
+            ["  a            1.250", "  a nam… long  1.250", "  a         a word or two", "  a na…ong  a word or two"];
         assert_eq!(lines, expected);
     }
 

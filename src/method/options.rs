@@ -43,7 +43,8 @@ pub struct Options {
     /// knows its derivatives, and moments come from differences at nodes that suit each distribution.
     pub derivatives: Option<DerivativeSource>,
     /// Whether the result is verified by the model itself ([`crate::verification`]): a cheap model is sampled unless this is 0, a
-    /// costly one evaluated at no more check points than this, 18 at most. [`Options::VERIFY`] unless said otherwise.
+    /// costly one evaluated at no more check points than this, 18 at most. Unless said otherwise [`Options::VERIFY`] where the function
+    /// says that it is cheap or costly ([`Signature`](crate::assembly::Signature)), and 0 where it says neither, as a closure.
     pub verify: Option<usize>,
 }
 
@@ -134,6 +135,11 @@ impl FromStr for Pairs {
 impl Options {
     /// Check points of a costly model where [`verify`](Self::verify) does not say; a cheap one is sampled.
     pub const VERIFY: usize = 12;
+    /// How a result of such a function is verified: 0 for not at all.
+    pub fn verification(&self, of: &crate::assembly::Signature) -> usize {
+        self.verify.unwrap_or(if of.cheap || of.costly { Self::VERIFY } else { 0 })
+    }
+
     /// The seed where none is given: the same study gives the same numbers.
     pub const SEED: u64 = 1;
 }

@@ -120,6 +120,7 @@ impl Model {
         let signature = Signature {
             inputs: self.inputs.iter().map(input).collect(),
             outputs: self.outputs.iter().map(output).collect(),
+            cheap: true,
             ..Signature::default()
         };
         BuiltIn { model: self, signature }

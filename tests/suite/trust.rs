@@ -305,7 +305,7 @@ impl AssemblyFunction for Costly {
 
 fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
     let asked = Arc::new(AtomicUsize::new(0));
-    let signature = Signature { costly: true, ..problem.function().signature().clone() };
+    let signature = Signature { costly: true, cheap: false, ..problem.function().signature().clone() };
     let function = Costly { signature, inner: problem.clone(), asked: Arc::clone(&asked) };
     let again = Problem::new(problem.dimensions().to_vec(), function).unwrap();
     (again.asking(problem.characteristics().to_vec()).unwrap(), asked)

@@ -28,7 +28,7 @@ impl Process {
     pub fn new(signature: Signature, greeting: Greeting, settings: Settings) -> Self {
         assert!(!settings.argv.is_empty(), "a program has a name");
         assert_eq!(signature.inputs.len(), greeting.nominal.len(), "every dimension has a nominal value");
-        let signature = Signature { costly: true, ..signature };
+        let signature = Signature { costly: true, cheap: false, ..signature };
         Self { signature, settings, greeting, pool: Mutex::new(None) }
     }
 
