@@ -27,28 +27,38 @@ pub(super) fn bisected(target: &Target<'_>, reject: &[f64], model: &mut Model<'_
     between(target, reject, [0.0, 1.0], ROUNDS, model)
 }
 
-/// The likeliest point of the limit near a point of it.
-///
-/// Steps of Hasofer and Lind (1974; Rackwitz and Fiessler 1978) with differences of the model, a search of the line about each. Where they
-/// lead nowhere, as beside a jump, the variables that have no part in the reject go back to their means.
+/// The likeliest point of the limit near a point of it: [`stepped`], and where that leads nowhere, as beside a jump, the variables that have
+/// no part in the reject go back to their means.
 pub(super) fn nearest(target: &Target<'_>, border: Vec<f64>, model: &mut Model<'_>) -> Vec<f64> {
-    let mut best = border;
-    for step in 0..STEPS {
-        let before = length(&best);
-        let line = tangent(target, &best, model).map(|point| LINE.map(|part| scaled(&point, part)).to_vec());
-        let reached = line.and_then(|line| {
-            let sought = sought(target, &line, model);
-            line.into_iter().zip(sought).find_map(|(point, sought)| sought.then_some(point))
-        });
-        match reached.filter(|point| length(point) < before) {
-            Some(point) => best = between(target, &point, [LINE[0], 1.0], 1, model),
-            None if step == 0 => {
-                best = without_idle(target, best, model);
-                break;
-            }
-            None => break,
-        }
-        if length(&best) > (1.0 - GAIN) * before {
+    match stepped(target, &border, STEPS, model) {
+        Some(point) => point,
+        None => without_idle(target, border, model),
+    }
+}
+
+/// Evaluations of one step, for so many variables.
+pub(super) fn step_cost(variables: usize) -> usize {
+    variables + LINE.len() + CUTS
+}
+
+/// Steps of Hasofer and Lind (1974; Rackwitz and Fiessler 1978) from a point of the limit, with differences of the model and a search of the
+/// line about each; None where they lead no nearer.
+pub(super) fn stepped(target: &Target<'_>, border: &[f64], steps: usize, model: &mut Model<'_>) -> Option<Vec<f64>> {
+    let mut best: Option<Vec<f64>> = None;
+    for _ in 0..steps {
+        let from = best.as_deref().unwrap_or(border);
+        let before = length(from);
+        let Some(tangent) = tangent(target, from, model).filter(|point| length(point) < (1.0 - GAIN) * before) else {
+            break;
+        };
+        let line = LINE.map(|part| scaled(&tangent, part)).to_vec();
+        let sought = sought(target, &line, model);
+        let reached = line.into_iter().zip(sought).find_map(|(point, sought)| sought.then_some(point));
+        let Some(reached) = reached.filter(|point| length(point) < before) else { break };
+        let point = between(target, &reached, [LINE[0], 1.0], 1, model);
+        let done = length(&point) > (1.0 - GAIN) * before;
+        best = Some(point);
+        if done {
             break;
         }
     }

@@ -49,7 +49,7 @@ const MANY: u64 = 2000;
 const WIDTH: f64 = 1.5;
 const FEW_VARIABLES: usize = 12;
 /// The part of the points of a target for the half-spaces that the model itself showed, where the surrogate has places too.
-const SHOWN: f64 = 0.5;
+const SHOWN: f64 = 0.3;
 /// Rows that are drawn and weighed together.
 const ROWS: usize = 512;
 

@@ -24,6 +24,10 @@ const KEPT: f64 = 0.25;
 const HALF_SPACES: usize = 10;
 /// A reject that the components draw with a weight of no more than so many times the probability needs no place of its own.
 const DENSE: f64 = 30.0;
+/// Steps from a surrogate's place, how far beyond it they begin, and the cosine from which two directions are the same.
+const TURNS: usize = 3;
+const BESIDE: f64 = 3e-3;
+const ALIKE: f64 = 0.97;
 /// Where rejects that no place holds bear more than this of a sum, stages before they were known say little.
 const STRAYED: f64 = 0.05;
 /// The part of a component without a place stays at least this much of its first.
@@ -73,9 +77,25 @@ impl<'a> Search<'a> {
         let each = budget / self.targets.len().max(1);
         for (index, target) in self.targets.iter().enumerate() {
             self.weighed[index].bound(explored.bound(target));
+            let guards = self.guards(index, each, model);
+            self.take(guards);
             found.extend(self.half_spaces(index, &explored.rejects(target), each, model));
         }
         self.take(found);
+    }
+
+    /// The half-space at the surrogate's nearest place, should the surrogate be wrong about how the limit goes on from there, and the one to
+    /// which the model leads from it, should the surrogate have looked in a wrong direction.
+    fn guards(&self, index: usize, budget: usize, model: &mut Model<'_>) -> Vec<Place> {
+        let mine = self.mixture.places().iter().filter(|place| place.target == index && place.crossed());
+        let Some(place) = mine.min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return Vec::new() };
+        // A little beyond: the place itself may have been evaluated on the way to it.
+        let point: Vec<f64> = place.direction.iter().map(|part| part * (place.distance + BESIDE)).collect();
+        let steps = budget / border::step_cost(model.space.len());
+        let turned = border::stepped(&self.targets[index], &point, steps.min(TURNS), model);
+        let turned = turned.and_then(|point| Place::half_space(index, &point));
+        let turned = turned.filter(|turned| dot(&turned.direction, &place.direction) < ALIKE);
+        Place::half_space(index, &point).into_iter().chain(turned).collect()
     }
 
     /// Half-spaces for rejects, of which the first is nearest to the means, within a budget of evaluations.
@@ -148,7 +168,7 @@ impl<'a> Search<'a> {
                 middle.iter_mut().zip(normals).for_each(|(sum, z)| *sum += (weight - greatest).exp() * z);
             }
             let Some(direction) = unit(middle) else { continue };
-            let near = |place: &&Place| place.target == index && dot(&place.direction, &direction) > 0.97;
+            let near = |place: &&Place| place.target == index && dot(&place.direction, &direction) > ALIKE;
             if !places.iter().any(|place| near(&place)) {
                 places.push(Place::uncrossed(index, direction));
             }
