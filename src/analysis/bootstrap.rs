@@ -19,6 +19,7 @@ use crate::method::Outcome;
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::surrogate::{InputShape, Inputs, Relocation, Surrogate};
+use crate::verdict::including;
 
 /// The probability with which an interval covers the truth.
 const LEVEL: f64 = 0.95;
@@ -69,7 +70,7 @@ pub struct SamplingInterval {
     pub skewness: Option<[f64; 2]>,
     /// Of the kurtosis.
     pub kurtosis: Option<[f64; 2]>,
-    /// Of the share outside the limits.
+    /// Of the share outside the limits: that of the Pearson fit, in proportion to the share that is reported.
     pub rejected: Option<[f64; 2]>,
     /// Of Cpk.
     pub cpk: Option<[f64; 2]>,
@@ -161,7 +162,13 @@ pub(super) fn intervals(
             sigma: interval(1),
             skewness: interval(2),
             kurtosis: interval(3),
-            rejected: interval(4),
+            rejected: interval(4).map(|of_fit| {
+                let rejected = |of: Option<Capability>| of.and_then(|of| of.rejected());
+                match (rejected(analysis.pearson), rejected(analysis.capability)) {
+                    (Some(fit), Some(printed)) => in_proportion(of_fit, fit, printed),
+                    _ => of_fit,
+                }
+            }),
             cpk: interval(5),
             level: LEVEL,
             resamples: resampled.len(),
@@ -169,6 +176,13 @@ pub(super) fn intervals(
         });
     }
     true
+}
+
+/// The interval of the rejects of the Pearson fit, by which resamples are judged, as one of the rejects that are reported: both ends
+/// in the same proportion, so that the size of the sample leaves as many times more and fewer open.
+fn in_proportion([low, high]: [f64; 2], fit: f64, reported: f64) -> [f64; 2] {
+    let by = reported / fit;
+    if by.is_finite() && by > 0.0 { [low * by, (high * by).min(1.0)] } else { including([low, high], reported) }
 }
 
 /// A characteristic whose intervals are wanted.

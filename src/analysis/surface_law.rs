@@ -48,7 +48,8 @@ pub struct SurfaceShares {
     pub below: Option<LawFigure>,
     /// The share above the upper limit; None without one.
     pub above: Option<LawFigure>,
-    /// At the probabilities of [`QUANTILES`]; None where the law could only be counted at points.
+    /// At the probabilities of [`QUANTILES`]; None without limits: those of the Pearson fit are then reported. None
+    /// too where the law could only be counted at points.
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
@@ -89,6 +90,9 @@ impl SurfaceShares {
         let known = |figure: &LawFigure| figure.value.is_finite() && figure.error.is_finite();
         if ![below, above].iter().flatten().all(known) {
             return Some((Self::counted(problem, outcome, c)?, None));
+        }
+        if !limits.exist() {
+            return Some((Self { branch: whole.branch(), below, above, quantiles: None }, Some(whole)));
         }
         let full = match unexplained.filter(|_| beside) {
             Some(_) => {

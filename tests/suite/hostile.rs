@@ -212,7 +212,7 @@ fn long_formulas_make_short_messages() {
             "[dimensions]\na = {{ nominal = 1, tolerance = 0.1 }}\n[characteristics]\ny = {{ formula = \"{formula}\" }}\n"
         );
         let path = study(&folder, "long.toml", &text).display().to_string();
-        let output = sensitol(&["analyze", &path]).output().unwrap();
+        let output = sensitol(&["analyze", &path, "--verify", "0"]).output().unwrap();
         let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
         let longest = said.lines().map(|line| line.chars().count()).max().unwrap();
         assert!(longest < 600, "{longest}: {}", said.lines().next().unwrap());

@@ -328,7 +328,8 @@ b = { nominal = 0, tolerance = 3 }
 y = { formula = "max(a, b)", lower = -2, upper = 3 }
 "##;
     let study = study(text);
-    let (analysis, page) = analysed(&study, &study.options);
+    let options = Options { verify: Some(0), ..study.options.clone() };
+    let (analysis, page) = analysed(&study, &options);
     let sampled = analysis.characteristics[0].model_sampled.as_ref().expect("a kink is sampled");
     let histogram = sampled.histogram.as_ref().unwrap();
     assert_eq!(histogram.counts.iter().sum::<u64>(), sampled.samples);

@@ -27,7 +27,7 @@ fn every_first_study_runs() {
     assert_eq!(said, "written: study.toml\nnext: sensitol analyze study.toml\n      sensitol allocate study.toml\n");
     done(&within(folder.path(), &["check", "study.toml"]));
     // The tutorial shows why.
-    assert!(done(&within(folder.path(), &["analyze", "study.toml"])).contains("target 99.730 %: inconclusive"));
+    assert!(done(&within(folder.path(), &["analyze", "study.toml"])).contains("target 99.730 %: MISSED"));
     assert_eq!(within(folder.path(), &["analyze", "study.toml", "--check"]).status.code(), Some(1));
     assert!(done(&within(folder.path(), &["allocate", "study.toml"])).starts_with("optimal: cost"));
     // The example and the tutorial show the same study.

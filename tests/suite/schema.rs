@@ -4,7 +4,7 @@ use jsonschema::Validator;
 use sensitol::Study;
 use serde_json::Value;
 
-use super::support::example_studies;
+use super::support::{example_studies, repository};
 
 fn validator() -> Validator {
     let schema = sensitol::study::schema();
@@ -26,12 +26,15 @@ fn every_example_is_valid() {
         assert!(errors.is_empty(), "{}: {errors:?}", path.display());
         Study::read(path).unwrap();
         // As JSON among copies of the files that it names.
-        let beside = tempfile::tempdir().unwrap();
+        let root = tempfile::tempdir().unwrap();
+        let beside = root.path().join("examples/copy");
+        std::fs::create_dir_all(&beside).unwrap();
+        std::os::unix::fs::symlink(repository("adapters"), root.path().join("adapters")).unwrap();
         for other in std::fs::read_dir(path.parent().unwrap()).unwrap() {
             let other = other.unwrap();
-            std::fs::copy(other.path(), beside.path().join(other.file_name())).unwrap();
+            std::fs::copy(other.path(), beside.join(other.file_name())).unwrap();
         }
-        let json = beside.path().join("study.json");
+        let json = beside.join("study.json");
         std::fs::write(&json, value.to_string()).unwrap();
         Study::read(&json).unwrap();
     }

@@ -203,7 +203,7 @@ fn csv_and_json_say_the_same() {
     compare("interactions.csv", &list(&gap["interactions"]), &["characteristic"]);
     compare("warnings.csv", &list(&json["warnings"]), &[]);
     for row in &table("quantiles.csv")[1..] {
-        assert!(row[0] == "gap" && same(&row[2], &gap["distribution"]["quantiles"][&row[1]]));
+        assert!(row[0] == "gap" && same(&row[2], &gap["surface_law"]["quantiles"][&row[1]]));
     }
     let stack = table("stack-gap.csv");
     let total = stack.iter().find(|row| row[2] == "rss").unwrap();
@@ -234,11 +234,11 @@ fn names_are_safe_in_files() {
         csv_file_names([&*"\u{20bb7}".repeat(500)]).last().unwrap().len() < 120,
         "a file name has 255 bytes at most"
     );
-    let study = "[dimensions]\n\"a,\\\"b\\\"\\n\" = { nominal = 1, tolerance = 0.1, unit = \"m|m\" }\n\
-                 [characteristics]\n\"y|z_\" = { formula = \"2*`a,\\\"b\\\"\\n`\", unit = \"\\u001b[1m\" }\n";
+    let study = "[dimensions]\n\"a,\\\"b\\\"\" = { nominal = 1, tolerance = 0.1, unit = \"m|m\" }\n\
+                 [characteristics]\n\"y|z_\" = { formula = \"2*`a,\\\"b\\\"`\", unit = \"\\u001b[1m\" }\n";
     let report = report(study, Method::Full);
     let rows = read(&stack_csv(&report.stacks()));
-    assert!(rows.iter().all(|row| row.len() == 13) && rows[1][2] == "a,\"b\"\n", "{rows:?}");
+    assert!(rows.iter().all(|row| row.len() == 13) && rows[1][2] == "a,\"b\"", "{rows:?}");
     let markdown = markdown(&stack_document(&report.stacks()));
     assert!(!markdown.contains('\u{1b}') && markdown.contains("y\\|z\\_") && markdown.contains("m\\|m"), "{markdown}");
     for table_line in markdown.lines().filter(|line| line.starts_with('|')) {
