@@ -77,7 +77,7 @@ const CASES: [Case; 14] = [
 impl Case {
     fn problem(&self) -> Problem {
         let function = self.function;
-        let problem = Problem::new(standard(self.n), Closure::scalar("g", move |x| function(x))).unwrap();
+        let problem = Problem::new(standard(self.n), Closure::scalar("g", function)).unwrap();
         problem.asking([Characteristic::new("g").with_limits(SpecLimits::new(Some(0.0), None).unwrap())]).unwrap()
     }
 
