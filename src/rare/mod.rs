@@ -208,7 +208,7 @@ const LEARNING: u64 = 2;
 ///     .asking([Characteristic::new("gap").with_limits(limits)])?;
 /// let found = rare(&gap, &RareOptions { samples: 400, ..RareOptions::default() })?;
 /// let [low, high] = found.characteristics[0].above.as_ref().unwrap().interval;
-/// assert!(low < 3.3977e-6 && 3.3977e-6 < high && high < 1.2 * low);
+/// assert!(low < 3.3977e-6 && 3.3977e-6 < high && high < 1.3 * low);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn rare(problem: &Problem, options: &RareOptions) -> Result<RareEvents, RareError> {
