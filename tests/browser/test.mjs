@@ -34,7 +34,7 @@ test("every page of every example opens without a complaint or a request", async
   for (const study of examples()) {
     const name = study.replaceAll(/[/.]/g, "-"), text = readFileSync(join(root, study), "utf8");
     // What an adapter wants to know of its document is no study, and what it evaluates may not be installed.
-    if (/^document =/m.test(text) || (text.includes("command = ") && !study.includes("external-python"))) continue;
+    if (/^(document|servers) =/m.test(text) || (text.includes("command = ") && !study.includes("external-python"))) continue;
     const pages = [report("analyze", study, name, ["--journal", "none"])];
     pages.push(report("simulate", study, name, ["--samples", "500", "--journal", "none"]));
     if (!study.includes("external")) pages.push(report("compare", study, name, ["--samples", "2048", "--budget", "300"]));
