@@ -65,7 +65,7 @@ fn read(study: Result<Study, sensitol::StudyError>) {
             if let Ok(analysis) = analyze(&study.problem, &options) {
                 for one in &analysis.characteristics {
                     if let Some(moments) = &one.moments {
-                        assert!(moments.sigma >= 0.0, "{moments:?}");
+                        assert!(moments.sigma() >= 0.0, "{moments:?}");
                     }
                 }
             }
