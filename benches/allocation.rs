@@ -3,8 +3,8 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol::allocation::{AllocationOptions, AllocationTask, Curve, Offer, Priced, Requirement, Status, allocate};
-use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits};
+use sensitol::allocation::{AllocationOptions, AllocationTask, Curve, Offer, Priced, Status, allocate};
+use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, Requirement, SpecLimits};
 
 fn numbers(rng: &mut Xoshiro256PlusPlus, n: usize, low: f64, high: f64) -> Vec<f64> {
     (0..n).map(|_| rng.random_range(low..high)).collect()
@@ -70,8 +70,8 @@ fn allocation(c: &mut Criterion) {
     group.sample_size(10);
     let mut run = |name: &str, problem: Problem, method: Method, priced: Vec<Priced>, requirement: Requirement| {
         let requirements = vec![Some(requirement); problem.characteristics().len()];
-        let task = AllocationTask { priced, requirements };
-        let options = AllocationOptions { analysis: Options::from(method), ..AllocationOptions::default() };
+        let task = AllocationTask::new(priced, requirements);
+        let options = AllocationOptions::default().with_analysis(Options::from(method));
         let found = allocate(&problem, &task, &options).unwrap();
         assert_eq!(found.status, Status::Optimal, "{name}: {:?}", found.proof);
         println!(

@@ -1,11 +1,11 @@
 //! External programs: evaluations a second through one Python child, beside a lock-step pipe and a process per evaluation;
-//! what the journal costs; memory over many points. A plain program: each figure is one run of seconds.
+//! what the journal costs; windows and workers; a crash; a million points. A plain program: each figure is one run of seconds.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use sensitol::assembly::process::{Greeting, Process, Settings};
-use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run, Signature};
+use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run, Signature};
 use sensitol::journal::Journaled;
 
 const MODEL: &str = "
@@ -22,12 +22,38 @@ def y(a, b):
 y.serve()
 ";
 
+/// Answers up to eight points at once after 50 ms, and dies once at the point that it is told.
+const CRASH: &str = "
+import json, os, sys, time
+from concurrent.futures import ThreadPoolExecutor
+at, folder = sys.argv[1:3]
+hello = json.loads(sys.stdin.readline())
+print(json.dumps({'ready': True, 'window': 64}), flush=True)
+died = os.path.join(folder, 'died')
+def answer(line):
+    request = json.loads(line)
+    time.sleep(0.05)
+    a, b = request['x']
+    if repr(a) == at and not os.path.exists(died):
+        open(died, 'w').close()
+        os._exit(9)
+    sys.stdout.write(json.dumps({'id': request['id'], 'y': [a - b]}) + '\\n')
+    sys.stdout.flush()
+with ThreadPoolExecutor(8) as pool:
+    for line in sys.stdin:
+        pool.submit(answer, line)
+";
+
 fn process(script: &Path, window: usize, sleep: Option<&str>) -> Process {
+    workers(script, (window, 1), sleep)
+}
+
+fn workers(script: &Path, (window, workers): (usize, usize), sleep: Option<&str>) -> Process {
     let sdk = concat!(env!("CARGO_MANIFEST_DIR"), "/adapters/python");
     let window = window.to_string();
     let words = ["python3", script.to_str().unwrap(), sdk, &window];
-    let settings = Settings { sentinels: false, ..Settings::new(words.into_iter().chain(sleep)) };
-    let greeting = Greeting { nominal: vec![1.0, 2.0], ..Greeting::default() };
+    let settings = Settings::new(words.into_iter().chain(sleep)).with_sentinels(false).with_workers(workers);
+    let greeting = Greeting::new(vec![1.0, 2.0]);
     Process::new(Signature::of_names(["a", "b"], ["y"]), greeting, settings)
 }
 
@@ -38,7 +64,7 @@ fn run(model: &dyn AssemblyFunction, count: usize) -> f64 {
     let points = Points::from_rows(&rows);
     let mut out = Responses::open(count, 1);
     let begun = Instant::now();
-    model.evaluate(&Ask::values(&points, &[0]), &Run::to_the_end(), &mut out);
+    model.evaluate(&Request::values(&points, &[0]), &Run::to_the_end(), &mut out);
     let took = begun.elapsed().as_secs_f64();
     assert_eq!(out.value(count - 1, 0), Some((count - 1) as f64 * 0.001 - 2.0));
     took
@@ -93,5 +119,41 @@ fn main() {
         3000.0 / with,
         100.0 * (with / without - 1.0)
     );
+
+    for window in [1, 8, 64, 512] {
+        for many in [1, 2, 8] {
+            let model = workers(&script, (window, many), None);
+            // All processes are started by a batch that has work for them.
+            run(&model, 8 * 512);
+            let count = if window == 1 { 10_000 } else { 100_000 };
+            println!("window {window:3}, workers {many}:   {:8.0} evaluations/s", count as f64 / run(&model, count));
+        }
+    }
+    crash(folder.path());
+    million(folder.path(), &script);
     std::thread::sleep(Duration::from_millis(10));
+}
+
+/// One crash among 211 points of 50 ms with a window of 64, beside the same points without it.
+fn crash(folder: &Path) {
+    let script = folder.join("crash.py");
+    std::fs::write(&script, CRASH).unwrap();
+    let timed = |at: &str| {
+        let words = ["python3", script.to_str().unwrap(), at, folder.to_str().unwrap()];
+        let settings = Settings::new(words).with_sentinels(false);
+        let model = Process::new(Signature::of_names(["a", "b"], ["y"]), Greeting::new(vec![1.0, 2.0]), settings);
+        run(&model, 211)
+    };
+    let (without, with) = (timed("never"), timed("0.1"));
+    println!("211 points, window 64:   {without:8.2} s, and {with:.2} s with one crash");
+}
+
+/// A million evaluations with a journal, and a second run that has them all: time and memory.
+fn million(folder: &Path, script: &Path) {
+    let count = 1_000_000;
+    for name in ["evaluated", "from the journal"] {
+        let model = Journaled::new(workers(script, (512, 2), None), folder.join("million.sqlite"), Vec::new());
+        let seconds = run(&model, count);
+        println!("1e6 points, {name}: {seconds:.1} s, {:.0} MiB", own().1);
+    }
 }

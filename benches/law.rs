@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use sensitol::distribution::{Distribution, Normal, Triangular, Uniform};
-use sensitol::law::{LawOptions, SurfaceLaw};
-use sensitol::moments::Interactions;
-use sensitol::surrogate::{Surrogate, Univariate};
+use sensitol::internals::{Interactions, LawOptions, SurfaceLaw, Surrogate, Univariate};
 
 type Law = Arc<dyn Distribution>;
 

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run};
+use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run};
 use sensitol::models::{self, Model};
 
 /// Model, outputs asked, and rows.
@@ -46,7 +46,7 @@ fn evaluations(c: &mut Criterion) {
             b.iter(|| {
                 let mut out = Responses::open(rows, asked.len());
                 pool.install(|| {
-                    function.evaluate(&Ask::values(black_box(&points), &asked), &Run::to_the_end(), &mut out);
+                    function.evaluate(&Request::values(black_box(&points), &asked), &Run::to_the_end(), &mut out);
                 });
                 out
             });

@@ -1,5 +1,7 @@
 //! A key characteristic (KC): one output of the assembly function that somebody asked for.
 
+use serde::Serialize;
+
 use crate::requirement::{Requirement, RequirementError};
 
 /// A key characteristic: its name, its unit, and the limits it should keep.
@@ -10,12 +12,19 @@ use crate::requirement::{Requirement, RequirementError};
 /// assert!(gap.limits().contains(6.0) && !gap.limits().contains(7.1));
 /// # Ok::<(), sensitol::LimitsError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Characteristic {
+    /// Its name.
     name: String,
+    /// Its unit.
     unit: Option<String>,
+    #[serde(flatten)]
     limits: SpecLimits,
+    /// The share of assemblies that must keep the limits.
     target_yield: Option<f64>,
+    // What is required stands in results, with what there is of it.
+    #[serde(skip)]
     requirement: Option<Requirement>,
 }
 
@@ -52,7 +61,7 @@ impl Characteristic {
     /// When the number is impossible, or limits are missing that it speaks of.
     ///
     /// ```
-    /// use sensitol::{Characteristic, SpecLimits, requirement::Requirement};
+    /// use sensitol::{Characteristic, Requirement, SpecLimits};
     /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(5.0), Some(7.0))?);
     /// let gap = gap.with_target_yield(0.99)?.with_requirement(Requirement::Cpk(1.33))?;
     /// assert_eq!(gap.requirements(), [Requirement::Yield(0.99), Requirement::Cpk(1.33)]);
@@ -91,9 +100,12 @@ impl Characteristic {
 }
 
 /// Specification limits of a characteristic: two, one or none.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SpecLimits {
+    /// Lower limit.
     lower: Option<f64>,
+    /// Upper limit.
     upper: Option<f64>,
 }
 

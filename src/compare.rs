@@ -3,14 +3,15 @@
 use std::fmt;
 use std::time::Duration;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_within};
+use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use crate::assembly::Run;
 use crate::method::{self, Method, Options, Procedure};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler};
-use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_within};
+use crate::shape::seconds;
+use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_with};
 use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::verdict::Verdict;
@@ -22,6 +23,7 @@ use crate::verdict::Verdict;
 /// assert_eq!(CompareOptions::default().budget, None);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CompareOptions {
     /// Most evaluations of one method, the reference excepted.
     pub budget: Option<usize>,
@@ -34,6 +36,29 @@ pub struct CompareOptions {
 impl Default for CompareOptions {
     fn default() -> Self {
         Self { budget: None, reference: None, seed: 1 }
+    }
+}
+
+impl CompareOptions {
+    /// With at most so many evaluations of one method.
+    #[must_use]
+    pub fn with_budget(mut self, evaluations: usize) -> Self {
+        self.budget = Some(evaluations);
+        self
+    }
+
+    /// With a reference of so many points.
+    #[must_use]
+    pub fn with_reference(mut self, points: u64) -> Self {
+        self.reference = Some(points);
+        self
+    }
+
+    /// With this seed.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
     }
 }
 
@@ -50,6 +75,7 @@ pub(crate) const RESOLVED: f64 = 2.0;
 
 /// A method as it was run: a derivative method, or so many points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Contender {
     /// A method of the registry.
     Method(Method),
@@ -67,6 +93,12 @@ impl Contender {
             Self::MonteCarlo(samples) => format!("monte-carlo {samples}"),
             Self::QuasiMonteCarlo(samples) => format!("sobol {samples}"),
         }
+    }
+}
+
+impl Serialize for Contender {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.name().serialize(serializer)
     }
 }
 
@@ -89,19 +121,23 @@ pub struct Figures {
 }
 
 /// How far a method is off the reference: the mean in sigmas, sigma relative, the others as they are.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Errors {
     /// How far.
+    #[serde(flatten)]
     pub off: Figures,
     /// The reference's own standard error, in the same units: what is not larger than twice this is not resolved.
+    #[serde(rename = "reference_standard_error")]
     pub reference: Figures,
 }
 
 impl Errors {
     /// Root of the sum of squares of the errors of mean and sigma: how far off the bulk is, in sigmas; None where one of
     /// them is unknown.
-    pub fn overall(&self) -> Option<f64> {
+    pub(crate) fn overall(&self) -> Option<f64> {
         Some(self.off.mean?.hypot(self.off.sigma?))
     }
 
@@ -116,19 +152,41 @@ impl Errors {
     }
 }
 
+/// Errors with what follows from them, as they are written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(crate) struct ErrorShape<'r> {
+    #[serde(flatten, serialize_with = "Errors::serialize")]
+    #[cfg_attr(feature = "cli", schemars(with = "Errors"))]
+    own: &'r Errors,
+    /// Root of the sum of squares of the errors of mean and sigma.
+    overall: Option<f64>,
+    /// Whether the reference tells that from 0.
+    resolved: bool,
+}
+
+impl Serialize for Errors {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        ErrorShape { own: self, overall: self.overall(), resolved: self.resolved() }.serialize(serializer)
+    }
+}
+
 /// One method, as it was run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Ran {
     /// Which.
+    #[serde(rename = "method")]
     pub contender: Contender,
     /// What it came to in points and time.
     pub run: RunSummary,
     /// Points that it takes, those included that were known already, from another method or an earlier run.
     pub evaluations: u64,
     /// Time within the model; of points that were known, what others took on average.
+    #[serde(rename = "evaluation_s", serialize_with = "seconds")]
     pub evaluation: Duration,
     /// Seconds besides.
+    #[serde(rename = "engine_s", serialize_with = "seconds")]
     pub engine: Duration,
     /// What it says of every characteristic.
     pub figures: Vec<Figures>,
@@ -141,10 +199,13 @@ pub struct Ran {
 }
 
 /// One method that was not run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct NotRun {
     /// Which.
+    #[serde(rename = "method")]
+    #[cfg_attr(feature = "cli", schemars(with = "String"))]
     pub contender: Contender,
     /// What it would have taken.
     pub evaluations: Option<u64>,
@@ -191,7 +252,7 @@ impl fmt::Display for NotRunReason {
 }
 
 /// What a comparison found out.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Comparison {
     /// What all are measured by.
@@ -201,6 +262,7 @@ pub struct Comparison {
     /// Those that did not.
     pub not_run: Vec<NotRun>,
     /// What all of it came to in points and time, the reference included, and why it ended early.
+    #[serde(flatten)]
     pub run: RunSummary,
 }
 
@@ -226,17 +288,17 @@ pub enum CompareError {
 /// use sensitol::{Closure, Dimension, Problem};
 /// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::normal("b", 5.0, 0.6)?];
 /// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
-/// let found = compare(&area, &CompareOptions { reference: Some(10_000), ..CompareOptions::default() })?;
+/// let found = compare(&area, &CompareOptions::default().with_reference(10_000))?;
 /// let rss = found.ran.iter().find(|ran| ran.contender.name() == "rss").expect("rss fits everything");
 /// assert_eq!(rss.evaluations, 5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn compare(problem: &Problem, options: &CompareOptions) -> Result<Comparison, CompareError> {
-    compare_within(problem, options, &Run::to_the_end())
+    compare_with(problem, options, &Run::to_the_end())
 }
 
 /// [`compare`], stopping when told to.
-pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Result<Comparison, CompareError> {
+pub fn compare_with(problem: &Problem, options: &CompareOptions, run: &Run<'_>) -> Result<Comparison, CompareError> {
     let begun = Instant::now();
     let costly = problem.function().signature().costly;
     let samples = options.reference.unwrap_or(if costly { COSTLY_REFERENCE } else { REFERENCE });
@@ -251,7 +313,7 @@ pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>
     for contender in drawn {
         comparison.sampled(contender, samples);
     }
-    let reference = simulate_within(
+    let reference = simulate_with(
         problem,
         // Another stream than those that are compared with it.
         &SimulationOptions {
@@ -264,7 +326,10 @@ pub fn compare_within(problem: &Problem, options: &CompareOptions, run: &Run<'_>
         &|_| {},
     )?;
     let comparison = comparison.judged(reference);
-    Ok(Comparison { run: RunSummary { wall: begun.elapsed(), ..comparison.run }, ..comparison })
+    Ok(Comparison {
+        run: RunSummary { wall: begun.elapsed(), evaluator: problem.evaluator(), ..comparison.run },
+        ..comparison
+    })
 }
 
 /// Quasi-random points where there are any, and none has been paid for already.
@@ -306,7 +371,7 @@ impl Comparer<'_> {
             return self.refuse(contender, cost, NotRunReason::OverReference);
         }
         let begun = Instant::now();
-        match analyze_within(self.problem, &options, self.run) {
+        match analyze_with(self.problem, &options, self.run) {
             Ok(analysis) if analysis.run.unfinished() => {
                 self.lost = self.lost.and(&analysis.run);
                 self.refuse(contender, cost, NotRunReason::Stopped);
@@ -334,7 +399,7 @@ impl Comparer<'_> {
         }
         let options = SimulationOptions { samples, sampler, seed: self.options.seed, ..SimulationOptions::default() };
         let begun = Instant::now();
-        match simulate_within(self.problem, &options, self.run, &|_| {}) {
+        match simulate_with(self.problem, &options, self.run, &|_| {}) {
             Ok(found) if found.run.unfinished() => {
                 self.lost = self.lost.and(&found.run);
                 self.refuse(contender, Some(samples), NotRunReason::Stopped);

@@ -1,6 +1,6 @@
 //! Every error of the library in one type, for who passes them on.
 
-use crate::allocation::{AllocateError, CostError, RequirementError};
+use crate::allocation::{AllocateError, CostError};
 use crate::analysis::NoFit;
 use crate::assembly::formula::FormulaError;
 use crate::assembly::implicit::ConditionsError;
@@ -20,6 +20,7 @@ use crate::names::UnknownName;
 use crate::pearson::PearsonError;
 use crate::problem::ProblemError;
 use crate::rare::RareError;
+use crate::requirement::RequirementError;
 use crate::sampling::SamplingError;
 use crate::simulation::SimulationError;
 #[cfg(feature = "study")]

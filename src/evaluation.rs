@@ -4,10 +4,11 @@ mod history;
 
 pub(crate) use history::history;
 
+use std::collections::HashMap;
 use std::time::Duration;
 
-use crate::assembly::{Ask, NonRepeatable, Points, Responses, Run};
-use crate::plan::{Known, Plan, Stage};
+use crate::assembly::{NonRepeatable, Points, Request, Responses, Run};
+use crate::plan::{KnownAnswers, Plan, Point, Stage};
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
 use crate::time::Instant;
@@ -19,7 +20,9 @@ pub(crate) const BATCH: usize = 1 << 23;
 #[derive(Debug, Clone)]
 pub struct Evaluated {
     /// Every answer.
-    pub known: Known,
+    pub known: KnownAnswers,
+    /// Derivatives by every dimension that the model sent, by point and characteristic.
+    pub gradients: HashMap<(Point, usize), Vec<f64>>,
     /// Points sent to the model.
     pub evaluations: usize,
     /// Points whose answers were known from an earlier run.
@@ -54,7 +57,8 @@ impl Evaluated {
     /// Nothing yet.
     pub(crate) fn nothing(problem: &Problem) -> Self {
         Self {
-            known: Known::nothing(problem.characteristics().len()),
+            known: KnownAnswers::nothing(problem.characteristics().len()),
+            gradients: HashMap::new(),
             evaluations: 0,
             reused: 0,
             non_repeatable: Vec::new(),
@@ -94,10 +98,15 @@ impl Evaluated {
             }
             let mut out = Responses::open(batch.len(), problem.outputs().len());
             let begun = Instant::now();
-            problem.function().evaluate(&Ask::values(&points, problem.outputs()), run, &mut out);
+            problem.function().evaluate(&Request::values(&points, problem.outputs()), run, &mut out);
             self.in_model += begun.elapsed();
             for (row, (point, _)) in batch.iter().enumerate() {
                 self.learn(point, row, &out, run);
+                for characteristic in 0..out.outputs() {
+                    if let Some(gradient) = out.gradient(row, characteristic) {
+                        self.gradients.insert((point.clone(), characteristic), gradient.to_vec());
+                    }
+                }
             }
             self.evaluations = self.evaluations.saturating_add_signed(out.extra() as isize);
             self.reused += out.count_reused();
@@ -107,6 +116,20 @@ impl Evaluated {
                 return;
             }
         }
+    }
+
+    /// Counts an evaluation beside the plan.
+    pub(crate) fn count(&mut self, out: &Responses, run: &Run<'_>) {
+        let answered = |row: &usize| (0..out.outputs()).any(|output| !out.is_open(*row, output));
+        let rows = (0..out.rows()).filter(answered).count();
+        if rows < out.rows() {
+            self.stopped.get_or_insert_with(|| run.why_open());
+        }
+        self.stages += 1;
+        self.evaluations = (self.evaluations + rows).saturating_add_signed(out.extra() as isize);
+        self.reused += out.count_reused();
+        self.retried += out.count_retried();
+        self.non_repeatable.extend(out.non_repeatable().iter().cloned());
     }
 
     /// A row that is still open was not finished: it was sent only if some of it was answered.

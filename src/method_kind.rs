@@ -16,6 +16,7 @@ use crate::names::UnknownName;
 /// assert_eq!(error.to_string(), "there is no method `six_m`; did you mean `six-n`?");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Method {
     /// Root of the sum of squares: first order.
     Rss,
@@ -75,7 +76,7 @@ impl Method {
     }
 
     /// Whether it has a surrogate that can stand beside the model, rather than integrals only.
-    pub fn has_surrogate(self) -> bool {
+    pub(crate) fn has_surrogate(self) -> bool {
         !matches!(self, Self::DimensionReduction | Self::BivariateDimensionReduction | Self::ThreePoint)
     }
 }

@@ -1,4 +1,4 @@
-//! Names that people type: which known one did they mean?
+//! Names and texts of others: which known name did they mean, what of them is shown, and how much?
 
 /// Whether a character is not seen and moves what is: control characters, and those that turn the direction of text (Unicode 16,
 /// `Bidi_Control`).
@@ -12,6 +12,17 @@ pub(crate) fn is_hidden(c: char) -> bool {
 #[cfg(feature = "report")]
 pub(crate) fn clean(text: &str) -> String {
     text.chars().map(|c| if is_hidden(c) { '\u{fffd}' } else { c }).collect()
+}
+
+/// Text without its middle, where it is longer than `most` characters.
+pub(crate) fn shortened_to(text: &str, most: usize) -> String {
+    let count = text.chars().count();
+    if count <= most {
+        return text.to_owned();
+    }
+    let head: String = text.chars().take(most / 2).collect();
+    let tail: String = text.chars().skip(count - (most - most / 2 - 1)).collect();
+    format!("{head}…{tail}")
 }
 
 /// The known name most similar to `typed`, if any is similar enough to be meant.

@@ -7,7 +7,8 @@
 
 use std::time::Duration;
 
-use crate::assembly::{Ask, EvaluationError, ModelInfo, Points, Responses, Run};
+use crate::assembly::process::EvaluatorAccount;
+use crate::assembly::{EvaluationError, ModelInfo, Points, Request, Responses, Run};
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::time::Instant;
@@ -25,6 +26,10 @@ const CLOSE: f64 = 1e-5;
 const FAR: f64 = 30.0;
 /// Noise may spoil a slope by this part at the least step.
 const SPOILT: f64 = 1e-3;
+/// Differences and noise are no doubt up to this part of what the tolerances move: a sentinel takes no notice of them either.
+const HARMLESS: f64 = 1e-7;
+/// From this part on they are a fault: a second difference of such noise is of the size of real curvature.
+const HARMFUL: f64 = 1e-3;
 /// Points without a value that are named.
 const NAMED: usize = 5;
 /// One point without a value in so many is too much.
@@ -62,6 +67,7 @@ pub struct Check {
 
 /// What a check came to.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Finding {
     /// It is as it should be.
     Passed,
@@ -113,13 +119,15 @@ impl Probe {
 }
 
 /// What is checked once the nominal dimensions have values.
-const LATER: [&str; 6] = [TWICE, WITHIN, ORDER, AFTER, FAILING, REACTS];
+const LATER: [&str; 8] = [TWICE, NOISE, WITHIN, ORDER, AFTER, FAILING, REACTS, RUNS];
 const TWICE: &str = "the same point twice has the same values";
+const NOISE: &str = "noise is small beside what the tolerances move";
 const WITHIN: &str = "every point within the tolerances has values";
 const ORDER: &str = "the order of the points does not matter";
 const AFTER: &str = "the nominal values are the same after other points";
 const FAILING: &str = "the nominal values are the same after points where it may fail";
 const REACTS: &str = "every characteristic reacts to some dimension";
+const RUNS: &str = "its processes go on running";
 
 /// Most evaluations of a probe: fewer where the nominal dimensions have no values.
 pub fn evaluations(problem: &Problem) -> usize {
@@ -170,15 +178,13 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
             silent: Vec::new(),
         };
         let characteristics = names.iter().map(unknown).collect();
-        let run = RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), ..spent };
+        let run =
+            RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), evaluator: problem.evaluator(), ..spent };
         return Ok(Probe { adapter, run, start, alone, together: alone, checks, characteristics });
     }
     let begun = Instant::now();
     let second = ask(std::slice::from_ref(&nominal));
     let alone = begun.elapsed();
-    let same = |rows: &[(usize, usize)], a: &Responses, b: &Responses, by: f64| same(&names, rows, a, b, by);
-    check(TWICE, same(&[(0, 0)], &first, &second, 0.0));
-
     let scattered: Vec<Vec<f64>> = (0..SCATTERED).map(|index| asked.scattered(index)).collect();
     let begun = Instant::now();
     let forward = ask(&scattered);
@@ -192,7 +198,6 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
             (0..LINE).map(|row| close.value(row, c)).collect::<Option<Vec<f64>>>().and_then(|values| level(&values))
         })
         .collect();
-    let largest = noise.iter().flatten().copied().fold(0.0, f64::max);
     let after = ask(std::slice::from_ref(&nominal));
     // Whether these fail is the model's business; what matters is what comes after.
     let outside: Vec<Vec<f64>> = [FAR, -FAR].map(|far| asked.along(&nominal, far)).to_vec();
@@ -201,12 +206,19 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let steps: Vec<Vec<f64>> = asked.steps(&nominal);
     let stepped = ask(&steps);
 
+    // What the tolerances move, by everything that was evaluated within them.
+    let moved: Vec<f64> = (0..names.len()).map(|c| spread(&[&first, &forward, &walked, &stepped], c)).collect();
+    check(TWICE, repeats(&names, &first, &second, &moved));
+    check(NOISE, quiet(&names, &noise, &moved));
     check(WITHIN, asked.within(&nominal, &[(&scattered, &forward), (&line, &close), (&steps, &stepped)]));
     let ends: Vec<(usize, usize)> =
         SHUFFLED.iter().enumerate().map(|(turn, &row)| (row, STEPS * turn + STEPS - 1)).collect();
-    check(ORDER, same(&ends, &forward, &walked, 10.0 * largest));
-    check(AFTER, same(&[(0, 0)], &first, &after, 10.0 * largest));
-    check(FAILING, same(&[(0, 0)], &first, &failing, 10.0 * largest));
+    // What repeats as well as that is the same.
+    let by: Vec<f64> = (0..names.len()).map(|c| (10.0 * noise[c].unwrap_or(0.0)).max(HARMLESS * moved[c])).collect();
+    let same = |rows: &[(usize, usize)], a: &Responses, b: &Responses| same(&names, rows, a, b, &by);
+    check(ORDER, same(&ends, &forward, &walked));
+    check(AFTER, same(&[(0, 0)], &first, &after));
+    check(FAILING, same(&[(0, 0)], &first, &failing));
 
     let varying = asked.varying();
     let characteristics = names.iter().enumerate().map(|(c, name)| {
@@ -242,7 +254,8 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
         None => Finding::Passed,
     };
     check(REACTS, reacts);
-    let run = RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), ..spent };
+    check(RUNS, runs(problem));
+    let run = RunSummary { wall: since.elapsed(), stopped: run.stop_reason(), evaluator: problem.evaluator(), ..spent };
     Ok(Probe { adapter, run, start, alone, together, checks, characteristics })
 }
 
@@ -263,7 +276,7 @@ impl Asked<'_> {
     fn rows(&self, rows: &[Vec<f64>]) -> Responses {
         let outputs = self.problem.outputs();
         let mut out = Responses::open(rows.len(), outputs.len());
-        self.problem.function().evaluate(&Ask::values(&Points::from_rows(rows), outputs), self.run, &mut out);
+        self.problem.function().evaluate(&Request::values(&Points::from_rows(rows), outputs), self.run, &mut out);
         out
     }
 
@@ -340,12 +353,12 @@ fn reason(out: &Responses, row: usize, c: usize) -> String {
 }
 
 /// Whether two answers to the same points are the same but for this much, by pairs of their rows.
-fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses, by: f64) -> Finding {
+fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses, by: &[f64]) -> Finding {
     let mut compared = false;
     for &(row, other) in rows {
         for (c, name) in names.iter().enumerate() {
             let fault = match (a.value(row, c), b.value(other, c)) {
-                (Some(x), Some(y)) if (x - y).abs() <= by => {
+                (Some(x), Some(y)) if (x - y).abs() <= by[c] => {
                     compared = true;
                     continue;
                 }
@@ -358,6 +371,59 @@ fn same(names: &[String], rows: &[(usize, usize)], a: &Responses, b: &Responses,
         }
     }
     if compared { Finding::Passed } else { Finding::NotChecked }
+}
+
+/// How far a characteristic varies over these answers; 0 without any.
+fn spread(answers: &[&Responses], c: usize) -> f64 {
+    let values = || answers.iter().flat_map(|out| (0..out.rows()).filter_map(|row| out.value(row, c)));
+    let [least, most] =
+        values().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)]);
+    (most - least).max(0.0)
+}
+
+/// Whether the same point has the same values: a difference far below what the tolerances move is a doubt.
+fn repeats(names: &[String], first: &Responses, second: &Responses, moved: &[f64]) -> Finding {
+    let exact = same(names, &[(0, 0)], first, second, &vec![0.0; names.len()]);
+    let Finding::Failed(fault) = exact else { return exact };
+    let harmless = |c: usize| match (first.value(0, c), second.value(0, c)) {
+        (Some(a), Some(b)) => (a - b).abs() < HARMFUL * moved[c],
+        (None, None) => true,
+        _ => false,
+    };
+    if (0..names.len()).all(harmless) { Finding::Doubtful(fault) } else { Finding::Failed(fault) }
+}
+
+/// Whether the noise of every characteristic is small beside what the tolerances move.
+fn quiet(names: &[String], noise: &[Option<f64>], moved: &[f64]) -> Finding {
+    let share = |c: usize| noise[c].filter(|_| moved[c] > 0.0).map(|noise| noise / moved[c]);
+    let Some((c, share)) = (0..names.len()).filter_map(|c| Some((c, share(c)?))).max_by(|a, b| a.1.total_cmp(&b.1))
+    else {
+        return Finding::Passed;
+    };
+    let fault = || {
+        format!(
+            "that of `{}` is {:.1e} at steps that should not matter, and the tolerances move it by {:.1e}: it scatters, or jumps at the \
+             nominal dimensions",
+            names[c],
+            share * moved[c],
+            moved[c]
+        )
+    };
+    match share {
+        share if share >= HARMFUL => Finding::Failed(fault()),
+        share if share > HARMLESS => Finding::Doubtful(fault()),
+        _ => Finding::Passed,
+    }
+}
+
+/// Whether the processes of an external model ran through.
+fn runs(problem: &Problem) -> Finding {
+    let Some(account) = problem.function().account().filter(EvaluatorAccount::has_failures) else {
+        return Finding::Passed;
+    };
+    let failures = account.crashes + account.timeouts + account.garbage;
+    let cause = account.last.map(|error| format!("; the last cause: {error}")).unwrap_or_default();
+    Finding::Doubtful(format!("{failures} failed, and {} were started in all{cause}", account.starts))
 }
 
 /// The noise in values at equal distances; None where their differences show none.

@@ -7,6 +7,7 @@ use crate::characteristic::Characteristic;
 use crate::correlation::{Correlation, CorrelationError, Pair};
 use crate::dimension::Dimension;
 use crate::names::nearest;
+use crate::summary::EvaluatorSummary;
 
 /// N dimensions, K characteristics, and the assembly function between them.
 #[derive(Clone)]
@@ -217,13 +218,18 @@ impl Problem {
         &*self.function
     }
 
+    /// What became of the processes of an external model so far, in numbers; None where there is none.
+    pub(crate) fn evaluator(&self) -> Option<EvaluatorSummary> {
+        self.function.account().map(|account| account.summary())
+    }
+
     /// The outputs of the assembly function that the characteristics are.
     pub fn outputs(&self) -> &[usize] {
         &self.outputs
     }
 
     /// For every characteristic, whether it can depend on each dimension; a black box may depend on all.
-    pub fn dependence(&self) -> Vec<Vec<bool>> {
+    pub(crate) fn dependence(&self) -> Vec<Vec<bool>> {
         let outputs = &self.function.signature().outputs;
         let row = |&output: &usize| match &outputs[output].depends_on {
             None => vec![true; self.dimensions.len()],

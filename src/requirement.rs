@@ -1,7 +1,10 @@
 //! What a characteristic must keep.
 
+use serde::{Serialize, Serializer};
+
 /// What a characteristic must keep: when tolerances are chosen, and when a result is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Requirement {
     /// The share within the limits is at least this; where tolerances are chosen, by four moments and the Pearson fit.
     Yield(f64),
@@ -41,7 +44,42 @@ pub enum RequirementError {
     },
 }
 
+/// A requirement as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(crate) struct Required {
+    /// `yield`, `cpk`, `sigma`, `rss` or `worst-case`.
+    requirement: &'static str,
+    /// How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1.
+    required: f64,
+}
+
+impl From<&Requirement> for Required {
+    fn from(of: &Requirement) -> Self {
+        Self { requirement: of.key(), required: of.amount() }
+    }
+}
+
+impl Serialize for Requirement {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Required::from(self).serialize(serializer)
+    }
+}
+
 impl Requirement {
+    /// What is required, as JSON and CSV name it.
+    pub(crate) fn key(&self) -> &'static str {
+        match self {
+            Self::Cpk(_) => "cpk",
+            other => other.name(),
+        }
+    }
+
+    /// How much is required; of limits, all of the room that they leave.
+    pub(crate) fn amount(&self) -> f64 {
+        self.value().unwrap_or(1.0)
+    }
+
     /// What is required, in a word.
     pub fn name(&self) -> &'static str {
         match self {
@@ -65,7 +103,7 @@ impl Requirement {
     ///
     /// # Errors
     /// When the number is impossible, or limits are missing that it speaks of.
-    pub fn checked(self, limits_exist: bool) -> Result<Self, RequirementError> {
+    pub(crate) fn checked(self, limits_exist: bool) -> Result<Self, RequirementError> {
         match self {
             Self::Yield(value) if !(value > 0.0 && value < 1.0) => {
                 return Err(RequirementError::ImpossibleYield { value });

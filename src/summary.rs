@@ -3,7 +3,9 @@
 use std::fmt;
 use std::time::Duration;
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
+
+use crate::shape::seconds;
 
 /// Why a run ended before everything that it planned was evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
@@ -33,7 +35,7 @@ impl StopReason {
     }
 
     /// Whether points that were planned are open: a budget is part of the plan, all else cuts it short.
-    pub fn leaves_points_open(self) -> bool {
+    pub(crate) fn leaves_points_open(self) -> bool {
         self != Self::Budget
     }
 }
@@ -86,11 +88,34 @@ pub struct RunSummary {
     pub seed: Option<u64>,
     /// Why it ended early; None where it did not.
     pub stopped: Option<StopReason>,
+    /// What became of the processes of an external model; None where no such model ran.
+    pub evaluator: Option<EvaluatorSummary>,
+}
+
+/// What became of the processes of an external model, in numbers, since it was made.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct EvaluatorSummary {
+    /// Processes that were started, the first one of every worker included.
+    pub starts: u64,
+    /// Processes that ended while points were under way, or before they were ready.
+    pub crashes: u64,
+    /// Deadlines that passed.
+    pub timeouts: u64,
+    /// Lines that were no answers.
+    pub garbage: u64,
+    /// Points that were sent again.
+    pub retried: u64,
+    /// Seconds from the last answer of a process that failed until another one was ready in its place.
+    pub lost_s: f64,
+    /// Answers that depend on the points before them, and that no fresh process confirmed.
+    pub unconfirmed: u64,
 }
 
 impl RunSummary {
     /// With another part of the same work: counts and times add up, and the first reason to stop that leaves points open stays.
-    pub fn and(self, other: &Self) -> Self {
+    pub(crate) fn and(self, other: &Self) -> Self {
         let open = |stopped: &Option<StopReason>| stopped.is_some_and(StopReason::leaves_points_open);
         Self {
             evaluations: self.evaluations + other.evaluations,
@@ -106,17 +131,23 @@ impl RunSummary {
             } else {
                 self.stopped.or(other.stopped)
             },
+            // It counts from the start of the model, so the later of two parts has both.
+            evaluator: match (self.evaluator, other.evaluator) {
+                (Some(a), Some(b)) => Some(if b.starts >= a.starts && b.retried >= a.retried { b } else { a }),
+                (a, b) => a.or(b),
+            },
         }
+    }
+
+    /// Whether results rest on answers that depend on the points before them, and that no fresh process confirmed.
+    pub fn unconfirmed(&self) -> bool {
+        self.evaluator.is_some_and(|evaluator| evaluator.unconfirmed > 0)
     }
 
     /// Whether planned points were not evaluated, so that what follows from the others is no verdict.
     pub fn unfinished(&self) -> bool {
         self.stopped.is_some_and(StopReason::leaves_points_open)
     }
-}
-
-fn seconds<S: Serializer>(duration: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_f64(duration.as_secs_f64())
 }
 
 #[cfg(test)]

@@ -7,9 +7,12 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::analysis::{Analysis, analyze_within};
+use serde::Serialize;
+
+use crate::analysis::{Analysis, analyze_with};
+use crate::assembly::process::EvaluatorAccount;
 use crate::assembly::{
-    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, Responses, Run,
+    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Points, Request, Responses, Run,
     Signature,
 };
 use crate::dimension::DimensionError;
@@ -22,7 +25,7 @@ use crate::time::Instant;
 use crate::warning::Warning;
 
 /// A problem along one of its dimensions.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Sweep {
     /// The place of the dimension among the problem's.
@@ -32,6 +35,7 @@ pub struct Sweep {
     /// The analysis at every value; None where the sweep was stopped before it was done.
     pub analyses: Vec<Option<Analysis>>,
     /// What it came to in points, each once for all values, and time; why it ended before all was done.
+    #[serde(flatten)]
     pub run: RunSummary,
 }
 
@@ -99,11 +103,11 @@ pub enum SweepError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(problem: &Problem, dimension: &str, values: &[f64], options: &Options) -> Result<Sweep, SweepError> {
-    sweep_within(problem, dimension, values, options, &Run::to_the_end())
+    sweep_with(problem, dimension, values, options, &Run::to_the_end())
 }
 
 /// [`sweep`], stopping when told to; what is not done then is None.
-pub fn sweep_within(
+pub fn sweep_with(
     problem: &Problem,
     dimension: &str,
     values: &[f64],
@@ -144,7 +148,7 @@ pub fn sweep_within(
                 break;
             }
             gatherer.memory().lacks = false;
-            let found = analyze_within(problem, options, run)?;
+            let found = analyze_with(problem, options, run)?;
             let complete = !gatherer.memory().lacks;
             stopped |= complete && found.run.unfinished();
             *analysis = (complete && !found.run.unfinished()).then_some(found);
@@ -164,7 +168,7 @@ pub fn sweep_within(
         dimension: place,
         values: values.to_vec(),
         analyses,
-        run: RunSummary { wall: begun.elapsed(), seed, stopped, ..memory.run },
+        run: RunSummary { wall: begun.elapsed(), seed, stopped, evaluator: problem.evaluator(), ..memory.run },
     })
 }
 
@@ -245,7 +249,7 @@ impl Gatherer {
         for batch in wanted.chunks((BATCH / self.problem.dimensions().len()).max(1)) {
             let mut out = Responses::open(batch.len(), outputs.len());
             let begun = Instant::now();
-            self.function().evaluate(&Ask::values(&Points::from_rows(batch), outputs), run, &mut out);
+            self.function().evaluate(&Request::values(&Points::from_rows(batch), outputs), run, &mut out);
             let mut memory = self.memory();
             memory.run.in_model += begun.elapsed();
             memory.count(&out);
@@ -280,18 +284,18 @@ impl AssemblyFunction for Gatherer {
         self.function().bounds(output, region)
     }
 
-    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
-        let rows = ask.points.rows();
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        let rows = request.points.rows();
         // Others than all outputs are not what is kept in mind.
-        let foreign = ask.outputs != self.problem.outputs();
+        let foreign = request.outputs != self.problem.outputs();
         let at_once = {
             let memory = self.memory();
-            let known = |row: usize| memory.known.contains_key(&bits(&ask.points.row(row)));
+            let known = |row: usize| memory.known.contains_key(&bits(&request.points.row(row)));
             foreign || ((memory.at_once || rows >= MANY) && !(0..rows).all(known))
         };
         if at_once {
             let begun = Instant::now();
-            self.function().evaluate(ask, run, out);
+            self.function().evaluate(request, run, out);
             let mut memory = self.memory();
             memory.run.in_model += begun.elapsed();
             memory.count(out);
@@ -299,7 +303,7 @@ impl AssemblyFunction for Gatherer {
         }
         let mut memory = self.memory();
         for row in 0..rows {
-            let point = ask.points.row(row);
+            let point = request.points.row(row);
             let Some(answers) = memory.known.get(&bits(&point)) else {
                 memory.wanted.push(point);
                 memory.lacks = true;
@@ -316,6 +320,10 @@ impl AssemblyFunction for Gatherer {
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         self.function().derivatives(outputs, directions)
+    }
+
+    fn account(&self) -> Option<EvaluatorAccount> {
+        self.function().account()
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

@@ -9,14 +9,15 @@
 //! An interval is the estimate and two of its errors on either side, cut to what the figure can be. What else speaks against the
 //! estimate widens it: another share of the same surface, points without a value. A run that was stopped has no interval.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::capability;
 use crate::characteristic::{Characteristic, SpecLimits};
-use crate::requirement::Requirement;
+use crate::requirement::{Required, Requirement};
+use crate::shape::{ends, finite};
 
 /// Errors on either side of an estimate that make its interval: 95 % where errors are standard errors.
-pub const ERRORS: f64 = 2.0;
+pub(crate) const ERRORS: f64 = 2.0;
 /// What the same sum in another order may add, relative to the room that a target leaves: tolerances that were chosen so that they
 /// just keep a target keep it. The search of tolerances keeps its constraints to a part of 10^9 of their room.
 const ROUNDING: f64 = 1e-8;
@@ -56,7 +57,7 @@ impl Verdict {
     /// Of an interval, inconclusive where there is none.
     ///
     /// ```
-    /// use sensitol::{requirement::Requirement, verdict::Verdict};
+    /// use sensitol::{Requirement, Verdict};
     /// let yield_ = Requirement::Yield(0.99);
     /// assert_eq!(Verdict::of(yield_, Some([0.991, 0.999])), Verdict::Met);
     /// assert_eq!(Verdict::of(yield_, Some([0.98, 0.985])), Verdict::Missed);
@@ -98,14 +99,38 @@ pub struct Judged {
     pub verdict: Verdict,
 }
 
+/// What is judged as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(crate) struct JudgedShape {
+    #[serde(flatten)]
+    required: Required,
+    /// What there is.
+    value: Option<f64>,
+    /// Within which that is known, an end null where there is none; null where it is not known at all.
+    interval: Option<[Option<f64>; 2]>,
+    /// Whether it is kept; null where that is not known.
+    met: Option<bool>,
+    /// The same in a word.
+    verdict: Verdict,
+}
+
+impl Serialize for Judged {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let required = Required::from(&self.requirement);
+        let (value, interval) = (self.value.and_then(finite), self.interval.map(ends));
+        JudgedShape { required, value, interval, met: self.verdict.met(), verdict: self.verdict }.serialize(serializer)
+    }
+}
+
 impl Judged {
     /// By a value and its interval.
-    pub fn of(requirement: Requirement, value: Option<f64>, interval: Option<[f64; 2]>) -> Self {
+    pub(crate) fn of(requirement: Requirement, value: Option<f64>, interval: Option<[f64; 2]>) -> Self {
         Self { requirement, value, interval, verdict: Verdict::of(requirement, interval) }
     }
 
     /// The same of a run that was stopped while points were open: there is no interval, and nothing follows.
-    pub fn unless(self, unfinished: bool) -> Self {
+    pub(crate) fn unless(self, unfinished: bool) -> Self {
         if unfinished { Self::of(self.requirement, self.value, None) } else { self }
     }
 }
@@ -152,7 +177,8 @@ pub fn losing([low, high]: [f64; 2], lost: Option<f64>) -> [f64; 2] {
 /// `cpk(sigma + 2 e)` and `cpk(sigma - 2 e)`; the two are independent. None where an error is unknown, or there is no Cpk.
 ///
 /// ```
-/// use sensitol::{SpecLimits, verdict::of_cpk};
+/// use sensitol::SpecLimits;
+/// use sensitol::internals::of_cpk;
 /// let limits = SpecLimits::new(Some(-4.0), Some(4.0))?;
 /// // 4/3, and 2 x 0.03/3 by the mean alone.
 /// let [low, high] = of_cpk((0.0, Some(0.03)), (1.0, Some(0.0)), limits).unwrap();

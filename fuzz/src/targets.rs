@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use sensitol::assembly::formula::{Formula, FormulaSet, Jet, Meaning};
+use sensitol::assembly::formula::Formula;
 use sensitol::fits::deviations;
+use sensitol::internals::{FormulaSet, Jet, Meaning};
 use sensitol::journal::Store;
 use sensitol::pearson::Pearson;
 use sensitol::{Options, Study, analyze};
@@ -61,7 +62,9 @@ fn read(study: Result<Study, sensitol::StudyError>) {
             }
         }
         Ok(study) if study.files.is_empty() && study.problem.dimensions().len() <= 8 => {
-            let options = Options::from(sensitol::Method::SecondOrder);
+            // Verified, every study would be sampled at 45 000 points.
+            let mut options = Options::from(sensitol::Method::SecondOrder);
+            options.verify = Some(0);
             if let Ok(analysis) = analyze(&study.problem, &options) {
                 for one in &analysis.characteristics {
                     if let Some(moments) = &one.moments {
@@ -118,7 +121,7 @@ fn protocol(bytes: &[u8]) {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("answers"), bytes).expect("a file");
     let study = "[dimensions]\na = { nominal = 1, tolerance = 0.1 }\n[characteristics]\ny = {}\n\
-                 [model]\ncommand = [\"cat\", \"answers\"]\ntimeout_s = 1\nstart_timeout_s = 1\n";
+                 [model]\ncommand = [\"cat\", \"answers\"]\ntimeout_s = 1\nstart_timeout_s = 1\nretries = 0\nworkers = 1\n[analysis]\nverify = 0\n";
     let path = folder.path().join("study.toml");
     std::fs::write(&path, study).expect("a file");
     let Ok(study) = Study::read(&path) else { return };
@@ -144,7 +147,7 @@ fn pearson(bytes: &[u8]) {
     let (skewness, kurtosis) = (skewness % 8.0, kurtosis % 80.0);
     let Ok(law) = Pearson::new(0.0, 1.0, skewness, kurtosis) else { return };
     let (x, p) = (x % 50.0, p.abs() % 1.0);
-    if !x.is_finite() || !(p > 1e-12 && p < 1.0 - 1e-12) {
+    if !(x.is_finite() && p > 1e-12 && p < 1.0 - 1e-12) {
         return;
     }
     let (below, above) = (law.cdf(x), law.sf(x));
@@ -152,7 +155,10 @@ fn pearson(bytes: &[u8]) {
     assert!((below + above - 1.0).abs() < 1e-9, "{law:?} at {x}: {below} + {above}");
     assert!(law.cdf(x + 0.5) >= below - 1e-13, "{law:?} falls after {x}");
     let quantile = law.quantile(p);
-    assert!((law.cdf(quantile) - p).abs() < 1e-8, "{law:?}: quantile of {p} is {quantile}, {}", law.cdf(quantile));
+    // Near two points most of the probability may lie within one double of an end: the neighbours enclose it.
+    let apart = 4.0 * f64::EPSILON * quantile.abs();
+    let [low, high] = [quantile - apart, quantile + apart].map(|x| law.cdf(x));
+    assert!(low - 1e-8 < p && p < high + 1e-8, "{law:?}: quantile of {p} is {quantile}, between {low} and {high}");
 }
 
 fn fits(bytes: &[u8]) {

@@ -39,7 +39,7 @@ pub enum CurveKind {
 
 impl CurveKind {
     /// The kinds that have a name in study files.
-    pub const NAMED: [(&'static str, Self); 3] = [
+    pub(crate) const NAMED: [(&'static str, Self); 3] = [
         ("reciprocal", Self::Reciprocal),
         ("reciprocal-power", Self::ReciprocalPower),
         ("exponential", Self::Exponential),
@@ -141,12 +141,12 @@ impl Curve {
     }
 
     /// Its kind.
-    pub fn kind(&self) -> CurveKind {
+    pub(crate) fn kind(&self) -> CurveKind {
         self.kind
     }
 
     /// `a`, `b`, and the third of its kind: `k` of a power, 1 of a reciprocal, `c` of an exponential. `b` is 0 where the cost is fixed.
-    pub fn constants(&self) -> [f64; 3] {
+    pub(crate) fn constants(&self) -> [f64; 3] {
         [self.a, self.b, self.shape]
     }
 
@@ -170,7 +170,7 @@ impl Curve {
     }
 
     /// First and second derivative of the cost by `ln t`.
-    pub fn log_derivatives(&self, t: f64) -> [f64; 2] {
+    pub(crate) fn log_derivatives(&self, t: f64) -> [f64; 2] {
         let cost = self.varying(t);
         match self.kind {
             CurveKind::Fixed => [0.0, 0.0],
@@ -221,7 +221,7 @@ impl Offer {
     }
 
     /// With a name, where several compete.
-    pub fn named(self, name: impl Into<String>) -> Self {
+    pub(crate) fn named(self, name: impl Into<String>) -> Self {
         Self { process: Some(name.into()), ..self }
     }
 }
@@ -278,12 +278,12 @@ impl Priced {
     }
 
     /// The least half band that any offer holds.
-    pub fn tightest(&self) -> f64 {
+    pub(crate) fn tightest(&self) -> f64 {
         self.offers.iter().map(|offer| offer.min).fold(f64::INFINITY, f64::min)
     }
 
     /// The greatest half band that any offer holds.
-    pub fn loosest(&self) -> f64 {
+    pub(crate) fn loosest(&self) -> f64 {
         self.offers.iter().map(|offer| offer.max).fold(0.0, f64::max)
     }
 }

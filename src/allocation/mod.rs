@@ -34,15 +34,19 @@ mod result;
 mod run;
 mod scaling;
 mod separable;
+mod shape;
 mod solve;
 mod station;
 mod steps;
 mod task;
 mod vector;
 
-pub use crate::requirement::{Requirement, RequirementError};
-pub use cost::{CostError, Curve, CurveKind, Offer, Priced};
+pub(crate) use cost::CurveKind;
+pub use cost::{CostError, Curve, Offer, Priced};
 pub use joint::JointYield;
+#[cfg(feature = "cli")]
+pub(crate) use result::ProofShape;
+
 pub use result::{Allocated, Allocation, Attainable, Bound, FrontPoint, Kept, Moved, Proof, ShadowPrice, Status};
-pub use run::{allocate, allocate_within};
+pub use run::{allocate, allocate_with};
 pub use task::{AllocateError, AllocationOptions, AllocationTask};

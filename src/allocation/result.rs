@@ -1,16 +1,23 @@
 //! What an allocation found out.
 
+use serde::{Serialize, Serializer};
+
 use super::joint::JointYield;
+use super::shape::{After, Before};
 use crate::analysis::Analysis;
 use crate::problem::Problem;
-use crate::requirement::Requirement;
+use crate::requirement::{Required, Requirement};
+use crate::shape::through;
 use crate::simulation::Simulation;
 use crate::summary::RunSummary;
 use crate::verdict::Judged;
 use crate::warning::Warning;
 
 /// How it ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Status {
     /// Every requirement is kept, and nothing cheaper does: within rounding.
     Optimal,
@@ -35,19 +42,24 @@ impl Status {
 }
 
 /// Which bound a tolerance has met.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum Bound {
     /// Its least.
+    #[serde(rename = "min")]
     Least,
     /// Its greatest.
+    #[serde(rename = "max")]
     Greatest,
 }
 
 /// One dimension with a cost.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Allocated {
-    /// Index of the dimension in the problem.
+    /// Index of the dimension in the problem; reports name it.
+    #[serde(skip)]
     pub dimension: usize,
     /// Half band before.
     pub before: f64,
@@ -60,14 +72,17 @@ pub struct Allocated {
     /// The process, where several compete.
     pub process: Option<String>,
     /// The bound that it has met.
+    #[serde(rename = "at_bound")]
     pub bound: Option<Bound>,
 }
 
 /// A nominal value that has moved.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Moved {
-    /// Index of the dimension in the problem.
+    /// Index of the dimension in the problem; reports name it.
+    #[serde(skip)]
     pub dimension: usize,
     /// The nominal value before.
     pub before: f64,
@@ -76,26 +91,36 @@ pub struct Moved {
 }
 
 /// What a characteristic must keep, and what it has.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Kept {
-    /// Index of the characteristic in the problem.
+    /// Index of the characteristic in the problem; reports name it.
+    #[serde(skip)]
     pub characteristic: usize,
     /// What is required.
+    #[serde(flatten, serialize_with = "through::<Required, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "Required"))]
     pub requirement: Requirement,
     /// What there was, by the analysis at the tolerances before.
+    #[serde(flatten, serialize_with = "through::<Before, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "Before"))]
     pub before: Judged,
     /// What there is, by the analysis at those found; None where none were.
+    #[serde(flatten, serialize_with = "through::<After, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "After"))]
     pub after: Option<Judged>,
 }
 
 /// What a requirement costs: by how much the cost falls per unit by which something gives way.
 ///
 /// Where both sides of a requirement hold the cost up, widening one of them alone saves nothing, and only `both` is known.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ShadowPrice {
-    /// Index of the characteristic in the problem.
+    /// Index of the characteristic in the problem; reports name it.
+    #[serde(skip)]
     pub characteristic: usize,
     /// Per unit by which both limits go outwards, or the only one.
     pub both: Option<f64>,
@@ -108,30 +133,39 @@ pub struct ShadowPrice {
 }
 
 /// A requirement that cannot be kept.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Attainable {
-    /// Index of the characteristic in the problem.
+    /// Index of the characteristic in the problem; reports name it.
+    #[serde(skip)]
     pub characteristic: usize,
     /// What is required.
+    #[serde(flatten, serialize_with = "through::<Required, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "Required"))]
     pub requirement: Requirement,
     /// The best that the bounds of the tolerances allow, in the requirement's own measure.
     pub best: Option<f64>,
     /// The dimensions without cost that alone break the requirement, most harmful first; empty where the others are to blame too.
+    #[serde(skip)]
     pub because: Vec<usize>,
     /// Whether it could be kept if it were the only one.
     pub together: bool,
 }
 
 /// What shows that nothing is cheaper.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Proof {
     /// The largest violation of the conditions of Karush, Kuhn and Tucker; None where everything is chosen from lists.
+    #[serde(rename = "kkt_residual")]
     pub residual: Option<f64>,
     /// No choice of processes costs less; None without lists, or where no bound is known.
     pub bound: Option<f64>,
     /// Whether the bound is exact rather than resting on a sample of choices.
+    #[serde(skip)]
     pub rigorous: bool,
     /// Nodes of the branch and bound.
     pub nodes: usize,
@@ -140,12 +174,13 @@ pub struct Proof {
 }
 
 /// What an allocation found out. What is unknown is None.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Allocation {
     /// How it ended.
     pub status: Status,
     /// The problem with the tolerances and nominal values found; as it was where none were.
+    #[serde(skip)]
     pub problem: Problem,
     /// The analysis at the tolerances before.
     pub before: Analysis,
@@ -160,10 +195,12 @@ pub struct Allocation {
     /// Every dimension with a cost.
     pub tolerances: Vec<Allocated>,
     /// Nominal values that have moved.
+    #[serde(rename = "recentred")]
     pub moved: Vec<Moved>,
     /// Every requirement.
     pub requirements: Vec<Kept>,
     /// What a requirement that holds the cost up costs; empty where everything is chosen from lists.
+    #[serde(rename = "shadow_prices")]
     pub prices: Vec<ShadowPrice>,
     /// What shows that nothing is cheaper.
     pub proof: Proof,
@@ -175,12 +212,14 @@ pub struct Allocation {
     /// The same after.
     pub loosest_after: Option<f64>,
     /// The share of assemblies that keep all limits, where there are several characteristics with limits: before and after.
+    #[serde(rename = "joint_yield")]
     pub joint: [Option<JointYield>; 2],
     /// Cost against yield.
     pub front: Vec<FrontPoint>,
     /// The model itself at the tolerances after, where it was asked for.
     pub confirmation: Option<Simulation>,
     /// What it came to in points and time, those of a confirmation by Monte Carlo included, and why it ended early.
+    #[serde(flatten)]
     pub run: RunSummary,
     /// How often derivatives were taken.
     pub rounds: usize,
@@ -189,7 +228,7 @@ pub struct Allocation {
 }
 
 /// One point of the front: the cheapest tolerances for a requirement.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct FrontPoint {
     /// What was required of every characteristic of which a yield or a Cpk is, in the order of the problem.
@@ -198,4 +237,21 @@ pub struct FrontPoint {
     pub cost: Option<f64>,
     /// Half bands, in the order of [`Allocation::tolerances`].
     pub tolerances: Option<Vec<f64>>,
+}
+
+/// A proof with the kind of its bound, as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(crate) struct ProofShape<'r> {
+    #[serde(flatten, serialize_with = "Proof::serialize")]
+    #[cfg_attr(feature = "cli", schemars(with = "Proof"))]
+    own: &'r Proof,
+    /// Whether the bound is exact, rather than resting on a sample of choices; null without one.
+    bound_is_exact: Option<bool>,
+}
+
+impl Serialize for Proof {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        ProofShape { own: self, bound_is_exact: self.bound.map(|_| self.rigorous) }.serialize(serializer)
+    }
 }

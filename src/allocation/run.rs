@@ -20,7 +20,7 @@ use crate::method::{MethodError, Options};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::sampling::{Draws, Sampler};
-use crate::simulation::{SimulationError, SimulationOptions, simulate_within};
+use crate::simulation::{SimulationError, SimulationOptions, simulate_with};
 use crate::summary::{RunSummary, StopReason};
 use crate::time::Instant;
 use crate::warning::Warning;
@@ -49,13 +49,13 @@ const NO_GAP: f64 = 1e-9;
 /// [`Status`].
 ///
 /// ```
-/// use sensitol::allocation::{AllocationOptions, AllocationTask, Curve, Offer, Priced, Requirement, Status, allocate};
-/// use sensitol::{Characteristic, Closure, Dimension, Problem, SpecLimits};
+/// use sensitol::{Characteristic, Closure, Dimension, Problem, Requirement, SpecLimits};
+/// use sensitol::allocation::{AllocationOptions, AllocationTask, Curve, Offer, Priced, Status, allocate};
 /// let dimensions = [Dimension::normal("a", 10.0, 0.1)?, Dimension::normal("b", 6.0, 0.1)?];
 /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(3.8), Some(4.2))?);
 /// let problem = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?.asking([gap])?;
 /// let cost = |d, b| Priced::new(vec![d], vec![Offer::between(Curve::reciprocal(1.0, b)?, 0.01, 1.0)?]);
-/// let task = AllocationTask { priced: vec![cost(0, 0.1)?, cost(1, 0.4)?], requirements: vec![Some(Requirement::WorstCase)] };
+/// let task = AllocationTask::new(vec![cost(0, 0.1)?, cost(1, 0.4)?], vec![Some(Requirement::WorstCase)]);
 /// let found = allocate(&problem, &task, &AllocationOptions::default())?;
 /// assert_eq!(found.status, Status::Optimal);
 /// // Lagrange: tolerances as the roots of the costs, 0.2 together.
@@ -68,11 +68,11 @@ pub fn allocate(
     task: &AllocationTask,
     options: &AllocationOptions,
 ) -> Result<Allocation, AllocateError> {
-    allocate_within(problem, task, options, &Run::to_the_end())
+    allocate_with(problem, task, options, &Run::to_the_end())
 }
 
 /// [`allocate`], telling of finished points and stopping when told to.
-pub fn allocate_within(
+pub fn allocate_with(
     problem: &Problem,
     task: &AllocationTask,
     options: &AllocationOptions,
@@ -167,7 +167,8 @@ impl Driver<'_> {
         let stopped = (self.spent.stopped || self.run.stopped()).then(|| self.run.why_open());
         let (wall, seed) = (begun.elapsed(), Some(self.options.seed));
         let budget = self.spent.run.stopped;
-        allocation.run = RunSummary { wall, seed, stopped: stopped.or(budget), ..self.spent.run };
+        allocation.run =
+            RunSummary { wall, seed, stopped: stopped.or(budget), evaluator: problem.evaluator(), ..self.spent.run };
         allocation.rounds = self.spent.rounds;
         allocation.warnings = doubts(problem, &allocation);
         Ok(allocation)
@@ -369,7 +370,7 @@ impl Driver<'_> {
         }
         if let (Some(samples), false) = (self.options.confirm, self.spent.stopped) {
             let options = SimulationOptions { samples, seed: self.options.seed, ..SimulationOptions::default() };
-            let simulation = simulate_within(&station.problem, &options, self.run, &|_| {})?;
+            let simulation = simulate_with(&station.problem, &options, self.run, &|_| {})?;
             self.spent.run = self.spent.run.and(&simulation.run);
             allocation.confirmation = Some(simulation);
         }

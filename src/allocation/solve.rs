@@ -77,9 +77,9 @@ impl Setting<'_> {
 
     /// Whether sums of powers are exactly what is required.
     pub(super) fn is_exact(&self) -> bool {
-        self.constraints
-            .iter()
-            .all(|one| one.requirement == super::Requirement::WorstCase || self.responses.is_plain(one.characteristic))
+        self.constraints.iter().all(|one| {
+            one.requirement == crate::requirement::Requirement::WorstCase || self.responses.is_plain(one.characteristic)
+        })
     }
 
     /// The tightest that there is, and the loosest.

@@ -11,6 +11,7 @@ use crate::warning::Advice;
 
 /// Costs and requirements beside a problem.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct AllocationTask {
     /// The tolerances that may change, by groups; what no group has keeps its tolerance.
     pub priced: Vec<Priced>,
@@ -18,8 +19,16 @@ pub struct AllocationTask {
     pub requirements: Vec<Option<Requirement>>,
 }
 
+impl AllocationTask {
+    /// These costs, and for every characteristic of the problem what it must keep.
+    pub fn new(priced: Vec<Priced>, requirements: Vec<Option<Requirement>>) -> Self {
+        Self { priced, requirements }
+    }
+}
+
 /// How tolerances are allocated.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct AllocationOptions {
     /// How derivatives are taken; its budget is that of all evaluations together. [`Method::Auto`](crate::Method::Auto) stands for `full` where
     /// dimensions are few and for `six-n` where they are many: every round must ask the same.
@@ -44,6 +53,41 @@ impl AllocationOptions {
     /// How derivatives of this problem are taken.
     pub fn derivatives(&self, problem: &Problem) -> Options {
         Options { extremes: false, ..chosen(problem, &self.analysis) }
+    }
+
+    /// With derivatives taken so.
+    #[must_use]
+    pub fn with_analysis(mut self, analysis: Options) -> Self {
+        self.analysis = analysis;
+        self
+    }
+
+    /// With nominal values of these dimensions that may move.
+    #[must_use]
+    pub fn with_recentre(mut self, names: Vec<String>) -> Self {
+        self.recentre = names;
+        self
+    }
+
+    /// With a front of cost against yield of so many points.
+    #[must_use]
+    pub fn with_front(mut self, points: usize) -> Self {
+        self.front = Some(points);
+        self
+    }
+
+    /// Confirmed by Monte Carlo at so many points of the model.
+    #[must_use]
+    pub fn with_confirm(mut self, points: u64) -> Self {
+        self.confirm = Some(points);
+        self
+    }
+
+    /// With this seed.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
     }
 }
 

@@ -1,40 +1,55 @@
 //! What is known of one characteristic.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::errors::of_yield;
 use super::linear::Linear;
+use super::remainder::Remainder;
 use super::shares::Shares;
 use super::{SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource};
-use crate::capability::{Capability, Law};
+use crate::capability::{Capability, CapabilityShape, Law};
 use crate::characteristic::{Characteristic, SpecLimits};
-use crate::extremes::Extremes;
+use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
 use crate::moments::{Moments, Sampled};
 use crate::pearson::PearsonError;
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
+use crate::shape::{Four, through};
 use crate::verdict::{self, Judged, Verdict};
 
 /// Moments, sensitivities and contributions of one characteristic. What is unknown is None.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct CharacteristicAnalysis {
     /// The characteristic, with its limits.
+    #[serde(flatten)]
     pub characteristic: Characteristic,
     /// Its value at the nominal dimensions.
     pub nominal: Option<f64>,
     /// Its first four moments.
+    #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "Four<Option<f64>>"))]
     pub moments: Option<Moments>,
     /// What sampling the surrogate of correlated inputs leaves uncertain of them; None where they are exact.
+    #[serde(rename = "surrogate_sampling")]
     pub sampled: Option<Sampled>,
     /// Points of the model that the moments rest on, in place of a surrogate that was not trusted.
+    #[serde(rename = "model_sampling")]
     pub model_sampled: Option<SampledModel>,
     /// What the model itself says of these results; None where they were not verified.
+    #[cfg_attr(feature = "cli", schemars(with = "Option<super::verified::VerificationShape>"))]
     pub verification: Option<Verification>,
     /// What the law of its surface says; None where its moments follow from no surface.
+    #[cfg_attr(feature = "cli", schemars(with = "Option<super::surface_law::SurfaceLawShape>"))]
     pub surface_law: Option<SurfaceShares>,
+    /// The density of that law as `[y, density]`, to be drawn; None unless [asked for](crate::Options::densities), and where the law is
+    /// sampled.
+    #[serde(skip)]
+    pub density: Option<Vec<[f64; 2]>>,
     /// What its yield comes from; None without a yield.
     pub yield_source: Option<YieldSource>,
     /// Whether planned points were not evaluated because the run was stopped: no verdict follows from the others.
@@ -44,23 +59,38 @@ pub struct CharacteristicAnalysis {
     /// How far these results may be off; None without moments.
     pub error_estimate: Option<ErrorEstimate>,
     /// How far a fitted surface misses the values that it was fitted to; None where nothing was fitted.
+    #[serde(rename = "least_squares")]
     pub residual: Option<Residual>,
     /// The distribution that has these moments, or why none has.
+    #[serde(rename = "distribution", serialize_with = "fitted")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<Law>"))]
     pub law: Option<Result<Law, PearsonError>>,
     /// How the limits are kept, by the best that is known ([`yield_source`](Self::yield_source)); quantiles by the law of the
     /// surface, where there is one.
+    #[serde(flatten, serialize_with = "through::<CapabilityShape, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "CapabilityShape"))]
     pub capability: Option<Capability>,
     /// How the distribution with its moments keeps them: the Pearson fit.
+    #[serde(rename = "pearson_fit")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<CapabilityShape>"))]
     pub pearson: Option<Capability>,
     /// How the normal distribution with the same mean and sigma would.
+    #[serde(rename = "normal_fit")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<CapabilityShape>"))]
     pub normal: Option<Capability>,
     /// How far the results may be off because measured dimensions are known by samples; None where there are none.
+    #[serde(rename = "sampling_interval")]
     pub sampling: Option<SamplingInterval>,
     /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
     /// band that hurts, and a point of a circular zone ([`Dimension::zone`](crate::Dimension::zone)) at its edge.
+    #[serde(skip)]
     pub worst_case: Option<[f64; 2]>,
     /// The least and the greatest value in the box of the tolerance bands, where they were searched and found.
+    #[serde(skip)]
     pub extremes: Option<Extremes>,
+    /// An interval that no assembly leaves, by interval arithmetic; of formulas that are verified, where no extremes were searched.
+    #[serde(skip)]
+    pub bounds: Option<ExtremesProof>,
     /// The value of a linear model with every dimension in the middle of its band: the middle of the worst case, of the RSS and of
     /// the two inflations of it. The nominal where all bands are symmetric.
     pub middle: Option<f64>,
@@ -76,6 +106,8 @@ pub struct CharacteristicAnalysis {
     pub sensitivities: Vec<Sensitivity>,
     /// The interactions examined, strongest first.
     pub interactions: Vec<Interaction>,
+    /// What the interactions make that are not listed one by one; None where all are.
+    pub interactions_remainder: Option<Remainder>,
     /// How many interactions it can have.
     pub possible_interactions: usize,
     /// The share of the variance that no contribution accounts for; None where it is unknown.
@@ -144,11 +176,21 @@ pub enum Missing {
     NotEvaluated,
 }
 
+/// The distribution that has the moments; null where there is none.
+fn fitted<S: Serializer>(law: &Option<Result<Law, PearsonError>>, serializer: S) -> Result<S::Ok, S::Error> {
+    law.as_ref().and_then(|law| law.as_ref().ok()).serialize(serializer)
+}
+
 impl CharacteristicAnalysis {
     /// All shares of its dimension: straight line and curvature.
     pub fn share(&self, dimension: usize) -> Option<f64> {
         let sensitivity = &self.sensitivities[dimension];
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
+    }
+
+    /// What interval arithmetic says of its worst case: beside the extremes where these were searched.
+    pub(crate) fn proof(&self) -> Option<&ExtremesProof> {
+        self.extremes.as_ref().map_or(self.bounds.as_ref(), |found| found.proof.as_ref())
     }
 
     /// Within which the yield is known: the estimate and two of its errors, and down to 0 where there are assemblies without a value
@@ -225,7 +267,10 @@ impl CharacteristicAnalysis {
         let fitted = &outcome.fitted[c];
         let plan = &outcome.plan;
         let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
-        let shares = Shares::of(fitted, plan.inputs()).map(|shares| shares.beside(unexplained));
+        // A variance beyond the largest double is unknown; the warning `overflow` says why.
+        let finite =
+            |shares: &Shares| [shares.moments().mean(), shares.moments().sigma()].iter().all(|x| x.is_finite());
+        let shares = Shares::of(fitted, plan.inputs()).map(|shares| shares.beside(unexplained)).filter(finite);
         let sensitivities: Vec<Sensitivity> =
             (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
         let interactions = interactions(problem, outcome, c, shares.as_ref());
@@ -281,14 +326,17 @@ impl CharacteristicAnalysis {
             inflated_rss: linear.map(|linear| linear.inflated_rss),
             mean_shift_rss: linear.map(|linear| linear.mean_shift_rss),
             extremes: None,
+            bounds: None,
             sensitivities,
             interactions,
+            interactions_remainder: None,
             possible_interactions,
             left_out_share,
             error_estimate,
             model_sampled: None,
             verification: None,
             surface_law: None,
+            density: None,
             yield_source: None,
             pearson: None,
             unfinished: false,

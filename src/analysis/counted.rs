@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::law::LawFigure;
-use crate::method::{Options, Outcome};
+use crate::method::Outcome;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, SOBOL_DIMENSIONS, Sampler};
 
@@ -17,11 +17,11 @@ const FEWEST: usize = 1 << 13;
 const UNSEEN: f64 = 3.0;
 
 /// Below and above the limits of one characteristic; None where its inputs cannot be drawn, or a part of its surface is unknown.
-pub(super) fn counted(problem: &Problem, outcome: &Outcome, c: usize) -> Option<[Option<LawFigure>; 2]> {
+pub(super) fn counted(problem: &Problem, outcome: &Outcome, c: usize, seed: u64) -> Option<[Option<LawFigure>; 2]> {
     let surrogate = outcome.fitted[c].surrogate.as_ref()?;
     let varying = outcome.plan.varying();
     let sampler = if varying.len() <= SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
-    let draws = Draws::new(problem.dimensions(), problem.correlation(), sampler, Options::SEED).ok()?;
+    let draws = Draws::new(problem.dimensions(), problem.correlation(), sampler, seed).ok()?;
     let limits = problem.characteristics()[c].limits();
     let blocks = (NUMBERS / varying.len().max(1)).clamp(FEWEST, POINTS).next_power_of_two().min(POINTS) / ROWS;
     // Block by block, so that a thousand dimensions take no more memory than ten.

@@ -1,11 +1,9 @@
-//! What the estimated errors of the moments mean for the yield, and whether they are what was wanted.
+//! What the estimated errors of the moments mean for the yield.
 
-use super::CharacteristicAnalysis;
 use crate::capability::{Capability, Law};
 use crate::characteristic::SpecLimits;
-use crate::method::{Accuracies, ErrorEstimate};
+use crate::method::ErrorEstimate;
 use crate::moments::Moments;
-use crate::warning::Figure;
 
 /// How far the rejected share moves when each moment is off by its error, one after the other, as the root of the sum of
 /// squares; None where an error is unknown, there are no limits, or no law has such moments.
@@ -38,25 +36,4 @@ pub(super) fn of_yield(estimate: &ErrorEstimate, moments: &Moments, limits: Spec
     };
     let parts: Option<Vec<f64>> = up.iter().zip(&down).map(part).collect();
     Some(parts?.into_iter().fold(0.0, f64::hypot))
-}
-
-/// What is wanted beside sigma with its estimated error, infinite where nothing is known of it; without what the characteristic
-/// does not have: a shape where nothing varies, a yield without limits.
-pub(super) fn beside_sigma(one: &CharacteristicAnalysis, wanted: &Accuracies) -> Vec<(Figure, f64, f64)> {
-    let Some(moments) = one.moments.filter(|moments| moments.sigma() > 0.0) else { return Vec::new() };
-    let estimate = one.error_estimate.as_ref();
-    let of = |figure: Figure| match figure {
-        Figure::Sigma => estimate?.sigma.map(|error| error / moments.sigma()),
-        Figure::Skewness => estimate?.skewness,
-        Figure::Kurtosis => estimate?.kurtosis,
-        Figure::Yield => estimate?.yield_,
-    };
-    let asked = |&(figure, _): &(Figure, Option<f64>)| figure != Figure::Yield || one.characteristic.limits().exist();
-    let each = wanted.wanted().into_iter().filter(asked);
-    each.filter_map(|(figure, wanted)| Some((figure, of(figure).unwrap_or(f64::INFINITY), wanted?))).collect()
-}
-
-/// The largest of them in parts of what is wanted; 0 where nothing is.
-pub(super) fn excess(one: &CharacteristicAnalysis, wanted: &Accuracies) -> f64 {
-    beside_sigma(one, wanted).into_iter().map(|(_, error, wanted)| error / wanted).fold(0.0, f64::max)
 }

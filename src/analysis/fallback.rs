@@ -1,14 +1,15 @@
 //! Where a surrogate is not trusted: points of the model itself, with the surrogate as control variate.
 
-use super::CharacteristicAnalysis;
-use super::errors::{excess, of_yield};
+use super::errors::of_yield;
+use super::wanted::excess;
+use super::{CharacteristicAnalysis, SampledModel};
 use crate::assembly::{NonRepeatable, Run};
 use crate::capability::{Capability, Law};
-use crate::method::{Climbed, ErrorEstimate, ErrorSource, Options, Outcome};
+use crate::method::{Climbed, ErrorEstimate, ErrorSource, Outcome};
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler};
-use crate::simulation::{Histogram, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
+use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
 use crate::summary::RunSummary;
 use crate::warning::Figure;
 
@@ -23,28 +24,6 @@ const PART: f64 = 0.5;
 /// By how much a second attempt exceeds the first.
 const MORE: u64 = 4;
 
-/// Points of the model in place of a surrogate that was not trusted.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct SampledModel {
-    /// Points.
-    pub samples: u64,
-    /// Points at which the model has no value, beside these.
-    pub failed: u64,
-    /// Why not, of the first.
-    pub error: Option<String>,
-    /// The share of the variance that the surrogate left unexplained at the check.
-    pub left: f64,
-    /// Standard errors of mean, sigma, skewness and kurtosis, as far as they are known.
-    pub standard_errors: [Option<f64>; 4],
-    /// The share of the sample within the limits with its 95 % interval.
-    pub yield_: Option<(f64, [f64; 2])>,
-    /// Its shares below the lower and above the upper limit; None without that limit.
-    pub beyond: [Option<f64>; 2],
-    /// The sample, counted in some tens of intervals.
-    pub histogram: Option<Histogram>,
-}
-
 /// What the fallback cost.
 #[derive(Debug, Default)]
 pub(super) struct Spent {
@@ -57,7 +36,7 @@ pub(super) struct Spent {
 pub(super) fn fall_back(
     problem: &Problem,
     outcome: &Outcome,
-    left: Option<usize>,
+    (left, seed): (Option<usize>, u64),
     characteristics: &mut [CharacteristicAnalysis],
     run: &Run<'_>,
 ) -> Spent {
@@ -87,7 +66,6 @@ pub(super) fn fall_back(
     while spent.run.evaluations + samples <= most {
         // Sobol's points come in powers of two: not more of them than may be.
         let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
-        let seed = Options::SEED;
         let wish = SimulationOptions { samples: points.max(2), sampler, seed, ..SimulationOptions::default() };
         let Ok(found) = simulate_beside(problem, &wish, outcome, run) else { return spent };
         spent.add(&found);

@@ -7,66 +7,99 @@ mod counted;
 mod errors;
 mod fallback;
 mod interval;
+mod jumps;
 mod linear;
+mod outputs;
+mod remainder;
+mod sampled_model;
+mod sampling_interval;
 mod settle;
+mod shape;
 mod shapes;
 mod shares;
+mod shorten;
 mod surface;
 mod surface_law;
 mod trust;
 mod verification;
 mod verified;
+mod wanted;
 mod warnings;
+mod written;
 mod yield_source;
 
+pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
+pub use crate::law::{Branch, LawError, LawFigure, LawTail};
+pub use crate::moments::{Contributions, Sampled};
+pub use crate::surrogate::Relocation;
+pub use crate::verification::{Crossing, FoundSwitch, Share, Verified};
 pub use account::Account;
-pub use bootstrap::SamplingInterval;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
-pub use fallback::SampledModel;
+pub use outputs::OutputCorrelation;
+pub use remainder::Remainder;
+pub use sampled_model::SampledModel;
+pub use sampling_interval::SamplingInterval;
 pub use surface::{Fit, NoFit, Surface};
 pub use surface_law::{QUANTILES, SurfaceShares};
 pub(crate) use surface_law::{law_over, surface_law};
-pub use verified::{Verification, VerificationKind};
+pub use verified::{VarianceShare, Verification, VerificationKind};
+#[cfg(feature = "cli")]
+pub(crate) use written::CharacteristicShape;
 pub use yield_source::YieldSource;
 
+use serde::Serialize;
+
 use crate::assembly::Run;
-use crate::extremes::{SearchedExtremes, search};
+use crate::extremes::{SearchedExtremes, enclose, search};
 use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
+use crate::shape::through;
 use crate::summary::{RunSummary, StopReason};
 use crate::time::Instant;
-use crate::verification::Verified;
 use crate::warning::Warning;
 
 /// What an analysis found out.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Analysis {
     /// The method that was run: for `auto`, what it stands for.
+    #[cfg_attr(feature = "cli", schemars(with = "String"))]
     pub method: Method,
     /// Dimensions that vary and on which some characteristic can depend, N.
     pub varying: usize,
     /// What it came to in points and time, and why it ended early; the seed, where one was given or random numbers were drawn.
+    #[serde(flatten)]
     pub run: RunSummary,
     /// What is known of every characteristic, in the problem's order.
+    #[cfg_attr(feature = "cli", schemars(with = "Vec<CharacteristicShape>"))]
     pub characteristics: Vec<CharacteristicAnalysis>,
     /// The share of assemblies that keep the limits of all characteristics at once, and its error; None with fewer than two that have
     /// limits, and where it is not known.
+    #[serde(rename = "joint_yield")]
     pub joint: Option<Verified>,
+    /// How every two characteristics vary together; empty with one characteristic, and with more than 40.
+    #[serde(rename = "characteristic_correlation")]
+    pub correlations: Vec<OutputCorrelation>,
     /// What `auto` found, and what its points went to; None for any other method.
     pub account: Option<Account>,
     /// What the moments rest on.
+    #[serde(flatten, serialize_with = "through::<shape::BasisShape, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "shape::BasisShape"))]
     pub basis: Basis,
     /// What the moments follow from.
+    #[serde(skip)]
     pub surface: Surface,
     /// Where an assumption fails.
+    #[serde(skip)]
     pub warnings: Vec<Warning>,
 }
 
 /// Analyses a problem.
 ///
-/// Evaluations: as the method says ([`Procedure::count`](crate::method::Procedure::count)), one more when some mean is not
-/// the nominal, and more only where the model fails; with [`Options::extremes`] those of the [search](crate::extremes) too.
+/// Evaluations: as [`Options::cost`] says, one more when some mean is not the nominal, and more only where the model fails; with
+/// [`Options::extremes`] those of the search too.
 ///
 /// # Errors
 /// When the options do not fit the problem; nothing is evaluated then. A model that fails is no error: what it costs is
@@ -84,15 +117,15 @@ pub struct Analysis {
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodError> {
-    analyze_within(problem, options, &Run::to_the_end())
+    analyze_with(problem, options, &Run::to_the_end())
 }
 
 /// [`analyze`], telling of finished points and stopping when told to.
-pub fn analyze_within(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
+pub fn analyze_with(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
     analyze_keeping(problem, options, run).map(|(analysis, _)| analysis)
 }
 
-/// [`analyze_within`], with what the method found out, for who goes on from there.
+/// [`analyze_with`], with what the method found out, for who goes on from there.
 pub(crate) fn analyze_keeping(
     problem: &Problem,
     options: &Options,
@@ -105,26 +138,36 @@ pub(crate) fn analyze_keeping(
     outcome.evaluated.non_repeatable.extend(found.spent.non_repeatable);
     let mut characteristics = of_all(problem, &outcome);
     let left = left.map(|left| left.saturating_sub(found.spent.run.evaluations as usize));
+    let seed = options.seed.unwrap_or(Options::SEED);
     // A cheap model that is verified is sampled anyway, and by points that need no surface.
     let signature = problem.function().signature();
     let sampled = options.verification(signature) > 0 && !signature.costly;
     let fallback = match sampled {
         true => fallback::Spent::default(),
-        false => fallback::fall_back(problem, &outcome, left, &mut characteristics, run),
+        false => fallback::fall_back(problem, &outcome, (left, seed), &mut characteristics, run),
     };
     outcome.evaluated.non_repeatable.extend(fallback.non_repeatable);
     for (characteristic, extremes) in characteristics.iter_mut().zip(found.extremes) {
         characteristic.extremes = extremes;
     }
     let left = left.map(|left| left.saturating_sub(fallback.run.evaluations as usize));
+    let jumps = match signature.costly && options.verification(signature) > 0 {
+        true => jumps::find(problem, &outcome, &characteristics, left, run),
+        false => jumps::FoundJumps::default(),
+    };
+    outcome.evaluated.non_repeatable.extend(jumps.non_repeatable);
+    let left = left.map(|left| left.saturating_sub(jumps.run.evaluations as usize));
     let verified = verification::verify(problem, &outcome, options, left, &mut characteristics, run);
-    let joint = settle::settle(problem, &outcome, &mut characteristics);
-    let spent = spent(&outcome, options).and(&fallback.run).and(&verified);
+    if options.verification(signature) > 0 && !run.stopped() {
+        enclose_all(problem, &outcome, &mut characteristics, run);
+    }
+    let joint = settle::settle(problem, &outcome, (options.densities, seed), &mut characteristics);
+    let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
+    let correlations = outputs::correlations(problem, &outcome, options, &characteristics);
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
-    let warnings = warnings::of(problem, &outcome, &characteristics);
+    let warnings = warnings::of(problem, &outcome, &characteristics, jumps.warnings);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
-    let seed = options.seed.unwrap_or(Options::SEED);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
     let analysis = Analysis {
         method: outcome.method,
@@ -132,6 +175,7 @@ pub(crate) fn analyze_keeping(
         run: RunSummary {
             wall: begun.elapsed(),
             seed: options.seed.or(drawn.then_some(seed)),
+            evaluator: problem.evaluator(),
             ..spent.and(&found.spent.run)
         },
         account,
@@ -139,9 +183,20 @@ pub(crate) fn analyze_keeping(
         surface: Surface::of(&outcome, &characteristics),
         characteristics,
         joint,
+        correlations,
         warnings,
     };
     Ok((analysis, outcome))
+}
+
+/// The bounds of interval arithmetic, where a formula has them and nobody searched the extremes.
+fn enclose_all(problem: &Problem, outcome: &Outcome, characteristics: &mut [CharacteristicAnalysis], run: &Run<'_>) {
+    /// Of sigma: ends nearer than this look the same in print.
+    const NEAR: f64 = 1e-3;
+    for (c, one) in characteristics.iter_mut().enumerate().filter(|(_, one)| one.extremes.is_none() && !one.constant) {
+        let sigma = one.moments.map(|moments| moments.sigma()).filter(|sigma| *sigma > 0.0);
+        one.bounds = sigma.and_then(|sigma| enclose(problem, outcome, c, NEAR * sigma, run));
+    }
 }
 
 /// What the method came to; its budget ended it where that is why it asked for no more.
@@ -159,7 +214,7 @@ fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Out
         return options.method.procedure().run(problem, options, run);
     }
     climb_until(problem, options, run, &|outcome| {
-        let excess = |one: &CharacteristicAnalysis| errors::excess(one, &options.accuracies);
+        let excess = |one: &CharacteristicAnalysis| wanted::excess(one, &options.accuracies);
         of_all(problem, outcome).iter().map(excess).fold(0.0, f64::max)
     })
 }

@@ -11,7 +11,7 @@
 //! agree on is exact, and only what they differ by is sampled.
 
 use super::CharacteristicAnalysis;
-use super::surface_law::SurfaceShares;
+use super::surface_law::{SurfaceShares, density};
 use super::verified::{Verification, VerificationKind};
 use super::yield_source::YieldSource;
 use crate::capability::{Capability, Law, percentiles};
@@ -34,6 +34,7 @@ struct Rejected {
 pub(super) fn settle(
     problem: &Problem,
     outcome: &Outcome,
+    (densities, seed): (bool, u64),
     characteristics: &mut [CharacteristicAnalysis],
 ) -> Option<Verified> {
     let mut laws: Vec<Option<SurfaceLaw>> = Vec::new();
@@ -44,8 +45,9 @@ pub(super) fn settle(
             continue;
         }
         if follows_from_a_surface(one) {
-            let (shares, law) = SurfaceShares::of(problem, outcome, c, fit(one), is_sampled(one)).unzip();
+            let (shares, law) = SurfaceShares::of(problem, outcome, c, fit(one), (is_sampled(one), seed)).unzip();
             (one.surface_law, laws[c]) = (shares, law.flatten());
+            one.density = laws[c].as_ref().filter(|_| densities).and_then(density);
         }
         let Some(found) = rejected(problem, outcome, c, one) else { continue };
         one.yield_source = one.characteristic.limits().exist().then_some(found.source);
@@ -125,7 +127,8 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
 /// Whether the proven extremes lie within the limits, and no input leaves the box in which they were searched.
 fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> bool {
     let limits = one.characteristic.limits();
-    let Some(proof) = one.extremes.as_ref().and_then(|found| found.proof.as_ref()).filter(|_| limits.exist()) else {
+    let searched = one.extremes.as_ref().and_then(|found| found.proof.as_ref());
+    let Some(proof) = searched.or(one.bounds.as_ref()).filter(|_| limits.exist()) else {
         return false;
     };
     let bounded = |&d: &usize| {

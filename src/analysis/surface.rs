@@ -29,6 +29,7 @@ pub struct Fit {
 
 /// Why the moments of a characteristic cannot be had at other tolerances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoFit {
     /// Dimensions vary together.
     #[error("dimensions are correlated")]
@@ -79,7 +80,8 @@ impl Surface {
     /// from where it was made.
     ///
     /// ```
-    /// use sensitol::{Closure, Dimension, Method, Problem, analyze, surrogate::Relocation};
+    /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
+    /// use sensitol::analysis::Relocation;
     /// let dimensions = [Dimension::normal("width", 20.0, 0.3)?, Dimension::normal("height", 10.0, 0.3)?];
     /// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
     /// let analysis = analyze(&area, &Method::Full.into())?;

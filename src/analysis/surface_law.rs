@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use serde::{Serialize, Serializer};
+
 use super::counted::counted;
-use crate::capability::{Law, TAIL};
+use crate::capability::{Law, Quantiles, TAIL};
 use crate::correlation::Correlation;
 use crate::distribution::{Distribution, Normal};
 use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, SurfaceLaw};
@@ -34,6 +36,10 @@ const TERMS: usize = 1 << 10;
 const FEWEST: usize = 1 << 9;
 /// Measured values of one input from which on every point of a contour is a long sum: the surface is counted at points instead.
 const ATOMS: usize = 64;
+/// A drawn density ends where so little lies beyond,
+const DRAWN: f64 = 1e-5;
+/// and has so many places: a pixel or two each.
+const PLACES: usize = 240;
 /// A quantile is found within this part of sigma,
 const NEAR: f64 = 1e-7;
 /// in so many steps from the quantile of the Pearson fit, or by the law's own search.
@@ -41,6 +47,7 @@ const STEPS: usize = 8;
 
 /// What the law of a surface says of a characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SurfaceShares {
     /// How the law is computed.
     pub branch: Branch,
@@ -64,7 +71,7 @@ impl SurfaceShares {
         outcome: &Outcome,
         c: usize,
         fit: Option<&Law>,
-        beside: bool,
+        (beside, seed): (bool, u64),
     ) -> Option<(Self, Option<SurfaceLaw>)> {
         let fitted = &outcome.fitted[c];
         if fitted.integrated.is_some() {
@@ -74,14 +81,14 @@ impl SurfaceShares {
         let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
         let measured = inputs.iter().filter_map(|law| law.probability());
         if measured.map(|law| law.atoms().len()).any(|atoms| atoms > ATOMS) {
-            return Some((Self::counted(problem, outcome, c)?, None));
+            return Some((Self::counted(problem, outcome, c, seed)?, None));
         }
         let correlation = outcome.plan.inputs().correlation();
         let points = points(&surrogate);
         let whole = match law(&surrogate, &inputs, correlation, points) {
             Ok(law) => law,
             Err(LawError::NoVariance | LawError::NoEigenvalues) => {
-                return Some((Self::counted(problem, outcome, c)?, None));
+                return Some((Self::counted(problem, outcome, c, seed)?, None));
             }
             Err(_) => return None,
         };
@@ -89,8 +96,9 @@ impl SurfaceShares {
         let (below, above) = (limits.lower().map(|y| whole.below(y)), limits.upper().map(|y| whole.above(y)));
         let known = |figure: &LawFigure| figure.value.is_finite() && figure.error.is_finite();
         if ![below, above].iter().flatten().all(known) {
-            return Some((Self::counted(problem, outcome, c)?, None));
+            return Some((Self::counted(problem, outcome, c, seed)?, None));
         }
+        // Seven quantiles take some 25 values of the law, up to half a second each: only where limits say that the tails matter.
         if !limits.exist() {
             return Some((Self { branch: whole.branch(), below, above, quantiles: None }, Some(whole)));
         }
@@ -105,8 +113,8 @@ impl SurfaceShares {
         Some((Self { branch: whole.branch(), below, above, quantiles }, Some(whole)))
     }
 
-    fn counted(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Self> {
-        let [below, above] = counted(problem, outcome, c)?;
+    fn counted(problem: &Problem, outcome: &Outcome, c: usize, seed: u64) -> Option<Self> {
+        let [below, above] = counted(problem, outcome, c, seed)?;
         Some(Self { branch: Branch::Sampled, below, above, quantiles: None })
     }
 
@@ -124,6 +132,11 @@ impl SurfaceShares {
     /// The share within the limits; None without any.
     pub fn yield_(&self) -> Option<f64> {
         self.rejected().map(|rejected| 1.0 - rejected)
+    }
+
+    /// Its quantiles by the names of their probabilities.
+    pub(crate) fn named_quantiles(&self) -> Option<Quantiles> {
+        self.quantiles.map(|all| Quantiles(all.map(|figure| figure.value)))
     }
 
     /// The lower, the middle and the upper quantile by which a process is judged.
@@ -189,6 +202,19 @@ fn law(
     SurfaceLaw::of(surrogate, inputs, correlation, &LawOptions { points, ..LawOptions::default() })
 }
 
+/// The density at places from one far quantile to the other, `[y, density]`; None where the law is sampled, each place of which is a
+/// sum over points, and where its values are steps.
+pub(super) fn density(law: &SurfaceLaw) -> Option<Vec<[f64; 2]>> {
+    if law.branch() == Branch::Sampled || law.is_step_function() {
+        return None;
+    }
+    let [from, to] = [LawTail::Lower, LawTail::Upper].map(|tail| law.quantile(tail, DRAWN).value);
+    let place = |i: usize| from + (to - from) * i as f64 / PLACES as f64;
+    let table: Vec<[f64; 2]> = (0..=PLACES).map(|i| [place(i), law.density(place(i)).value]).collect();
+    // A density may be infinite at an end of its support.
+    (from < to && table.iter().all(|[_, density]| *density >= 0.0)).then_some(table)
+}
+
 /// All quantiles of reports; None where one of them is unknown.
 fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
     let mut found = [LawFigure { value: f64::NAN, error: f64::INFINITY, proven: false }; 7];
@@ -233,4 +259,42 @@ fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64, start: Option<f64>) -> LawF
         at += step;
     }
     own()
+}
+
+/// What the law of the fitted surface says, as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(super) struct SurfaceLawShape {
+    /// `exact`, `single` or `sampled`: how it is computed.
+    branch: &'static str,
+    /// The share within the limits; null without any.
+    #[serde(rename = "yield")]
+    yield_: Option<f64>,
+    /// Assemblies below the lower limit, per million.
+    ppm_below: Option<f64>,
+    /// Assemblies above the upper limit, per million.
+    ppm_above: Option<f64>,
+    /// The numerical error of the share within the limits: of the law of this surface, not of the surface.
+    yield_error: Option<f64>,
+    /// Quantiles; null where the law could only be counted at points.
+    quantiles: Option<Quantiles>,
+}
+
+impl Serialize for SurfaceShares {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let ppm = |figure: Option<LawFigure>| figure.map(|figure| 1e6 * figure.value);
+        let shape = SurfaceLawShape {
+            branch: match self.branch {
+                Branch::Exact => "exact",
+                Branch::Single => "single",
+                Branch::Sampled => "sampled",
+            },
+            yield_: self.yield_(),
+            ppm_below: ppm(self.below),
+            ppm_above: ppm(self.above),
+            yield_error: self.yield_().map(|_| self.error()),
+            quantiles: self.named_quantiles(),
+        };
+        shape.serialize(serializer)
+    }
 }

@@ -1,7 +1,7 @@
 //! Where a surrogate does not do what the moments take it to do.
 
-use super::errors::beside_sigma;
 use super::shapes::{Shape, higher, shape};
+use super::wanted::beside_sigma;
 use super::{CharacteristicAnalysis, YieldSource};
 use crate::method::{ClimbEnd, Climbed, Outcome};
 use crate::plan::Point;
@@ -94,11 +94,13 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
             }
             Some(Shape::Jump { by, between }) => {
                 let by = by / sigma;
+                let at = Some(between.map(|u| plan.axis(d).mean + u * plan.axis(d).scale));
                 warnings.push(Warning::Discontinuity {
                     characteristic: characteristic(),
                     dimension: dimension(),
                     by,
                     between,
+                    at,
                     others: Vec::new(),
                 });
                 continue;

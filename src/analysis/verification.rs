@@ -6,7 +6,7 @@
 
 use super::CharacteristicAnalysis;
 use super::errors::of_yield;
-use super::verified::{Verification, VerificationKind};
+use super::verified::{VarianceShare, Verification, VerificationKind};
 use crate::assembly::{EvaluationError, Run};
 use crate::capability::{Capability, Law};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome};
@@ -64,7 +64,11 @@ pub(super) fn verify(
     }
     let seed = options.seed.unwrap_or(Options::SEED);
     for c in open {
-        sample(problem, outcome, options, c, &mut characteristics[c], seed);
+        // A long formula takes a while for each of some 45 000 points: what is left has no verification, and the report says so.
+        if run.stopped() {
+            break;
+        }
+        sample(problem, outcome, options, c, &mut characteristics[c], (seed, run));
     }
     RunSummary::default()
 }
@@ -124,7 +128,7 @@ fn sample(
     options: &Options,
     c: usize,
     one: &mut CharacteristicAnalysis,
-    seed: u64,
+    (seed, run): (u64, &Run<'_>),
 ) {
     let mut core = crate::verification::CORE;
     let surrogate = outcome.fitted[c].surrogate.as_ref();
@@ -139,12 +143,16 @@ fn sample(
         let error = found.difference.map(|[within, ..]| within.error).or(found.yield_.map(|share| share.error));
         sigma || rejected.zip(error).is_some_and(|(rejected, error)| error > TARGET * rejected)
     };
-    while core < MOST && coarse(&found) {
+    while core < MOST && coarse(&found) && !run.stopped() {
         core *= MORE;
         found = verify_characteristic(problem, c, seed, core, beside);
     }
     let left = surrogate.and_then(|surrogate| unexplained(problem, c, outcome.plan.varying(), surrogate, seed));
-    let shares = left.filter(|&left| left > UNTRUSTED).and_then(|_| variance_shares(problem, c, seed));
+    let shares =
+        left.filter(|&left| left > UNTRUSTED && !run.stopped()).and_then(|_| variance_shares(problem, c, seed));
+    let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
+    let share = |(d, [first, total]): (usize, [Verified; 2])| VarianceShare { dimension: dimension(d), first, total };
+    let shares = shares.map(|shares| shares.into_iter().map(share).collect());
     let replaced = options.method == Method::Auto && replace(one, &found);
     let Some(moments) = one.moments else { return };
     let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
@@ -300,7 +308,7 @@ pub(super) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec
     let characteristic = || one.characteristic.name().to_owned();
     let mut warnings = Vec::new();
     for found in verification.switches.iter().flatten().filter(|found| found.probability >= SELDOM) {
-        let (switch, probability) = (found.switch.name(one.characteristic.name()), found.probability);
+        let (switch, probability) = (found.name.clone(), found.probability);
         let change = match found.crossing {
             Crossing::Kink => Change::Kink,
             Crossing::Jump => Change::Jump,

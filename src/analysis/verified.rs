@@ -1,9 +1,13 @@
 //! What the verification of a characteristic found.
 
+use serde::{Serialize, Serializer};
+
+use crate::shape::{Four, Sides, through};
 use crate::verification::{FoundSwitch, Share, Verified};
 
 /// How figures were verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum VerificationKind {
     /// By points of a cheap model.
     Sample,
@@ -17,22 +21,30 @@ pub enum VerificationKind {
 }
 
 /// What the model itself says of a characteristic.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Verification {
     /// How.
+    #[serde(flatten, serialize_with = "through::<KindShape, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "KindShape"))]
     pub kind: VerificationKind,
     /// Points of the model that were evaluated for it.
     pub points: usize,
     /// The share of the assemblies that have a value; None where points do not tell.
+    #[serde(rename = "valid_share")]
     pub valid: Option<Verified>,
     /// The share of the variance that the surface leaves unexplained.
     pub left: Option<f64>,
     /// Mean, sigma, skewness and kurtosis by the model; None without a sample of it.
+    #[serde(skip)]
     pub figures: [Option<Verified>; 4],
     /// The share within the limits: by the model, or by the surface with the error that checks give it.
+    #[serde(skip)]
     pub yield_: Option<Verified>,
     /// The shares beyond the lower and the upper limit.
+    #[serde(skip)]
     pub beyond: [Option<Verified>; 2],
     /// How much more of the model than of its surface lies within the limits, below and above them; None without a sample of both.
     pub difference: Option<[Verified; 3]>,
@@ -40,15 +52,28 @@ pub struct Verification {
     pub switches: Option<Vec<FoundSwitch>>,
     /// The share of the assemblies that may do anything else where all points agree, at 95 %; None where points are many.
     pub unseen: Option<f64>,
-    /// First-order and total shares of the variance from the model, by the dimension's place, where the surface is not trusted.
-    pub shares: Option<Vec<(usize, [Share; 2])>>,
+    /// Shares of the variance from the model, where the surface is not trusted.
+    pub shares: Option<Vec<VarianceShare>>,
     /// Whether figures of the characteristic are the model's, in place of the surface's.
     pub replaced: bool,
 }
 
+/// What a dimension explains of the variance, by the model itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct VarianceShare {
+    /// The dimension.
+    pub dimension: String,
+    /// By itself.
+    pub first: Share,
+    /// With all interactions in which it has a part.
+    pub total: Share,
+}
+
 impl Verification {
     /// In one line.
-    pub fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         match self.kind {
             VerificationKind::Sample => format!("verified at {} points of the model", self.points),
             VerificationKind::Checks => {
@@ -57,5 +82,58 @@ impl Verification {
             }
             VerificationKind::Exact { degree } => format!("exact: the formula is a polynomial of degree {degree}"),
         }
+    }
+}
+
+/// How figures were verified, as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+struct KindShape {
+    /// `sample`, `checks` or `exact`.
+    kind: &'static str,
+    /// The degree of the polynomial that the formula is; null where it was not verified so.
+    degree: Option<u32>,
+}
+
+impl From<&VerificationKind> for KindShape {
+    fn from(kind: &VerificationKind) -> Self {
+        let (kind, degree) = match *kind {
+            VerificationKind::Sample => ("sample", None),
+            VerificationKind::Checks => ("checks", None),
+            VerificationKind::Exact { degree } => ("exact", Some(degree)),
+        };
+        Self { kind, degree }
+    }
+}
+
+/// A verification as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(super) struct VerificationShape<'r> {
+    #[serde(flatten, serialize_with = "Verification::serialize")]
+    #[cfg_attr(feature = "cli", schemars(with = "Verification"))]
+    own: &'r Verification,
+    /// By the model itself; null without a sample of it.
+    figures: FiguresShape,
+}
+
+/// The figures of a verification.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+struct FiguresShape {
+    #[serde(flatten)]
+    moments: Four<Option<Verified>>,
+    /// The share within the limits; by the surface with the error that checks give it, where there is no sample.
+    #[serde(rename = "yield")]
+    yield_: Option<Verified>,
+    #[serde(flatten)]
+    beyond: Sides<Option<Verified>>,
+}
+
+impl Serialize for Verification {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (moments, beyond) = (Four::from(&self.figures), Sides::from(&self.beyond));
+        let figures = FiguresShape { moments, yield_: self.yield_, beyond };
+        VerificationShape { own: self, figures }.serialize(serializer)
     }
 }

@@ -10,6 +10,8 @@ use crate::problem::Problem;
 use crate::surrogate::Surrogate;
 use crate::warning::{Loss, Warning, aggregated};
 
+/// The third power of a larger value is beyond the largest double, 1.8e308.
+const LARGEST: f64 = 1e100;
 /// A rounding error of one value above this part of sigma is worth a warning.
 const NOISE: f64 = 1e-4;
 /// Curvature that moves the mean by more sigmas than this spoils RSS,
@@ -32,8 +34,13 @@ const MARGIN: f64 = 0.1;
 /// From here on there are more likely two peaks than one: an arc sine law, which has its mass at both ends, has 2/3.
 const MODES: f64 = 0.68;
 
-pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[CharacteristicAnalysis]) -> Vec<Warning> {
-    let mut warnings = Vec::new();
+pub(super) fn of(
+    problem: &Problem,
+    outcome: &Outcome,
+    characteristics: &[CharacteristicAnalysis],
+    jumps: Vec<Warning>,
+) -> Vec<Warning> {
+    let mut warnings = jumps;
     warnings.extend(unused(problem));
     for &d in outcome.plan.varying() {
         let moved = |moved: &crate::plan::MovedNode| Warning::SupportEdge {
@@ -49,6 +56,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, characteristics: &[Charac
     warnings.extend(problem.function().warnings(problem.outputs()));
     for (c, analysis) in characteristics.iter().enumerate() {
         warnings.extend(failed_points(problem, outcome, c));
+        warnings.extend(overflow(outcome, c, analysis));
         match outcome.basis {
             Basis::Exact | Basis::Differences => warnings.extend(lost(problem, outcome, c)),
             Basis::LeastSquares | Basis::Quadrature => warnings.extend(lost_moments(problem, outcome, c)),
@@ -103,6 +111,14 @@ fn failed_points(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warni
         point: described(problem, outcome, point),
         error: error.to_string(),
     })
+}
+
+/// Values, or moments, whose powers are no doubles.
+fn overflow(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> Option<Warning> {
+    let moments = analysis.moments.iter().flat_map(|moments| [moments.mean(), moments.sigma()]);
+    let largest = outcome.evaluated.known.values(c).chain(moments).fold(0.0, |most: f64, value| most.max(value.abs()));
+    let characteristic = analysis.characteristic.name().to_owned();
+    (largest > LARGEST).then_some(Warning::Overflow { characteristic, value: largest, limit: LARGEST })
 }
 
 /// A point in words: what is not at its mean.
@@ -166,7 +182,7 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
         let axis = plan.axis(d);
         let value = |node: u32| {
             known
-                .value(&Point::of(&[crate::plan::At { dimension: d as u32, node }]), c)
+                .value(&Point::of(&[crate::plan::AtNode { dimension: d as u32, node }]), c)
                 .map(|_| axis.nodes[node as usize].u)
         };
         for slot in &axis.slots {

@@ -6,6 +6,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum YieldSource {
     /// It is proven.
     Proof,
@@ -19,7 +20,7 @@ pub enum YieldSource {
 
 impl YieldSource {
     /// In a sentence.
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Proof => "proof",
             Self::Samples => "points of the model",

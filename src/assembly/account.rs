@@ -10,6 +10,8 @@ pub struct ModelInfo {
     pub version: Option<String>,
     /// Points that may be under way in it at once.
     pub window: usize,
+    /// Whether its answers have derivatives.
+    pub gradients: bool,
 }
 
 impl ModelInfo {

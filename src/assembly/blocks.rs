@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Ask, Points, Responses, Run};
+use super::{Points, Request, Responses, Run};
 
 /// Rows that one task evaluates: enough to hide the cost of starting it, few enough to stay in the cache.
 pub(crate) const BLOCK: usize = 1024;
@@ -12,17 +12,17 @@ pub(crate) const BLOCK: usize = 1024;
 /// `block` is given a range of rows of `points` and fills a response of its own, so the answers do not depend on the
 /// number of threads. For functions that are cheap and need no state; a process pool brings its own threads.
 pub fn in_blocks(
-    ask: &Ask<'_>,
+    request: &Request<'_>,
     run: &Run<'_>,
     out: &mut Responses,
     block: impl Fn(&Points, std::ops::Range<usize>, &mut Responses) + Sync,
 ) {
-    let rows = ask.points.rows();
+    let rows = request.points.rows();
     let evaluate = |first: usize| {
         let range = first..(first + BLOCK).min(rows);
-        let mut answers = Responses::open(range.len(), ask.outputs.len());
+        let mut answers = Responses::open(range.len(), request.outputs.len());
         if !run.stopped() {
-            block(ask.points, range, &mut answers);
+            block(request.points, range, &mut answers);
         }
         (first, answers)
     };
@@ -39,6 +39,6 @@ pub fn in_blocks(
         return;
     }
     let finished: Vec<usize> =
-        (0..rows).filter(|&row| (0..ask.outputs.len()).all(|output| !out.is_open(row, output))).collect();
+        (0..rows).filter(|&row| (0..request.outputs.len()).all(|output| !out.is_open(row, output))).collect();
     run.finished(&finished, out);
 }

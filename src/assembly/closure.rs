@@ -1,6 +1,6 @@
 //! A Rust closure as assembly function.
 
-use super::{Ask, AssemblyFunction, EvaluationError, Responses, Run, Signature, in_blocks};
+use super::{AssemblyFunction, EvaluationError, Request, Responses, Run, Signature, in_blocks};
 
 type Answer = dyn Fn(&[f64], &mut [f64]) -> Result<(), EvaluationError> + Send + Sync;
 
@@ -64,12 +64,12 @@ impl AssemblyFunction for Closure {
         &self.signature
     }
 
-    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
-        in_blocks(ask, run, out, |points, rows, out| {
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        in_blocks(request, run, out, |points, rows, out| {
             let mut y = vec![0.0; self.signature.outputs.len()];
             for (row, r) in rows.enumerate() {
                 let answered = (self.answer)(&points.row(r), &mut y);
-                for (column, &output) in ask.outputs.iter().enumerate() {
+                for (column, &output) in request.outputs.iter().enumerate() {
                     match &answered {
                         Ok(()) => out.set(row, column, y[output]),
                         Err(error) => out.fail(row, column, error.clone()),

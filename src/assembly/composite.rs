@@ -6,14 +6,22 @@ mod switches;
 
 use std::sync::Arc;
 
+#[cfg(feature = "study")]
+use super::formula::MixedUnits;
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
+use super::process::EvaluatorAccount;
 use super::responses::all_finite;
 use super::{
-    Ask, AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points,
+    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Request,
     Responses, Run, Signature, Switches, in_blocks,
 };
 use crate::warning::Warning;
+
+/// Parts of formulas that are looked at to explain the failures of one block of rows: all failures of short formulas, and the first few
+/// of long ones. Explaining a failure costs an evaluation of every part of all formulas, without the
+/// gain of a block.
+const EXPLAINED: usize = 1 << 17;
 
 /// Where a model's input comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -156,13 +164,17 @@ impl Composite {
         Ok(composite)
     }
 
-    /// The formulas, for who wants to know what is used.
-    pub fn formulas(&self) -> &FormulaSet {
-        &self.formulas
+    /// The formulas and conditions that add or compare different units.
+    #[cfg(feature = "study")]
+    pub(crate) fn mixed_units(&self) -> Vec<MixedUnits> {
+        let inputs = self.signature.inputs.iter().map(|input| input.unit.as_deref());
+        let answers = self.model.iter().flat_map(|model| &model.function.signature().outputs);
+        let units: Vec<Option<&str>> = inputs.chain(answers.map(|output| output.unit.as_deref())).collect();
+        self.formulas.mixed_units(|variable| units.get(variable).copied().flatten())
     }
 
     /// Which formulas the outputs need, as a flag per formula, and whether they need the unknowns.
-    pub fn used(&self) -> (Vec<bool>, bool) {
+    pub(crate) fn used(&self) -> (Vec<bool>, bool) {
         let unknowns = self.all_needs(&self.outputs).unknowns;
         let outputs = self.outputs.iter().filter_map(|origin| match origin {
             Origin::Formula(formula) => Some(*formula),
@@ -251,6 +263,25 @@ impl Composite {
     }
 
     /// Asks the model for these of its outputs.
+    /// Passes the derivatives of the model's own outputs on, by the dimensions that its inputs are.
+    fn pass_gradients(&self, origins: &[Origin], needed: &[usize], answers: &Responses, out: &mut Responses) {
+        let Some(model) = &self.model else { return };
+        for (column, origin) in origins.iter().enumerate() {
+            let Origin::Model(output) = origin else { continue };
+            let Ok(answer) = needed.binary_search(output) else { continue };
+            for row in 0..answers.rows() {
+                let Some(gradient) = answers.gradient(row, answer) else { continue };
+                let mut passed = vec![0.0; self.signature.inputs.len()];
+                for (source, slope) in model.inputs.iter().zip(gradient) {
+                    if let Source::Dimension(dimension) = *source {
+                        passed[dimension] += slope;
+                    }
+                }
+                out.set_gradient(row, column, passed);
+            }
+        }
+    }
+
     fn ask_model(&self, points: &Points, run: &Run<'_>, needed: &[usize]) -> Responses {
         let rows = points.rows();
         let mut answers = Responses::open(rows, needed.len());
@@ -263,7 +294,7 @@ impl Composite {
                 }
             }
             let points = Points::of_values(rows, model.inputs.len(), values);
-            model.function.evaluate(&Ask::values(&points, needed), run, &mut answers);
+            model.function.evaluate(&Request::values(&points, needed), run, &mut answers);
         }
         answers
     }
@@ -296,13 +327,13 @@ impl Composite {
 }
 
 /// The unknowns in a block of points.
-struct Found {
+struct SolvedRows {
     columns: Vec<Vec<f64>>,
     /// For every row, why it has none.
     errors: Vec<Option<Box<AssemblyFailure>>>,
 }
 
-impl Found {
+impl SolvedRows {
     /// Solves the conditions at every row whose variables are all known.
     fn of(
         (assembler, set): (&Assembler, &FormulaSet),
@@ -341,7 +372,12 @@ impl AssemblyFunction for Composite {
             return Err(error);
         }
         match &self.model {
-            Some(model) if !needs.answers.is_empty() => model.function.prepare(&needs.answers),
+            Some(model) if !needs.answers.is_empty() => {
+                let info = model.function.prepare(&needs.answers)?;
+                // Of a formula over the answers no derivatives are sent.
+                let plain = self.origins(outputs).iter().all(|origin| matches!(origin, Origin::Model(_)));
+                Ok(info.map(|info| ModelInfo { gradients: info.gradients && plain, ..info }))
+            }
             _ => Ok(None),
         }
     }
@@ -355,12 +391,12 @@ impl AssemblyFunction for Composite {
         }
     }
 
-    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
-        let origins = self.origins(ask.outputs);
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        let origins = self.origins(request.outputs);
         let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();
         let Needs { answers: needed, unknowns, .. } = self.all_needs(&origins);
         let (anchor, spent) = if unknowns { self.anchor(run) } else { (None, 0) };
-        let answers = self.ask_model(ask.points, &run.quiet(), &needed);
+        let answers = self.ask_model(request.points, &run.quiet(), &needed);
         let answer = |output: usize| needed.binary_search(&output).expect("the model was asked for it");
         // Which formulas fill which columns of `out`.
         let (columns, formulas): (Vec<usize>, Vec<usize>) = (origins.iter().enumerate())
@@ -373,7 +409,7 @@ impl AssemblyFunction for Composite {
 
         // What the model has answered is not lost to a stop: only the model itself is stopped.
         let run = if needed.is_empty() { *run } else { run.unstopped() };
-        in_blocks(ask, &run, out, |points, rows, out| {
+        in_blocks(request, &run, out, |points, rows, out| {
             let known = |index: usize| -> &[f64] {
                 let column = match index.checked_sub(dimensions) {
                     None => points.column(index),
@@ -383,7 +419,7 @@ impl AssemblyFunction for Composite {
             };
             let found = match (&self.assembler, &anchor) {
                 (Some(assembler), Some(Ok(anchor))) => {
-                    Some(Found::of((assembler, &self.formulas), anchor, rows.len(), given, |index, row| {
+                    Some(SolvedRows::of((assembler, &self.formulas), anchor, rows.len(), given, |index, row| {
                         known(index)[row]
                     }))
                 }
@@ -432,6 +468,7 @@ impl AssemblyFunction for Composite {
                     }
                 }
             }
+            let mut explained = (EXPLAINED / self.formulas.parts().max(1)).max(1);
             self.formulas.evaluate_blocks(&formulas, rows.len(), variable, |position, first, values| {
                 let column = columns[position];
                 if all_finite(values) {
@@ -441,9 +478,11 @@ impl AssemblyFunction for Composite {
                     if value.is_finite() {
                         out.set(row, column, value);
                     } else if !missing(out, row, column) {
-                        let explained = self.formulas.explain(formulas[position], |index| variable(index)[row]);
+                        let explain = || self.formulas.explain(formulas[position], |index| variable(index)[row]);
+                        let failure = if explained > 0 { explain() } else { None };
+                        explained = explained.saturating_sub(1);
                         let error =
-                            explained.map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into());
+                            failure.map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into());
                         out.fail(row, column, error);
                     }
                 }
@@ -453,6 +492,8 @@ impl AssemblyFunction for Composite {
         out.reused(answers.count_reused());
         out.retried(answers.count_retried());
         out.note_non_repeatable(answers.non_repeatable().iter().cloned());
+        answers.revoked().iter().for_each(|point| out.revoke(point.clone()));
+        self.pass_gradients(&origins, &needed, &answers, out);
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
@@ -469,6 +510,10 @@ impl AssemblyFunction for Composite {
 
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         self.degree_of(output, varying)
+    }
+
+    fn account(&self) -> Option<EvaluatorAccount> {
+        self.model.as_ref()?.function.account()
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

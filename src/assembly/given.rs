@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, PoisonError};
 
-use super::{Ask, AssemblyFunction, EvaluationError, ModelInfo, NoColumn, Responses, Run, Signature};
+use super::{AssemblyFunction, EvaluationError, ModelInfo, NoColumn, Request, Responses, Run, Signature};
 
 /// Coordinates are the same when they differ by no more than this part of themselves: a spreadsheet keeps 15 digits.
 const SAME: f64 = 1e-12;
@@ -33,18 +33,13 @@ impl Table {
         Self { columns, rows, asked }
     }
 
-    /// The names of its columns.
-    pub fn columns(&self) -> &[String] {
-        &self.columns
-    }
-
     /// That it has no column of this name.
     fn lacks(&self, name: &str) -> NoColumn {
         NoColumn::among(name, self.columns.iter().map(String::as_str))
     }
 
     /// Rows, from 0, that answered no point so far.
-    pub fn unused(&self) -> Vec<usize> {
+    pub(crate) fn unused(&self) -> Vec<usize> {
         let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
         (0..self.rows.len()).filter(|&row| !asked.used[row]).collect()
     }
@@ -117,13 +112,13 @@ impl AssemblyFunction for GivenAnswers {
         }
     }
 
-    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         let columns: Vec<Option<usize>> =
-            ask.outputs.iter().map(|&output| self.table.column(&self.signature.outputs[output].name)).collect();
+            request.outputs.iter().map(|&output| self.table.column(&self.signature.outputs[output].name)).collect();
         let mut known = 0;
         let (mut missing, mut seen) = (Vec::new(), HashSet::new());
-        for row in 0..ask.points.rows() {
-            let point = ask.points.row(row);
+        for row in 0..request.points.rows() {
+            let point = request.points.row(row);
             let found = self.find(&point);
             match found {
                 Some(found) => {
@@ -147,7 +142,7 @@ impl AssemblyFunction for GivenAnswers {
         drop(asked);
         // Nothing was evaluated here: what is known was known before, and the rest costs nothing.
         out.reused(known);
-        out.spent(known as i64 - ask.points.rows() as i64);
-        run.finished(&(0..ask.points.rows()).collect::<Vec<_>>(), out);
+        out.spent(known as i64 - request.points.rows() as i64);
+        run.finished(&(0..request.points.rows()).collect::<Vec<_>>(), out);
     }
 }

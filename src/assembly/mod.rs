@@ -9,7 +9,6 @@
 //! One new file with a type that implements [`AssemblyFunction`].
 
 mod account;
-mod ask;
 mod blocks;
 mod bounds;
 mod closure;
@@ -20,20 +19,22 @@ pub mod formula;
 mod given;
 pub mod implicit;
 pub mod process;
+mod request;
 mod responses;
 mod run;
 mod signature;
 mod switch;
 
 pub use account::{ModelInfo, NonRepeatable};
-pub use ask::{Ask, Points};
-pub use blocks::in_blocks;
+pub(crate) use blocks::in_blocks;
 pub use bounds::Bounds;
 pub use closure::Closure;
 pub use composite::{Composite, CompositeError, Parts, Source};
 pub use derivatives::{Derivatives, Directions};
 pub use error::{EvaluationError, NoColumn};
-pub use given::{GivenAnswers, Table};
+pub(crate) use given::GivenAnswers;
+pub use given::Table;
+pub use request::{Points, Request};
 pub use responses::Responses;
 pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};
@@ -63,13 +64,13 @@ pub trait AssemblyFunction: Send + Sync {
         None
     }
 
-    /// Answers `ask.points` for `ask.outputs` into `out`, whose rows are the points and whose columns are the asked
+    /// Answers `request.points` for `request.outputs` into `out`, whose rows are the points and whose columns are the asked
     /// outputs in the order asked.
     ///
     /// A point that cannot be answered is an error in `out`, not a panic. As rows become final they are told to
     /// [`Run::finished`]; between rows [`Run::stopped`] says when to return with the rest unanswered, which is no
     /// error.
-    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses);
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses);
 
     /// Exact derivatives of `outputs` at a point, in the order asked; None for an output of which the function does not
     /// know them at any point.
@@ -99,6 +100,11 @@ pub trait AssemblyFunction: Send + Sync {
     /// or that is not known. A certainty, which no evaluation gives.
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let _ = (output, varying);
+        None
+    }
+
+    /// What became of the processes of an external model so far; None for a function without any.
+    fn account(&self) -> Option<process::EvaluatorAccount> {
         None
     }
 

@@ -34,6 +34,10 @@ pub struct Responses {
     retried: usize,
     /// Where the model answered otherwise than before.
     non_repeatable: Vec<NonRepeatable>,
+    /// Points of earlier batches whose answers are not trusted any more.
+    revoked: Vec<Vec<f64>>,
+    /// Derivatives by every input, where a model sends them.
+    gradients: BTreeMap<(usize, usize), Vec<f64>>,
 }
 
 impl Responses {
@@ -48,6 +52,8 @@ impl Responses {
             reused: 0,
             retried: 0,
             non_repeatable: Vec::new(),
+            revoked: Vec::new(),
+            gradients: BTreeMap::new(),
         }
     }
 
@@ -74,8 +80,18 @@ impl Responses {
         }
     }
 
+    /// Adds the derivatives of one entry by every input.
+    pub fn set_gradient(&mut self, row: usize, output: usize, gradient: Vec<f64>) {
+        self.gradients.insert((row, output), gradient);
+    }
+
+    /// The derivatives of one entry by every input, where the model sent them.
+    pub fn gradient(&self, row: usize, output: usize) -> Option<&[f64]> {
+        self.gradients.get(&(row, output)).map(Vec::as_slice)
+    }
+
     /// Answers the entries from a row on, as [`set`](Self::set) does one by one.
-    pub fn set_rows(&mut self, first: usize, output: usize, values: &[f64]) {
+    pub(crate) fn set_rows(&mut self, first: usize, output: usize, values: &[f64]) {
         if self.errors.is_empty() && all_finite(values) {
             let start = output * self.rows + first;
             self.values[start..start + values.len()].copy_from_slice(values);
@@ -107,34 +123,44 @@ impl Responses {
     }
 
     /// Adds evaluations beyond one for each answered row: points tried again; fewer than none where answers came without.
-    pub fn spent(&mut self, extra: i64) {
+    pub(crate) fn spent(&mut self, extra: i64) {
         self.extra += extra;
     }
 
     /// Notes rows whose answers were known already: they cost no evaluation.
-    pub fn reused(&mut self, rows: usize) {
+    pub(crate) fn reused(&mut self, rows: usize) {
         self.reused += rows;
         self.extra -= rows as i64;
     }
 
     /// Notes points that were sent again, which [`spent`](Self::spent) counts too.
-    pub fn retried(&mut self, points: usize) {
+    pub(crate) fn retried(&mut self, points: usize) {
         self.retried += points;
     }
 
     /// Points that were sent again.
-    pub fn count_retried(&self) -> usize {
+    pub(crate) fn count_retried(&self) -> usize {
         self.retried
     }
 
     /// Notes that the model answered a point otherwise than before.
-    pub fn note_non_repeatable(&mut self, non_repeatable: impl IntoIterator<Item = NonRepeatable>) {
+    pub(crate) fn note_non_repeatable(&mut self, non_repeatable: impl IntoIterator<Item = NonRepeatable>) {
         self.non_repeatable.extend(non_repeatable);
     }
 
     /// Where the model answered a point otherwise than before.
     pub fn non_repeatable(&self) -> &[NonRepeatable] {
         &self.non_repeatable
+    }
+
+    /// Notes a point of an earlier batch whose answer is not trusted any more.
+    pub(crate) fn revoke(&mut self, point: Vec<f64>) {
+        self.revoked.push(point);
+    }
+
+    /// Points of earlier batches whose answers are not trusted any more.
+    pub fn revoked(&self) -> &[Vec<f64>] {
+        &self.revoked
     }
 
     /// Rows whose answers were known already.
@@ -153,16 +179,19 @@ impl Responses {
     }
 
     /// Answers one entry as another one was: by its value, its error, or not at all.
-    pub fn pass_on(&mut self, row: usize, output: usize, from: &Responses, from_row: usize, from_output: usize) {
+    pub(crate) fn pass_on(&mut self, row: usize, output: usize, from: &Responses, from_row: usize, from_output: usize) {
         if let Some(value) = from.value(from_row, from_output) {
             self.set(row, output, value);
+            if let Some(gradient) = from.gradient(from_row, from_output) {
+                self.set_gradient(row, output, gradient.to_vec());
+            }
         } else if let Some(error) = from.error(from_row, from_output) {
             self.fail(row, output, error.clone());
         }
     }
 
     /// How many of these rows have an output without a value.
-    pub fn failed_among(&self, rows: &[usize]) -> usize {
+    pub(crate) fn failed_among(&self, rows: &[usize]) -> usize {
         rows.iter().filter(|&&row| (0..self.outputs).any(|output| self.value(row, output).is_none())).count()
     }
 
@@ -172,7 +201,7 @@ impl Responses {
     }
 
     /// Takes over the answers of the rows from `first` on.
-    pub fn adopt(&mut self, first: usize, block: Responses) {
+    pub(crate) fn adopt(&mut self, first: usize, block: Responses) {
         for output in 0..self.outputs {
             let start = output * self.rows + first;
             self.values[start..start + block.rows].copy_from_slice(block.column(output));
@@ -181,6 +210,9 @@ impl Responses {
         self.reused += block.reused;
         self.retried += block.retried;
         self.non_repeatable.extend(block.non_repeatable.iter().cloned());
+        self.revoked.extend(block.revoked);
+        let gradients = block.gradients.into_iter();
+        self.gradients.extend(gradients.map(|((row, output), gradient)| ((first + row, output), gradient)));
         self.errors.extend(block.errors.into_iter().map(|((row, output), error)| ((first + row, output), error)));
     }
 }

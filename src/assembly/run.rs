@@ -14,6 +14,7 @@ type Stop<'a> = dyn Fn() -> Option<StopReason> + Sync + 'a;
 
 /// Points that a costly model has done with, as they come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub struct Progress {
     /// Points that are answered, by the model or from what is known.
     pub points: usize,
@@ -76,12 +77,12 @@ impl<'a> Run<'a> {
     }
 
     /// The same, telling nobody: for a part of an answer that is no answer yet.
-    pub fn quiet(self) -> Self {
+    pub(crate) fn quiet(self) -> Self {
         Self { finished: None, ..self }
     }
 
     /// The same, without a stop: for what follows quickly from answers that were paid for.
-    pub fn unstopped(self) -> Self {
+    pub(crate) fn unstopped(self) -> Self {
         Self { stop: None, ..self }
     }
 
@@ -117,7 +118,7 @@ impl<'a> Run<'a> {
     }
 
     /// The conditions of a part of the work: told to `finished` rather than to whom this one tells, and stopped by `stop`.
-    pub fn within<'b>(&'b self, finished: &'b Finished<'b>, stop: &'b Stop<'b>) -> Run<'b> {
+    pub(crate) fn within<'b>(&'b self, finished: &'b Finished<'b>, stop: &'b Stop<'b>) -> Run<'b> {
         Run { finished: Some(finished), stop: Some(stop), withdrawn: None, ..*self }
     }
 

@@ -48,13 +48,8 @@ impl Signature {
         }
     }
 
-    /// Index of the input of this name.
-    pub fn input(&self, name: &str) -> Option<usize> {
-        self.inputs.iter().position(|input| input.name == name)
-    }
-
     /// Index of the output of this name.
-    pub fn output(&self, name: &str) -> Option<usize> {
+    pub(crate) fn output(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| output.name == name)
     }
 }

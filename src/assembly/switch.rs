@@ -4,6 +4,7 @@ use std::ops::Range;
 
 /// What happens to an output where the margin of a switch changes its sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum SwitchKind {
     /// Two slopes meet: `abs`, `min`, `max`.
     Kink,

@@ -1,10 +1,16 @@
 //! The distribution of a characteristic, as far as four moments tell.
 
+use serde::Serialize;
+
+use super::Quantiles;
 use crate::moments::Moments;
 use crate::pearson::{Pearson, PearsonError};
+use crate::shape::{ends, through};
 
 /// A distribution with the four moments of a characteristic.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(tag = "family", rename_all = "lowercase")]
 pub enum Law {
     /// Every assembly has this value: sigma is 0.
     Point {
@@ -12,7 +18,30 @@ pub enum Law {
         at: f64,
     },
     /// The member of the Pearson system.
-    Pearson(Box<Pearson>),
+    Pearson(
+        #[serde(serialize_with = "through::<PearsonShape, _, _>")]
+        #[cfg_attr(feature = "cli", schemars(with = "PearsonShape"))]
+        Box<Pearson>,
+    ),
+}
+
+/// A member of the Pearson system as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(inline))]
+struct PearsonShape {
+    /// Its type.
+    #[serde(rename = "type")]
+    kind: &'static str,
+    /// Lower and upper end, where there are any.
+    support: [Option<f64>; 2],
+    /// Quantiles.
+    quantiles: Quantiles,
+}
+
+impl From<&Box<Pearson>> for PearsonShape {
+    fn from(law: &Box<Pearson>) -> Self {
+        Self { kind: law.kind().name(), support: ends(law.support()), quantiles: Quantiles::of(law) }
+    }
 }
 
 impl Law {

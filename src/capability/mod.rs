@@ -1,10 +1,14 @@
 //! Yield and capability: how a characteristic's distribution lies between its limits.
 
 mod law;
+mod quantiles;
 
 pub use law::Law;
+pub use quantiles::{PROBABILITIES, Quantiles};
 
 use std::sync::LazyLock;
+
+use serde::{Serialize, Serializer};
 
 use crate::characteristic::SpecLimits;
 use crate::pearson::Pearson;
@@ -14,6 +18,7 @@ pub const TAIL: f64 = 0.001_349_898_031_630_094_6;
 
 /// How a distribution keeps limits. What does not exist, for want of a limit or because nothing varies, is None.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Capability {
     /// Share of assemblies below the lower limit.
     pub below: Option<f64>,
@@ -29,14 +34,59 @@ pub struct Capability {
     pub cpk_percentile: Option<f64>,
 }
 
+/// How limits are kept, as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(crate) struct CapabilityShape {
+    /// The share of assemblies within the limits.
+    #[serde(rename = "yield")]
+    yield_: Option<f64>,
+    /// Assemblies below the lower limit, per million.
+    ppm_below: Option<f64>,
+    /// Assemblies above the upper limit, per million.
+    ppm_above: Option<f64>,
+    /// Width of the limits by six sigma.
+    cp: Option<f64>,
+    /// Distance of the nearer limit by three sigma.
+    cpk: Option<f64>,
+    /// Width of the limits by that between the quantiles 0.00135 and 0.99865.
+    cp_percentile: Option<f64>,
+    /// Distance of the nearer limit from the median by that of the quantile on its side.
+    cpk_percentile: Option<f64>,
+    /// Sigmas of a normal beyond which, on one side, as many lie as are rejected.
+    sigma_level: Option<f64>,
+}
+
+impl From<&Option<Capability>> for CapabilityShape {
+    fn from(of: &Option<Capability>) -> Self {
+        let of = |figure: fn(&Capability) -> Option<f64>| of.as_ref().and_then(figure);
+        Self {
+            yield_: of(Capability::yield_),
+            ppm_below: of(Capability::ppm_below),
+            ppm_above: of(Capability::ppm_above),
+            cp: of(|one| one.cp),
+            cpk: of(|one| one.cpk),
+            cp_percentile: of(|one| one.cp_percentile),
+            cpk_percentile: of(|one| one.cpk_percentile),
+            sigma_level: of(Capability::sigma_level),
+        }
+    }
+}
+
+impl Serialize for Capability {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        CapabilityShape::from(&Some(*self)).serialize(serializer)
+    }
+}
+
 /// `min(U - mean, mean - L) / 3 sigma` of the limits that there are, which needs no law; None where sigma is 0.
-pub fn cpk(mean: f64, sigma: f64, limits: SpecLimits) -> Option<f64> {
+pub(crate) fn cpk(mean: f64, sigma: f64, limits: SpecLimits) -> Option<f64> {
     nearer(limits, mean, 3.0 * sigma, 3.0 * sigma)
 }
 
 /// Cp and Cpk by the quantiles 0.00135, 0.5 and 0.99865 of a law: [`Capability::cp_percentile`] and
 /// [`Capability::cpk_percentile`].
-pub fn percentiles([low, middle, high]: [f64; 3], limits: SpecLimits) -> [Option<f64>; 2] {
+pub(crate) fn percentiles([low, middle, high]: [f64; 3], limits: SpecLimits) -> [Option<f64>; 2] {
     let both = limits.upper().zip(limits.lower()).and_then(|(upper, lower)| width(upper - lower, high - low));
     [both, nearer(limits, middle, middle - low, high - middle)]
 }
@@ -82,7 +132,7 @@ impl Capability {
     }
 
     /// What mean and sigma alone tell: Cp and Cpk.
-    pub fn of_moments(mean: f64, sigma: f64, limits: SpecLimits) -> Self {
+    pub(crate) fn of_moments(mean: f64, sigma: f64, limits: SpecLimits) -> Self {
         let cp = limits.upper().zip(limits.lower()).and_then(|(upper, lower)| width(upper - lower, 6.0 * sigma));
         let cpk = cpk(mean, sigma, limits);
         Self { below: None, above: None, cp, cpk, cp_percentile: None, cpk_percentile: None }
@@ -101,16 +151,21 @@ impl Capability {
         self.rejected().map(|rejected| 1.0 - rejected)
     }
 
+    /// Assemblies below the lower limit, per million.
+    pub(crate) fn ppm_below(&self) -> Option<f64> {
+        self.below.map(|share| 1e6 * share)
+    }
+
+    /// Assemblies above the upper limit, per million.
+    pub(crate) fn ppm_above(&self) -> Option<f64> {
+        self.above.map(|share| 1e6 * share)
+    }
+
     /// Sigmas from the mean of a normal beyond which, on one side, as many lie as are rejected: `-Phi^-1(rejected)`.
     /// Without the shift of 1.5 that some add. None where all or nothing is rejected.
     pub fn sigma_level(&self) -> Option<f64> {
         static NORMAL: LazyLock<Pearson> =
             LazyLock::new(|| Pearson::normal(0.0, 1.0).expect("the standard normal exists"));
         self.rejected().map(|rejected| NORMAL.upper_quantile(rejected)).filter(|level| level.is_finite())
-    }
-
-    /// Whether no more are rejected than a target yield allows; None where there is no target or no limit.
-    pub fn meets(&self, target: Option<f64>) -> Option<bool> {
-        Some(self.rejected()? <= 1.0 - target?)
     }
 }

@@ -29,6 +29,7 @@ fn words(advice: &Advice) -> String {
         Advice::MorePoints => "raise --samples".to_owned(),
         Advice::SmallerStep { dimension: None } => "use a smaller --step".to_owned(),
         Advice::UseDifferences => "use --derivatives difference".to_owned(),
+        Advice::ReadModelLog => "show all that the model writes to stderr with -v".to_owned(),
         Advice::IncludeFixedDimensions => "use --sensitivities all".to_owned(),
         Advice::AnalyzeWrittenStudy => "run `sensitol analyze` on the study that --write writes".to_owned(),
         Advice::NameMovableDimensions => "name dimensions to move with --recentre".to_owned(),

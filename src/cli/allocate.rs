@@ -7,9 +7,9 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::progress::Bar;
-use super::running::{Clock, externals, on_threads};
+use super::running::{Clock, confirmed, externals, kept, on_threads};
 use super::{interrupt, study};
-use crate::allocation::{Allocation, AllocationOptions, Status, allocate_within};
+use crate::allocation::{Allocation, AllocationOptions, Status, allocate_with};
 use crate::assembly::{Progress, Run};
 use crate::document::svg::svg;
 use crate::document::terminal::text;
@@ -65,9 +65,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         (None, Some(Err(error))) => look.warn(&Warning::NotWritten { reason: error.to_string() }),
         (None, _) => {}
     }
-    for warning in &report.warnings {
-        look.tell(warning);
-    }
+    look.tell_all(&report.warnings);
     clock.stopped(&allocation.run, (allocation.run.evaluations, None), Counted::Evaluations, look);
     result?;
     if interrupt::stopped() {
@@ -76,12 +74,13 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let incomplete = allocation.before.characteristics.iter().any(|one| one.moments.is_none());
     // Who asks for a confirmation wants to know that there is none.
     let refuted = report.warnings.iter().any(|warning| warning.code == "confirmation-misses");
-    Ok(match allocation.status {
+    let exit = match allocation.status {
         _ if incomplete && !allocation.run.unfinished() => Exit::NoResult,
         Status::Optimal | Status::AlmostOptimal if refuted => Exit::Missed,
         Status::Optimal | Status::AlmostOptimal => Exit::Done,
         Status::Infeasible | Status::OutOfTime => Exit::NotAllocated,
-    })
+    };
+    Ok(confirmed(exit, &allocation.run))
 }
 
 /// Paths in a study start from its folder: in another one they would lead elsewhere.
@@ -121,9 +120,10 @@ fn allocate(
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
     let task = study.allocation_task();
-    let result = on_threads(threads, || allocate_within(&study.problem, &task, options, &run));
+    let result = on_threads(threads, || allocate_with(&study.problem, &task, options, &run));
     if let Some(bar) = bar {
         bar.clear();
     }
+    kept(&study.problem)?;
     Ok(result??)
 }

@@ -11,9 +11,9 @@ use super::interrupt;
 use super::output::{Destination, Look, json};
 use super::points;
 use super::progress::Bar;
-use super::running::{Clock, checked, externals, on_threads};
-use super::{several, study};
-use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_within};
+use super::running::{Clock, checked, confirmed, externals, kept, on_threads};
+use super::study;
+use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use crate::assembly::{Progress, Run, Table};
 use crate::characteristic::Characteristic;
 use crate::document::markdown::markdown;
@@ -23,14 +23,8 @@ use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_document
 use crate::study::Study;
 use crate::warning::{Counted, Warning};
 
-pub(super) fn run(asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
-    match &asked.studies[..] {
-        [study] => one(study, asked, look),
-        studies => several::analyze(studies, asked, look),
-    }
-}
-
-fn one(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
+/// `sensitol analyze` of one study.
+pub(super) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
     let study = read(path, asked, given.clone(), look)?;
     let mut files = Files::of(path, &study, asked.work.journal.as_deref());
@@ -51,6 +45,7 @@ pub(super) fn read(path: &Path, asked: &AnalyzeArgs, given: Option<Arc<Table>>, 
     let answers = asked.points.as_ref().map(|_| 0);
     study.options.verify = asked.verify.or(study.options.verify).or(answers);
     study.options.extremes |= asked.extremes;
+    study.options.densities |= asked.html.is_some();
     if asked.check && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
         return Err(Failure::NothingToCheck);
     }
@@ -110,9 +105,7 @@ pub(super) fn analyzed(
     let points = given.map(Table::missing).unwrap_or_default();
     let written =
         written.and(files.missing.map_or(Ok(()), |missing| missing.write(&points::table(&study.problem, &points))));
-    for warning in &report.warnings {
-        look.tell(warning);
-    }
+    look.tell_all(&report.warnings);
     if let Some(given) = given {
         unmatched(given, asked.write_missing.as_deref(), look);
     }
@@ -127,7 +120,8 @@ pub(super) fn analyzed(
     }
     let unfinished = analysis.characteristics.iter().any(|one| one.unfinished);
     let judged = analysis.characteristics.iter().flat_map(CharacteristicAnalysis::requirements);
-    Ok(if asked.check { checked(unfinished, judged) } else { Exit::Done })
+    let exit = if asked.check { checked(unfinished, judged) } else { Exit::Done };
+    Ok(confirmed(exit, &analysis.run))
 }
 
 /// Tells of points without an answer, and of answers to points that are not in the plan.
@@ -150,10 +144,11 @@ fn analyze(study: &Study, threads: Option<u16>, clock: &Clock, look: Look) -> Re
     let bar = plan.map(|plan| Bar::new(plan.cost().0, look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
-    let analysis = || analyze_within(&study.problem, &study.options, &run);
+    let analysis = || analyze_with(&study.problem, &study.options, &run);
     let result = on_threads(threads, analysis);
     if let Some(bar) = bar {
         bar.clear();
     }
+    kept(&study.problem)?;
     Ok(result??)
 }

@@ -150,7 +150,7 @@ pub(super) struct HowArgs {
     #[arg(long, value_name = "E", value_parser = part, allow_negative_numbers = true)]
     pub(super) accuracy_yield: Option<f64>,
 
-    /// Most evaluations that may be spent
+    /// Most evaluations that may be spent; without it a method that needs more than 1000000 is refused
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(super) budget: Option<usize>,
 

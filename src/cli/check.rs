@@ -24,7 +24,7 @@ pub(super) fn run(asked: &CheckArgs, look: Look) -> Result<Exit, Failure> {
 
 fn one(path: &Path, look: Look) -> Result<Exit, Failure> {
     let study = Study::read(path)?;
-    study.warnings.iter().for_each(|warning| look.warn(warning));
+    look.warn_all(&study.warnings);
     let procedure = study.options.method.procedure();
     let plan = procedure.plan(&study.problem, &study.options)?;
     let characteristics: Vec<&str> =

@@ -4,12 +4,13 @@ use super::args::CompareArgs;
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
-use super::running::{Clock, on_threads};
+use super::running::{Clock, confirmed, kept, on_threads};
 use super::{interrupt, study};
 use crate::assembly::Run;
-use crate::compare::{CompareOptions, compare_within};
+use crate::compare::{CompareOptions, compare_with};
 use crate::document::svg::svg;
 use crate::document::terminal::text;
+use crate::evaluation::history;
 use crate::method::Options;
 use crate::report::html::compare_html;
 use crate::report::{CompareReport, csv_tables};
@@ -31,7 +32,9 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let clock = Clock::start(asked.of.work.time);
     let stop = || clock.stop();
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
-    let comparison = on_threads(asked.of.threads, || compare_within(&study.problem, &options, &run))??;
+    let comparison = on_threads(asked.of.threads, || compare_with(&study.problem, &options, &run));
+    kept(&study.problem)?;
+    let comparison = comparison??;
     let about = clock.about(&study);
     let report = CompareReport::of(&comparison, about);
     let document = report.document();
@@ -40,17 +43,15 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
     let written = written.and(table.map_or(Ok(()), |table| table.write(&csv_tables(&document, &["comparison"]))));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Evaluations against error"))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&compare_html(&report))));
-    for warning in &study.warnings {
-        look.warn(warning);
-    }
-    for one in comparison.reference.characteristics.iter().filter(|one| one.failed > 0) {
-        look.warn(&Warning::FailedSamples {
-            characteristic: one.characteristic.name().to_owned(),
-            failed: one.failed,
-            samples: one.samples + one.failed,
-            error: one.error.as_ref().map(ToString::to_string).unwrap_or_default(),
-        });
-    }
+    let failed = comparison.reference.characteristics.iter().filter(|one| one.failed > 0);
+    let failed = failed.map(|one| Warning::FailedSamples {
+        characteristic: one.characteristic.name().to_owned(),
+        failed: one.failed,
+        samples: one.samples + one.failed,
+        error: one.error.as_ref().map(ToString::to_string).unwrap_or_default(),
+    });
+    let told = study.warnings.iter().cloned().chain(history(&study.problem, &[])).chain(failed);
+    look.warn_all(&told.collect::<Vec<_>>());
     let methods = (comparison.ran.len(), comparison.ran.len() + comparison.not_run.len());
     clock.stopped(&comparison.run, (methods.0 as u64, Some(methods.1 as u64)), Counted::Methods, look);
     written?;
@@ -58,5 +59,5 @@ pub(super) fn run(asked: &CompareArgs, look: Look) -> Result<Exit, Failure> {
         return Ok(Exit::Interrupted);
     }
     let nothing = comparison.reference.characteristics.iter().any(|one| one.samples == 0);
-    Ok(if nothing { Exit::NoResult } else { Exit::Done })
+    Ok(confirmed(if nothing { Exit::NoResult } else { Exit::Done }, &comparison.run))
 }

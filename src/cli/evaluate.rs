@@ -10,7 +10,7 @@ use super::failure::{Exit, Failure};
 use super::interrupt;
 use super::output::Look;
 use super::running::listener;
-use crate::assembly::{Ask, Points, Responses, Run};
+use crate::assembly::{Points, Request, Responses, Run};
 use crate::problem::Problem;
 use crate::study::{Externals, JournalPlace, Study};
 
@@ -85,7 +85,7 @@ pub(super) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
     let externals =
         Externals { journal: JournalPlace::Nowhere, listener: listener(look), points: None, sentinels: false };
     let study = Study::read_with(&asked.study, externals)?;
-    study.warnings.iter().for_each(|warning| look.warn(warning));
+    look.warn_all(&study.warnings);
     interrupt::listen();
     let mut input = BufReader::new(std::io::stdin());
     let mut line = Vec::new();
@@ -220,7 +220,7 @@ impl Session {
         let (points, outputs) = (Points::from_rows(&rows), self.problem.outputs());
         let mut found = Responses::open(rows.len(), outputs.len());
         let within = Run::to_the_end().stopping_when(&interrupt::reason).abandoning_when(&interrupt::abandoned);
-        self.problem.function().evaluate(&Ask { points: &points, outputs }, &within, &mut found);
+        self.problem.function().evaluate(&Request { points: &points, outputs }, &within, &mut found);
         let names: Vec<&str> = self.problem.characteristics().iter().map(|one| one.name()).collect();
         answers.extend(ids.into_iter().enumerate().map(|(row, id)| {
             let reason =

@@ -64,7 +64,7 @@ impl Exit {
         (
             Self::NoResult,
             "the model gave a characteristic that was asked for no result; `--check`: the run was stopped before its planned \
-             points were evaluated",
+             points were evaluated; an external model's answers depend on the points before them, and nothing confirmed them",
         ),
         (Self::NotAllocated, "`allocate`: no tolerances keep what is required, or they were not found in time"),
         (
@@ -143,6 +143,8 @@ pub(super) enum Failure {
     Stdout(std::io::Error),
     #[error("cannot start {threads} threads: {reason}")]
     Threads { threads: u16, reason: String },
+    #[error("{reason}. The run was ended: what is in the journal stays, and the same command goes on from there")]
+    NotKept { reason: String },
     #[error("nothing reads the output any more")]
     ClosedPipe,
 }

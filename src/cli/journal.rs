@@ -11,6 +11,10 @@ use super::args::{JournalArgs, JournalCommand, OutputArgs};
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{self, Destination, Look, json};
+use crate::document::csv::guarded;
+use crate::document::number::UNKNOWN;
+use crate::document::terminal::text;
+use crate::document::{Blocks, Document};
 use crate::journal::{KnownModel, Store, StoredAnswer};
 
 /// What `journal show --json` prints of one model.
@@ -31,11 +35,10 @@ pub(super) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {
         JournalCommand::Show { file, output } => {
             let models = Store::open_existing(file)?.models()?;
             let reports: Vec<ModelReport> = models.into_iter().map(ModelReport::of).collect();
-            print(
-                file,
-                output,
-                &if output.json { json(&reports) } else { reports.iter().map(ModelReport::text).collect() },
-            )
+            let mut document = Document::default();
+            reports.iter().for_each(|report| report.put(&mut document));
+            let shown = || text(&document, look.style(output));
+            print(file, output, &if output.json { json(&reports) } else { shown() })
         }
         JournalCommand::Export { file, model, output } => {
             let store = Store::open_existing(file)?;
@@ -116,7 +119,7 @@ fn table(model: &KnownModel, answers: &[StoredAnswer]) -> Result<String, Failure
     let mut writer = csv::Writer::from_writer(Vec::new());
     let errors: Vec<String> = outputs.iter().map(|output| format!("{output} error")).collect();
     let header = model.dimensions.iter().map(String::as_str).chain(outputs.iter().copied());
-    let written = writer.write_record(header.chain(errors.iter().map(String::as_str)));
+    let written = writer.write_record(header.chain(errors.iter().map(String::as_str)).map(guarded));
     written
         .and_then(|()| {
             for point in order {
@@ -126,7 +129,9 @@ fn table(model: &KnownModel, answers: &[StoredAnswer]) -> Result<String, Failure
                     answer(output).and_then(|answer| answer.as_ref().ok()).map_or(String::new(), f64::to_string)
                 };
                 let error = |output: &&str| {
-                    answer(output).and_then(|answer| answer.as_ref().err().cloned()).unwrap_or_default()
+                    answer(output)
+                        .and_then(|answer| answer.as_ref().err())
+                        .map_or(String::new(), |error| guarded(error))
                 };
                 let cells =
                     point.iter().map(f64::to_string).chain(outputs.iter().map(value)).chain(outputs.iter().map(error));
@@ -146,25 +151,19 @@ impl ModelReport {
         Self { id, since, points, values, errors, dimensions, identity }
     }
 
-    fn text(&self) -> String {
+    /// What it says, below what is there already.
+    fn put(&self, document: &mut Document) {
         let word = |key: &str| match &self.identity[key] {
             serde_json::Value::String(text) => text.clone(),
             serde_json::Value::Array(words) => {
                 words.iter().filter_map(|word| word.as_str()).collect::<Vec<_>>().join(" ")
             }
-            _ => "-".to_owned(),
+            _ => UNKNOWN.to_owned(),
         };
-        format!(
-            "model {}: {}\n  adapter {}, version {}\n  {} points, {} values, {} without a value; since {} UTC\n  dimensions: {}\n",
-            self.id,
-            word("command"),
-            word("adapter"),
-            word("version"),
-            self.points,
-            self.values,
-            self.errors,
-            self.since,
-            self.dimensions.join(", "),
-        )
+        let Self { id, points, values, errors, since, .. } = self;
+        document.line(format!("model {id}: {}", word("command")));
+        document.note(format!("adapter {}, version {}", word("adapter"), word("version")));
+        document.note(format!("{points} points, {values} values, {errors} without a value; since {since} UTC"));
+        document.note(format!("dimensions: {}", self.dimensions.join(", ")));
     }
 }

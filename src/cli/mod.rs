@@ -26,6 +26,7 @@ mod progress;
 mod rare;
 mod reference;
 mod running;
+mod sampling;
 mod schema;
 mod several;
 mod simulate;
@@ -48,9 +49,12 @@ pub use reference::{command, exit_codes};
 
 /// Prints what the command line itself has to say. Help and version are results, everything else is a usage error.
 fn told(error: clap::Error) -> Exit {
+    if error.use_stderr() {
+        output::usage(&error.render().ansi().to_string());
+        return Exit::Usage;
+    }
     let printed = error.print().and_then(|()| std::io::stdout().flush());
     match printed {
-        _ if error.use_stderr() => Exit::Usage,
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             let failure = Failure::Stdout(error);
             failure.render().iter().for_each(|message| output::error(message));
@@ -84,7 +88,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let style =
         output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose, study: None };
     let result = match &arguments.command {
-        Command::Analyze(asked) => analyze::run(asked, style),
+        Command::Analyze(asked) => match &asked.studies[..] {
+            [study] => analyze::run(study, asked, style),
+            studies => several::analyze(studies, asked, style),
+        },
         Command::Simulate(asked) => simulate::run(asked, style),
         Command::Compare(asked) => compare::run(asked, style),
         Command::Sweep(asked) => sweep::run(asked, style),

@@ -7,6 +7,8 @@ use super::args::ModelsArgs;
 use super::failure::{Exit, Failure};
 use super::output::{Destination, Look, json};
 use crate::document::number::plain;
+use crate::document::terminal::text;
+use crate::document::{Blocks, Cell, DataTable, Document, Section};
 use crate::models::{ALL, Model};
 
 /// What `models --json` prints of one model.
@@ -34,13 +36,14 @@ struct OutputReport {
     about: &'static str,
 }
 
-pub(super) fn run(asked: &ModelsArgs, _: Look) -> Result<Exit, Failure> {
+pub(super) fn run(asked: &ModelsArgs, look: Look) -> Result<Exit, Failure> {
+    let style = look.style(&asked.output);
     let printed = match &asked.name {
         None if asked.output.json => json(&ALL.iter().map(|model| ModelReport::of(model)).collect::<Vec<_>>()),
-        None => list(),
+        None => text(&list(), style),
         Some(name) => {
             let model = known(name)?;
-            if asked.output.json { json(&ModelReport::of(model)) } else { one(model) }
+            if asked.output.json { json(&ModelReport::of(model)) } else { text(&document(model), style) }
         }
     };
     Destination::open(&asked.output)?.write(&printed)?;
@@ -52,30 +55,30 @@ pub(super) fn known(name: &str) -> Result<&'static Model, Failure> {
     Ok(name.parse::<&Model>()?)
 }
 
-fn list() -> String {
+/// The names of all, and what they are.
+fn list() -> Document {
     let widest = ALL.iter().map(|model| model.name.len()).max().unwrap_or(0);
-    ALL.iter().map(|model| format!("{:<widest$}  {}\n", model.name, model.title)).collect()
+    let mut document = Document::default();
+    ALL.iter().for_each(|model| document.line(format!("{:<widest$}  {}", model.name, model.title)));
+    document
 }
 
-fn one(model: &Model) -> String {
-    let names = model.inputs.iter().map(|input| (input.name, input.unit));
-    let names = names.chain(model.outputs.iter().map(|output| (output.name, output.unit)));
-    // No narrower than most models want, so that two of them look alike.
-    let widest = names.fold([8, 6], |[name, unit], of| [name.max(of.0.len()), unit.max(of.1.len())]);
-    let row = |name: &str, nominal: &str, unit: &str, about: &str| {
-        let [wide, of_unit] = widest;
-        format!("  {name:<wide$} {nominal:>14}  {unit:<of_unit$}  {about}\n")
-    };
-    let inputs = model.inputs.iter().map(|input| row(input.name, &plain(input.nominal), input.unit, input.about));
-    let outputs = model.outputs.iter().map(|output| row(output.name, "", output.unit, output.about));
-    format!(
-        "{}: {}\n{}\n\ninputs, with the nominal value where a study gives none\n{}\noutputs\n{}",
-        model.name,
-        model.title,
-        model.source,
-        inputs.collect::<String>(),
-        outputs.collect::<String>(),
-    )
+/// What a model is, what it takes, and what it gives.
+fn document(model: &Model) -> Document {
+    let mut document = Document::default();
+    document.line(format!("{}: {}", model.name, model.title));
+    document.line(model.source);
+    let mut inputs = Section::of("inputs", None);
+    inputs.words = ", with the nominal value where a study gives none".to_owned();
+    inputs.table(DataTable::untitled(model.inputs.iter().map(|input| {
+        [Cell::text(input.name), Cell::number(input.nominal, plain), Cell::text(input.unit), Cell::text(input.about)]
+    })));
+    let mut outputs = Section::of("outputs", None);
+    outputs.table(DataTable::untitled(
+        model.outputs.iter().map(|output| [output.name, output.unit, output.about].map(Cell::text)),
+    ));
+    document.sections = vec![inputs, outputs];
+    document
 }
 
 impl ModelReport {

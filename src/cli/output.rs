@@ -1,7 +1,9 @@
 //! Where text goes, and how it looks.
 
-use std::io::{ErrorKind, Write};
+use std::borrow::Cow;
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::ColorChoice;
 use tempfile::TempPath;
@@ -13,6 +15,10 @@ use crate::document::{Detail, Style};
 use crate::names::{clean, is_hidden};
 use crate::report::WarningReport;
 use crate::warning::Warning;
+
+/// Warnings of one code that are shown each, and names of the others that are shown.
+const EACH: usize = 3;
+const NAMED: usize = 5;
 
 /// What the user wants to see.
 #[derive(Debug, Clone, Copy)]
@@ -48,15 +54,47 @@ impl<'s> Look<'s> {
         self.tell(&WarningReport::of(warning));
     }
 
+    /// Shows warnings as [`tell_all`](Self::tell_all) does.
+    pub(super) fn warn_all(self, warnings: &[Warning]) {
+        self.tell_all(&warnings.iter().map(WarningReport::of).collect::<Vec<_>>());
+    }
+
+    /// Shows the warnings of a report: of many of one code the first few, then how many more there are and what they concern.
+    pub(super) fn tell_all(self, warnings: &[WarningReport]) {
+        let mut more: Vec<(&str, Vec<&str>)> = Vec::new();
+        for (index, warning) in warnings.iter().enumerate() {
+            let alike = |one: &&WarningReport| one.code == warning.code;
+            let before = warnings[..index].iter().filter(alike).count();
+            if self.verbose || before < EACH || warnings.iter().filter(alike).count() <= EACH + 1 {
+                self.tell(warning);
+                continue;
+            }
+            let name = warning.characteristic.as_deref().or(warning.dimension.as_deref()).unwrap_or("the study");
+            match more.iter_mut().find(|(code, _)| *code == warning.code) {
+                Some((_, names)) => names.push(name),
+                None => more.push((warning.code, vec![name])),
+            }
+        }
+        for (code, names) in more {
+            let shown: Vec<String> = names.iter().take(NAMED).map(|name| format!("`{name}`")).collect();
+            let rest = if names.len() > NAMED { ", ..." } else { "" };
+            let message = format!("{} more of this kind: {}{rest}", names.len(), shown.join(", "));
+            self.line(code, &message, Some("use --verbose to see each".to_owned()));
+        }
+    }
+
     /// The same of a report.
-    pub(super) fn tell(self, warning: &WarningReport) {
+    fn tell(self, warning: &WarningReport) {
+        self.line(warning.code, &warning.message, advice::help(&warning.advice));
+    }
+
+    fn line(self, code: &str, message: &str, help: Option<String>) {
         if self.quiet {
             return;
         }
-        let WarningReport { code, message, .. } = warning;
         let of = self.study.map(|study| format!("{study}: ")).unwrap_or_default();
         let mut text = format!("\u{1b}[1;33mwarning\u{1b}[0m[{code}]: {}{}\n", clean(&of), clean(message));
-        if let Some(help) = advice::help(&warning.advice) {
+        if let Some(help) = help {
             text += &format!("  \u{1b}[1mhelp\u{1b}[0m: {}\n", clean(&help));
         }
         to_stderr(&text);
@@ -71,6 +109,11 @@ pub(super) fn error(message: &str) {
 /// Asks, and leaves the cursor behind the question.
 pub(super) fn prompt(question: &str) {
     to_stderr(&shown(question));
+}
+
+/// What the parser of the command line says: it repeats what was typed.
+pub(super) fn usage(message: &str) {
+    to_stderr(&shown(message));
 }
 
 /// A line that a model wrote.
@@ -176,6 +219,7 @@ impl Destination {
             let protected = std::io::Error::new(ErrorKind::PermissionDenied, "the file is there and read-only");
             return Err(Failure::Unwritable { path: path.to_owned(), error: protected });
         }
+        remove_leftovers(folder);
         // Tried now, so that a folder that cannot be written to costs no evaluation; nothing stays.
         temporary(path).map_err(unwritable)?;
         Ok(Self::File { path: path.to_owned() })
@@ -185,6 +229,8 @@ impl Destination {
         match self {
             Self::Stdout => {
                 let mut stdout = std::io::stdout().lock();
+                // A file or a pipe gets every byte; a terminal would obey some of them.
+                let text = if stdout.is_terminal() { Cow::from(shown(text)) } else { Cow::from(text) };
                 stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
                     ErrorKind::BrokenPipe => Failure::ClosedPipe,
                     _ => Failure::Stdout(error),
@@ -215,11 +261,27 @@ fn temporary(path: &Path) -> std::io::Result<TempPath> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.prefix(".sensitol-").tempfile_in(folder)?.into_temp_path();
+    let file = builder.prefix(TEMPORARY).tempfile_in(folder)?.into_temp_path();
     if let Ok(there) = std::fs::metadata(path) {
         std::fs::set_permissions(&file, there.permissions())?;
     }
     Ok(file)
+}
+
+/// How a temporary file's name begins.
+const TEMPORARY: &str = ".sensitol-";
+/// A temporary file is there for as long as writing it takes: one that is older belongs to a run that was killed.
+const LEFT_OVER: Duration = Duration::from_secs(3600);
+
+/// Removes what killed runs have left in a folder, as far as that is possible.
+fn remove_leftovers(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let old = || entry.metadata().ok()?.modified().ok()?.elapsed().ok().filter(|age| *age > LEFT_OVER);
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && entry.file_name().to_string_lossy().starts_with(TEMPORARY) && old().is_some() {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Without the temporary file's own name, which would only puzzle.

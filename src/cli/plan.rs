@@ -11,8 +11,10 @@ use super::files::Files;
 use super::output::{Look, json};
 use super::{points, study};
 use crate::document::number::plural;
+use crate::document::terminal::text;
+use crate::document::{Blocks, Document};
 use crate::method::DerivativeSource;
-use crate::plan::{Known, Plan, Point, Purpose, Stage};
+use crate::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
 use crate::verification::MOST_CHECKS;
@@ -66,6 +68,8 @@ struct AxisReport {
     values: Vec<f64>,
 }
 
+/// Dimensions that are named beside their nodes.
+const NAMED: usize = 8;
 /// The count of a plan without differences.
 const EXACT: &str = "exact derivatives: the means, and the nominal values where they differ";
 
@@ -77,7 +81,7 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     let procedure = study.options.method.procedure();
     let plan = procedure.plan(&study.problem, &study.options)?;
     let (evaluations, stages) = plan.cost();
-    let first = plan.next(&Known::nothing(study.problem.characteristics().len())).unwrap_or_default();
+    let first = plan.next(&KnownAnswers::nothing(study.problem.characteristics().len())).unwrap_or_default();
     let mut report = PlanReport {
         schema: crate::report::SCHEMA,
         command: "plan",
@@ -109,8 +113,11 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
             look.warn(&Warning::FirstStageOnly);
         }
     }
-    study.warnings.iter().for_each(|warning| look.warn(warning));
-    destination.write(&if asked.output.json { json(&report) } else { text(&report) })?;
+    look.warn_all(&study.warnings);
+    destination.write(&match asked.output.json {
+        true => json(&report),
+        false => text(&report.document(), look.style(&asked.output)),
+    })?;
     Ok(Exit::Done)
 }
 
@@ -145,53 +152,62 @@ fn rounds(report: &PlanReport) -> String {
     }
 }
 
-fn text(report: &PlanReport) -> String {
-    let mut lines = vec![
-        format!("{}: {}", report.method, report.about),
-        format!("{} evaluations for {} varying dimensions ({})", report.evaluations, report.varying, report.count),
-        rounds(report),
-    ];
-    for (index, stage) in report.stages.iter().enumerate() {
-        let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };
-        lines.push(format!("stage {}: {} points{chosen}", index + 1, stage.evaluations));
-        lines.extend(stage.purposes.iter().map(|purpose| format!("  {:>6}  {}", purpose.points, purpose.purpose)));
+impl PlanReport {
+    /// What it says: how many evaluations, in which stages, and where along every dimension.
+    fn document(&self) -> Document {
+        let mut document = Document::default();
+        document.line(format!("{}: {}", self.method, self.about));
+        let (evaluations, varying) = (self.evaluations, self.varying);
+        document.line(format!("{evaluations} evaluations for {varying} varying dimensions ({})", self.count));
+        document.line(rounds(self));
+        for (index, stage) in self.stages.iter().enumerate() {
+            let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };
+            document.line(format!("stage {}: {} points{chosen}", index + 1, stage.evaluations));
+            for purpose in &stage.purposes {
+                document.note(format!("{:>6}  {}", purpose.points, purpose.purpose));
+            }
+        }
+        if let Some([least, most]) = self.range {
+            document.line(format!(
+                "then more nodes, interactions and probes where they lower the error of sigma: {least} to {most} evaluations in all,"
+            ));
+            document.line(
+                "and points of the model itself where no surrogate is to be trusted and --budget, or a cheap model, allows",
+            );
+        }
+        if let Some(checks) = self.checks.filter(|&checks| checks > 0) {
+            document.line(format!("then up to {checks} check points, placed by the answers, that verify the results"));
+        }
+        if self.extremes {
+            document.line(
+                "then the search of the extremes: 4 points for a linear characteristic, some 2N or more for either side \
+                 of another",
+            );
+        }
+        self.steps(&mut document);
+        document
     }
-    if let Some([least, most]) = report.range {
-        lines.push(format!(
-            "then more nodes, interactions and probes where they lower the error of sigma: {least} to {most} evaluations in all,"
-        ));
-        lines.push(
-            "and points of the model itself where no surrogate is to be trusted and --budget, or a cheap model, allows"
-                .into(),
-        );
-    }
-    if let Some(checks) = report.checks.filter(|&checks| checks > 0) {
-        lines.push(format!("then up to {checks} check points, placed by the answers, that verify the results"));
-    }
-    if report.extremes {
-        let search = "then the search of the extremes: 4 points for a linear characteristic, some 2N or more for either side \
-                      of another";
-        lines.push(search.to_owned());
-    }
-    if report.dimensions.iter().any(|dimension| !dimension.sigmas.is_empty()) {
-        lines.push("steps in sigma about the mean:".to_owned());
-    }
-    // Dimensions of one distribution share their nodes, up to rounding.
-    let mut alike: Vec<(String, Vec<&str>)> = Vec::new();
-    for dimension in report.dimensions.iter().filter(|dimension| !dimension.sigmas.is_empty()) {
-        let nodes = dimension.sigmas.iter().map(|u| format!("{u:+.4}")).collect::<Vec<_>>().join("  ");
-        match alike.iter_mut().find(|(known, _)| *known == nodes) {
-            Some((_, names)) => names.push(&dimension.name),
-            None => alike.push((nodes, vec![&dimension.name])),
+
+    /// Dimensions of one distribution share their nodes, up to rounding.
+    fn steps(&self, document: &mut Document) {
+        let mut alike: Vec<(String, Vec<&str>)> = Vec::new();
+        for dimension in self.dimensions.iter().filter(|dimension| !dimension.sigmas.is_empty()) {
+            let nodes = dimension.sigmas.iter().map(|u| format!("{u:+.4}")).collect::<Vec<_>>().join("  ");
+            match alike.iter_mut().find(|(known, _)| *known == nodes) {
+                Some((_, names)) => names.push(&dimension.name),
+                None => alike.push((nodes, vec![&dimension.name])),
+            }
+        }
+        if !alike.is_empty() {
+            document.line("steps in sigma about the mean:");
+        }
+        for (nodes, names) in alike {
+            let shown = names.iter().take(NAMED).copied().collect::<Vec<_>>().join(", ");
+            let more = names.len().saturating_sub(NAMED);
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            document.note(format!("{nodes}  {shown}{more}"));
         }
     }
-    for (nodes, names) in alike {
-        let shown = names.iter().take(8).copied().collect::<Vec<_>>().join(", ");
-        let more = names.len().saturating_sub(8);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        lines.push(format!("  {nodes}  {shown}{more}"));
-    }
-    lines.join("\n") + "\n"
 }
 
 /// Every point of a stage, a coordinate for every dimension.

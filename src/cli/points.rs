@@ -4,13 +4,13 @@ use std::path::Path;
 
 use super::failure::Failure;
 use crate::assembly::Table;
-use crate::dimension::Dimension;
+use crate::document::csv::{guarded, unguarded};
 use crate::problem::Problem;
 
 /// A column for every dimension, a row for every point, every number to its last digit.
 pub(super) fn table(problem: &Problem, points: &[Vec<f64>]) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let names = problem.dimensions().iter().map(Dimension::name);
+    let names = problem.dimensions().iter().map(|dimension| guarded(dimension.name()));
     writer.write_record(names).expect("memory takes any record");
     for point in points {
         writer.write_record(point.iter().map(f64::to_string)).expect("memory takes any record");
@@ -26,7 +26,7 @@ pub(super) fn read(path: &Path) -> Result<Table, Failure> {
         .headers()
         .map_err(|error| failed(error.to_string()))?
         .iter()
-        .map(|name| name.trim().to_owned())
+        .map(|name| unguarded(name.trim()).to_owned())
         .collect();
     if let Some(twice) = columns.iter().enumerate().find(|(index, name)| columns[..*index].contains(name)) {
         return Err(failed(format!("column `{}` stands twice", twice.1)));

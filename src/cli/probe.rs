@@ -11,7 +11,9 @@ use super::progress::Bar;
 use super::running::listener;
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
-use crate::document::number::{plural, significant};
+use crate::document::number::{UNKNOWN, known, plural, significant};
+use crate::document::terminal::text;
+use crate::document::{Blocks, Document, Line, Section, Tone};
 use crate::method::MethodError;
 use crate::probe::{Finding, Probe, evaluations, probe};
 use crate::study::{Externals, JournalPlace};
@@ -86,7 +88,10 @@ pub(super) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
     }
     let names: Vec<&str> = study.problem.dimensions().iter().map(|dimension| dimension.name()).collect();
     let report = ProbeReport::of(&found, &names);
-    destination.write(&if asked.output.json { json(&report) } else { report.text() })?;
+    destination.write(&match asked.output.json {
+        true => json(&report),
+        false => text(&report.document(), look.style(&asked.output)),
+    })?;
     Ok(if found.passed() { Exit::Done } else { Exit::Missed })
 }
 
@@ -138,46 +143,58 @@ impl ProbeReport {
         }
     }
 
-    fn text(&self) -> String {
-        let mut text = String::new();
+    /// What it says: how fast the model is, how it passed every check, and of every characteristic which steps are safe.
+    fn document(&self) -> Document {
+        let mut document = Document::default();
         if let Some(AdapterReport { name, version, window }) = &self.adapter {
-            let word = |word: &Option<String>| word.clone().unwrap_or_else(|| "-".to_owned());
-            text += &format!("{}, version {}, window {window}\n", word(name), word(version));
+            let word = |word: &Option<String>| word.clone().unwrap_or_else(|| UNKNOWN.to_owned());
+            document.line(format!("{}, version {}, window {window}", word(name), word(version)));
         }
         let seconds = |value: f64| format!("{} s", significant(value, 2));
-        text += &format!(
-            "ready after {}; {} for a point alone, {} for one of many; {}\n\n",
+        document.line(format!(
+            "ready after {}; {} for a point alone, {} for one of many; {}",
             seconds(self.start_s),
             seconds(self.evaluation_alone_s),
             seconds(self.evaluation_together_s),
             plural(self.run.evaluations as usize, "evaluation", "evaluations"),
-        );
-        for check in &self.checks {
-            let fault = check.fault.as_ref().map(|fault| format!(": {fault}")).unwrap_or_default();
-            let verdict = match check.verdict {
-                "ok" => "ok  ",
-                "warn" => "WARN",
-                "fail" => "FAIL",
-                _ => "-   ",
-            };
-            let unknown = if check.passed.is_none() { ": not checked, as there are no values" } else { "" };
-            text += &format!("  {verdict}  {}{fault}{unknown}\n", check.check);
+        ));
+        document.gap();
+        self.checks.iter().for_each(|check| document.note(check.line()));
+        document.sections = self.characteristics.iter().map(CharacteristicReport::section).collect();
+        document
+    }
+}
+
+impl CheckReport {
+    fn line(&self) -> Line {
+        let (word, tone) = match self.verdict {
+            "ok" => ("ok  ", Tone::Good),
+            "warn" => ("WARN", Tone::Doubtful),
+            "fail" => ("FAIL", Tone::Bad),
+            _ => ("-   ", Tone::Plain),
+        };
+        let fault = self.fault.as_ref().map(|fault| format!(": {fault}")).unwrap_or_default();
+        let unknown = if self.passed.is_none() { ": not checked, as there are no values" } else { "" };
+        Line::toned(word, tone).and(format!("  {}{fault}{unknown}", self.check))
+    }
+}
+
+impl CharacteristicReport {
+    fn section(&self) -> Section {
+        let none = if self.nominal.is_some() { "none to be seen" } else { UNKNOWN };
+        let noise = self.noise.map_or(none.to_owned(), |noise| significant(noise, 2));
+        let nominal = known(self.nominal, |value| significant(value, 6));
+        let mut section = Section::of(&self.name, None);
+        section.words = format!(": nominal {nominal}, noise {noise}");
+        let coarse = self.steps.iter().filter_map(|step| step.least_step).fold(0.0, f64::max);
+        if coarse > 0.0 {
+            section.note(format!("steps of {} sigma and more are safe for every dimension", significant(coarse, 2)));
         }
-        for one in &self.characteristics {
-            let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| significant(value, 6));
-            let none = if one.nominal.is_some() { "none to be seen" } else { "-" };
-            let noise = one.noise.map_or(none.to_owned(), |noise| significant(noise, 2));
-            text += &format!("\n{}: nominal {}, noise {noise}\n", one.name, number(one.nominal));
-            let coarse = one.steps.iter().filter_map(|step| step.least_step).fold(0.0, f64::max);
-            if coarse > 0.0 {
-                text += &format!("  steps of {} sigma and more are safe for every dimension\n", significant(coarse, 2));
-            }
-            let silent: Vec<&str> =
-                one.steps.iter().filter(|step| !step.reacts).map(|step| step.dimension.as_str()).collect();
-            if !silent.is_empty() {
-                text += &format!("  does not react to {}\n", silent.join(", "));
-            }
+        let silent: Vec<&str> =
+            self.steps.iter().filter(|step| !step.reacts).map(|step| step.dimension.as_str()).collect();
+        if !silent.is_empty() {
+            section.note(format!("does not react to {}", silent.join(", ")));
         }
-        text
+        section
     }
 }

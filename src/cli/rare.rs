@@ -5,13 +5,13 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::interrupt;
 use super::output::{Look, json};
-use super::running::{Clock, checked};
-use super::simulate::{sampling, surrogate};
+use super::running::{Clock, checked, confirmed, kept};
+use super::sampling::{sampling, surrogate};
 use crate::document::terminal::text;
 use crate::method::Options;
-use crate::rare::{RareCharacteristic, RareOptions, rare_within};
+use crate::rare::{RareCharacteristic, RareOptions, rare_with};
 use crate::report::html::rare_html;
-use crate::report::{RareCharacteristicReport, RareReport, csv_tables};
+use crate::report::{RareReport, csv_tables};
 use crate::study::Study;
 use crate::warning::{Counted, Warning};
 
@@ -33,7 +33,9 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
     };
     let clock = Clock::start(asked.of.work.time);
     let threads = asked.of.threads;
-    let found = sampling(threads, &clock, look, |run, pace| rare_within(&study.problem, &options, run, pace))??;
+    let found = sampling(threads, &clock, look, |run, pace| rare_with(&study.problem, &options, run, pace));
+    kept(&study.problem)?;
+    let found = found??;
     let about = clock.about(study);
     let report = RareReport::of(&study.problem, &found, about);
     let document = report.document();
@@ -41,9 +43,7 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
         destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &["rare"]))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&rare_html(&report))));
-    for warning in &report.warnings {
-        look.tell(warning);
-    }
+    look.tell_all(&report.warnings);
     clock.stopped(&found.run, (found.samples, None), Counted::Points, look);
     if interrupt::stopped() {
         written?;
@@ -53,12 +53,12 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
         look.warn(&Warning::TargetErrorMissed { points: found.samples });
     }
     written?;
-    let nothing = |one: &RareCharacteristicReport| {
-        one.lower.or(one.upper).is_some() && one.below.is_none() && one.above.is_none()
-    };
-    if report.characteristics.iter().any(nothing) {
+    let nothing =
+        |one: &RareCharacteristic| one.characteristic.limits().exist() && one.below.is_none() && one.above.is_none();
+    if found.characteristics.iter().any(nothing) {
         return Ok(Exit::NoResult);
     }
     let judged = found.characteristics.iter().flat_map(RareCharacteristic::requirements);
-    Ok(if asked.check { checked(found.run.unfinished(), judged) } else { Exit::Done })
+    let exit = if asked.check { checked(found.run.unfinished(), judged) } else { Exit::Done };
+    Ok(confirmed(exit, &found.run))
 }

@@ -9,6 +9,7 @@ use super::interrupt;
 use super::output::{self, Look};
 use crate::assembly::Table;
 use crate::assembly::process::Listener;
+use crate::problem::Problem;
 use crate::report::About;
 use crate::study::{Externals, JournalPlace, Study};
 use crate::summary::{RunSummary, StopReason};
@@ -80,6 +81,19 @@ pub(super) fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T
     let Some(threads) = threads else { return Ok(work()) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
     Ok(pool.map_err(|error| Failure::Threads { threads, reason: error.to_string() })?.install(work))
+}
+
+/// That every answer could be kept: a run whose journal could not be written has no result.
+pub(super) fn kept(problem: &Problem) -> Result<(), Failure> {
+    match problem.function().account().and_then(|account| account.not_kept) {
+        Some(reason) => Err(Failure::NotKept { reason }),
+        None => Ok(()),
+    }
+}
+
+/// How a run ends that would end like this, were all its answers confirmed.
+pub(super) fn confirmed(exit: Exit, run: &RunSummary) -> Exit {
+    if run.unconfirmed() { exit.worse(Exit::NoResult) } else { exit }
 }
 
 /// How `--check` ends: a run that left planned points open says nothing, and everything that is required must be met.

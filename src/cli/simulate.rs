@@ -1,22 +1,18 @@
 //! `sensitol simulate`.
 
-use std::sync::Mutex;
-use std::time::Duration;
-
 use super::args::{SamplerArg, SimulateArgs};
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
-use super::progress::Samples;
-use super::running::{Clock, checked, on_threads};
+use super::running::{Clock, checked, confirmed, kept};
+use super::sampling::{sampling, surrogate};
 use super::{interrupt, rare, study};
-use crate::assembly::Run;
 use crate::document::terminal::text;
-use crate::method::{Method, Options};
+use crate::method::Options;
 use crate::report::html::simulate_html;
 use crate::report::{SimulationReport, csv_tables};
 use crate::sampling::Sampler;
-use crate::simulation::{Pace, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_within};
+use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_with};
 use crate::study::Study;
 use crate::warning::{Counted, Warning};
 
@@ -25,9 +21,6 @@ const SAMPLES: u64 = 100_000;
 
 /// The tables of a simulation, a file each.
 const TABLES: [&str; 2] = ["estimates", "histogram"];
-
-/// A simulation that will take longer than this tells so.
-const LONG: Duration = Duration::from_secs(60);
 
 pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
@@ -55,7 +48,9 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         control: asked.surrogate_control.then(|| surrogate(&study, asked)),
     };
     let clock = Clock::start(asked.of.work.time);
-    let simulation = simulate(&study, asked.of.threads, &options, &clock, look)?;
+    let simulation = simulate(&study, asked.of.threads, &options, &clock, look);
+    kept(&study.problem)?;
+    let simulation = simulation?;
     let about = clock.about(&study);
     let report = SimulationReport::of(&study.problem, &simulation, about);
     let document = report.document();
@@ -63,9 +58,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
     let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &TABLES))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
-    for warning in &report.warnings {
-        look.tell(warning);
-    }
+    look.tell_all(&report.warnings);
     clock.stopped(&simulation.run, (simulation.samples, None), Counted::Points, look);
     if interrupt::stopped() {
         written?;
@@ -79,20 +72,8 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         return Ok(Exit::NoResult);
     }
     let judged = simulation.characteristics.iter().flat_map(SimulatedCharacteristic::requirements);
-    Ok(if asked.check { checked(simulation.run.unfinished(), judged) } else { Exit::Done })
-}
-
-/// How the surrogate is analysed: as the study says, but for the method that is asked for.
-pub(super) fn surrogate(study: &Study, asked: &SimulateArgs) -> Options {
-    let mut options = study.options.clone();
-    if let Some(method) = asked.method {
-        options.method = method.0;
-        // The study's choice of pairs was made for its own method.
-        if method.0 != Method::SixN {
-            (options.pairs, options.stencil) = (None, None);
-        }
-    }
-    options
+    let exit = if asked.check { checked(simulation.run.unfinished(), judged) } else { Exit::Done };
+    Ok(confirmed(exit, &simulation.run))
 }
 
 fn simulate(
@@ -102,31 +83,5 @@ fn simulate(
     clock: &Clock,
     look: Look,
 ) -> Result<Simulation, Failure> {
-    Ok(sampling(threads, clock, look, |run, pace| simulate_within(&study.problem, options, run, pace))??)
-}
-
-/// Draws points, showing how far it is, and telling once when that will be long.
-pub(super) fn sampling<T: Send>(
-    threads: Option<u16>,
-    clock: &Clock,
-    look: Look,
-    work: impl FnOnce(&Run<'_>, &(dyn Fn(Pace) + Sync)) -> T + Send,
-) -> Result<T, Failure> {
-    let bar = Samples::new(look.quiet);
-    let told = Mutex::new(false);
-    let pace = |pace: Pace| {
-        bar.show(&pace);
-        // Who waits for years should know after a second.
-        let Ok(mut told) = told.lock() else { return };
-        let rest = Duration::try_from_secs_f64(pace.expected_s()).unwrap_or(Duration::MAX);
-        if !*told && !clock.limited() && pace.elapsed > Duration::from_secs(1) && rest > LONG {
-            *told = true;
-            look.warn(&Warning::Long { expected_s: pace.expected_s() });
-        }
-    };
-    let stop = || clock.stop();
-    let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned);
-    let result = on_threads(threads, || work(&run, &pace));
-    bar.clear();
-    result
+    Ok(sampling(threads, clock, look, |run, pace| simulate_with(&study.problem, options, run, pace))??)
 }

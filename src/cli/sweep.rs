@@ -5,7 +5,7 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::progress::Bar;
-use super::running::{Clock, externals, on_threads};
+use super::running::{Clock, confirmed, externals, kept, on_threads};
 use super::{interrupt, study};
 use crate::assembly::{Progress, Run};
 use crate::document::svg::svg;
@@ -13,7 +13,7 @@ use crate::document::terminal::text;
 use crate::report::html::sweep_html;
 use crate::report::{SweepReport, csv_tables};
 use crate::study::Study;
-use crate::sweep::{Sweep, sweep_within};
+use crate::sweep::{Sweep, sweep_with};
 use crate::warning::Counted;
 
 pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
@@ -35,9 +35,7 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
     let written = written.and(table.map_or(Ok(()), |table| table.write(&csv_tables(&document, &["sweep"]))));
     let written = written.and(chart.map_or(Ok(()), |chart| chart.write(&svg(&document, "Mean and quantile band"))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&sweep_html(&report))));
-    for warning in &report.warnings {
-        look.tell(warning);
-    }
+    look.tell_all(&report.warnings);
     let done = sweep.analyses.iter().flatten().count();
     clock.stopped(&sweep.run, (done as u64, Some(sweep.values.len() as u64)), Counted::Values, look);
     written?;
@@ -45,7 +43,8 @@ pub(super) fn run(asked: &SweepArgs, look: Look) -> Result<Exit, Failure> {
         return Ok(Exit::Interrupted);
     }
     let nothing = |one: &crate::report::SweptReport| one.points.iter().all(|point| point.mean.is_none());
-    Ok(if report.characteristics.iter().any(nothing) { Exit::NoResult } else { Exit::Done })
+    let exit = if report.characteristics.iter().any(nothing) { Exit::NoResult } else { Exit::Done };
+    Ok(confirmed(exit, &sweep.run))
 }
 
 fn swept(study: &Study, asked: &SweepArgs, clock: &Clock, look: Look) -> Result<Sweep, Failure> {
@@ -55,10 +54,11 @@ fn swept(study: &Study, asked: &SweepArgs, clock: &Clock, look: Look) -> Result<
     let bar = plan.map(|plan| Bar::new(plan.cost().0.saturating_mul(asked.over.values.len()), look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
-    let sweep = || sweep_within(&study.problem, &asked.over.name, &asked.over.values, &study.options, &run);
+    let sweep = || sweep_with(&study.problem, &asked.over.name, &asked.over.values, &study.options, &run);
     let result = on_threads(asked.threads, sweep);
     if let Some(bar) = bar {
         bar.clear();
     }
+    kept(&study.problem)?;
     Ok(result??)
 }

@@ -14,11 +14,11 @@
 mod error;
 mod matrix;
 mod together;
-mod transform;
+pub(crate) mod transform;
 
 pub use error::{CorrelationError, Refusal};
 pub(crate) use together::Together;
-pub use transform::Transform;
+pub(crate) use transform::Transform;
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -119,7 +119,7 @@ impl Correlation {
     }
 
     /// The correlation of the members, M by M.
-    pub fn matrix(&self) -> &Mat<f64> {
+    pub(crate) fn matrix(&self) -> &Mat<f64> {
         &self.target
     }
 
@@ -129,7 +129,7 @@ impl Correlation {
     }
 
     /// The members as functions of the normal variables behind them.
-    pub fn transforms(&self) -> &[Arc<Transform>] {
+    pub(crate) fn transforms(&self) -> &[Arc<Transform>] {
         &self.transforms
     }
 
@@ -143,17 +143,17 @@ impl Correlation {
     }
 
     /// Whether the members are jointly normal.
-    pub fn is_normal(&self) -> bool {
+    pub(crate) fn is_normal(&self) -> bool {
         self.transforms.iter().all(|transform| transform.is_normal())
     }
 
     /// `L` with `L L' = normal()`, M by M: Cholesky's factor, or one from the eigenvalues where the matrix is singular.
-    pub fn factor(&self) -> Mat<f64> {
+    pub(crate) fn factor(&self) -> Mat<f64> {
         matrix::factor(&self.normal)
     }
 
     /// The same among these dimensions only, counted by their positions here; None where no two of them are correlated.
-    pub fn among(&self, dimensions: &[usize]) -> Option<Self> {
+    pub(crate) fn among(&self, dimensions: &[usize]) -> Option<Self> {
         let kept: Vec<(usize, usize)> = (dimensions.iter().enumerate())
             .filter_map(|(position, d)| Some((position, self.members.binary_search(d).ok()?)))
             .filter(|&(_, j)| {

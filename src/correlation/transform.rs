@@ -69,7 +69,7 @@ impl Transform {
     }
 
     /// Whether the input is normal itself.
-    pub fn is_normal(&self) -> bool {
+    pub(crate) fn is_normal(&self) -> bool {
         self.kind == Kind::Normal
     }
 
@@ -89,7 +89,7 @@ impl Transform {
     }
 
     /// `E[g(T(z)) z]` and `E[g(T(z)) (z^2 - 1)]/2`: the best line and parabola in `z`.
-    pub fn projected(&self, g: impl Fn(f64) -> f64) -> [f64; 2] {
+    pub(crate) fn projected(&self, g: impl Fn(f64) -> f64) -> [f64; 2] {
         let mut sums = [0.0; 2];
         for (index, (&z, root)) in places().iter().zip(roots()).enumerate() {
             let weighted = g(self.kind.values()[index]) * root * root * spacing();

@@ -25,7 +25,7 @@ pub struct Normal {
 
 impl Normal {
     /// Its name in study files.
-    pub const NAME: &'static str = "normal";
+    pub(crate) const NAME: &'static str = "normal";
 
     /// `sigma` must be above 0.
     pub fn new(mean: f64, sigma: f64) -> Result<Self, DistributionError> {

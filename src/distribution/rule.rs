@@ -65,7 +65,7 @@ impl Jacobi {
     }
 
     /// The first `order` coefficients, or all where there are fewer.
-    pub fn truncated(&self, order: usize) -> Self {
+    pub(crate) fn truncated(&self, order: usize) -> Self {
         let order = order.min(self.order());
         Self { alpha: self.alpha[..order].to_vec(), beta: self.beta[..order].to_vec() }
     }
@@ -127,7 +127,8 @@ impl Rule {
     /// is exact up to degree 8.
     ///
     /// ```
-    /// use sensitol::distribution::{Distribution, Exponential, Rule};
+    /// use sensitol::distribution::{Distribution, Exponential};
+    /// use sensitol::internals::Rule;
     /// // E u^5 = 44 of an exponential distribution, by three nodes.
     /// let rule = Rule::of(&Exponential::new(0.0, 1.0)?, 3);
     /// assert!((rule.mean(|u| u.powi(5)) - 44.0).abs() < 1e-12);

@@ -51,7 +51,7 @@ impl Sample {
     /// When a value is not finite, or there are not two different ones.
     ///
     /// ```
-    /// use sensitol::distribution::Sample;
+    /// use sensitol::internals::Sample;
     /// let sample = Sample::new(&[2.0, 1.0, 2.0, 3.0])?;
     /// assert_eq!((sample.len(), sample.values(), sample.counts()), (4, &[1.0, 2.0, 3.0][..], &[1, 2, 1][..]));
     /// assert_eq!((sample.mean(), sample.sigma()), (2.0, 0.5f64.sqrt()));
@@ -113,7 +113,7 @@ impl Sample {
     }
 
     /// How many measured values are at most each of the distinct ones.
-    pub fn upto(&self) -> &[usize] {
+    pub(crate) fn upto(&self) -> &[usize] {
         &self.upto
     }
 

@@ -46,11 +46,6 @@ impl Triangular {
         Ok(Self { middle, half, lean: between("lean", lean, [-1.0, 1.0], "from -1 to 1")? })
     }
 
-    /// Where the density is largest.
-    pub fn mode(&self) -> f64 {
-        self.middle + self.half * self.lean
-    }
-
     /// Place within the interval, from -1 to 1.
     fn y(&self, x: f64) -> f64 {
         ((x - self.middle) / self.half).clamp(-1.0, 1.0)

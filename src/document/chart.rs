@@ -54,6 +54,8 @@ pub enum Fill {
     Span,
     /// An interval that exceeds them.
     Over,
+    /// What was before.
+    Before,
 }
 
 /// How a value is distributed: a density, a histogram, or one over the other.
@@ -61,6 +63,8 @@ pub enum Fill {
 pub struct SpreadChart {
     /// The density.
     pub law: Option<Pearson>,
+    /// A better one, as `[value, density]` at evenly spaced places; `law` is then a thin line beside it.
+    pub curve: Option<Vec<[f64; 2]>>,
     /// The histogram.
     pub bins: Option<Histogram>,
     /// Whether a terminal shows the histogram, rather than the density.

@@ -46,9 +46,18 @@ fn cell(cell: &Cell) -> String {
     }
 }
 
+/// What a spreadsheet takes a text for that begins with one of these is a formula.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
 /// Text that a spreadsheet would take for a formula begins with an apostrophe.
-fn guarded(text: &str) -> String {
-    if text.starts_with(['=', '+', '-', '@', '\t', '\r']) { format!("'{text}") } else { text.to_owned() }
+pub(crate) fn guarded(text: &str) -> String {
+    if text.starts_with(FORMULA) { format!("'{text}") } else { text.to_owned() }
+}
+
+/// A text before it was [`guarded`].
+#[cfg(feature = "cli")]
+pub(crate) fn unguarded(text: &str) -> &str {
+    text.strip_prefix('\'').filter(|text| text.starts_with(FORMULA)).unwrap_or(text)
 }
 
 fn quoted(text: &str) -> String {

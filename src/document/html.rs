@@ -4,11 +4,6 @@ use super::svg::{drawn, escaped};
 use super::{Bar, Bars, Cell, Chart, DataTable, Document, Element, Fill, Flow, Line, Section, Tone, spread};
 use crate::names::clean;
 
-/// A section for what is said before all others, and one for every section.
-pub fn html(document: &Document) -> String {
-    head(document) + &sections(document)
-}
-
 /// What is said before all others.
 pub fn head(document: &Document) -> String {
     format!(
@@ -46,6 +41,7 @@ fn bars(bars: &Bars) -> String {
         Fill::Interaction => "interaction",
         Fill::Span => "span",
         Fill::Over => "over",
+        Fill::Before => "was",
     };
     // Amounts of several kinds fill the height; intervals leave room for the marks, and are remarked on.
     let (kind, place) = match bars.legend.is_empty() {
@@ -153,9 +149,11 @@ pub fn table(table: &DataTable) -> String {
     for &index in table.view.iter().take(table.most[1]) {
         let cell = |(rank, &place): (usize, &usize)| {
             let of: &Cell = &table.rows[index][place];
+            let text = toned(&of.on_page());
+            let text = of.leads_to.map_or(text.clone(), |section| format!("<a href=\"#kc-{section}\">{text}</a>"));
             match rank == 0 && !table.right(place) {
-                true => format!("<th scope=\"row\">{}</th>", toned(&of.on_page())),
-                false => format!("<td{}>{}</td>", class(place), toned(&of.on_page())),
+                true => format!("<th scope=\"row\">{text}</th>"),
+                false => format!("<td{}>{text}</td>", class(place)),
             }
         };
         text += &format!("<tr>{}</tr>\n", places.iter().enumerate().map(cell).collect::<String>());

@@ -9,6 +9,7 @@ pub mod html;
 mod labels;
 pub mod markdown;
 pub mod number;
+pub(crate) mod rejects;
 mod sketch;
 mod spread;
 pub mod svg;
@@ -17,7 +18,7 @@ pub mod terminal;
 
 pub use chart::{Bar, Bars, Chart, Fill, Layer, Plot, PlotAxis, PlotPoint, PlotScale, SpreadChart, Stroke};
 pub(crate) use spread::Extent;
-pub use table::{Cell, Column, Columns, DataTable, Value};
+pub use table::{Cell, Columns, DataTable, Value};
 pub use terminal::{Detail, Style};
 
 /// What a piece of text means for the reader.

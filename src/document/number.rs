@@ -1,6 +1,6 @@
 //! Numbers and names for people: rounded to what they are worth, the sign for what is unknown, and what is too small to be shown.
 
-use crate::names::clean;
+use crate::names::{clean, shortened_to};
 
 /// In place of what is unknown.
 pub(crate) const UNKNOWN: &str = "-";
@@ -114,17 +114,6 @@ pub(crate) fn short(name: &str) -> String {
     shortened_to(&clean(name), NAME)
 }
 
-/// Without its middle, where it is longer than `most` characters.
-pub(super) fn shortened_to(name: &str, most: usize) -> String {
-    let count = name.chars().count();
-    if count <= most {
-        return name.to_owned();
-    }
-    let head: String = name.chars().take(most / 2).collect();
-    let tail: String = name.chars().skip(count - (most - most / 2 - 1)).collect();
-    format!("{head}…{tail}")
-}
-
 /// A number, or the sign for unknown.
 pub(crate) fn known(value: Option<f64>, show: impl FnOnce(f64) -> String) -> String {
     value.map_or(UNKNOWN.to_owned(), show)
@@ -153,12 +142,6 @@ pub(crate) fn limits(lower: Option<f64>, upper: Option<f64>) -> String {
         (None, Some(upper)) => format!("below {}", plain(upper)),
         (Some(lower), Some(upper)) => format!("{} .. {}", plain(lower), plain(upper)),
     }
-}
-
-/// The yield that leaves these parts per million; None where both are unknown.
-pub(crate) fn rejected(below: Option<f64>, above: Option<f64>) -> Option<String> {
-    below.or(above)?;
-    Some(share(1e-6 * (below.unwrap_or(0.0) + above.unwrap_or(0.0))))
 }
 
 /// A number as a sample of this standard error knows it: two digits of the error.

@@ -91,19 +91,40 @@ fn densest(bins: &Histogram) -> f64 {
     tops.filter(|density| density.is_finite()).fold(0.0, f64::max)
 }
 
+/// A tabulated density, a line from place to place; 0 beyond the table.
+fn between(curve: &[[f64; 2]], x: f64) -> f64 {
+    let after = curve.partition_point(|[at, _]| *at < x);
+    match (after.checked_sub(1).and_then(|before| curve.get(before)), curve.get(after)) {
+        (Some([a, low]), Some([b, high])) => low + (high - low) * (x - a) / (b - a),
+        (None, Some([at, density])) if *at == x => *density,
+        _ => 0.0,
+    }
+}
+
 /// A figure; nothing where there is neither density nor sample, or no extent. Places are marked where they lie within what is drawn.
 pub(super) fn figure(of: &SpreadChart) -> Option<String> {
     let (law, limits) = (of.law.as_ref(), of.limits);
     let bins = of.bins.as_ref().filter(|bins| bins.counts.len() > 1 && total(bins) > 0.0);
-    let of_law = law.map(|law| [law.quantile(1e-4), law.upper_quantile(1e-4)]);
+    let curve = of.curve.as_deref().filter(|curve| curve.len() > 1);
+    let of_law = match curve {
+        Some([[from, _], .., [to, _]]) => Some([*from, *to]),
+        _ => law.map(|law| [law.quantile(1e-4), law.upper_quantile(1e-4)]),
+    };
     let of_bins = bins.map(|bins| [bins.edges[0], bins.edges[bins.counts.len()]]);
     let extents = || of_law.into_iter().chain(of_bins);
     let [low, high] = extents().reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
     let near = limits.into_iter().flatten().filter(|x| x - high < high - low && low - x < high - low);
     let scale = Extent::over([low, high].into_iter().chain(near), 0.04, WIDTH)?;
     let place = |i: usize| scale.from + (scale.to - scale.from) * i as f64 / POINTS as f64;
-    let points: Vec<(f64, f64)> =
-        law.map_or(Vec::new(), |law| (0..=POINTS).map(|i| (place(i), law.pdf(place(i)))).collect());
+    let along =
+        |of: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> { (0..=POINTS).map(|i| (place(i), of(place(i)))).collect() };
+    // The best density that there is, and the Pearson law beside a better one.
+    let best = |x: f64| match curve {
+        Some(curve) => between(curve, x),
+        None => law.map_or(f64::NAN, |law| law.pdf(x)),
+    };
+    let points = if law.is_some() || curve.is_some() { along(&best) } else { Vec::new() };
+    let fit = law.filter(|_| curve.is_some()).map(|law| along(&|x| law.pdf(x)));
     // A density that is infinite at its end is cut.
     let finite = points.iter().map(|&(_, density)| density).filter(|density| density.is_finite());
     let usual = of_law.map_or(f64::INFINITY, |[low, high]| 24.0 / (high - low));
@@ -118,11 +139,11 @@ pub(super) fn figure(of: &SpreadChart) -> Option<String> {
         path
     };
     let area = |from: f64, to: f64| {
-        let (law, from, to) = (law.filter(|_| bins.is_none())?, from.max(scale.from), to.min(scale.to));
-        (from < to).then(|| {
-            let mut inside = vec![(from, law.pdf(from))];
+        let (from, to) = (from.max(scale.from), to.min(scale.to));
+        (from < to && bins.is_none() && !points.is_empty()).then(|| {
+            let mut inside = vec![(from, best(from))];
             inside.extend(points.iter().filter(|(x, _)| *x > from && *x < to));
-            inside.push((to, law.pdf(to)));
+            inside.push((to, best(to)));
             format!("{}L{:.2} {BASE}L{:.2} {BASE}Z", path(&inside), scale.at(to), scale.at(from))
         })
     };
@@ -130,7 +151,7 @@ pub(super) fn figure(of: &SpreadChart) -> Option<String> {
         "<figure>\n<svg class=\"density\" viewBox=\"0 0 {WIDTH} 200\" role=\"img\" aria-label=\"{}\">\n",
         escaped(&of.label)
     );
-    let line = law.map(|_| path(&points));
+    let line = (!points.is_empty()).then(|| path(&points));
     if let (Some(line), None) = (&line, bins) {
         let _ = writeln!(svg, "<path class=\"area\" d=\"{line}L{WIDTH} {BASE}L0 {BASE}Z\"/>");
     }
@@ -159,6 +180,9 @@ pub(super) fn figure(of: &SpreadChart) -> Option<String> {
         let (at, label) = (scale.at(x), format!("{name} {}", beside(x, 0.1 * (high - low))));
         let _ = writeln!(svg, "<path class=\"{kind}\" d=\"M{at} 8V{BASE}\"><title>{label}</title></path>");
         let _ = writeln!(legend, "<li class=\"{kind}\">{label}</li>");
+    }
+    if let Some(fit) = &fit {
+        let _ = writeln!(svg, "<path class=\"fit\" d=\"{}\"><title>Pearson fit</title></path>", path(fit));
     }
     if let Some(line) = &line {
         let _ = writeln!(svg, "<path class=\"line\" d=\"{line}\"/>");

@@ -25,8 +25,10 @@ pub struct Cell {
     pub value: Value,
     /// For people.
     pub line: Line,
-    /// The whole name, where terminals have room for less.
+    /// What pages show instead, where terminals have room for less: the whole name, a remark.
     pub full: Option<String>,
+    /// The section that it names, by its place in the document: pages lead there.
+    pub leads_to: Option<usize>,
 }
 
 /// A column of a table.
@@ -119,6 +121,16 @@ impl<'a, T> Columns<'a, T> {
 }
 
 impl DataTable {
+    /// The table whose rows are about the sections of its document, in their order: the names lead there.
+    pub fn of_sections(mut self) -> Self {
+        for (index, row) in self.rows.iter_mut().enumerate() {
+            if let Some(name) = row.first_mut() {
+                name.leads_to = Some(index);
+            }
+        }
+        self
+    }
+
     /// The table of which people see these rows in this order.
     pub fn seen(mut self, view: Vec<usize>) -> Self {
         self.view = view;
@@ -205,7 +217,13 @@ impl Cell {
 
     /// What people read differs from what programs read.
     pub fn both(value: Value, line: impl Into<Line>) -> Self {
-        Self { value, line: line.into(), full: None }
+        Self { value, line: line.into(), full: None, leads_to: None }
+    }
+
+    /// The same with more on pages.
+    pub fn on_pages(mut self, text: String) -> Self {
+        self.full = Some(text);
+        self
     }
 
     /// What a page shows, which has room for whole names.

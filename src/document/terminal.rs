@@ -1,9 +1,8 @@
 //! Documents as text for a terminal: lines and tables without lines, in Unicode or plain ASCII.
 
-use super::number::shortened_to;
 use super::sketch::{bars, sketch};
 use super::{Chart, DataTable, Document, Element, Flow, Line, List, Paragraph, Section, Tone};
-use crate::names::clean;
+use crate::names::{clean, shortened_to};
 
 /// How much is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,7 @@
-//! External models that do not answer as they did.
+//! External models that do not answer as they did, or not at first.
 
 use crate::assembly::NonRepeatable;
+use crate::assembly::process::OutdatedJournal;
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -9,7 +10,7 @@ const FLIP: f64 = 0.01;
 /// Points in doubt that are named.
 const SUSPECTS: usize = 3;
 
-/// One warning for each output.
+/// One warning for each output, and what the model's processes went through.
 pub(crate) fn history(problem: &Problem, non_repeatable: &[NonRepeatable]) -> Vec<Warning> {
     let first =
         |index: &usize| !non_repeatable[..*index].iter().any(|earlier| earlier.output == non_repeatable[*index].output);
@@ -26,11 +27,37 @@ pub(crate) fn history(problem: &Problem, non_repeatable: &[NonRepeatable]) -> Ve
             false => Warning::NotRepeatable { output, expected, found, times, points, suspects },
         }
     };
-    (0..non_repeatable.len()).filter(first).map(warning).collect()
+    (0..non_repeatable.len()).filter(first).map(warning).chain(processes(problem)).collect()
 }
 
 /// A point by the dimensions that are not at their nominal value.
 fn words(problem: &Problem, point: &[f64]) -> String {
     let moved = problem.dimensions().iter().zip(point).filter(|(dimension, x)| dimension.nominal() != **x);
     moved.map(|(dimension, x)| format!("{} = {x}", dimension.name())).collect::<Vec<_>>().join(", ")
+}
+
+/// What a model's processes went through: what was lost and sent again, answers that nothing confirmed, a journal of another model.
+fn processes(problem: &Problem) -> Vec<Warning> {
+    let Some(account) = problem.function().account() else { return Vec::new() };
+    let mut warnings = Vec::new();
+    if account.has_failures() {
+        let last = account.last.as_ref();
+        warnings.push(Warning::Restarts {
+            starts: account.starts,
+            crashes: account.crashes,
+            timeouts: account.timeouts,
+            garbage: account.garbage,
+            retried: account.retried,
+            lost_s: account.lost_s,
+            cause: last.map(|error| error.fault.to_string()).unwrap_or_default(),
+            stderr: last.map(|error| error.stderr.0.clone()).unwrap_or_default(),
+        });
+    }
+    if let Some(OutdatedJournal { output, expected, found, answers, .. }) = account.outdated {
+        warnings.push(Warning::OutdatedJournal { output, expected, found, answers });
+    }
+    if account.unconfirmed > 0 {
+        warnings.push(Warning::Unconfirmed { answers: account.unconfirmed });
+    }
+    warnings
 }

@@ -3,7 +3,7 @@
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
-use crate::assembly::{Ask, EvaluationError, NonRepeatable, Points, Responses, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
 use crate::evaluation::BATCH;
 use crate::problem::Problem;
 use crate::summary::{RunSummary, StopReason};
@@ -106,7 +106,7 @@ impl<'a> Answers<'a> {
         let mut out = Responses::open(batch.len(), self.problem.outputs().len());
         let begun = Instant::now();
         let points = Points::from_rows(batch);
-        self.problem.function().evaluate(&Ask::values(&points, self.problem.outputs()), self.run, &mut out);
+        self.problem.function().evaluate(&Request::values(&points, self.problem.outputs()), self.run, &mut out);
         self.spent.run.in_model += begun.elapsed();
         self.spent.run.stages += 1;
         for (row, point) in batch.iter().enumerate() {

@@ -37,6 +37,8 @@ use answers::Answers;
 use climb::Climb;
 use task::Task;
 
+use serde::Serialize;
+
 use crate::assembly::Run;
 use crate::method::Outcome;
 use crate::problem::Problem;
@@ -57,7 +59,7 @@ pub struct SearchedExtremes {
 }
 
 /// The least and the greatest value of one characteristic.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Extremes {
     /// The least value.
@@ -77,7 +79,7 @@ pub struct Extremes {
 }
 
 /// An interval that no assembly leaves.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ExtremesProof {
     /// The interval.
@@ -96,7 +98,7 @@ impl Extremes {
 }
 
 /// A value, and where it is.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Extreme {
     /// The value.
@@ -106,7 +108,7 @@ pub struct Extreme {
 }
 
 /// One dimension of an extreme.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Coordinate {
     /// The dimension.
@@ -120,7 +122,9 @@ pub struct Coordinate {
 }
 
 /// Where in its band a dimension stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Place {
     /// At the lower end.
     Lower,
@@ -165,6 +169,22 @@ pub fn search(problem: &Problem, outcome: &Outcome, budget: Option<usize>, run: 
     let result = |((task, proof), asked)| Task::result(task, problem, &answers, asked, proof);
     let extremes = tasks.iter().zip(proofs).zip(asked).map(result).collect();
     SearchedExtremes { extremes, spent: answers.spent }
+}
+
+/// An interval that no assembly of a characteristic leaves, by interval arithmetic alone; None where its function has no bounds.
+///
+/// `proven` says that values within `allowed` of both ends exist. Ends after 1000 boxes a side, fewer where there are more than ten
+/// dimensions. No evaluation.
+pub(crate) fn enclose(
+    problem: &Problem,
+    outcome: &Outcome,
+    c: usize,
+    allowed: f64,
+    run: &Run<'_>,
+) -> Option<ExtremesProof> {
+    Task::of(problem, outcome, c)
+        .enclose(problem, allowed, run)
+        .filter(|proof| proof.bounds.iter().all(|end| end.is_finite()))
 }
 
 /// A search of one characteristic and side.

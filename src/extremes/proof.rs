@@ -19,6 +19,8 @@ pub(super) struct Least {
     pub(super) lower: f64,
     /// Boxes that were looked at.
     pub(super) boxes: usize,
+    /// What was believed to be the least value, or the upper bound of the value at a better point.
+    pub(super) best: f64,
     /// A point whose value is below what was believed to be the least.
     pub(super) better: Option<Vec<f64>>,
 }
@@ -38,7 +40,7 @@ pub(super) fn least(
     limit: usize,
     stop: &dyn Fn() -> bool,
 ) -> Least {
-    let mut search = Search { bounds, best, allowed, boxes: 0, better: None };
+    let mut search = Search { bounds, best, allowed, stop, boxes: 0, better: None };
     let mut open: BinaryHeap<Open> = search.examine(region.to_vec(), f64::NEG_INFINITY).into_iter().collect();
     // The least bound of the boxes that cannot be split.
     let mut lower = f64::INFINITY;
@@ -52,13 +54,14 @@ pub(super) fn least(
             None => lower = lower.min(next.lower),
         }
     }
-    Least { lower, boxes: search.boxes, better: search.better }
+    Least { lower, boxes: search.boxes, best: search.best, better: search.better }
 }
 
 struct Search<'b> {
     bounds: &'b dyn Fn(&[[f64; 2]]) -> Bounds,
     best: f64,
     allowed: f64,
+    stop: &'b dyn Fn() -> bool,
     boxes: usize,
     better: Option<Vec<f64>>,
 }
@@ -79,7 +82,8 @@ impl Search<'_> {
             if found.value.is_empty() {
                 return None;
             }
-            if !found.value.is_whole() || !hold(&mut region, &found.slopes) {
+            // The bounds of a long formula of many dimensions are many operations: a stop is heard between two of them.
+            if !found.value.is_whole() || (self.stop)() || !hold(&mut region, &found.slopes) {
                 break;
             }
             found = self.look(&region);

@@ -5,7 +5,7 @@ use super::climb::Climb;
 use super::model::{Model, Region};
 use super::start::Starts;
 use super::{Coordinate, Ended, Extreme, Extremes, ExtremesProof, Place, proof};
-use crate::assembly::Run;
+use crate::assembly::{Bounds, Run};
 use crate::dimension::Dimension;
 use crate::distribution::Distribution;
 use crate::method::Outcome;
@@ -24,6 +24,8 @@ const PROVEN: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 /// Boxes of either side, as long as there are few dimensions.
 const BOXES: usize = 20_000;
+/// Boxes of either side where nobody asked for a proof: a twentieth of those of a search.
+const ENCLOSING: usize = 1000;
 const FEW: usize = 10;
 
 /// A point on the edge of a zone is within it.
@@ -185,6 +187,43 @@ impl Task {
         from.map(|(x, y)| Climb::new(&self.region, &self.surrogate, x, y)).collect()
     }
 
+    /// What interval arithmetic says of the function over a part of the box; None where it has no bounds.
+    fn bounds(&self, problem: &Problem, region: &[[f64; 2]]) -> Option<Bounds> {
+        let mut all: Vec<[f64; 2]> = self.centre.iter().map(|&x| [x, x]).collect();
+        self.dimensions.iter().zip(region).for_each(|(&d, &band)| all[d] = band);
+        let mut bounds = problem.function().bounds(problem.outputs()[self.characteristic], &all)?;
+        bounds.slopes = self.dimensions.iter().map(|&d| bounds.slopes[d]).collect();
+        Some(bounds)
+    }
+
+    /// The whole box.
+    fn bands(&self) -> Vec<[f64; 2]> {
+        (0..self.region.len()).map(|d| [self.region.lower[d], self.region.upper[d]]).collect()
+    }
+
+    /// Bounds both extremes to `allowed` by interval arithmetic alone, without any value of the model; None where the function has no
+    /// bounds.
+    pub(super) fn enclose(&self, problem: &Problem, allowed: f64, run: &Run<'_>) -> Option<ExtremesProof> {
+        let region = self.bands();
+        self.bounds(problem, &region)?;
+        let limit = ENCLOSING * FEW / region.len().max(FEW);
+        let side = |sign: f64| {
+            let bounds = |region: &[[f64; 2]]| {
+                let bounds = self.bounds(problem, region).expect("a function has bounds everywhere or nowhere");
+                if sign > 0.0 { bounds } else { bounds.negated() }
+            };
+            proof::least(&bounds, &region, f64::INFINITY, allowed, limit, &|| run.stopped())
+        };
+        let (below, above) = (side(1.0), side(-1.0));
+        let near = |least: &proof::Least| least.lower >= least.best - allowed;
+        Some(ExtremesProof {
+            bounds: [below.lower, -above.lower],
+            // A corner of the box of a circular zone is no place of the zone.
+            proven: self.zones.is_empty() && near(&below) && near(&above),
+            boxes: below.boxes + above.boxes,
+        })
+    }
+
     /// Bounds both extremes by interval arithmetic, where the function has bounds; and points that lie beyond them, if it comes
     /// upon any.
     pub(super) fn prove(
@@ -193,16 +232,8 @@ impl Task {
         answers: &Answers<'_>,
         run: &Run<'_>,
     ) -> (Option<ExtremesProof>, Vec<Vec<f64>>) {
-        let output = problem.outputs()[self.characteristic];
-        let everywhere = |region: &[[f64; 2]]| {
-            let mut all: Vec<[f64; 2]> = self.centre.iter().map(|&x| [x, x]).collect();
-            self.dimensions.iter().zip(region).for_each(|(&d, &band)| all[d] = band);
-            let mut bounds = problem.function().bounds(output, &all)?;
-            bounds.slopes = self.dimensions.iter().map(|&d| bounds.slopes[d]).collect();
-            Some(bounds)
-        };
-        let region: Vec<[f64; 2]> =
-            (0..self.region.len()).map(|d| [self.region.lower[d], self.region.upper[d]]).collect();
+        let everywhere = |region: &[[f64; 2]]| self.bounds(problem, region);
+        let region = self.bands();
         let values = self.known(answers).map(|(_, value)| value);
         let [least, greatest] =
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], y| [least.min(y), greatest.max(y)]);

@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use rusqlite::{Connection, ErrorCode, OptionalExtension, Transaction, TransactionBehavior, params};
 
+use super::claims::{self, Claimant};
+
 /// What is in the file, for `PRAGMA user_version`.
 const VERSION: i32 = 1;
 /// Who wrote it, for `PRAGMA application_id`: "snsl".
@@ -27,6 +29,29 @@ const TABLES: &str = "
         output TEXT NOT NULL,
         value REAL,
         error TEXT,
+        stage INTEGER,
+        PRIMARY KEY (model, point, output)
+    ) WITHOUT ROWID;
+";
+/// What came later, and what an earlier version does without: stages that no replay has confirmed, and points that a run is at.
+const LATER: &str = "
+    CREATE TABLE IF NOT EXISTS stage (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        model INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE
+    );
+    CREATE TABLE IF NOT EXISTS claim (
+        run INTEGER PRIMARY KEY AUTOINCREMENT,
+        model INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE,
+        beat INTEGER NOT NULL,
+        host TEXT NOT NULL,
+        pid INTEGER NOT NULL,
+        points BLOB NOT NULL
+    );
+    CREATE TABLE IF NOT EXISTS gradient (
+        model INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE,
+        point BLOB NOT NULL,
+        output TEXT NOT NULL,
+        slopes BLOB NOT NULL,
         PRIMARY KEY (model, point, output)
     ) WITHOUT ROWID;
 ";
@@ -81,6 +106,18 @@ pub type Answer = Result<f64, String>;
 pub struct Store {
     path: PathBuf,
     connection: Connection,
+    /// The stage that answers are kept in; None for those that need no confirmation.
+    stage: Option<i64>,
+    /// The claim of this run.
+    claim: Option<i64>,
+    durable: bool,
+}
+
+/// A kept answer, and the stage that it is of where nothing has confirmed that one.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Recalled {
+    pub(super) answer: Answer,
+    pub(super) unconfirmed: Option<i64>,
 }
 
 /// A model whose answers are kept.
@@ -120,8 +157,8 @@ impl Store {
     /// # Errors
     /// When the file is something else, of a later version, or cannot be read and written.
     pub fn open(path: &Path) -> Result<Self, JournalError> {
-        let store =
-            Self { path: path.to_owned(), connection: Connection::open(path).map_err(|error| at(path, &error))? };
+        let connection = Connection::open(path).map_err(|error| at(path, &error))?;
+        let store = Self { path: path.to_owned(), connection, stage: None, claim: None, durable: false };
         let begun = Instant::now();
         loop {
             match store.prepare() {
@@ -176,7 +213,28 @@ impl Store {
             making.execute_batch(&script)?;
             making.commit()?;
         }
+        self.complete()?;
         Ok(())
+    }
+
+    /// Adds what an earlier version did not make.
+    fn complete(&self) -> rusqlite::Result<()> {
+        let is_complete = |connection: &Connection| -> rusqlite::Result<bool> {
+            let column = "SELECT count(*) FROM pragma_table_info('answer') WHERE name = 'stage'";
+            let tables = "SELECT count(*) FROM sqlite_schema WHERE name IN ('stage', 'claim', 'gradient')";
+            let count = |sql: &str| connection.query_row(sql, [], |row| row.get::<_, i64>(0));
+            Ok(count(column)? == 1 && count(tables)? == 3)
+        };
+        if is_complete(&self.connection)? {
+            return Ok(());
+        }
+        let making = Transaction::new_unchecked(&self.connection, TransactionBehavior::Immediate)?;
+        making.execute_batch(LATER)?;
+        // Another run may have done it meanwhile.
+        if !is_complete(&making)? {
+            making.execute_batch("ALTER TABLE answer ADD COLUMN stage INTEGER")?;
+        }
+        making.commit()
     }
 
     fn failed<T>(&self, result: rusqlite::Result<T>) -> Result<T, JournalError> {
@@ -208,23 +266,160 @@ impl Store {
         self.failed(found)
     }
 
+    /// The same, with the stage of an answer that nothing has confirmed.
+    pub(super) fn recall(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Recalled>, JournalError> {
+        let find = "SELECT value, error, (SELECT id FROM stage WHERE id = answer.stage) FROM answer
+            WHERE model = ?1 AND point = ?2 AND output = ?3";
+        let found = self.connection.prepare_cached(find).and_then(|mut statement| {
+            let recalled = |row: &rusqlite::Row<'_>| -> rusqlite::Result<Recalled> {
+                Ok(Recalled { answer: answer(row.get(0)?, row.get(1)?)?, unconfirmed: row.get(2)? })
+            };
+            statement.query_row(params![model, bytes(point), output], recalled).optional()
+        });
+        self.failed(found)
+    }
+
+    /// Whether anything is known of a model.
+    pub(super) fn has_answers(&self, model: i64) -> Result<bool, JournalError> {
+        let find = "SELECT EXISTS (SELECT 1 FROM answer WHERE model = ?1)";
+        self.failed(self.connection.query_row(find, [model], |row| row.get(0)))
+    }
+
+    /// A number that changes when another run has written something.
+    pub(super) fn version(&self) -> Result<i64, JournalError> {
+        self.failed(self.connection.pragma_query_value(None, "data_version", |row| row.get(0)))
+    }
+
+    /// Keeps derivatives by every dimension beside the answer of one output at one point.
+    pub(super) fn keep_gradient(
+        &self,
+        model: i64,
+        point: &[f64],
+        output: &str,
+        slopes: &[f64],
+    ) -> Result<(), JournalError> {
+        let add = "INSERT OR REPLACE INTO gradient (model, point, output, slopes) VALUES (?1, ?2, ?3, ?4)";
+        let slopes: Vec<u8> = slopes.iter().flat_map(|slope| slope.to_le_bytes()).collect();
+        self.failed(self.connection.execute(add, params![model, bytes(point), output, slopes]).map(drop))
+    }
+
+    /// Those that were kept.
+    pub(super) fn gradient(&self, model: i64, point: &[f64], output: &str) -> Result<Option<Vec<f64>>, JournalError> {
+        let find = "SELECT slopes FROM gradient WHERE model = ?1 AND point = ?2 AND output = ?3";
+        let found = self.connection.query_row(find, params![model, bytes(point), output], |row| row.get(0)).optional();
+        let slope = |eight: &[u8]| f64::from_le_bytes(eight.try_into().expect("eight bytes"));
+        Ok(self.failed::<Option<Vec<u8>>>(found)?.map(|bytes| bytes.chunks_exact(8).map(slope).collect()))
+    }
+
+    /// From now on answers are kept as those of a stage that is not confirmed yet.
+    pub(super) fn open_stage(&mut self, model: i64) -> Result<(), JournalError> {
+        self.failed(self.connection.execute("INSERT INTO stage (model) VALUES (?1)", [model]))?;
+        self.stage = Some(self.connection.last_insert_rowid());
+        Ok(())
+    }
+
+    /// Ends the stage, confirmed or not.
+    pub(super) fn close_stage(&mut self, confirmed: bool) -> Result<(), JournalError> {
+        match self.stage.take().filter(|_| confirmed) {
+            Some(stage) => self.failed(self.connection.execute("DELETE FROM stage WHERE id = ?1", [stage]).map(drop)),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes these stages as confirmed, or forgets their answers.
+    pub(super) fn settle_stages(&mut self, stages: &[i64], confirmed: bool) -> Result<(), JournalError> {
+        let settled = (|| {
+            let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            for stage in stages {
+                if !confirmed {
+                    transaction.execute("DELETE FROM answer WHERE stage = ?1", [stage])?;
+                }
+                transaction.execute("DELETE FROM stage WHERE id = ?1", [stage])?;
+            }
+            transaction.commit()
+        })();
+        self.failed(settled)
+    }
+
+    /// Forgets all answers of a model; says how many there were.
+    pub(super) fn forget_answers(&mut self, model: i64) -> Result<usize, JournalError> {
+        self.failed(self.connection.execute("DELETE FROM answer WHERE model = ?1", [model]))
+    }
+
+    /// Claims points that no other run is at; says which of them are now this run's. `gone` are runs that are known to have ended.
+    pub(super) fn claim(&mut self, model: i64, points: &[Vec<f64>], gone: &[i64]) -> Result<Vec<bool>, JournalError> {
+        let own = self.claim;
+        let claimed = (|| {
+            let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            for run in gone {
+                transaction.execute("DELETE FROM claim WHERE run = ?1", [run])?;
+            }
+            let claimed =
+                claims::claim(&transaction, model, own, &points.iter().map(|point| bytes(point)).collect::<Vec<_>>())?;
+            transaction.commit()?;
+            Ok(claimed)
+        })();
+        let (run, mine) = self.failed(claimed)?;
+        self.claim = run;
+        Ok(mine)
+    }
+
+    /// Says that this run is still at what it claimed.
+    pub(super) fn beat(&self) -> Result<(), JournalError> {
+        let Some(run) = self.claim else { return Ok(()) };
+        self.failed(self.connection.execute("UPDATE claim SET beat = beat + 1 WHERE run = ?1", [run]).map(drop))
+    }
+
+    /// Leaves what it claimed to others.
+    pub(super) fn release(&mut self) -> Result<(), JournalError> {
+        match self.claim.take() {
+            Some(run) => self.failed(self.connection.execute("DELETE FROM claim WHERE run = ?1", [run]).map(drop)),
+            None => Ok(()),
+        }
+    }
+
+    /// The runs that are at points of this model.
+    pub(super) fn claimants(&self, model: i64) -> Result<Vec<Claimant>, JournalError> {
+        self.failed(claims::claimants(&self.connection, model, self.claim))
+    }
+
+    /// Whether every commit reaches the disk, so that a power cut costs nothing, or the operating system only.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn set_durable(&mut self, durable: bool) -> Result<(), JournalError> {
+        if self.durable != durable {
+            let synchronous = if durable { "FULL" } else { "NORMAL" };
+            self.failed(self.connection.pragma_update(None, "synchronous", synchronous))?;
+            self.durable = durable;
+        }
+        Ok(())
+    }
+
+    /// Whether every commit reaches the disk.
+    pub fn is_durable(&self) -> bool {
+        self.connection
+            .pragma_query_value(None, "synchronous", |row| row.get::<_, i64>(0))
+            .is_ok_and(|level| level >= 2)
+    }
+
     /// Keeps answers, all of them or none; the last answer to a point counts.
     ///
     /// # Errors
     /// When writing fails; nothing of these is kept then.
     pub fn keep(&mut self, model: i64, answers: &[StoredAnswer]) -> Result<(), JournalError> {
+        let stage = self.stage;
         let kept = (|| {
             let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
             {
-                let add =
-                    "INSERT OR REPLACE INTO answer (model, point, output, value, error) VALUES (?1, ?2, ?3, ?4, ?5)";
+                let add = "INSERT OR REPLACE INTO answer (model, point, output, value, error, stage) VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
                 let mut statement = transaction.prepare_cached(add)?;
                 for StoredAnswer { point, output, answer } in answers {
                     let (value, error) = match answer {
                         Ok(value) => (Some(*value), None),
                         Err(error) => (None, Some(error)),
                     };
-                    statement.execute(params![model, bytes(point), output, value, error])?;
+                    statement.execute(params![model, bytes(point), output, value, error, stage])?;
                 }
             }
             transaction.commit()
@@ -299,7 +494,7 @@ impl Store {
     ///
     /// # Errors
     /// When writing fails; nothing is forgotten then.
-    pub fn forget(&mut self, model: Option<i64>) -> Result<usize, JournalError> {
+    pub(crate) fn forget(&mut self, model: Option<i64>) -> Result<usize, JournalError> {
         let forgotten = (|| {
             let transaction = self.connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
             let answers = transaction.execute("DELETE FROM answer WHERE ?1 IS NULL OR model = ?1", [model])?;

@@ -35,9 +35,7 @@ const SEED: u64 = 1;
 /// use std::sync::Arc;
 /// use sensitol::SpecLimits;
 /// use sensitol::distribution::{Distribution, Normal};
-/// use sensitol::law::{LawOptions, SurfaceLaw, joint_yield};
-/// use sensitol::moments::Interactions;
-/// use sensitol::surrogate::{Surrogate, Univariate};
+/// use sensitol::internals::{Interactions, LawOptions, SurfaceLaw, Surrogate, Univariate, joint_yield};
 /// let inputs: Vec<Arc<dyn Distribution>> = vec![Arc::new(Normal::new(0.0, 1.0)?), Arc::new(Normal::new(0.0, 1.0)?)];
 /// let law = |slopes: [f64; 2]| {
 ///     let parts = slopes.map(|slope| Some(Univariate::of_coefficients(&[slope]))).to_vec();

@@ -116,6 +116,7 @@ impl LawTail {
 
 /// How a law is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Branch {
     /// The transform inverted along a contour; also lists of values where every input consists of atoms.
     Exact,
@@ -182,9 +183,7 @@ impl Default for LawOptions {
 /// ```
 /// use std::sync::Arc;
 /// use sensitol::distribution::{Distribution, Uniform};
-/// use sensitol::law::{LawOptions, SurfaceLaw};
-/// use sensitol::moments::Interactions;
-/// use sensitol::surrogate::{Surrogate, Univariate};
+/// use sensitol::internals::{Interactions, LawOptions, SurfaceLaw, Surrogate, Univariate};
 /// // Three uniform inputs: the probability beyond a limit d below the greatest value sqrt(27) is d^3/(6 (2 sqrt 3)^3).
 /// let uniform: Arc<dyn Distribution> = Arc::new(Uniform::new(-1.0, 1.0)?);
 /// let parts = vec![Some(Univariate::of_coefficients(&[1.0])); 3];

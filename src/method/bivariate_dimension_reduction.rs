@@ -25,7 +25,7 @@ use super::quadrature::{Quadrature, check, complete, next_to_the_mean};
 use super::{Integrated, InteractionEffect, Lacking, MainEffect, Method, MethodError, Options, Outcome, Procedure};
 use crate::assembly::Run;
 use crate::moments::Tables;
-use crate::plan::{Known, Mixed, Plan, Point, Purpose};
+use crate::plan::{KnownAnswers, Mixed, Plan, Point, Purpose};
 use crate::problem::Problem;
 
 pub(super) struct BivariateDimensionReduction;
@@ -128,7 +128,7 @@ impl Decomposed {
         quadrature: &Quadrature<'_>,
         cuts: &[Vec<Point>],
         planes: &[Plane],
-        known: &Known,
+        known: &KnownAnswers,
         c: usize,
     ) -> Result<Self, Lacking> {
         let depends = |v: usize| quadrature.variables.depends(&quadrature.design, c, v);

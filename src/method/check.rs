@@ -2,14 +2,14 @@
 
 use crate::assembly::EvaluationError;
 use crate::moments::Moments;
-use crate::plan::{DifferencePlan, Known, Point};
+use crate::plan::{DifferencePlan, KnownAnswers, Point};
 use crate::surrogate::{InputShape, Surrogate, Univariate};
 
 /// A difference three sigma out that does not matter: higher powers have that, and the other points see them.
 const FAR: f64 = 0.1;
 
 /// Whether the model has no value at a point, rather than nobody an answer.
-pub(super) fn failed(known: &Known, point: &Point, characteristic: usize) -> bool {
+pub(super) fn failed(known: &KnownAnswers, point: &Point, characteristic: usize) -> bool {
     known.error(point, characteristic).is_some_and(|error| !matches!(error, EvaluationError::NotGiven))
 }
 
@@ -53,7 +53,7 @@ impl SurrogateCheck {
     /// At these pairs of mirrored points; None where none has a value, or the surrogate has none.
     pub(super) fn of(
         plan: &DifferencePlan,
-        known: &Known,
+        known: &KnownAnswers,
         characteristic: usize,
         pairs: &[[Point; 2]],
         (surrogate, moments): (&Surrogate, &Moments),

@@ -7,6 +7,7 @@ use super::check::SurrogateCheck;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum ClimbEnd {
     /// Every characteristic is known as well as it was wanted, by the estimate.
     Reached,
@@ -51,7 +52,7 @@ pub struct Climbed {
 
 impl Climbed {
     /// The variance that the surrogate of a characteristic does not have, by the check; None where nothing was checked.
-    pub fn unexplained(&self, c: usize) -> Option<f64> {
+    pub(crate) fn unexplained(&self, c: usize) -> Option<f64> {
         self.checked[c].as_ref().filter(|check| check.points > 1).map(|check| check.variance)
     }
 }

@@ -26,7 +26,7 @@ use super::{Integrated, Lacking, MainEffect, Method, MethodError, Options, Outco
 use crate::assembly::Run;
 use crate::distribution::Rule;
 use crate::moments::{Interactions, Term, contributions};
-use crate::plan::{Known, Plan, Point};
+use crate::plan::{KnownAnswers, Plan, Point};
 use crate::problem::Problem;
 
 pub(super) struct DimensionReduction;
@@ -80,7 +80,7 @@ pub(super) fn univariate<'p>(problem: &'p Problem, options: &Options) -> Quadrat
 pub(super) fn tables(
     quadrature: &Quadrature<'_>,
     cuts: &[Vec<Point>],
-    known: &Known,
+    known: &KnownAnswers,
     c: usize,
 ) -> Option<(f64, Vec<Vec<Option<f64>>>)> {
     let reference = known.value(&quadrature.reference, c)?;
@@ -94,7 +94,7 @@ pub(super) fn tables(
 fn integrated(
     quadrature: &Quadrature<'_>,
     cuts: &[Vec<Point>],
-    known: &Known,
+    known: &KnownAnswers,
     c: usize,
 ) -> Result<Integrated, Lacking> {
     let of = 1 + cuts.iter().map(Vec::len).sum::<usize>();

@@ -5,8 +5,9 @@
 
 use serde::Serialize;
 
+use super::check::SurrogateCheck;
 use super::hidden::{hidden, ratio};
-use super::{Basis, Climbed, Order, Outcome, SurrogateCheck};
+use super::{Basis, Climbed, Order, Outcome};
 use crate::assembly::Directions;
 use crate::moments::{Interactions, Moments, Term, contributions};
 use crate::problem::Problem;
@@ -95,7 +96,7 @@ pub enum ErrorSource {
 
 impl ErrorSource {
     /// In words.
-    pub fn words(self) -> String {
+    pub(crate) fn words(self) -> String {
         match self {
             Self::Checked { points } => format!("model against surrogate at {points} points of the distribution"),
             Self::Powers { nodes } => format!("powers that {nodes} points a dimension do not show, extrapolated"),

@@ -4,17 +4,18 @@ use std::sync::Arc;
 
 pub(super) use super::Order;
 use super::exact::{ExactDerivatives, fits, known};
+use super::gradients;
 use super::{Basis, Cost, DerivativeSource, Fitted, Method, MethodError, NODES, Options, Outcome, Pairs, Procedure};
 use crate::assembly::Run;
 use crate::evaluation::{Evaluated, evaluate};
 use crate::moments::Interactions;
 use crate::names::nearest;
-use crate::plan::{DifferencePlan, Layout, PairChoice, Plan, Point, Spread, Stencil};
+use crate::plan::{DifferencePlan, Layout, Mixed, PairChoice, Plan, Point, Spread, Stencil};
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
 /// What the assembly function knows of every characteristic's derivatives.
-type Known = Vec<Option<ExactDerivatives>>;
+type KnownDerivatives = Vec<Option<ExactDerivatives>>;
 
 /// A derivative method: what it evaluates, and what it uses of that.
 pub(super) struct Ladder {
@@ -56,8 +57,16 @@ impl Procedure for Ladder {
 
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
         let plan = self.differences(problem, options)?;
-        Cost::of(&plan).within(self.name(), problem, options)?;
-        problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
+        let gradients = self.can_use_gradients(options);
+        let evaluations = Cost::of(&plan);
+        if !gradients || !problem.function().signature().costly {
+            evaluations.within(self.name(), problem, options)?;
+        }
+        let model = problem.function().prepare(problem.outputs()).map_err(|error| MethodError::Model { error })?;
+        if gradients && model.is_some_and(|model| model.gradients) {
+            return self.run_by_gradients(problem, options, &plan, run);
+        }
+        evaluations.within(self.name(), problem, options)?;
         let exact = options.derivatives == Some(DerivativeSource::Exact);
         if exact {
             known(problem, &plan)?;
@@ -73,6 +82,51 @@ impl Procedure for Ladder {
 }
 
 impl Ladder {
+    /// Whether it needs fewer evaluations of a model that sends derivatives.
+    fn can_use_gradients(&self, options: &Options) -> bool {
+        let all = matches!(self.interactions, Examined::All(_)) && self.spread == Spread::Pair;
+        let slopes = self.method == Method::Rss;
+        self.method == self.runs && (all || slopes) && gradients::serve(options, self.order, all)
+    }
+
+    /// By the derivatives that the model sends; `whole` is the plan without them.
+    fn run_by_gradients(
+        &self,
+        problem: &Problem,
+        options: &Options,
+        whole: &DifferencePlan,
+        run: &Run<'_>,
+    ) -> Result<Outcome, MethodError> {
+        let first = self.order == Order::First;
+        let layout = Layout {
+            spread: if first { Spread::Bare } else { self.spread },
+            pairs: PairChoice::None,
+            stencil: Stencil::TwoPoint,
+            step: None,
+            fixed_too: false,
+        };
+        let plan = DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout);
+        let cost = Cost::of(&plan);
+        Cost { evaluations: cost.evaluations + usize::from(first), ..cost }.within(self.name(), problem, options)?;
+        let mut evaluated = evaluate(problem, &plan, run);
+        let pairs = whole.pairs(None);
+        let fitted: Vec<Fitted> = if first {
+            let slopes = gradients::slopes(problem, &plan, &mut evaluated, run)?;
+            let fit = |(c, slopes)| self.fit(&plan, &evaluated, c, &pairs, slopes, true);
+            slopes.into_iter().enumerate().map(fit).collect()
+        } else {
+            gradients::checked(problem, &plan, &evaluated)?;
+            let fit = |c| {
+                let mixed = gradients::mixed(&plan, &evaluated, c, &pairs);
+                self.fitted(&plan, &evaluated, c, &pairs, (None, false), Some(mixed))
+            };
+            (0..problem.characteristics().len()).map(fit).collect()
+        };
+        let basis = if first { Basis::Exact } else { Basis::Differences };
+        let (asked, method, plan) = (self.method, self.runs, Arc::new(plan) as _);
+        Ok(Outcome { asked, method, basis, plan, evaluated, order: self.order, fitted, pairs, climbed: None })
+    }
+
     /// The plan that it would follow.
     pub(super) fn differences(&self, problem: &Problem, options: &Options) -> Result<DifferencePlan, MethodError> {
         if let Some(step) = options.step.filter(|step| !(step.is_finite() && *step > 0.0)) {
@@ -115,7 +169,7 @@ impl Ladder {
         options: &Options,
         plan: &DifferencePlan,
         evaluated: &Evaluated,
-    ) -> Result<(Vec<(usize, usize)>, Known), MethodError> {
+    ) -> Result<(Vec<(usize, usize)>, KnownDerivatives), MethodError> {
         if options.derivatives == Some(DerivativeSource::Difference) {
             return Ok((plan.pairs(Some(&evaluated.known)), vec![None; problem.characteristics().len()]));
         }
@@ -148,6 +202,19 @@ impl Ladder {
         derivatives: Option<ExactDerivatives>,
         exact: bool,
     ) -> Fitted {
+        self.fitted(plan, evaluated, c, pairs, (derivatives, exact), None)
+    }
+
+    /// The same, with mixed derivatives from elsewhere where there are some.
+    fn fitted(
+        &self,
+        plan: &DifferencePlan,
+        evaluated: &Evaluated,
+        c: usize,
+        pairs: &[(usize, usize)],
+        (derivatives, exact): (Option<ExactDerivatives>, bool),
+        mixed: Option<Vec<Option<Mixed>>>,
+    ) -> Fitted {
         let known = &evaluated.known;
         let dimensions = plan.centre().len();
         let exactly = derivatives.as_ref().filter(|_| exact);
@@ -156,7 +223,8 @@ impl Ladder {
             _ => plan.part(known, c, d),
         };
         let parts: Vec<Option<Univariate>> = (0..dimensions).map(part).collect();
-        let mixed = exactly.map_or_else(|| plan.mixed(known, c, pairs), |exact| exact.mixed(plan, pairs));
+        let mixed = mixed
+            .unwrap_or_else(|| exactly.map_or_else(|| plan.mixed(known, c, pairs), |exact| exact.mixed(plan, pairs)));
         let used = |&d: &usize| match self.order {
             Order::First => parts[d].map(|part| Univariate::of_coefficients(&[part.slope()])),
             Order::Second => parts[d],

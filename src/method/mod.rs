@@ -1,7 +1,7 @@
 //! The methods: what each evaluates and what it makes of it, a file each, and their registry.
 //!
 //! # A new method
-//! One new file with a type that implements [`Procedure`], one variant of [`Method`] and one line in [`ALL`]; `plan`,
+//! One new file with a type that implements `Procedure`, one variant of [`Method`] and one line in `ALL`; `plan`,
 //! `compare` and the documentation of the command line iterate the registry.
 
 mod auto;
@@ -14,12 +14,15 @@ mod dimension_reduction;
 mod estimate;
 mod exact;
 mod full;
+mod gradients;
 mod hidden;
 mod ladder;
 mod options;
 mod order;
 mod outcome;
+pub(crate) mod procedure;
 mod quadrature;
+pub(crate) mod registry;
 mod response_surface;
 mod rss;
 mod second_order;
@@ -28,98 +31,24 @@ mod three_point;
 mod worst_case;
 
 pub use crate::method_kind::Method;
-pub use crate::plan::{Nodes, Spread, Stencil, corners};
-pub use auto::ACCURACY;
-pub(crate) use auto::climb_until;
-pub use check::SurrogateCheck;
-pub use climbed::{ClimbEnd, Climbed};
+pub use crate::plan::Stencil;
+pub(crate) use auto::{ACCURACY, climb_until};
+pub use climbed::ClimbEnd;
+pub(crate) use climbed::Climbed;
 pub use cost::Cost;
-pub use estimate::{ErrorEstimate, ErrorSource, estimate};
-pub use exact::ExactDerivatives;
+pub(crate) use estimate::estimate;
+pub use estimate::{ErrorEstimate, ErrorSource};
+pub(crate) use exact::ExactDerivatives;
 pub use options::{Accuracies, DerivativeSource, Options, Pairs};
-pub use order::{Basis, Order};
-pub use outcome::{Fitted, Integrated, InteractionEffect, Lacking, MainEffect, Outcome, Residual};
+pub use order::Basis;
+pub(crate) use order::Order;
+pub use outcome::Residual;
+pub(crate) use outcome::{Fitted, Integrated, InteractionEffect, Lacking, MainEffect, Outcome};
+pub(crate) use procedure::Procedure;
+pub(crate) use registry::ALL;
 
-use std::sync::Arc;
-
-use crate::assembly::{EvaluationError, Run};
-use crate::plan::Plan;
-use crate::problem::Problem;
+use crate::assembly::EvaluationError;
 use crate::warning::{Advice, Figure};
-
-/// Every method, in the order in which they are listed.
-pub static ALL: &[&dyn Procedure] = &[
-    &auto::AUTO,
-    &rss::RSS,
-    &worst_case::WORST_CASE,
-    &second_order::SECOND_ORDER,
-    &six_n::SIX_N,
-    &full::FULL,
-    &classic::CLASSIC,
-    &dimension_reduction::DimensionReduction,
-    &bivariate_dimension_reduction::BivariateDimensionReduction,
-    &three_point::ThreePoint,
-    &response_surface::ResponseSurface,
-];
-
-/// What a method does.
-pub trait Procedure: Sync {
-    /// Its place in the enumeration.
-    fn method(&self) -> Method;
-
-    /// Its name in study files and on the command line.
-    fn name(&self) -> &'static str {
-        self.method().name()
-    }
-
-    /// What it does, in one line.
-    fn about(&self) -> &'static str;
-
-    /// How many evaluations it takes for N dimensions, as a formula.
-    fn count(&self) -> &'static str;
-
-    /// Whether the options mean something to it.
-    ///
-    /// # Errors
-    /// When one does not, or names something that the problem does not have.
-    fn check(&self, problem: &Problem, options: &Options) -> Result<(), MethodError> {
-        self.plan(problem, options).map(drop)
-    }
-
-    /// What it would take, or why it cannot be run.
-    ///
-    /// # Errors
-    /// As [`Procedure::plan`], and when it needs more evaluations than the budget allows.
-    fn fits(&self, problem: &Problem, options: &Options) -> Result<Cost, MethodError> {
-        let plan = self.plan(problem, options)?;
-        Cost::of(&*plan).within(self.name(), problem, options)
-    }
-
-    /// The fewest and the most evaluations of a method that chooses as it goes; None for one whose plan says how many.
-    fn range(&self, problem: &Problem, options: &Options) -> Option<[usize; 2]> {
-        let _ = (problem, options);
-        None
-    }
-
-    /// The plan that it would follow, whatever the budget.
-    ///
-    /// # Errors
-    /// As [`Procedure::check`], and when there are more points than could ever be evaluated.
-    fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError>;
-
-    /// Evaluates the problem.
-    ///
-    /// # Errors
-    /// As [`Procedure::fits`]; nothing is evaluated then.
-    fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError>;
-}
-
-impl Method {
-    /// What it does.
-    pub fn procedure(self) -> &'static dyn Procedure {
-        *ALL.iter().find(|procedure| procedure.method() == self).expect("every method is registered")
-    }
-}
 
 /// Why a method cannot be run on a problem as asked.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -158,6 +87,27 @@ pub enum MethodError {
     DerivativesUnknown {
         /// The characteristic.
         characteristic: String,
+    },
+    /// A model that declares derivatives and sends none.
+    #[error("the model says that it sends gradients, and its answers have none of `{characteristic}`")]
+    NoGradient {
+        /// The characteristic.
+        characteristic: String,
+    },
+    /// Derivatives that a model sends and its own values refute.
+    #[error(
+        "the gradients of `{characteristic}`{} that the model sends are wrong: by them it changes by {by_gradient}, by its values by {by_values}",
+        along(dimension)
+    )]
+    GradientsDisagree {
+        /// The characteristic.
+        characteristic: String,
+        /// The dimension along which it was checked; None where all were moved at once.
+        dimension: Option<String>,
+        /// The change between two points by the derivatives.
+        by_gradient: f64,
+        /// The change of the values.
+        by_values: f64,
     },
     /// A derivative that does not exist at the means.
     #[error("`{characteristic}` has no derivative by {} at the means: a kink, a jump or the edge of its domain", dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and "))]
@@ -259,7 +209,10 @@ impl MethodError {
             Self::TooManyDimensions { fitting: Some((method, _)), .. } => {
                 vec![Advice::UseMethod { methods: vec![*method] }]
             }
-            Self::DerivativesUnknown { .. } | Self::NoDerivative { .. } => vec![Advice::UseDifferences],
+            Self::DerivativesUnknown { .. }
+            | Self::NoDerivative { .. }
+            | Self::NoGradient { .. }
+            | Self::GradientsDisagree { .. } => vec![Advice::UseDifferences],
             _ => Vec::new(),
         }
     }
@@ -286,7 +239,7 @@ pub enum EvaluationLimit {
 
 impl EvaluationLimit {
     /// The number.
-    pub fn most(self) -> usize {
+    pub(crate) fn most(self) -> usize {
         match self {
             Self::WithoutBudget => 1_000_000,
             Self::Listed => 100_000_000,
@@ -305,6 +258,10 @@ impl std::fmt::Display for EvaluationLimit {
 
 /// The methods that have a choice of nodes.
 const NODES: &str = "dimension-reduction, univariate or bivariate,";
+
+fn along(dimension: &Option<String>) -> String {
+    dimension.as_ref().map(|name| format!(" by `{name}`")).unwrap_or_default()
+}
 
 fn count(needed: u128) -> String {
     if needed == u128::MAX { "more than 10^38".to_owned() } else { needed.to_string() }

@@ -11,10 +11,11 @@ use crate::warning::Figure;
 ///
 /// ```
 /// use sensitol::{Method, Options};
-/// let options = Options { budget: Some(100), ..Options::from(Method::SixN) };
-/// assert_eq!(options.stencil, None);
+/// let options = Options::from(Method::SixN).with_budget(100);
+/// assert_eq!((options.budget, options.stencil), (Some(100), None));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Options {
     /// The method.
     pub method: Method,
@@ -42,16 +43,19 @@ pub struct Options {
     /// Where derivatives come from. Unless said otherwise the reported sensitivities are exact where the assembly function
     /// knows its derivatives, and moments come from differences at nodes that suit each distribution.
     pub derivatives: Option<DerivativeSource>,
-    /// Whether the result is verified by the model itself ([`crate::verification`]): a cheap model is sampled unless this is 0, a
+    /// Whether the result is verified by the model itself: a cheap model is sampled unless this is 0, a
     /// costly one evaluated at no more check points than this, 18 at most. Unless said otherwise [`Options::VERIFY`] where the function
     /// says that it is cheap or costly ([`Signature`](crate::assembly::Signature)), and 0 where it says neither, as a closure.
     pub verify: Option<usize>,
+    /// Whether the densities of surface laws are tabulated, for those who draw them.
+    pub densities: bool,
 }
 
 /// The errors that are wanted beside that of sigma, absolute; None where nothing is.
 ///
 /// They are reached by the same means: the wanted error of sigma is tightened until these estimates are small enough too.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Accuracies {
     /// Of the skewness.
     pub skewness: Option<f64>,
@@ -62,13 +66,34 @@ pub struct Accuracies {
 }
 
 impl Accuracies {
+    /// With this absolute error of the skewness.
+    #[must_use]
+    pub fn with_skewness(mut self, error: f64) -> Self {
+        self.skewness = Some(error);
+        self
+    }
+
+    /// With this absolute error of the kurtosis.
+    #[must_use]
+    pub fn with_kurtosis(mut self, error: f64) -> Self {
+        self.kurtosis = Some(error);
+        self
+    }
+
+    /// With this absolute error of the yield, as a share.
+    #[must_use]
+    pub fn with_yield(mut self, error: f64) -> Self {
+        self.yield_ = Some(error);
+        self
+    }
+
     /// Whether any is wanted.
-    pub fn any(&self) -> bool {
+    pub(crate) fn any(&self) -> bool {
         self.wanted().iter().any(|(_, wanted)| wanted.is_some())
     }
 
     /// Each with its figure.
-    pub fn wanted(&self) -> [(Figure, Option<f64>); 3] {
+    pub(crate) fn wanted(&self) -> [(Figure, Option<f64>); 3] {
         [(Figure::Skewness, self.skewness), (Figure::Kurtosis, self.kurtosis), (Figure::Yield, self.yield_)]
     }
 }
@@ -84,7 +109,7 @@ pub enum DerivativeSource {
 
 impl DerivativeSource {
     /// The names of the sources.
-    pub const NAMES: [&str; 2] = ["exact", "difference"];
+    pub(crate) const NAMES: [&str; 2] = ["exact", "difference"];
 
     /// Its name in study files and on the command line.
     pub fn name(self) -> &'static str {
@@ -105,6 +130,7 @@ impl FromStr for DerivativeSource {
 
 /// Which interactions are examined.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Pairs {
     /// Those with the largest product of univariate variance shares.
     Strongest,
@@ -116,7 +142,7 @@ pub enum Pairs {
 
 impl Pairs {
     /// The choices that have a name.
-    pub const NAMES: [&str; 2] = ["strongest", "adjacent"];
+    pub(crate) const NAMES: [&str; 2] = ["strongest", "adjacent"];
 }
 
 /// The choices that have a name; pairs are given by the names of their dimensions.
@@ -135,13 +161,105 @@ impl FromStr for Pairs {
 impl Options {
     /// Check points of a costly model where [`verify`](Self::verify) does not say; a cheap one is sampled.
     pub const VERIFY: usize = 12;
+
     /// How a result of such a function is verified: 0 for not at all.
-    pub fn verification(&self, of: &crate::assembly::Signature) -> usize {
+    pub(crate) fn verification(&self, of: &crate::assembly::Signature) -> usize {
         self.verify.unwrap_or(if of.cheap || of.costly { Self::VERIFY } else { 0 })
     }
 
     /// The seed where none is given: the same study gives the same numbers.
     pub const SEED: u64 = 1;
+
+    /// With this relative error of sigma as the aim of `auto`.
+    #[must_use]
+    pub fn with_accuracy(mut self, error: f64) -> Self {
+        self.accuracy = Some(error);
+        self
+    }
+
+    /// With these errors of the other results as the aim of `auto`.
+    #[must_use]
+    pub fn with_accuracies(mut self, errors: Accuracies) -> Self {
+        self.accuracies = errors;
+        self
+    }
+
+    /// With at most so many evaluations.
+    #[must_use]
+    pub fn with_budget(mut self, evaluations: usize) -> Self {
+        self.budget = Some(evaluations);
+        self
+    }
+
+    /// With this step in sigmas in place of the matched nodes.
+    #[must_use]
+    pub fn with_step(mut self, sigmas: f64) -> Self {
+        self.step = Some(sigmas);
+        self
+    }
+
+    /// With these pairs examined by `six-n`.
+    #[must_use]
+    pub fn with_pairs(mut self, pairs: Pairs) -> Self {
+        self.pairs = Some(pairs);
+        self
+    }
+
+    /// With mixed derivatives of `six-n` evaluated so.
+    #[must_use]
+    pub fn with_stencil(mut self, stencil: Stencil) -> Self {
+        self.stencil = Some(stencil);
+        self
+    }
+
+    /// With so many nodes in the quadrature rule of an input: 3, 5 or 7.
+    #[must_use]
+    pub fn with_nodes(mut self, nodes: usize) -> Self {
+        self.nodes = Some(nodes);
+        self
+    }
+
+    /// With a sensitivity for dimensions without tolerance, or without one.
+    #[must_use]
+    pub fn with_all_sensitivities(mut self, all: bool) -> Self {
+        self.all_sensitivities = all;
+        self
+    }
+
+    /// With a search of the true extremes in the box of the tolerance bands, or without one.
+    #[must_use]
+    pub fn with_extremes(mut self, search: bool) -> Self {
+        self.extremes = search;
+        self
+    }
+
+    /// With this seed of what draws random numbers.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = Some(seed);
+        self
+    }
+
+    /// With derivatives from this source.
+    #[must_use]
+    pub fn with_derivatives(mut self, source: DerivativeSource) -> Self {
+        self.derivatives = Some(source);
+        self
+    }
+
+    /// With a table of the density of every surface law that is not sampled, or without one.
+    #[must_use]
+    pub fn with_densities(mut self, tabulated: bool) -> Self {
+        self.densities = tabulated;
+        self
+    }
+
+    /// Verified by the model itself at so many points; 0 for not at all.
+    #[must_use]
+    pub fn with_verify(mut self, points: usize) -> Self {
+        self.verify = Some(points);
+        self
+    }
 }
 
 impl Default for Options {
@@ -160,6 +278,7 @@ impl Default for Options {
             seed: None,
             derivatives: None,
             verify: None,
+            densities: false,
         }
     }
 }

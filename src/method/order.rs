@@ -13,6 +13,7 @@ pub enum Order {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum Basis {
     /// A surrogate of exact derivatives.
     Exact,

@@ -22,7 +22,7 @@ use crate::assembly::Run;
 use crate::correlation::Correlation;
 use crate::distribution::{Distribution, Normal, Rule, StandardMoments, behind_normal};
 use crate::evaluation::{Evaluated, evaluate};
-use crate::plan::{At, Design, Known, Mixed, Plan, Point, Purpose};
+use crate::plan::{AtNode, Design, KnownAnswers, Mixed, Plan, Point, Purpose};
 use crate::problem::Problem;
 use crate::surrogate::Univariate;
 
@@ -236,7 +236,7 @@ pub(super) fn check(method: &'static str, options: &Options, nodes: bool) -> Res
 }
 
 /// What is known of one characteristic: its moments, or why there are none, and the mixed derivatives of the pairs examined.
-pub(super) type Found = (Result<Integrated, Lacking>, Vec<Option<Mixed>>);
+pub(super) type IntegratedParts = (Result<Integrated, Lacking>, Vec<Option<Mixed>>);
 
 /// A design over the variables of a problem.
 #[derive(Debug, Clone)]
@@ -305,7 +305,7 @@ impl<'p> Quadrature<'p> {
     }
 
     /// Values of a characteristic at these points above one at another; None for each that is lost.
-    pub(super) fn rises(known: &Known, c: usize, points: &[Point], above: f64) -> Vec<Option<f64>> {
+    pub(super) fn rises(known: &KnownAnswers, c: usize, points: &[Point], above: f64) -> Vec<Option<f64>> {
         points.iter().map(|point| Some(known.value(point, c)? - above)).collect()
     }
 
@@ -317,7 +317,7 @@ impl<'p> Quadrature<'p> {
         options: &Options,
         evaluated: Evaluated,
         pairs: Vec<(usize, usize)>,
-        found: Vec<Found>,
+        found: Vec<IntegratedParts>,
     ) -> Outcome {
         let Self { variables, design, reference } = self;
         let problem = variables.problem;
@@ -353,7 +353,7 @@ impl<'p> Quadrature<'p> {
 }
 
 /// The polynomial through the steps next to the mean, four of them at most; None where there are none, or none was had.
-fn part(design: &Design, known: &Known, c: usize, d: usize, at_means: bool) -> Option<Univariate> {
+fn part(design: &Design, known: &KnownAnswers, c: usize, d: usize, at_means: bool) -> Option<Univariate> {
     if !design.depends(c, d) {
         return Some(Univariate::of_coefficients(&[0.0, 0.0]));
     }
@@ -361,7 +361,7 @@ fn part(design: &Design, known: &Known, c: usize, d: usize, at_means: bool) -> O
     let axis = design.axis(d);
     let mut samples: Vec<(f64, f64)> = (axis.slots.iter())
         .filter_map(|slot| {
-            let value = known.value(&Point::of(&[At { dimension: d as u32, node: slot[0] }]), c)?;
+            let value = known.value(&Point::of(&[AtNode { dimension: d as u32, node: slot[0] }]), c)?;
             Some((axis.nodes[slot[0] as usize].u, value - centre))
         })
         .filter(|(u, _)| u.abs() >= NEAREST)

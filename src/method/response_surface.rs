@@ -34,7 +34,7 @@ use super::{
 use crate::assembly::Run;
 use crate::evaluation::evaluate;
 use crate::moments::Interactions;
-use crate::plan::{Axis, Design, Known, Mixed, Plan, Point, Purpose, Spread, corners};
+use crate::plan::{Axis, Design, KnownAnswers, Mixed, Plan, Point, Purpose, Spread, corners};
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
@@ -125,7 +125,7 @@ impl ResponseSurface {
 }
 
 /// One characteristic's surface.
-fn fitted(design: &Design, points: &[Point], known: &Known, c: usize, pairs: &[(usize, usize)]) -> Fitted {
+fn fitted(design: &Design, points: &[Point], known: &KnownAnswers, c: usize, pairs: &[(usize, usize)]) -> Fitted {
     let varying = design.varying();
     let dimensions = design.centre().len();
     let mine: Vec<usize> = (0..varying.len()).filter(|&j| design.depends(c, varying[j])).collect();
@@ -139,7 +139,7 @@ fn fitted(design: &Design, points: &[Point], known: &Known, c: usize, pairs: &[(
     let fixed = |d: usize| {
         let samples = design.axis(d).slots.iter().filter_map(|slot| {
             let node = slot[0];
-            let value = known.value(&Point::of(&[crate::plan::At { dimension: d as u32, node }]), c)?;
+            let value = known.value(&Point::of(&[crate::plan::AtNode { dimension: d as u32, node }]), c)?;
             Some((design.axis(d).nodes[node as usize].u, value - centre?))
         });
         Univariate::through(&samples.collect::<Vec<_>>())

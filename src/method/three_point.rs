@@ -28,7 +28,7 @@ use super::{
 use crate::assembly::Run;
 use crate::distribution::Rule;
 use crate::moments::{Moments, exact};
-use crate::plan::{Known, Plan, Point, Purpose};
+use crate::plan::{KnownAnswers, Plan, Point, Purpose};
 use crate::problem::Problem;
 
 pub(super) struct ThreePoint;
@@ -126,7 +126,7 @@ impl Grid {
             .collect()
     }
 
-    fn values(&self, points: &[Point], known: &Known, c: usize) -> Result<Vec<f64>, Lacking> {
+    fn values(&self, points: &[Point], known: &KnownAnswers, c: usize) -> Result<Vec<f64>, Lacking> {
         let values: Vec<Option<f64>> = points.iter().map(|point| known.value(point, c)).collect();
         complete(values.iter().map(Option::is_some))?;
         Ok(values.into_iter().flatten().collect())
@@ -167,7 +167,7 @@ fn integrated(quadrature: &Quadrature<'_>, grid: &Grid, values: &[f64], pairs: &
     let sigma = largest * mean(&|value| ((value - middle) / largest).powi(2)).sqrt();
     let [skewness, kurtosis] = [3, 4].map(|order| mean(&|value| ((value - middle) / sigma).powi(order)));
     let deviations: Vec<f64> = values.iter().map(|value| (value - middle) / sigma).collect();
-    let given = Given { grid, deviations: &deviations, weights: &weights, rules: &rules };
+    let given = ConditionalMeans { grid, deviations: &deviations, weights: &weights, rules: &rules };
     let own: Vec<Option<(MainEffect, Vec<f64>)>> = (0..n)
         .into_par_iter()
         .map(|position| {
@@ -201,14 +201,14 @@ fn integrated(quadrature: &Quadrature<'_>, grid: &Grid, values: &[f64], pairs: &
 }
 
 /// Conditional means, in sigmas.
-struct Given<'g> {
+struct ConditionalMeans<'g> {
     grid: &'g Grid,
     deviations: &'g [f64],
     weights: &'g [f64],
     rules: &'g [&'g Rule],
 }
 
-impl Given<'_> {
+impl ConditionalMeans<'_> {
     /// At every level of a variable.
     fn one(&self, v: usize) -> Vec<f64> {
         let stride = self.grid.stride(v);

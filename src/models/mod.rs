@@ -17,7 +17,7 @@ mod spot_weld;
 use std::ops::Range;
 use std::str::FromStr;
 
-use crate::assembly::{Ask, AssemblyFunction, Input, Output, Points, Responses, Run, Signature, in_blocks};
+use crate::assembly::{AssemblyFunction, Input, Output, Points, Request, Responses, Run, Signature, in_blocks};
 use crate::names::UnknownName;
 
 /// Every built-in model, in the order in which they are listed.
@@ -33,6 +33,7 @@ pub static ALL: &[&Model] = &[
 
 /// A closed-form model: named inputs with documented nominal values, named outputs.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Model {
     /// What study files call it.
     pub name: &'static str,
@@ -45,11 +46,12 @@ pub struct Model {
     /// Its outputs, in the order in which `evaluate` is asked for them.
     pub outputs: &'static [ModelOutput],
     /// Evaluates a block of rows.
-    pub evaluate: fn(&Block<'_>, &mut Responses),
+    pub(crate) evaluate: fn(&Block<'_>, &mut Responses),
 }
 
 /// An input of a built-in model.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct ModelInput {
     /// Its symbol.
     pub name: &'static str,
@@ -63,6 +65,7 @@ pub struct ModelInput {
 
 /// An output of a built-in model.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct ModelOutput {
     /// Its symbol.
     pub name: &'static str,
@@ -76,7 +79,7 @@ pub struct ModelOutput {
 
 /// What a model is asked: some rows of points, and some of its outputs.
 #[derive(Debug)]
-pub struct Block<'a> {
+pub(crate) struct Block<'a> {
     points: &'a Points,
     rows: Range<usize>,
     outputs: &'a [usize],
@@ -84,17 +87,17 @@ pub struct Block<'a> {
 
 impl Block<'_> {
     /// The values of one input.
-    pub fn input(&self, index: usize) -> &[f64] {
+    pub(crate) fn input(&self, index: usize) -> &[f64] {
         &self.points.column(index)[self.rows.clone()]
     }
 
     /// Number of rows.
-    pub fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.rows.len()
     }
 
     /// The column of the responses that this output belongs in; None when it is not asked for.
-    pub fn column(&self, output: usize) -> Option<usize> {
+    pub(crate) fn column(&self, output: usize) -> Option<usize> {
         self.outputs.iter().position(|&asked| asked == output)
     }
 }
@@ -103,14 +106,14 @@ impl Model {
     /// The model as assembly function, with all its inputs as dimensions.
     ///
     /// ```
-    /// use sensitol::assembly::{Ask, AssemblyFunction, Points, Responses, Run};
+    /// use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run};
     /// let engine: &sensitol::models::Model = "engine-balance".parse().unwrap();
     /// let nominal: Vec<f64> = engine.inputs.iter().map(|input| input.nominal).collect();
     /// let (points, mut force) = (Points::repeated(&nominal, 1), Responses::open(1, 1));
-    /// engine.function().evaluate(&Ask::values(&points, &[0]), &Run::to_the_end(), &mut force);
+    /// engine.function().evaluate(&Request::values(&points, &[0]), &Run::to_the_end(), &mut force);
     /// assert!((force.value(0, 0).unwrap() - 12556.9361).abs() < 1e-4);
     /// ```
-    pub fn function(&'static self) -> BuiltIn {
+    pub fn function(&'static self) -> impl AssemblyFunction + use<> {
         let input = |input: &ModelInput| Input { name: input.name.to_owned(), unit: Some(input.unit.to_owned()) };
         let output = |output: &ModelOutput| Output {
             name: output.name.to_owned(),
@@ -128,7 +131,7 @@ impl Model {
 }
 
 /// A built-in model as assembly function.
-pub struct BuiltIn {
+struct BuiltIn {
     model: &'static Model,
     signature: Signature,
 }
@@ -138,9 +141,9 @@ impl AssemblyFunction for BuiltIn {
         &self.signature
     }
 
-    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
-        in_blocks(ask, run, out, |points, rows, out| {
-            (self.model.evaluate)(&Block { points, rows, outputs: ask.outputs }, out);
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        in_blocks(request, run, out, |points, rows, out| {
+            (self.model.evaluate)(&Block { points, rows, outputs: request.outputs }, out);
         });
     }
 }

@@ -66,7 +66,7 @@ impl Interactions {
     }
 
     /// The products in which one input has a part: `(k, A_jk)`.
-    pub fn neighbours(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    pub(crate) fn neighbours(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (sparse, dense) = match &self.kind {
             Kind::Sparse(rows) => (&rows[j][..], &[][..]),
             Kind::Dense(matrix) => (&[][..], matrix.col_as_slice(j)),

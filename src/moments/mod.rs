@@ -22,7 +22,7 @@ mod part;
 mod sum;
 
 pub use interactions::Interactions;
-pub use pairwise::{Pairwise, Tables};
+pub use pairwise::Tables;
 pub use part::{JointCumulants, Term};
 pub(crate) use sum::exact;
 
@@ -31,6 +31,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::distribution::StandardMoments;
+use crate::shape::Four;
 use assemble::Assembly;
 
 /// Mean, sigma, skewness and kurtosis of one characteristic.
@@ -39,6 +40,23 @@ pub struct Moments {
     mean: f64,
     sigma: f64,
     shape: Option<(f64, f64)>,
+}
+
+impl From<&Option<Moments>> for Four<Option<f64>> {
+    fn from(moments: &Option<Moments>) -> Self {
+        Self {
+            mean: moments.map(|of| of.mean),
+            sigma: moments.map(|of| of.sigma),
+            skewness: moments.and_then(|of| of.skewness()),
+            kurtosis: moments.and_then(|of| of.kurtosis()),
+        }
+    }
+}
+
+impl Serialize for Moments {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Four::from(&Some(*self)).serialize(serializer)
+    }
 }
 
 impl Moments {
@@ -107,6 +125,7 @@ pub struct Contributions {
 /// Standard errors of moments that were sampled, from a surrogate and not from the model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Sampled {
     /// Points.
     pub samples: usize,
@@ -120,7 +139,7 @@ pub struct Sampled {
 
 impl Contributions {
     /// The share of a product of two inputs with this coefficient.
-    pub fn share(&self, j: usize, k: usize, coefficient: f64) -> f64 {
+    pub(crate) fn share(&self, j: usize, k: usize, coefficient: f64) -> f64 {
         match &self.products {
             None => (coefficient * self.per_sigma).powi(2),
             Some(products) => products.get(&(j.min(k), j.max(k))).copied().unwrap_or(0.0),
@@ -163,7 +182,7 @@ impl Contributions {
 ///
 /// ```
 /// use sensitol::distribution::StandardMoments;
-/// use sensitol::moments::{Interactions, Term, contributions};
+/// use sensitol::internals::{Interactions, Term, contributions};
 /// // y = u1 u2 of two normal inputs: kurtosis 9.
 /// let normal = &StandardMoments::NORMAL;
 /// let nothing = Term::Quadratic { linear: 0.0, curvature: 0.0, moments: normal };
@@ -214,7 +233,7 @@ pub fn contributions(constant: f64, terms: &[Term<'_>], interactions: &Interacti
 ///
 /// ```
 /// use sensitol::distribution::StandardMoments;
-/// use sensitol::moments::{Interactions, of_quadratic};
+/// use sensitol::internals::{Interactions, of_quadratic};
 /// // u^2 - 1 of a normal input is chi-squared with one degree of freedom: skewness sqrt 8, kurtosis 15.
 /// let moments = of_quadratic(0.0, &[0.0], &[1.0], &Interactions::none(1), &[StandardMoments::NORMAL]);
 /// assert!((moments.skewness().unwrap() - 8f64.sqrt()).abs() < 1e-14);

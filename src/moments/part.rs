@@ -86,7 +86,7 @@ impl Term<'_> {
         let moments = self.moments();
         let (s, k) = (moments.skewness, moments.excess);
         // With E h = E[u h] = 0 these are cumulants of u and h alone; the names give the powers.
-        let Rest { uuh, uhh, hhh, uuuh, uuhh, uhhh, hhhh, hh } = h;
+        let RestCumulants { uuh, uhh, hhh, uuuh, uuhh, uhhh, hhhh, hh } = h;
         JointCumulants {
             p,
             curved: hh,
@@ -108,25 +108,25 @@ impl Term<'_> {
     }
 
     /// `factor g - E = p u + h`: the slope, and the cumulants of the rest.
-    fn split(&self, factor: f64) -> (f64, Rest) {
+    fn split(&self, factor: f64) -> (f64, RestCumulants) {
         match self {
             Self::Quadratic { linear, curvature, moments } => {
                 let (b, a) = (factor * linear, factor * curvature);
-                (b + a * moments.skewness, Rest::of_curvature(a, moments))
+                (b + a * moments.skewness, RestCumulants::of_curvature(a, moments))
             }
             Self::Tabulated { values, rule, .. } => {
                 let mean = self.mean();
                 let centred: Vec<f64> = values.iter().map(|value| factor * (value - mean)).collect();
                 let p = expectation(rule, |i| centred[i] * rule.nodes[i]);
                 let rest: Vec<f64> = centred.iter().zip(&rule.nodes).map(|(g, u)| g - p * u).collect();
-                (p, Rest::of_table(&rest, rule))
+                (p, RestCumulants::of_table(&rest, rule))
             }
         }
     }
 }
 
 /// Cumulants of `u` and `h`, where `E h = E[u h] = 0`.
-struct Rest {
+struct RestCumulants {
     hh: f64,
     uuh: f64,
     uhh: f64,
@@ -137,7 +137,7 @@ struct Rest {
     hhhh: f64,
 }
 
-impl Rest {
+impl RestCumulants {
     /// `h = a (u^2 - 1 - s u)`. With `v = u^2 - 1`, every cumulant expands into those of `v` and `u`, which are the
     /// combinations that `StandardMoments` holds.
     fn of_curvature(a: f64, m: &StandardMoments) -> Self {

@@ -127,7 +127,7 @@ impl Pearson {
     }
 
     /// How far the kurtosis is above the least that any law with this skewness has, relative to that.
-    pub fn margin(&self) -> f64 {
+    pub(crate) fn margin(&self) -> f64 {
         self.kurtosis() / (1.0 + self.skewness * self.skewness) - 1.0
     }
 

@@ -1,12 +1,14 @@
 //! A design: points that are all known beforehand and are evaluated in one stage.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Deref;
 
 use super::axis::Axis;
+use super::geometry::Geometry;
 use super::nodes::Spread;
-use super::point::{At, Point};
+use super::point::{AtNode, Point};
 use super::stage::{Purpose, Stage};
-use super::{Known, Plan};
+use super::{KnownAnswers, Plan};
 use crate::correlation::Correlation;
 use crate::dimension::Dimension;
 use crate::surrogate::{Inputs, shapes};
@@ -17,15 +19,9 @@ use crate::surrogate::{Inputs, shapes};
 /// adds its own. A point that is wanted twice is one point, and a coordinate at its mean is none.
 #[derive(Debug, Clone)]
 pub struct Design {
-    axes: Vec<Axis>,
+    geometry: Geometry,
     /// For every dimension and value its node.
     nodes: HashMap<(usize, u64), u32>,
-    nominal: Point,
-    varying: Vec<usize>,
-    fixed: Vec<usize>,
-    inputs: Inputs,
-    /// For every characteristic, whether it can depend on each dimension.
-    depends: Vec<Vec<bool>>,
     points: Vec<(Point, Purpose)>,
     wanted: HashSet<Point>,
 }
@@ -51,23 +47,18 @@ impl Design {
         varying.iter().for_each(|&d| axes[d].scale = dimensions[d].sigma());
         fixed.iter().for_each(|&d| axes[d] = Axis::fixed(&dimensions[d], Spread::Pair));
         let mut design = Self {
-            axes,
+            geometry: Geometry { axes, nominal: Point::Centre, varying, fixed, inputs, depends },
             nodes: HashMap::new(),
-            nominal: Point::Centre,
-            varying,
-            fixed,
-            inputs,
-            depends,
             points: Vec::new(),
             wanted: HashSet::new(),
         };
         let nominal: Vec<(usize, f64)> = dimensions.iter().map(Dimension::nominal).enumerate().collect();
-        design.nominal = design.point(&nominal);
+        design.geometry.nominal = design.point(&nominal);
         let purpose = if design.nominal == Point::Centre { Purpose::Centre } else { Purpose::Nominal };
         design.want(design.nominal.clone(), purpose);
         for d in design.fixed.clone() {
             for slot in design.axes[d].slots.clone() {
-                design.want(Point::of(&[At { dimension: d as u32, node: slot[0] }]), Purpose::Sensitivity);
+                design.want(Point::of(&[AtNode { dimension: d as u32, node: slot[0] }]), Purpose::Sensitivity);
             }
         }
         design
@@ -78,7 +69,7 @@ impl Design {
         let mut elsewhere = Vec::with_capacity(at.len());
         for &(dimension, x) in at {
             if let Some(node) = self.node(dimension, x) {
-                elsewhere.push(At { dimension: dimension as u32, node });
+                elsewhere.push(AtNode { dimension: dimension as u32, node });
             }
         }
         Point::of(&elsewhere)
@@ -96,7 +87,7 @@ impl Design {
     pub(crate) fn steps(&mut self, dimension: usize, values: impl IntoIterator<Item = f64>) {
         for x in values {
             if let Some(node) = self.node(dimension, x) {
-                self.axes[dimension].slots.push(vec![node]);
+                self.geometry.axes[dimension].slots.push(vec![node]);
             }
         }
     }
@@ -104,18 +95,18 @@ impl Design {
     /// The pairs of positions on which some characteristic can depend.
     pub(crate) fn pairs(&self) -> Vec<(usize, usize)> {
         let n = self.varying.len();
-        let matters = |&(j, k): &(usize, usize)| (0..self.depends.len()).any(|c| self.joint(c, j, k));
-        (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k))).filter(matters).collect()
+        (0..n).flat_map(|j| (j + 1..n).map(move |k| (j, k))).filter(|&(j, k)| self.matters(j, k)).collect()
     }
 
     /// Takes over what an axis of a difference plan knows beside its nodes: what was moved into the support, and a tail.
     pub(crate) fn take_notes(&mut self, dimension: usize, axis: Axis) {
-        (self.axes[dimension].moved, self.axes[dimension].tail) = (axis.moved, axis.tail);
+        let own = &mut self.geometry.axes[dimension];
+        (own.moved, own.tail) = (axis.moved, axis.tail);
     }
 
     /// The node of this value, a new one if need be; None at the mean.
     fn node(&mut self, dimension: usize, x: f64) -> Option<u32> {
-        let axis = &mut self.axes[dimension];
+        let axis = &mut self.geometry.axes[dimension];
         if x == axis.mean {
             return None;
         }
@@ -123,44 +114,24 @@ impl Design {
     }
 }
 
+impl Deref for Design {
+    type Target = Geometry;
+
+    fn deref(&self) -> &Geometry {
+        &self.geometry
+    }
+}
+
 impl Plan for Design {
-    fn varying(&self) -> &[usize] {
-        &self.varying
-    }
-
-    fn moved(&self) -> Vec<usize> {
-        self.varying.iter().chain(&self.fixed).copied().collect()
-    }
-
-    fn inputs(&self) -> &Inputs {
-        &self.inputs
-    }
-
-    fn axis(&self, dimension: usize) -> &Axis {
-        &self.axes[dimension]
-    }
-
-    fn nominal(&self) -> &Point {
-        &self.nominal
-    }
-
-    fn centre(&self) -> Vec<f64> {
-        self.axes.iter().map(|axis| axis.mean).collect()
-    }
-
-    fn depends(&self, characteristic: usize, dimension: usize) -> bool {
-        self.depends[characteristic][dimension]
-    }
-
-    fn possible_pairs(&self) -> usize {
-        self.pairs().len()
+    fn geometry(&self) -> &Geometry {
+        &self.geometry
     }
 
     fn cost(&self) -> (usize, usize) {
         (self.points.len(), 1)
     }
 
-    fn next(&self, known: &Known) -> Option<Stage> {
+    fn next(&self, known: &KnownAnswers) -> Option<Stage> {
         let open = self.points.iter().filter(|(point, _)| !known.tried(point));
         let points: Vec<(Point, Purpose)> = open.cloned().collect();
         (!points.is_empty()).then_some(Stage { points })

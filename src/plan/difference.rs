@@ -1,14 +1,16 @@
 //! The central-difference plan: the centre, nodes on the axes, and corners for mixed derivatives.
 
 use std::collections::HashSet;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use super::Plan;
 use super::axis::Axis;
-use super::known::Known;
+use super::geometry::Geometry;
+use super::known_answers::KnownAnswers;
 use super::nodes::Spread;
 use super::pairs::{PairChoice, Side, Stencil, strongest};
-use super::point::{At, Point};
+use super::point::{AtNode, Point};
 use super::stage::{Purpose, Stage};
 use crate::correlation::Correlation;
 use crate::dimension::Dimension;
@@ -33,13 +35,7 @@ pub struct Layout {
 #[derive(Debug, Clone)]
 pub struct DifferencePlan {
     layout: Layout,
-    axes: Vec<Axis>,
-    nominal: Point,
-    varying: Vec<usize>,
-    fixed: Vec<usize>,
-    inputs: Inputs,
-    /// For every characteristic, whether it can depend on each dimension.
-    depends: Vec<Vec<bool>>,
+    geometry: Geometry,
 }
 
 /// The nodes of one dimension at which its pairs stand.
@@ -69,7 +65,7 @@ impl DifferencePlan {
         let mut nominal = Vec::new();
         for (d, dimension) in dimensions.iter().enumerate() {
             if let Some(node) = axes[d].at_value(dimension.nominal()) {
-                nominal.push(At { dimension: d as u32, node });
+                nominal.push(AtNode { dimension: d as u32, node });
             }
         }
         let distributions = varying.iter().filter_map(|&d| dimensions[d].distribution());
@@ -81,23 +77,26 @@ impl DifferencePlan {
             }
         }
         let inputs = Inputs::new(shapes, correlation.and_then(|correlation| correlation.among(&varying)));
-        Self { nominal: Point::of(&nominal), layout, axes, varying, fixed, inputs, depends }
+        let nominal = Point::of(&nominal);
+        Self { layout, geometry: Geometry { axes, nominal, varying, fixed, inputs, depends } }
     }
 
     /// Two nodes more on the axis of a dimension that has a pair; whether there are such nodes. `dimension` is the one
     /// with this index in the problem.
     pub(crate) fn refine(&mut self, dimension: &Dimension, index: usize) -> bool {
-        let refined = self.axes[index].refine(dimension, self.layout.step);
-        let rule = self.axes[index].tail.as_ref().and_then(|tail| tail.rule.as_ref());
-        if let (true, Some(rule), Ok(position)) = (refined, rule, self.varying.binary_search(&index)) {
-            self.inputs = self.inputs.clone().with_rule(position, Arc::new(rule.clone()));
+        let Geometry { axes, inputs, varying, .. } = &mut self.geometry;
+        let refined = axes[index].refine(dimension, self.layout.step);
+        let rule = axes[index].tail.as_ref().and_then(|tail| tail.rule.as_ref());
+        if let (true, Some(rule), Ok(position)) = (refined, rule, varying.binary_search(&index)) {
+            *inputs = inputs.clone().with_rule(position, Arc::new(rule.clone()));
         }
         refined
     }
 
     /// Examines these pairs of positions too.
     pub(crate) fn examine(&mut self, pairs: impl IntoIterator<Item = (usize, usize)>) {
-        let pairs = pairs.into_iter().map(|(j, k)| (self.varying[j], self.varying[k]));
+        let varying = &self.geometry.varying;
+        let pairs = pairs.into_iter().map(|(j, k)| (varying[j], varying[k]));
         match &mut self.layout.pairs {
             PairChoice::Listed(listed) => listed.extend(pairs),
             choice => *choice = PairChoice::Listed(pairs.collect()),
@@ -112,15 +111,16 @@ impl DifferencePlan {
     /// The point with these values of dimensions, every other one at its mean.
     pub(crate) fn point_at(&mut self, values: impl IntoIterator<Item = (usize, f64)>) -> Point {
         let at = values.into_iter().filter_map(|(d, x)| {
-            let node = self.axes[d].at_value(x)?;
-            Some(At { dimension: d as u32, node })
+            let node = self.geometry.axes[d].at_value(x)?;
+            Some(AtNode { dimension: d as u32, node })
         });
-        Point::of(&at.collect::<Vec<At>>())
+        Point::of(&at.collect::<Vec<AtNode>>())
     }
 
     /// For every position its nodes on the left and on the right at which pairs stand, with their places in sigmas.
-    pub(crate) fn corners(&self, known: &Known) -> Vec<[Option<(At, f64)>; 2]> {
-        let place = |(d, node): (usize, u32)| (At { dimension: d as u32, node }, self.axes[d].nodes[node as usize].u);
+    pub(crate) fn corners(&self, known: &KnownAnswers) -> Vec<[Option<(AtNode, f64)>; 2]> {
+        let place =
+            |(d, node): (usize, u32)| (AtNode { dimension: d as u32, node }, self.axes[d].nodes[node as usize].u);
         let both = |(&d, nodes): (&usize, &PairNodes)| [nodes.left, nodes.right].map(|node| Some(place((d, node?))));
         self.varying.iter().zip(&self.pair_nodes(known)).map(both).collect()
     }
@@ -134,89 +134,6 @@ impl DifferencePlan {
             }
         }
         u
-    }
-
-    /// The dimensions that vary and on which some characteristic can depend: N of them.
-    pub(crate) fn varying(&self) -> &[usize] {
-        &self.varying
-    }
-
-    /// Their distributions, as far as moments need them, and how they vary together.
-    pub(crate) fn inputs(&self) -> &Inputs {
-        &self.inputs
-    }
-
-    /// One dimension's nodes.
-    pub(crate) fn axis(&self, dimension: usize) -> &Axis {
-        &self.axes[dimension]
-    }
-
-    /// The point at which every dimension has its nominal value.
-    pub(crate) fn nominal(&self) -> &Point {
-        &self.nominal
-    }
-
-    /// The coordinates of the means.
-    pub(crate) fn centre(&self) -> Vec<f64> {
-        self.axes.iter().map(|axis| axis.mean).collect()
-    }
-
-    /// Whether a characteristic can depend on a dimension.
-    pub(crate) fn depends(&self, characteristic: usize, dimension: usize) -> bool {
-        self.depends[characteristic][dimension]
-    }
-
-    /// Whether a characteristic can depend on the pair of dimensions at these positions.
-    pub(crate) fn joint(&self, characteristic: usize, j: usize, k: usize) -> bool {
-        let row = &self.depends[characteristic];
-        row[self.varying[j]] && row[self.varying[k]]
-    }
-
-    /// How many points there are in all, and in how many stages, if none fails.
-    pub(crate) fn cost(&self) -> (usize, usize) {
-        let nodes: usize = self.varying.iter().chain(&self.fixed).map(|&d| self.axes[d].slots.len()).sum();
-        let on_an_axis = |point: &Point| match point.at() {
-            [] => true,
-            [at] => self.axes[at.dimension as usize].slots.iter().any(|slot| slot[0] == at.node),
-            _ => false,
-        };
-        let pairs = self.possible_pairs().min(match &self.layout.pairs {
-            _ if self.layout.spread == Spread::Bare => 0,
-            PairChoice::None => 0,
-            PairChoice::All => usize::MAX,
-            PairChoice::Strongest => self.varying.len(),
-            PairChoice::Adjacent | PairChoice::Listed(_) => self.pairs(None).len(),
-        });
-        let stages = if self.layout.pairs == PairChoice::Strongest && pairs > 0 { 2 } else { 1 };
-        let extra = usize::from(!on_an_axis(&self.nominal));
-        (1 + extra + nodes + pairs.saturating_mul(self.layout.stencil.evaluations()), stages)
-    }
-
-    /// How many pairs matter to some characteristic.
-    pub(crate) fn possible_pairs(&self) -> usize {
-        let n = self.varying.len();
-        if self.depends.iter().any(|row| self.varying.iter().all(|&d| row[d])) {
-            return n * n.saturating_sub(1) / 2;
-        }
-        (0..n).map(|j| (j + 1..n).filter(|&k| self.matters(j, k)).count()).sum()
-    }
-
-    fn matters(&self, j: usize, k: usize) -> bool {
-        (0..self.depends.len()).any(|c| self.joint(c, j, k))
-    }
-
-    /// The next points, or None when nothing is left that could help.
-    pub(crate) fn next(&self, known: &Known) -> Option<Stage> {
-        let mut stage = Builder { known, seen: HashSet::new(), stage: Stage::default() };
-        stage.add(Point::Centre, Purpose::Centre);
-        stage.add(self.nominal.clone(), Purpose::Nominal);
-        self.add_axes(&mut stage, &self.varying, Purpose::Axis);
-        let axes_known = stage.stage.points.is_empty();
-        if self.layout.spread != Spread::Bare && (axes_known || self.layout.pairs != PairChoice::Strongest) {
-            self.add_pairs(&mut stage);
-        }
-        self.add_axes(&mut stage, &self.fixed, Purpose::Sensitivity);
-        (!stage.stage.points.is_empty()).then_some(stage.stage)
     }
 
     /// Every node, and for one at which some characteristic failed the next of its replacements.
@@ -256,24 +173,15 @@ impl DifferencePlan {
         }
     }
 
-    fn on_axis(&self, dimension: usize, node: u32) -> Point {
-        Point::One([At { dimension: dimension as u32, node }])
-    }
-
     fn corner(&self, nodes: &[PairNodes], j: usize, k: usize, (of_j, of_k): (Side, Side)) -> Option<Point> {
         let at = |position: usize, side: Side| {
-            Some(At { dimension: self.varying[position] as u32, node: nodes[position].on(side)? })
+            Some(AtNode { dimension: self.varying[position] as u32, node: nodes[position].on(side)? })
         };
         Some(Point::of(&[at(j, of_j)?, at(k, of_k)?]))
     }
 
-    /// The dimensions of which derivatives are wanted: those that vary, and those without tolerance if they were asked for.
-    pub(crate) fn moved(&self) -> Vec<usize> {
-        self.varying.iter().chain(&self.fixed).copied().collect()
-    }
-
     /// The pairs examined, as positions `j < k`. The strongest can be told only from what is known of the axes.
-    pub(crate) fn pairs(&self, known: Option<&Known>) -> Vec<(usize, usize)> {
+    pub(crate) fn pairs(&self, known: Option<&KnownAnswers>) -> Vec<(usize, usize)> {
         match known {
             None => self.pairs_by(None),
             Some(known) => self.pairs_by(Some(&|c, d| self.part(known, c, d))),
@@ -325,7 +233,7 @@ impl DifferencePlan {
     }
 
     /// One dimension's own part of a characteristic, through all its nodes that have a value; None when none has.
-    pub(crate) fn part(&self, known: &Known, characteristic: usize, dimension: usize) -> Option<Univariate> {
+    pub(crate) fn part(&self, known: &KnownAnswers, characteristic: usize, dimension: usize) -> Option<Univariate> {
         if !self.depends[characteristic][dimension] {
             return Some(Univariate::of_coefficients(&[0.0, 0.0]));
         }
@@ -333,7 +241,7 @@ impl DifferencePlan {
     }
 
     /// Where pairs stand: the nodes next to the mean, or the replacement at which most characteristics have a value.
-    fn pair_nodes(&self, known: &Known) -> Vec<PairNodes> {
+    fn pair_nodes(&self, known: &KnownAnswers) -> Vec<PairNodes> {
         let of_slot = |d: usize, slot: &[u32]| {
             let answered = |node: u32| {
                 let answered = |&c: &usize| known.value(&self.on_axis(d, node), c).is_some();
@@ -361,7 +269,12 @@ impl DifferencePlan {
     /// With `d = f(j, k) - f(j) - f(k) + f(centre)` at each corner,
     /// `A_jk = sum of sign(u_j u_k) d / sum of |u_j u_k|` over the corners that have a value: for all of them this is the
     /// usual formula with unequal steps, for fewer a one-sided one.
-    pub(crate) fn mixed(&self, known: &Known, characteristic: usize, pairs: &[(usize, usize)]) -> Vec<Option<Mixed>> {
+    pub(crate) fn mixed(
+        &self,
+        known: &KnownAnswers,
+        characteristic: usize,
+        pairs: &[(usize, usize)],
+    ) -> Vec<Option<Mixed>> {
         let nodes = self.pair_nodes(known);
         let Some(centre) = known.value(&Point::Centre, characteristic) else { return vec![None; pairs.len()] };
         // Each axis value is needed by N - 1 pairs: looked up once.
@@ -396,7 +309,7 @@ impl DifferencePlan {
     /// places in sigmas, and the difference of which [`mixed`](Self::mixed) is made.
     pub(crate) fn twists(
         &self,
-        known: &Known,
+        known: &KnownAnswers,
         characteristic: usize,
         pairs: &[(usize, usize)],
     ) -> Vec<[Option<Corner>; 4]> {
@@ -416,10 +329,62 @@ impl DifferencePlan {
     }
 
     /// The node in sigmas and the value there.
-    fn axis_value(&self, known: &Known, characteristic: usize, position: usize, node: u32) -> Option<(f64, f64)> {
+    fn axis_value(
+        &self,
+        known: &KnownAnswers,
+        characteristic: usize,
+        position: usize,
+        node: u32,
+    ) -> Option<(f64, f64)> {
         let d = self.varying[position];
         let value = known.value(&self.on_axis(d, node), characteristic)?;
         Some((self.axes[d].nodes[node as usize].u, value))
+    }
+}
+
+impl Deref for DifferencePlan {
+    type Target = Geometry;
+
+    fn deref(&self) -> &Geometry {
+        &self.geometry
+    }
+}
+
+impl Plan for DifferencePlan {
+    fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    fn cost(&self) -> (usize, usize) {
+        let nodes: usize = self.varying.iter().chain(&self.fixed).map(|&d| self.axes[d].slots.len()).sum();
+        let on_an_axis = |point: &Point| match point.at() {
+            [] => true,
+            [at] => self.axes[at.dimension as usize].slots.iter().any(|slot| slot[0] == at.node),
+            _ => false,
+        };
+        let pairs = self.possible_pairs().min(match &self.layout.pairs {
+            _ if self.layout.spread == Spread::Bare => 0,
+            PairChoice::None => 0,
+            PairChoice::All => usize::MAX,
+            PairChoice::Strongest => self.varying.len(),
+            PairChoice::Adjacent | PairChoice::Listed(_) => self.pairs(None).len(),
+        });
+        let stages = if self.layout.pairs == PairChoice::Strongest && pairs > 0 { 2 } else { 1 };
+        let extra = usize::from(!on_an_axis(&self.nominal));
+        (1 + extra + nodes + pairs.saturating_mul(self.layout.stencil.evaluations()), stages)
+    }
+
+    fn next(&self, known: &KnownAnswers) -> Option<Stage> {
+        let mut stage = Builder { known, seen: HashSet::new(), stage: Stage::default() };
+        stage.add(Point::Centre, Purpose::Centre);
+        stage.add(self.nominal.clone(), Purpose::Nominal);
+        self.add_axes(&mut stage, &self.varying, Purpose::Axis);
+        let axes_known = stage.stage.points.is_empty();
+        if self.layout.spread != Spread::Bare && (axes_known || self.layout.pairs != PairChoice::Strongest) {
+            self.add_pairs(&mut stage);
+        }
+        self.add_axes(&mut stage, &self.fixed, Purpose::Sensitivity);
+        (!stage.stage.points.is_empty()).then_some(stage.stage)
     }
 }
 
@@ -446,7 +411,7 @@ impl PairNodes {
 
 /// Collects points that are neither known nor collected yet.
 struct Builder<'k> {
-    known: &'k Known,
+    known: &'k KnownAnswers,
     seen: HashSet<Point>,
     stage: Stage,
 }

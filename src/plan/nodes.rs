@@ -89,7 +89,7 @@ impl Nodes {
     }
 
     /// At one and, for five points, two times the step on either side.
-    pub fn stepped(step: f64, spread: Spread) -> Self {
+    pub(crate) fn stepped(step: f64, spread: Spread) -> Self {
         let u = match spread {
             Spread::Bare => Vec::new(),
             Spread::Pair => vec![-step, step],

@@ -22,6 +22,7 @@ pub enum PairChoice {
 
 /// How a mixed derivative is evaluated beside the axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Stencil {
     /// Two evaluations, with both dimensions up and both down. Exact up to the third order; a fourth-order term in
     /// `u_j^2 u_k^2` disturbs it.
@@ -32,7 +33,7 @@ pub enum Stencil {
 
 impl Stencil {
     /// The names of the stencils.
-    pub const NAMES: [&str; 2] = ["two-point", "four-point"];
+    pub(crate) const NAMES: [&str; 2] = ["two-point", "four-point"];
 
     /// Its name in study files and on the command line.
     pub fn name(self) -> &'static str {

@@ -2,7 +2,7 @@
 
 /// One dimension at one of its nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct At {
+pub struct AtNode {
     /// Index of the dimension in the problem.
     pub dimension: u32,
     /// Index of the node in the dimension's axis.
@@ -17,23 +17,23 @@ pub enum Point {
     /// All at their means.
     Centre,
     /// One dimension elsewhere.
-    One([At; 1]),
+    One([AtNode; 1]),
     /// Two dimensions elsewhere.
-    Two([At; 2]),
+    Two([AtNode; 2]),
     /// Three or more dimensions elsewhere.
-    Many(Box<[At]>),
+    Many(Box<[AtNode]>),
 }
 
 impl Point {
     /// With these dimensions elsewhere, in any order, each once.
-    pub(crate) fn of(at: &[At]) -> Self {
+    pub(crate) fn of(at: &[AtNode]) -> Self {
         match *at {
             [] => Self::Centre,
             [one] => Self::One([one]),
             [one, two] if one < two => Self::Two([one, two]),
             [one, two] => Self::Two([two, one]),
             _ => {
-                let mut at: Box<[At]> = at.into();
+                let mut at: Box<[AtNode]> = at.into();
                 at.sort_unstable();
                 Self::Many(at)
             }
@@ -41,7 +41,7 @@ impl Point {
     }
 
     /// The dimensions that are elsewhere.
-    pub(crate) fn at(&self) -> &[At] {
+    pub(crate) fn at(&self) -> &[AtNode] {
         match self {
             Self::Centre => &[],
             Self::One(at) => at,
@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn the_order_of_the_dimensions_does_not_matter() {
-        let at = |dimension, node| At { dimension, node };
+        let at = |dimension, node| AtNode { dimension, node };
         assert_eq!(Point::of(&[at(4, 0), at(2, 1)]), Point::of(&[at(2, 1), at(4, 0)]));
     }
 }

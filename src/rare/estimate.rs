@@ -80,7 +80,7 @@ const ALONE: f64 = 0.1;
 
 /// A probability, as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Found {
+pub(super) struct ProbabilityEstimate {
     /// None where no point lies beyond.
     pub(super) probability: Option<Estimate>,
     pub(super) interval: [f64; 2],
@@ -195,7 +195,7 @@ impl Weighed {
     /// differ widely (Fay and Feuer 1997; with a greater weight than any seen in the second case).
     /// What lies next to the farthest of them, where no point was beyond, may hold as much as no hit leaves room for: the
     /// two are joined as Zou and Donner (2008) do. What lies farther is taken to be as the points say: empty.
-    pub(super) fn found(&self) -> Option<Found> {
+    pub(super) fn found(&self) -> Option<ProbabilityEstimate> {
         if self.points == 0 {
             return None;
         }
@@ -205,7 +205,12 @@ impl Weighed {
             let most = (UNSEEN * heaviest.max(self.unknown) / n).min(1.0);
             let interval = [0.0, self.most.map_or(most, |bound| bound.min(most))];
             let bounds = [0.0, (self.unknown / n).min(1.0)];
-            return Some(Found { points: self.seen(), interval, bounds, ..Found::default() });
+            return Some(ProbabilityEstimate {
+                points: self.seen(),
+                interval,
+                bounds,
+                ..ProbabilityEstimate::default()
+            });
         }
         let value = self.sum / n;
         let error = self.variance().sqrt() / n;
@@ -224,7 +229,7 @@ impl Weighed {
         let unseen = UNSEEN * self.next() / n;
         let high = value + (high - value).hypot(unseen);
         let probability = |scaled: f64| (scaled.ln() + self.scale).exp().min(1.0);
-        let found = Found {
+        let found = ProbabilityEstimate {
             probability: Some(Estimate {
                 value: probability(value),
                 standard_error: (self.points > 1).then(|| probability(error)),
@@ -245,7 +250,7 @@ impl Weighed {
     }
 }
 
-impl Found {
+impl ProbabilityEstimate {
     /// Of what is so improbable that only a bound is told.
     fn out_of_reach(self) -> Self {
         let bound = |high: f64| high.max(FAINTEST);

@@ -24,6 +24,7 @@ mod mixture;
 mod model;
 mod place;
 mod search;
+mod shape;
 mod space;
 mod target;
 mod warnings;
@@ -37,10 +38,14 @@ use crate::evaluation::history;
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, SamplingError};
+use crate::shape::{text, through};
 use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::warning::Warning;
+#[cfg(feature = "cli")]
+pub(crate) use shape::RareShape;
+
 use explore::Explored;
 use model::Model;
 use place::{Place, places};
@@ -50,6 +55,7 @@ use target::Target;
 
 /// How rare events are sought.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct RareOptions {
     /// Points of the model beside those of the surrogate, at most.
     pub samples: u64,
@@ -67,14 +73,49 @@ impl Default for RareOptions {
     }
 }
 
+impl RareOptions {
+    /// With at most so many points of the model beside those of the surrogate.
+    #[must_use]
+    pub fn with_samples(mut self, points: u64) -> Self {
+        self.samples = points;
+        self
+    }
+
+    /// With this seed.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// Ending when the standard error of every probability is below this part of it.
+    #[must_use]
+    pub fn with_until(mut self, error: f64) -> Self {
+        self.until = Some(error);
+        self
+    }
+
+    /// With the surrogate of an analysis with these options.
+    #[must_use]
+    pub fn with_surrogate(mut self, analysis: Options) -> Self {
+        self.surrogate = analysis;
+        self
+    }
+}
+
 /// What was found out about rare events.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct RareEvents {
     /// The method of the surrogate.
+    #[serde(rename = "surrogate")]
+    #[cfg_attr(feature = "cli", schemars(with = "String"))]
     pub method: Method,
     /// What it came to in points and time, those of the surrogate included; why it ended before all points were drawn or what was
     /// wanted was reached.
+    #[serde(flatten)]
     pub run: RunSummary,
     /// Points that were drawn and answered.
     pub samples: u64,
@@ -83,28 +124,40 @@ pub struct RareEvents {
     /// Whether what was wanted was reached; None where nothing was.
     pub reached: Option<bool>,
     /// Where the model answered the nominal point otherwise than before.
+    // Told of as warnings.
+    #[serde(skip)]
     pub non_repeatable: Vec<NonRepeatable>,
     /// What is known of every characteristic, in the problem's order.
+    #[cfg_attr(feature = "cli", schemars(with = "Vec<RareShape>"))]
     pub characteristics: Vec<RareCharacteristic>,
     /// Where the estimates rest on little, and where points have no value.
+    #[serde(skip)]
     pub warnings: Vec<Warning>,
 }
 
 /// What is known of one characteristic.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct RareCharacteristic {
     /// The characteristic, with its limits.
+    #[serde(flatten)]
     pub characteristic: Characteristic,
     /// Points at which it has no value.
     pub failed: u64,
     /// Why not, of the first of them.
+    #[serde(serialize_with = "text")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<String>"))]
     pub error: Option<EvaluationError>,
     /// Below its lower limit; None without one.
+    #[serde(skip)]
     pub below: Option<Beyond>,
     /// Above its upper limit; None without one.
+    #[serde(skip)]
     pub above: Option<Beyond>,
     /// The share of assemblies within the limits; None where that beyond one of them is unknown.
+    #[serde(rename = "yield")]
     pub yield_: Option<f64>,
     /// 95 % interval of that.
     pub yield_interval: Option<[f64; 2]>,
@@ -113,17 +166,21 @@ pub struct RareCharacteristic {
 }
 
 /// What is known of what lies beyond one limit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Beyond {
     /// The limit.
     pub limit: f64,
     /// The probability beyond it; None where no point lies there: its interval is then a bound, which takes it for a half-space that none of
     /// the explored points met.
+    #[serde(flatten, serialize_with = "through::<shape::ProbabilityShape, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "shape::ProbabilityShape"))]
     pub probability: Option<Estimate>,
     /// 95 % interval.
     pub interval: [f64; 2],
     /// If no point without a value lies beyond, and if all of them do.
+    #[serde(skip)]
     pub bounds: [f64; 2],
     /// Points beyond.
     pub hits: u64,
@@ -206,17 +263,17 @@ const LEARNING: u64 = 2;
 /// let limits = SpecLimits::new(None, Some(5.75))?; // 4.5 sigma
 /// let gap = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?
 ///     .asking([Characteristic::new("gap").with_limits(limits)])?;
-/// let found = rare(&gap, &RareOptions { samples: 400, ..RareOptions::default() })?;
+/// let found = rare(&gap, &RareOptions::default().with_samples(400))?;
 /// let [low, high] = found.characteristics[0].above.as_ref().unwrap().interval;
 /// assert!(low < 3.3977e-6 && 3.3977e-6 < high && high < 1.3 * low);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn rare(problem: &Problem, options: &RareOptions) -> Result<RareEvents, RareError> {
-    rare_within(problem, options, &Run::to_the_end(), &|_| {})
+    rare_with(problem, options, &Run::to_the_end(), &|_| {})
 }
 
 /// [`rare`], telling of its pace and stopping when told to.
-pub fn rare_within(
+pub fn rare_with(
     problem: &Problem,
     options: &RareOptions,
     run: &Run<'_>,
@@ -283,7 +340,7 @@ pub fn rare_within(
         surrogate.non_repeatable.iter().chain(&model.non_repeatable).cloned().collect();
     let samples = search.points;
     let characteristics = search.characteristics(&model, stopped.is_some());
-    let run = RunSummary { stopped, ..drawn.and(&spent) };
+    let run = RunSummary { stopped, evaluator: problem.evaluator(), ..drawn.and(&spent) };
     let warnings = warnings::of(&characteristics, samples, run.evaluations);
     Ok(RareEvents {
         method: surrogates.outcome.method,

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::space::{Columns, Space};
-use crate::assembly::{Ask, EvaluationError, NonRepeatable, Points, Responses, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
 use crate::problem::Problem;
 use crate::time::Instant;
 
@@ -95,7 +95,7 @@ impl<'a> Model<'a> {
             }
             let mut out = Responses::open(batch, outputs.len());
             let begun = Instant::now();
-            self.problem.function().evaluate(&Ask::values(&points, outputs), self.run, &mut out);
+            self.problem.function().evaluate(&Request::values(&points, outputs), self.run, &mut out);
             self.in_model += begun.elapsed();
             self.extra += out.extra();
             self.non_repeatable.extend(out.non_repeatable().iter().cloned());

@@ -1,6 +1,6 @@
 //! The share within the limits, from what lies beyond each of them.
 
-use super::estimate::Found;
+use super::estimate::ProbabilityEstimate;
 use super::{Beyond, RareCharacteristic};
 use crate::characteristic::SpecLimits;
 use crate::requirement::Requirement;
@@ -21,7 +21,11 @@ pub(super) struct Within {
 /// A side beyond which nothing was seen adds to the interval; where that is less than what the other side leaves open, the value
 /// is that of the other. Two independent errors are joined as Zou and Donner (2008) do.
 /// Where the means lie beyond a limit, `kept` is what keeps that one: the share within the limits is what of it keeps the other too.
-pub(super) fn within(limits: SpecLimits, sides: [&Option<Beyond>; 2], kept: Option<(usize, Found)>) -> Option<Within> {
+pub(super) fn within(
+    limits: SpecLimits,
+    sides: [&Option<Beyond>; 2],
+    kept: Option<(usize, ProbabilityEstimate)>,
+) -> Option<Within> {
     if let Some((side, kept)) = kept {
         let other = match (sides[1 - side], [limits.lower(), limits.upper()][1 - side]) {
             (None, Some(_)) => return None,
@@ -48,7 +52,7 @@ pub(super) fn within(limits: SpecLimits, sides: [&Option<Beyond>; 2], kept: Opti
 }
 
 /// What keeps one limit, less what lies beyond the other.
-fn keeping(kept: Found, other: Option<&Beyond>) -> Within {
+fn keeping(kept: ProbabilityEstimate, other: Option<&Beyond>) -> Within {
     let estimate = |probability: Option<Estimate>| probability.map_or(0.0, |estimate| estimate.value);
     let (keeps, lost) = (estimate(kept.probability), other.map_or(0.0, |beyond| estimate(beyond.probability)));
     let apart = |end: usize| {
@@ -62,6 +66,12 @@ fn keeping(kept: Found, other: Option<&Beyond>) -> Within {
 }
 
 impl RareCharacteristic {
+    /// The probability beyond one of its limits if no point without a value lies there, and if all do; None where every point has a
+    /// value.
+    pub(crate) fn bounds(&self, beyond: &Beyond) -> Option<[f64; 2]> {
+        (self.failed > 0).then_some(beyond.bounds)
+    }
+
     /// How a requirement is kept, whether or not it is the characteristic's own: a yield by its interval, where points without a
     /// value may all be rejected ones. Of what lies between the limits nothing is known, so that no other is judged.
     pub fn judge(&self, requirement: Requirement) -> Judged {

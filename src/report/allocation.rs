@@ -2,26 +2,36 @@
 
 use serde::Serialize;
 
-use super::requirement::{amount, ends, word};
-use super::simulation::SimulatedReport;
-use super::{About, CharacteristicReport, Head, WarningReport};
-use crate::allocation::{Allocated, Allocation, Attainable, Bound, JointYield};
+use super::{About, Head, WarningReport};
+#[cfg(feature = "cli")]
+use crate::allocation::ProofShape;
+use crate::allocation::{
+    Allocated, Allocation, Attainable, FrontPoint, JointYield, Kept, Moved, Proof, ShadowPrice, Status,
+};
+#[cfg(feature = "cli")]
+use crate::analysis::CharacteristicShape;
+use crate::analysis::{Analysis, CharacteristicAnalysis};
+use crate::method::Method;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
+use crate::simulation::SimulatedCharacteristic;
+#[cfg(feature = "cli")]
+use crate::simulation::SimulatedShape;
 use crate::summary::RunSummary;
-use crate::verdict::Verdict;
 use crate::warning::Warning;
 
 /// What an allocation found out. What is unknown is null, never 0.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct AllocationReport {
     /// What every report begins with.
     #[serde(flatten)]
     pub head: Head,
     /// The method by which derivatives were taken.
-    pub method: &'static str,
+    #[cfg_attr(feature = "cli", schemars(with = "String"))]
+    pub method: Method,
     /// `optimal`, `almost-optimal`, `infeasible` or `out-of-time`.
-    pub status: &'static str,
+    pub status: Status,
     /// Whether the model was evaluated at the tolerances found.
     pub confirmed: bool,
     /// What it came to in points and time, and why it ended early.
@@ -36,11 +46,11 @@ pub struct AllocationReport {
     /// Every dimension with a cost, in the study's order.
     pub tolerances: Vec<AllocatedReport>,
     /// Nominal values that have moved.
-    pub recentred: Vec<RecentredReport>,
+    pub recentred: Vec<OfDimension<Moved>>,
     /// Every requirement.
-    pub requirements: Vec<KeptReport>,
+    pub requirements: Vec<OfCharacteristic<Kept>>,
     /// What limits and required sigmas cost.
-    pub shadow_prices: Vec<PriceReport>,
+    pub shadow_prices: Vec<OfCharacteristic<ShadowPrice>>,
     /// The requirement that cannot be kept, and the best that can be had.
     pub attainable: Option<AttainableReport>,
     /// What shows that nothing is cheaper.
@@ -80,98 +90,41 @@ pub struct BeforeAfter<T> {
     pub after: T,
 }
 
-/// One dimension with a cost.
+/// Something of a dimension, with its name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct AllocatedReport {
-    /// Its name.
-    pub dimension: String,
-    /// Its unit.
-    pub unit: Option<String>,
-    /// Half its band before.
-    pub before: f64,
-    /// Half its band after.
-    pub after: f64,
-    /// Lower and upper deviation from the nominal before and after, where there is a band.
-    pub deviations: BeforeAfter<Option<[f64; 2]>>,
-    /// What it cost; null where no process holds that.
-    pub cost_before: Option<f64>,
-    /// What it costs.
-    pub cost_after: Option<f64>,
-    /// The process, where several compete.
-    pub process: Option<String>,
-    /// `min` or `max` where it has met that bound.
-    pub at_bound: Option<&'static str>,
-    /// Its share of each characteristic's variance.
-    pub contributions: Vec<ContributionReport>,
-}
-
-/// A share of a variance before and after.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct ContributionReport {
-    /// The characteristic.
-    pub characteristic: String,
-    /// Before.
-    pub before: Option<f64>,
-    /// After.
-    pub after: Option<f64>,
-}
-
-/// A nominal value that has moved.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct RecentredReport {
+pub struct OfDimension<T> {
     /// The dimension.
     pub dimension: String,
     /// Its unit.
     pub unit: Option<String>,
-    /// Before.
-    pub before: f64,
-    /// After.
-    pub after: f64,
+    /// What there is of it.
+    #[serde(flatten)]
+    pub of: T,
 }
 
-/// A requirement.
+/// Something of a characteristic, with its name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct KeptReport {
+pub struct OfCharacteristic<T> {
     /// The characteristic.
     pub characteristic: String,
-    /// `yield`, `cpk`, `sigma`, `rss` or `worst-case`.
-    pub requirement: &'static str,
-    /// How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1.
-    pub required: f64,
-    /// What there was.
-    pub before: Option<f64>,
-    /// What there is.
-    pub after: Option<f64>,
-    /// Within which that is known, an end null where there is none; null where it is not known at all.
-    pub interval: Option<[Option<f64>; 2]>,
-    /// Whether it was kept; null where that is not known.
-    pub met_before: Option<bool>,
-    /// Whether it is; null where that is not known, and where nothing was found.
-    pub met: Option<bool>,
-    /// Whether it was kept, in a word.
-    pub verdict_before: Verdict,
-    /// Whether it is, in a word; null where nothing was found.
-    pub verdict: Option<Verdict>,
+    /// What there is of it.
+    #[serde(flatten)]
+    pub of: T,
 }
 
-/// What gives way, and what that saves, per unit.
+/// One dimension with a cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct PriceReport {
-    /// The characteristic.
-    pub characteristic: String,
-    /// Cost saved per unit by which both limits go outwards, or the only one.
-    pub both: Option<f64>,
-    /// Cost saved per unit by which its lower limit goes down; null where the upper one holds the cost up too.
-    pub lower: Option<f64>,
-    /// Cost saved per unit by which its upper limit goes up.
-    pub upper: Option<f64>,
-    /// Cost saved per unit of a required sigma.
-    pub sigma: Option<f64>,
+pub struct AllocatedReport {
+    /// What was found.
+    #[serde(flatten)]
+    pub of: OfDimension<Allocated>,
+    /// Lower and upper deviation from the nominal before and after, where there is a band.
+    pub deviations: BeforeAfter<Option<[f64; 2]>>,
+    /// Its share of each characteristic's variance.
+    pub contributions: Vec<OfCharacteristic<BeforeAfter<Option<f64>>>>,
 }
 
 /// A requirement that cannot be kept.
@@ -182,34 +135,23 @@ pub struct AttainableReport {
     pub characteristic: String,
     /// Its unit.
     pub unit: Option<String>,
-    /// What is required.
-    pub requirement: &'static str,
-    /// How much of it.
-    pub required: f64,
-    /// The best that there is.
-    pub best: Option<f64>,
+    /// What can be had.
+    #[serde(flatten)]
+    pub of: Attainable,
     /// Dimensions without cost that break it by themselves, most harmful first.
     pub because: Vec<String>,
-    /// Whether it could be kept if it were the only one.
-    pub together: bool,
 }
 
 /// What shows that nothing is cheaper.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ProofReport {
-    /// The largest violation of the conditions of Karush, Kuhn and Tucker.
-    pub kkt_residual: Option<f64>,
-    /// No choice of processes costs less.
-    pub bound: Option<f64>,
-    /// By what part of the cost it may be above that.
+    /// The proof.
+    #[serde(flatten)]
+    #[cfg_attr(feature = "cli", schemars(with = "ProofShape"))]
+    pub of: Proof,
+    /// By what part of the cost it may be above the bound.
     pub gap: Option<f64>,
-    /// Whether the bound is exact, rather than resting on a sample of choices.
-    pub bound_is_exact: Option<bool>,
-    /// Nodes of the branch and bound.
-    pub nodes: usize,
-    /// Whether Lagrange's condition had the answer in closed form.
-    pub closed_form: bool,
 }
 
 /// One characteristic before and after.
@@ -221,9 +163,11 @@ pub struct AllocatedCharacteristic {
     /// Its unit.
     pub unit: Option<String>,
     /// As `analyze` reports it, at the tolerances before.
-    pub before: CharacteristicReport,
+    #[cfg_attr(feature = "cli", schemars(with = "CharacteristicShape"))]
+    pub before: CharacteristicAnalysis,
     /// And at those found; null where none were.
-    pub after: Option<CharacteristicReport>,
+    #[cfg_attr(feature = "cli", schemars(with = "Option<CharacteristicShape>"))]
+    pub after: Option<CharacteristicAnalysis>,
 }
 
 /// One point of the front.
@@ -231,48 +175,29 @@ pub struct AllocatedCharacteristic {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct FrontReport {
     /// What was required of each characteristic.
-    pub required: Vec<FrontRequirement>,
+    #[cfg_attr(feature = "cli", schemars(with = "Vec<OfCharacteristic<crate::requirement::Required>>"))]
+    pub required: Vec<OfCharacteristic<Requirement>>,
     /// What that costs; null where it cannot be kept.
     pub cost: Option<f64>,
     /// Half bands of the dimensions with a cost, in the order of `tolerances`.
     pub tolerances: Option<Vec<f64>>,
 }
 
-/// What a point of the front requires of one characteristic.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct FrontRequirement {
-    /// The characteristic.
-    pub characteristic: String,
-    /// `yield` or `cpk`.
-    pub requirement: &'static str,
-    /// How much of it.
-    pub required: f64,
-}
-
 /// Monte Carlo at the tolerances found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ConfirmationReport {
     /// Points.
     pub samples: u64,
     /// Every characteristic, as `simulate` reports it.
-    pub characteristics: Vec<SimulatedReport>,
+    #[cfg_attr(feature = "cli", schemars(with = "Vec<SimulatedShape>"))]
+    pub characteristics: Vec<SimulatedCharacteristic>,
 }
 
 impl AllocationReport {
     /// The report of an allocation; `table` is the study written anew, where it can be.
     pub fn of(problem: &Problem, allocation: &Allocation, table: Option<&WrittenAnew>, about: About) -> Self {
-        let name = |c: usize| problem.characteristics()[c].name().to_owned();
-        let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
-        let unit = |d: usize| problem.dimensions()[d].unit().map(str::to_owned);
-        let before: Vec<_> = allocation.before.characteristics.iter().map(CharacteristicReport::of).collect();
-        let after = allocation
-            .after
-            .as_ref()
-            .map(|after| after.characteristics.iter().map(CharacteristicReport::of).collect::<Vec<_>>());
         let found = allocation.after.as_ref().unwrap_or(&allocation.before);
-        let changed = allocation.cost_after.is_some();
         let mut warnings: Vec<WarningReport> =
             about.warnings.iter().chain(&found.warnings).map(WarningReport::of).collect();
         let fits = table.iter().flat_map(|table| &table.replaced_fits);
@@ -281,131 +206,102 @@ impl AllocationReport {
             warnings.push(WarningReport::of(&Warning::FitReplaced { dimensions }));
         }
         warnings.extend(allocation.warnings.iter().map(WarningReport::of));
+        let named = Names(problem);
+        let proof = &allocation.proof;
+        let gap = |(bound, cost): (f64, f64)| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0);
         Self {
             head: Head::of("allocate", &about),
-            method: found.method.name(),
-            status: allocation.status.name(),
+            method: found.method,
+            status: allocation.status,
             confirmed: allocation.confirmed,
             run: allocation.run,
             rounds: allocation.rounds,
             cost_before: allocation.cost_before.filter(|_| !allocation.tolerances.is_empty()),
             cost_after: allocation.cost_after,
-            tolerances: allocation.tolerances.iter().map(|one| allocated(problem, allocation, one, changed)).collect(),
-            recentred: (allocation.moved.iter())
-                .map(|one| RecentredReport {
-                    dimension: dimension(one.dimension),
-                    unit: unit(one.dimension),
-                    before: one.before,
-                    after: one.after,
-                })
-                .collect(),
-            requirements: (allocation.requirements.iter())
-                .map(|one| KeptReport {
-                    characteristic: name(one.characteristic),
-                    requirement: word(one.requirement),
-                    required: amount(one.requirement),
-                    before: one.before.value.filter(|value| value.is_finite()),
-                    after: one.after.and_then(|after| after.value).filter(|value| value.is_finite()),
-                    interval: one.after.and_then(|after| after.interval).map(ends),
-                    met_before: one.before.verdict.met(),
-                    met: one.after.and_then(|after| after.verdict.met()),
-                    verdict_before: one.before.verdict,
-                    verdict: one.after.map(|after| after.verdict),
-                })
-                .collect(),
-            shadow_prices: (allocation.prices.iter())
-                .map(|one| PriceReport {
-                    characteristic: name(one.characteristic),
-                    both: one.both,
-                    lower: one.lower,
-                    upper: one.upper,
-                    sigma: one.sigma,
-                })
-                .collect(),
-            attainable: allocation.attainable.as_ref().map(|one| attainable(problem, one)),
-            proof: ProofReport {
-                kkt_residual: allocation.proof.residual,
-                bound: allocation.proof.bound,
-                gap: (allocation.proof.bound.zip(allocation.cost_after))
-                    .map(|(bound, cost)| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0)),
-                bound_is_exact: allocation.proof.bound.map(|_| allocation.proof.rigorous),
-                nodes: allocation.proof.nodes,
-                closed_form: allocation.proof.closed_form,
-            },
+            tolerances: allocation.tolerances.iter().map(|one| named.allocated(allocation, one)).collect(),
+            recentred: allocation.moved.iter().map(|one| named.dimension(one.dimension, one)).collect(),
+            requirements: allocation.requirements.iter().map(|one| named.of(one.characteristic, one)).collect(),
+            shadow_prices: allocation.prices.iter().map(|one| named.of(one.characteristic, one)).collect(),
+            attainable: allocation.attainable.as_ref().map(|one| named.attainable(one)),
+            proof: ProofReport { of: proof.clone(), gap: proof.bound.zip(allocation.cost_after).map(gap) },
             loosest_scaling: BeforeAfter { before: allocation.loosest_before, after: allocation.loosest_after },
             joint_yield: BeforeAfter { before: allocation.joint[0], after: allocation.joint[1] },
-            characteristics: (before.into_iter().enumerate())
+            characteristics: (allocation.before.characteristics.iter().enumerate())
                 .map(|(c, before)| AllocatedCharacteristic {
-                    name: name(c),
-                    unit: before.unit.clone(),
-                    before,
-                    after: after.as_ref().map(|after| after[c].clone()),
+                    name: before.characteristic.name().to_owned(),
+                    unit: before.characteristic.unit().map(str::to_owned),
+                    before: before.clone(),
+                    after: allocation.after.as_ref().map(|after| after.characteristics[c].clone()),
                 })
                 .collect(),
-            front: front(problem, allocation),
+            front: allocation.front.iter().map(|point| named.front(point)).collect(),
             confirmation: allocation.confirmation.as_ref().map(|simulation| ConfirmationReport {
                 samples: simulation.samples,
-                characteristics: simulation.characteristics.iter().map(SimulatedReport::of).collect(),
+                characteristics: simulation.characteristics.clone(),
             }),
             dimensions_table: table.map(|table| table.entries.clone()).filter(|table| !table.is_empty()),
             warnings,
         }
     }
-}
 
-fn allocated(problem: &Problem, allocation: &Allocation, one: &Allocated, changed: bool) -> AllocatedReport {
-    let d = one.dimension;
-    let share = |analysis: &crate::analysis::Analysis, c: usize| analysis.characteristics[c].share(d);
-    AllocatedReport {
-        dimension: problem.dimensions()[d].name().to_owned(),
-        unit: problem.dimensions()[d].unit().map(str::to_owned),
-        before: one.before,
-        after: one.after,
-        deviations: BeforeAfter {
-            before: problem.dimensions()[d].tolerance(),
-            after: allocation.problem.dimensions()[d].tolerance(),
-        },
-        cost_before: one.cost_before,
-        cost_after: one.cost_after,
-        process: one.process.clone(),
-        at_bound: one.bound.filter(|_| changed).map(|bound| match bound {
-            Bound::Least => "min",
-            Bound::Greatest => "max",
-        }),
-        contributions: (problem.characteristics().iter().enumerate())
-            .map(|(c, characteristic)| ContributionReport {
-                characteristic: characteristic.name().to_owned(),
-                before: share(&allocation.before, c),
-                after: allocation.after.as_ref().and_then(|after| share(after, c)),
-            })
-            .collect(),
+    /// Without the interactions that hardly matter, before and after: what they make together stands in their place.
+    pub fn shortened(mut self) -> Self {
+        for one in &mut self.characteristics {
+            one.before.shorten();
+            one.after.iter_mut().for_each(CharacteristicAnalysis::shorten);
+        }
+        self
     }
 }
 
-fn attainable(problem: &Problem, one: &Attainable) -> AttainableReport {
-    let characteristic = &problem.characteristics()[one.characteristic];
-    AttainableReport {
-        characteristic: characteristic.name().to_owned(),
-        unit: characteristic.unit().map(str::to_owned),
-        requirement: word(one.requirement),
-        required: amount(one.requirement),
-        best: one.best,
-        because: one.because.iter().map(|&d| problem.dimensions()[d].name().to_owned()).collect(),
-        together: one.together,
-    }
-}
+/// Names in place of indices.
+struct Names<'p>(&'p Problem);
 
-fn front(problem: &Problem, allocation: &Allocation) -> Vec<FrontReport> {
-    let one = |point: &crate::allocation::FrontPoint| FrontReport {
-        required: (point.required.iter())
-            .map(|&(c, requirement)| FrontRequirement {
-                characteristic: problem.characteristics()[c].name().to_owned(),
-                requirement: word(requirement),
-                required: amount(requirement),
-            })
-            .collect(),
-        cost: point.cost,
-        tolerances: point.tolerances.clone(),
-    };
-    allocation.front.iter().map(one).collect()
+impl Names<'_> {
+    fn of<T: Clone>(&self, c: usize, of: &T) -> OfCharacteristic<T> {
+        OfCharacteristic { characteristic: self.0.characteristics()[c].name().to_owned(), of: of.clone() }
+    }
+
+    fn dimension<T: Clone>(&self, d: usize, of: &T) -> OfDimension<T> {
+        let dimension = &self.0.dimensions()[d];
+        let unit = dimension.unit().map(str::to_owned);
+        OfDimension { dimension: dimension.name().to_owned(), unit, of: of.clone() }
+    }
+
+    fn allocated(&self, allocation: &Allocation, one: &Allocated) -> AllocatedReport {
+        let d = one.dimension;
+        let changed = allocation.cost_after.is_some();
+        let share = |analysis: &Analysis, c: usize| analysis.characteristics[c].share(d);
+        let shares = |c: usize| BeforeAfter {
+            before: share(&allocation.before, c),
+            after: allocation.after.as_ref().and_then(|after| share(after, c)),
+        };
+        let one = Allocated { bound: one.bound.filter(|_| changed), ..one.clone() };
+        AllocatedReport {
+            of: self.dimension(d, &one),
+            deviations: BeforeAfter {
+                before: self.0.dimensions()[d].tolerance(),
+                after: allocation.problem.dimensions()[d].tolerance(),
+            },
+            contributions: (0..self.0.characteristics().len()).map(|c| self.of(c, &shares(c))).collect(),
+        }
+    }
+
+    fn attainable(&self, one: &Attainable) -> AttainableReport {
+        let characteristic = &self.0.characteristics()[one.characteristic];
+        AttainableReport {
+            characteristic: characteristic.name().to_owned(),
+            unit: characteristic.unit().map(str::to_owned),
+            of: one.clone(),
+            because: one.because.iter().map(|&d| self.0.dimensions()[d].name().to_owned()).collect(),
+        }
+    }
+
+    fn front(&self, point: &FrontPoint) -> FrontReport {
+        FrontReport {
+            required: point.required.iter().map(|(c, requirement)| self.of(*c, requirement)).collect(),
+            cost: point.cost,
+            tolerances: point.tolerances.clone(),
+        }
+    }
 }

@@ -1,18 +1,22 @@
 //! The report of an allocation as a document.
 
 use super::allocation::{
-    AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, ContributionReport, FrontRequirement,
-    KeptReport, PriceReport,
+    AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, BeforeAfter, OfCharacteristic,
+    OfDimension,
 };
+use super::figures::{Figures, Named};
+use super::head;
 use super::requirement::loud;
-use super::{CharacteristicReport, head};
-use crate::allocation::JointYield;
-use crate::document::number::{beside, index, known, plain, rejected, share, short, significant, yielded};
+use crate::allocation::{Allocated, Bound, JointYield, Kept, Moved, ShadowPrice, Status};
+use crate::analysis::CharacteristicAnalysis;
+use crate::document::number::{beside, index, known, plain, share, short, significant, yielded};
 use crate::document::{
-    Blocks, Cell, Chart, Columns, DataTable, Document, Element, Flow, Layer, Line, Paragraph, Plot, PlotAxis,
-    PlotPoint, PlotScale, Section, Stroke, Tone, Value,
+    Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
+    PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
 };
-use crate::verdict::Verdict;
+use crate::requirement::Requirement;
+use crate::shape::finite;
+use crate::verdict::{Judged, Verdict};
 
 /// A smaller residual is rounding.
 const LEAST: f64 = 1e-12;
@@ -40,6 +44,9 @@ impl AllocationReport {
             let shown = tables.iter().any(|table| !table.view.is_empty());
             let mut section = Section::default();
             tables.into_iter().for_each(|table| section.table(table));
+            if group == 0 && shown && self.paid() > 0.0 {
+                section.aside("Costs", vec![Element::Chart(Chart::Bars(self.costs()))]);
+            }
             if group == 2 {
                 self.shadow_prices.iter().for_each(|price| self.prices(&mut section, price));
             }
@@ -72,8 +79,8 @@ impl AllocationReport {
 
     fn status_tone(&self) -> Tone {
         match self.status {
-            "optimal" => Tone::Good,
-            "infeasible" => Tone::Bad,
+            Status::Optimal => Tone::Good,
+            Status::Infeasible => Tone::Bad,
             _ => Tone::Doubtful,
         }
     }
@@ -91,7 +98,7 @@ impl AllocationReport {
             (Some(before), None) => format!("cost {} before", money(before)),
             (None, None) => "nominal values moved".to_owned(),
         };
-        page.line(Line::toned(self.status, self.status_tone()).and(format!(": {cost}")));
+        page.line(Line::toned(self.status.name(), self.status_tone()).and(format!(": {cost}")));
         page.line(format!(
             "{} evaluations in {} rounds{}{}",
             self.run.evaluations,
@@ -99,9 +106,9 @@ impl AllocationReport {
             head::beside(&self.run),
             if self.confirmed && self.cost_after.is_some() { ", confirmed by the model" } else { "" }
         ));
-        let proof = &self.proof;
-        if let Some(gap) = proof.gap {
-            let basis = if proof.bound_is_exact == Some(true) { "" } else { ", as far as a sample of choices tells" };
+        let proof = &self.proof.of;
+        if let Some(gap) = self.proof.gap {
+            let basis = if proof.rigorous { "" } else { ", as far as a sample of choices tells" };
             let than = match gap <= 1e-9 {
                 true => format!("{basis} ("),
                 false => {
@@ -111,76 +118,111 @@ impl AllocationReport {
             };
             page.line(format!("no choice of processes costs less{than}{} nodes)", proof.nodes));
         }
-        if let Some(residual) = proof.kkt_residual {
-            let closed = if proof.closed_form { ", Lagrange's solution in closed form" } else { "" };
-            // The next power of ten, and no more than doubles tell.
-            let within = 10f64.powi(residual.max(LEAST).log10().ceil() as i32);
-            page.line(format!("conditions of Karush, Kuhn and Tucker kept within {within:.0e}{closed}"));
+        match proof.residual {
+            Some(residual) if residual.is_finite() => {
+                let closed = if proof.closed_form { ", Lagrange's solution in closed form" } else { "" };
+                // The next power of ten, and no more than doubles tell.
+                let within = 10f64.powi(residual.max(LEAST).log10().ceil() as i32);
+                page.line(format!("conditions of Karush, Kuhn and Tucker kept within {within:.0e}{closed}"));
+            }
+            Some(_) => page.line("conditions of Karush, Kuhn and Tucker unknown: no cheaper tolerances were found"),
+            None => {}
         }
     }
 
     fn tolerances(&self) -> DataTable {
         let side = |band: Option<[f64; 2]>, end: usize| Cell::data(band.map(|band| band[end]));
-        let most = |one: &AllocatedReport, of: &dyn Fn(&ContributionReport) -> Option<f64>| {
-            let share = one.contributions.iter().filter_map(of).reduce(f64::max);
+        let most = |one: &AllocatedReport, of: &dyn Fn(&BeforeAfter<Option<f64>>) -> Option<f64>| {
+            let share = one.contributions.iter().filter_map(|one| of(&one.of)).reduce(f64::max);
             Cell::number(share, |share| format!("{:.1}", 100.0 * share))
         };
         let shares = if self.characteristics.len() == 1 { "share %" } else { "most %" };
         Columns::default()
-            .named("dimension", "dimension", |one: &&AllocatedReport| Cell::name(&one.dimension))
-            .data("unit", |one| Cell::optional(one.unit.as_deref()))
+            .named("dimension", "dimension", |one: &&AllocatedReport| Cell::name(&one.of.dimension))
+            .data("unit", |one| Cell::optional(one.of.unit.as_deref()))
             .column("before", "before", |one| {
-                Cell::both(Value::Number(Some(one.before)), band(one.before, one.deviations.before))
+                Cell::both(Value::Number(Some(one.of.of.before)), band(one.of.of.before, one.deviations.before))
             })
             .column("after", "after", |one| {
-                Cell::both(Value::Number(Some(one.after)), band(one.after, one.deviations.after))
+                Cell::both(Value::Number(Some(one.of.of.after)), band(one.of.of.after, one.deviations.after))
             })
-            .shown("", |one| Cell::optional(one.unit.as_deref()))
+            .shown("", |one| Cell::optional(one.of.unit.as_deref()))
             .data("lower_before", move |one| side(one.deviations.before, 0))
             .data("upper_before", move |one| side(one.deviations.before, 1))
             .data("lower_after", move |one| side(one.deviations.after, 0))
             .data("upper_after", move |one| side(one.deviations.after, 1))
-            .column("cost_before", "cost", |one| Cell::number(one.cost_before, money))
-            .column("cost_after", "after", |one| Cell::number(one.cost_after, money))
+            .column("cost_before", "cost", |one| Cell::number(one.of.of.cost_before, money))
+            .column("cost_after", "after", |one| Cell::number(one.of.of.cost_after, money))
             .shown(shares, move |one| most(one, &|one| one.before))
             .shown("after", move |one| most(one, &|one| one.after))
-            .data("process", |one| Cell::optional(one.process.as_deref()))
-            .data("at_bound", |one| Cell::optional(one.at_bound))
+            .data("process", |one| Cell::optional(one.of.of.process.as_deref()))
+            .data("at_bound", |one| Cell::optional(one.of.of.bound.map(bound)))
             .shown("", |one| {
-                let bound = one.at_bound.map(|bound| format!("at its {bound}"));
-                Cell::text(one.process.clone().into_iter().chain(bound).collect::<Vec<_>>().join(", "))
+                let bound = one.of.of.bound.map(|of| format!("at its {}", bound(of)));
+                Cell::text(one.of.of.process.clone().into_iter().chain(bound).collect::<Vec<_>>().join(", "))
             })
             .table("tolerances", &self.tolerances)
     }
 
+    /// The highest cost of a dimension.
+    fn paid(&self) -> f64 {
+        let costs = self.tolerances.iter().flat_map(|one| [one.of.of.cost_before, one.of.of.cost_after]);
+        costs.flatten().fold(0.0, f64::max)
+    }
+
+    /// What every dimension cost, and what it costs.
+    fn costs(&self) -> Bars {
+        let highest = self.paid();
+        let part = |fill: Fill, cost: Option<f64>| {
+            let width = (1e4 * (cost.unwrap_or(0.0) / highest).clamp(0.0, 1.0)).round() / 1e2;
+            (fill, [0.0, width])
+        };
+        let row = |one: &AllocatedReport| {
+            let Allocated { cost_before, cost_after, .. } = one.of.of;
+            let mut parts = vec![part(Fill::Before, cost_before), part(Fill::Linear, cost_after)];
+            // The longer one below, so that both are seen.
+            parts.sort_by(|a, b| b.1[1].total_cmp(&a.1[1]));
+            let text = format!("{} / {}", known(cost_before, money), known(cost_after, money));
+            Bar { name: one.of.dimension.clone(), parts, text, remark: Line::default() }
+        };
+        Bars {
+            caption: "Cost of every dimension, before and after".to_owned(),
+            rows: self.tolerances.iter().map(row).collect(),
+            marks: Vec::new(),
+            legend: vec![(Fill::Before, "before"), (Fill::Linear, "after")],
+        }
+    }
+
     fn recentred(&self) -> DataTable {
         Columns::default()
-            .shown("nominal", |one: &&super::RecentredReport| Cell::name(&one.dimension))
-            .shown("before", |one| Cell::number(one.before, plain))
-            .shown("after", |one| Cell::number(one.after, |after| beside(after, (after - one.before).abs())))
+            .shown("nominal", |one: &&OfDimension<Moved>| Cell::name(&one.dimension))
+            .shown("before", |one| Cell::number(one.of.before, plain))
+            .shown("after", |one| Cell::number(one.of.after, |after| beside(after, (after - one.of.before).abs())))
             .shown("", |one| Cell::optional(one.unit.as_deref()))
             .table("", &self.recentred)
     }
 
     fn requirements(&self) -> DataTable {
-        let price = |one: &KeptReport, of: fn(&PriceReport) -> Option<f64>| {
-            Cell::data(self.shadow_prices.iter().find(|price| price.characteristic == one.characteristic).and_then(of))
+        let price = |one: &OfCharacteristic<Kept>, of: fn(&ShadowPrice) -> Option<f64>| {
+            let own = self.shadow_prices.iter().find(|price| price.characteristic == one.characteristic);
+            Cell::data(own.and_then(|price| of(&price.of)))
         };
         let truth = |met: Option<bool>| Cell::both(Value::Truth(met), "");
         Columns::default()
-            .column("characteristic", "required", |one: &&KeptReport| Cell::name(&one.characteristic))
-            .data("requirement", |one| Cell::text(one.requirement))
-            .data("required", |one| Cell::data(one.required))
-            .shown("", |one| Cell::text(wanted(one)))
-            .column("before", "before", |one| Cell::number(one.before, |value| measure(one.requirement, value)))
-            .column("after", "after", |one| Cell::number(one.after, |value| measure(one.requirement, value)))
-            .data("met_before", move |one| truth(one.met_before))
-            .data("met", move |one| truth(one.met))
+            .column("characteristic", "required", |one: &&OfCharacteristic<Kept>| Cell::name(&one.characteristic))
+            .data("requirement", |one| Cell::text(one.of.requirement.key()))
+            .data("required", |one| Cell::data(one.of.requirement.amount()))
+            .shown("", |one| Cell::text(wanted(one.of.requirement)))
+            .column("before", "before", |one| measured(&one.of, Some(one.of.before)))
+            .column("after", "after", |one| measured(&one.of, one.of.after))
+            .data("met_before", move |one| truth(one.of.before.verdict.met()))
+            .data("met", move |one| truth(one.of.after.and_then(|after| after.verdict.met())))
             .column("verdict", "", |one| {
-                let value = one.verdict.map_or(Value::Empty, |verdict| Value::Text(Verdict::name(verdict).to_owned()));
-                let before = loud(one.verdict_before).and(" before");
+                let verdict = one.of.after.map(|after| after.verdict);
+                let value = verdict.map_or(Value::Empty, |verdict| Value::Text(Verdict::name(verdict).to_owned()));
+                let before = loud(one.of.before.verdict).and(" before");
                 // Where nothing was found there is only what was.
-                Cell::both(value, one.verdict.map_or(before.clone(), |verdict| loud(verdict).and(", ").and(before)))
+                Cell::both(value, verdict.map_or(before.clone(), |verdict| loud(verdict).and(", ").and(before)))
             })
             .data("price_both", move |one| price(one, |price| price.both))
             .data("price_lower", move |one| price(one, |price| price.lower))
@@ -190,10 +232,10 @@ impl AllocationReport {
     }
 
     /// What it saves when a limit gives way by a step that people can picture.
-    fn prices(&self, section: &mut Section, price: &PriceReport) {
+    fn prices(&self, section: &mut Section, price: &OfCharacteristic<ShadowPrice>) {
         let one = self.characteristics.iter().find(|one| one.name == price.characteristic);
         let unit = one.and_then(|one| one.unit.as_deref());
-        let sigma = one.and_then(|one| one.after.as_ref().or(Some(&one.before))).and_then(|after| after.sigma);
+        let sigma = one.and_then(|one| one.after.as_ref().or(Some(&one.before))).and_then(|after| after.sigma());
         let step = match unit {
             Some("mm") => 0.001,
             _ => 10f64.powf(sigma.filter(|sigma| *sigma > 0.0).map_or(0.0, f64::log10).floor() - 1.0),
@@ -202,12 +244,12 @@ impl AllocationReport {
         let part = |what: &str, price: Option<f64>| {
             price.map(|price| format!("{what} by {by} saves {}", significant(price * step, 3)))
         };
-        let two = one.is_some_and(|one| one.before.lower.is_some() && one.before.upper.is_some());
+        let two = one.is_some_and(|one| one.before.lower().is_some() && one.before.upper().is_some());
         let all = [
-            part("both limits wider", price.both.filter(|_| two)),
-            part("the lower limit lower", price.lower),
-            part("the upper limit higher", price.upper),
-            part("a larger sigma", price.sigma),
+            part("both limits wider", price.of.both.filter(|_| two)),
+            part("the lower limit lower", price.of.lower),
+            part("the upper limit higher", price.of.upper),
+            part("a larger sigma", price.of.sigma),
         ];
         let all: Vec<String> = all.into_iter().flatten().collect();
         if !all.is_empty() {
@@ -216,7 +258,7 @@ impl AllocationReport {
     }
 
     fn before_after(&self) -> DataTable {
-        type Row<'r> = (Option<&'r AllocatedCharacteristic>, &'static str, &'r CharacteristicReport);
+        type Row<'r> = (Option<&'r AllocatedCharacteristic>, &'static str, &'r CharacteristicAnalysis);
         let rows = self.characteristics.iter().flat_map(|one| {
             let after = one.after.as_ref().map(|after| (None, "after", after));
             std::iter::once((Some(one), "before", &one.before)).chain(after)
@@ -225,18 +267,16 @@ impl AllocationReport {
             let unit = one.unit.as_deref().map(|unit| format!(" [{unit}]")).unwrap_or_default();
             Cell::text(format!("{}{unit}", short(&one.name)))
         };
-        let scaled = |of: &CharacteristicReport, value: Option<f64>| {
-            Cell::number(value, |value| beside(value, of.sigma.unwrap_or(0.0)))
+        let scaled = |of: &CharacteristicAnalysis, value: Option<f64>| {
+            Cell::number(value, |value| beside(value, of.sigma().unwrap_or(0.0)))
         };
         Columns::default()
             .shown("", move |row: &Row<'_>| row.0.map_or_else(Cell::empty, name))
             .shown("", |row| Cell::text(row.1))
-            .shown("mean", move |row| scaled(row.2, row.2.mean))
-            .shown("sigma", move |row| scaled(row.2, row.2.sigma))
-            .shown("Cpk", |row| Cell::known(row.2.cpk, index))
-            .shown("yield", |row| {
-                Cell::known(row.2.yield_, |_| rejected(row.2.ppm_below, row.2.ppm_above).unwrap_or_default())
-            })
+            .shown("mean", move |row| scaled(row.2, row.2.mean()))
+            .shown("sigma", move |row| scaled(row.2, row.2.sigma()))
+            .shown("Cpk", |row| Cell::known(row.2.capability.and_then(|of| of.cpk), index))
+            .shown("yield", |row| Cell::known(row.2.yield_(), |_| row.2.rejects().yield_text().unwrap_or_default()))
             .table("", rows)
     }
 
@@ -271,9 +311,9 @@ impl AllocationReport {
     fn confirmed_by_samples(&self, section: &mut Section) {
         let Some(confirmation) = &self.confirmation else { return };
         for one in &confirmation.characteristics {
-            let Some((value, interval)) = one.yield_.zip(one.standard_error.yield_) else { continue };
-            let [low, high] = interval.map(yielded);
-            let (name, value, points) = (short(&one.name), yielded(value), confirmation.samples);
+            let Some(share) = one.yield_ else { continue };
+            let [low, high] = share.interval.map(yielded);
+            let (name, value, points) = (short(one.name()), yielded(share.value), confirmation.samples);
             section.line(format!(
                 "{name}: {value} of {points} points of the model keep the limits, 95 % interval {low} .. {high}"
             ));
@@ -282,13 +322,13 @@ impl AllocationReport {
 
     /// The front for people.
     fn front_table(&self) -> DataTable {
-        type Row = (FrontRequirement, Option<f64>);
-        let rows = self.front.iter().filter_map(|point| Some((point.required.first()?.clone(), point.cost)));
+        type Row = (Requirement, Option<f64>);
+        let rows = self.front.iter().filter_map(|point| Some((point.required.first()?.of, point.cost)));
         Columns::default()
             .shown("required", |(first, _): &Row| {
-                Cell::text(match first.requirement {
-                    "yield" => yielded(first.required),
-                    _ => format!("Cpk {}", significant(first.required, 4)),
+                Cell::text(match first {
+                    Requirement::Yield(least) => yielded(*least),
+                    other => format!("Cpk {}", significant(other.amount(), 4)),
                 })
             })
             .shown("cost", |(_, cost)| Cell::number(*cost, money))
@@ -298,10 +338,10 @@ impl AllocationReport {
 
     /// The front for programs: a row for every dimension at every point.
     fn front_points(&self) -> DataTable {
-        type Row<'r> = (u64, &'r FrontRequirement, Option<f64>, Option<(&'r str, f64)>);
+        type Row<'r> = (u64, &'r OfCharacteristic<Requirement>, Option<f64>, Option<(&'r str, f64)>);
         let rows = self.front.iter().enumerate().flat_map(|(place, point)| {
             point.required.iter().flat_map(move |wanted| {
-                let names = self.tolerances.iter().map(|one| one.dimension.as_str());
+                let names = self.tolerances.iter().map(|one| one.of.dimension.as_str());
                 let held = point.tolerances.iter().flat_map(move |all| names.clone().zip(all));
                 let held = held.map(|(name, &tolerance)| Some((name, tolerance)));
                 let none = point.tolerances.is_none().then_some(None);
@@ -311,8 +351,8 @@ impl AllocationReport {
         Columns::default()
             .data("point", |row: &Row<'_>| Cell::count(row.0))
             .data("characteristic", |row| Cell::text(&row.1.characteristic))
-            .data("requirement", |row| Cell::text(row.1.requirement))
-            .data("required", |row| Cell::data(row.1.required))
+            .data("requirement", |row| Cell::text(row.1.of.key()))
+            .data("required", |row| Cell::data(row.1.of.amount()))
             .data("cost", |row| Cell::data(row.2))
             .data("dimension", |row| Cell::optional(row.3.map(|(name, _)| name)))
             .data("tolerance", |row| Cell::data(row.3.map(|(_, tolerance)| tolerance)))
@@ -325,15 +365,16 @@ impl AllocationReport {
         let front: Vec<(f64, f64, String)> = (self.front.iter())
             .filter_map(|point| {
                 let wanted = point.required.first()?;
-                let (place, label) = placed(wanted.requirement, wanted.required);
+                let (place, label) = placed(wanted.of, wanted.of.amount());
                 Some((place, point.cost?, label))
             })
             .collect();
         let first = self.front.first().and_then(|point| point.required.first());
         let before = first.and_then(|first| {
             let one = self.requirements.iter().find(|one| one.characteristic == first.characteristic)?;
-            let (had, cost) = (one.before?, self.cost_before?);
-            (had < 1.0 - 1e-12 || first.requirement != "yield").then(|| [placed(first.requirement, had).0, cost])
+            let (had, cost) = (one.of.before.value.and_then(finite)?, self.cost_before?);
+            let seen = had < 1.0 - 1e-12 || !matches!(first.of, Requirement::Yield(_));
+            seen.then(|| [placed(first.of, had).0, cost])
         });
         let circle = |at: [f64; 2], strong: bool, name: &str, tip: String| PlotPoint {
             at,
@@ -348,7 +389,7 @@ impl AllocationReport {
         let points = points.chain(before.map(|at| circle(at, false, "before", String::new()))).collect();
         let every = front.len().div_ceil(LABELS).max(1);
         let mut x = PlotAxis::new(
-            format!("{} required", first.map_or("yield", |wanted| wanted.requirement)),
+            format!("{} required", first.map_or("yield", |wanted| wanted.of.key())),
             PlotScale::Linear(0.05),
         );
         x.ticks = front.iter().step_by(every).map(|(place, _, label)| (*place, label.clone())).collect();
@@ -367,10 +408,10 @@ fn money(cost: f64) -> String {
 }
 
 fn unattainable(page: &mut Vec<Element>, one: &AttainableReport) {
-    let (name, required) = (short(&one.characteristic), required(one.requirement, one.required));
-    let best = one.best.map_or("unknown".to_owned(), |best| measure(one.requirement, best));
+    let (name, required) = (short(&one.characteristic), required(one.of.requirement));
+    let best = one.of.best.map_or("unknown".to_owned(), |best| measure(one.of.requirement, best));
     page.line(format!("`{name}` cannot keep {required}: the best that there is is {best}"));
-    if one.together {
+    if one.of.together {
         page.line("it could by itself: together with the other requirements it cannot");
     }
     if !one.because.is_empty() {
@@ -380,39 +421,50 @@ fn unattainable(page: &mut Vec<Element>, one: &AttainableReport) {
     }
 }
 
-fn required(requirement: &str, required: f64) -> String {
+fn required(requirement: Requirement) -> String {
     match requirement {
-        "yield" => format!("a yield of {}", yielded(required)),
-        "cpk" => format!("a Cpk of {}", plain(required)),
-        "sigma" => format!("a sigma of {}", plain(required)),
-        "rss" => "its limits by rss".to_owned(),
-        _ => "its limits in the worst case".to_owned(),
+        Requirement::Yield(least) => format!("a yield of {}", yielded(least)),
+        Requirement::Cpk(least) => format!("a Cpk of {}", plain(least)),
+        Requirement::Sigma(most) => format!("a sigma of {}", plain(most)),
+        Requirement::Rss => "its limits by rss".to_owned(),
+        Requirement::WorstCase => "its limits in the worst case".to_owned(),
     }
 }
 
 /// What there is, in the requirement's own measure.
-fn measure(requirement: &str, value: f64) -> String {
+fn measure(requirement: Requirement, value: f64) -> String {
     match requirement {
-        "yield" => yielded(value),
-        "cpk" => format!("{value:.4}"),
-        "sigma" => significant(value, 6),
-        _ => format!("{} % of the room", significant(100.0 * value, 5)),
+        Requirement::Yield(_) => yielded(value),
+        Requirement::Cpk(_) => format!("{value:.4}"),
+        Requirement::Sigma(_) => significant(value, 6),
+        Requirement::Rss | Requirement::WorstCase => format!("{} % of the room", significant(100.0 * value, 5)),
     }
 }
 
-fn wanted(one: &KeptReport) -> String {
-    match one.requirement {
-        "yield" => format!("yield {}", yielded(one.required)),
-        "cpk" => format!("Cpk {}", plain(one.required)),
-        "sigma" => format!("sigma {}", plain(one.required)),
-        other => other.to_owned(),
+fn measured(kept: &Kept, judged: Option<Judged>) -> Cell {
+    let value = judged.and_then(|judged| judged.value).and_then(finite);
+    Cell::number(value, |value| measure(kept.requirement, value))
+}
+
+fn wanted(requirement: Requirement) -> String {
+    match requirement {
+        Requirement::Yield(least) => format!("yield {}", yielded(least)),
+        Requirement::Cpk(number) | Requirement::Sigma(number) => format!("{} {}", requirement.name(), plain(number)),
+        Requirement::Rss | Requirement::WorstCase => requirement.name().to_owned(),
+    }
+}
+
+fn bound(bound: Bound) -> &'static str {
+    match bound {
+        Bound::Least => "min",
+        Bound::Greatest => "max",
     }
 }
 
 /// Where a requirement lies along the chart, and its label.
-fn placed(requirement: &str, required: f64) -> (f64, String) {
+fn placed(requirement: Requirement, required: f64) -> (f64, String) {
     match requirement {
-        "yield" => {
+        Requirement::Yield(_) => {
             let rejected = (1.0 - required).max(f64::MIN_POSITIVE);
             (-rejected.log10(), share(rejected))
         }

@@ -1,17 +1,17 @@
 //! The report of an analysis as a document: the verdict first, then what there is to say of each characteristic.
 
-use super::distribution::{DistributionReport, Quantiles};
+use super::figures::{Figures, Named};
 use super::head::{self, findings};
-use super::requirement::{RequirementReport, judged, loud};
+use super::requirement::{judged, lines};
+use super::source::source;
 use super::stack::Stack;
-use super::surface_law::source;
-use super::{CharacteristicReport, CorrelationReport, DimensionReport, FitReport, Report, WarningReport, bars};
-use crate::analysis::{Interaction, Sensitivity};
-use crate::capability::Law;
+use super::{CorrelationReport, DimensionReport, Report, bars};
+use crate::analysis::{CharacteristicAnalysis, Interaction, Sensitivity};
+use crate::capability::{Capability, Law, Quantiles, TAIL};
 use crate::document::number::{
-    NEWS, UNKNOWN, beside, index, known, limits, percent, plain, plural, rejected, shape, share, short, significant,
-    yielded,
+    NEWS, UNKNOWN, beside, index, known, percent, plain, plural, shape, share, short, significant,
 };
+use crate::document::rejects::Rejects;
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Section, SpreadChart, Style, Value, terminal,
 };
@@ -30,6 +30,8 @@ const SAMPLES: usize = 3;
 const DIFFERENT: f64 = 0.05;
 /// Parts per million below this are none.
 const LEAST_PPM: f64 = 1e-6;
+/// Of sigma: worst cases nearer than this look the same in print.
+const SAME: f64 = 1e-3;
 /// A second derivative or a slope within this many of its rounding errors is 0.
 const ROUNDINGS: f64 = 2.0;
 
@@ -37,25 +39,33 @@ impl Report {
     /// What it says. Its tables: `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and `warnings`.
     pub fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
-        let evaluations = plural(self.run.evaluations as usize, "evaluation", "evaluations");
-        let varying = plural(self.varying, "varying dimension", "varying dimensions");
-        document.line(format!("{}: {evaluations}, {varying}{}", self.method, head::beside(&self.run)));
-        self.account.iter().for_each(|account| document.wrapped(0, account.to_string()));
+        let evaluations = plural(self.analysis.run.evaluations as usize, "evaluation", "evaluations");
+        let varying = plural(self.analysis.varying, "varying dimension", "varying dimensions");
+        document.line(format!(
+            "{}: {evaluations}, {varying}{}",
+            self.analysis.method,
+            head::beside(&self.analysis.run)
+        ));
+        self.analysis.account.iter().for_each(|account| document.wrapped(0, account.to_string()));
         document.gap();
         document.table(self.verdicts());
-        if let Some(joint) = &self.joint_yield {
+        if let Some(joint) = &self.analysis.joint {
             let error = significant(100.0 * joint.error, 2);
-            document.note(format!("all limits at once: yield {}, ± {error} %", yielded(joint.value)));
+            let text = Rejects::all(1.0 - joint.value, Some(joint.error)).yield_text().unwrap_or_default();
+            document.note(format!("all limits at once: yield {text}, ± {error} %"));
         }
-        let all = self.characteristics.iter().zip(self.stacks());
+        if let Some(line) = self.together() {
+            document.wrapped(2, line);
+        }
+        let all = self.analysis.characteristics.iter().zip(self.stacks());
         document.sections = all.map(|(one, stack)| self.section(one, &stack)).collect();
-        document.head.extend([self.dimension_table(), self.warning_table()].map(Element::Table));
+        document.head.extend([self.dimension_table(), self.together_table(), self.warning_table()].map(Element::Table));
         document
     }
 
-    fn section(&self, one: &CharacteristicReport, stack: &Stack) -> Section {
-        let mut section = Section::of(&one.name, one.unit.as_deref());
-        section.blocks = findings(&self.warnings, |name| name == Some(&one.name));
+    fn section(&self, one: &CharacteristicAnalysis, stack: &Stack) -> Section {
+        let mut section = Section::of(one.name(), one.unit());
+        section.blocks = findings(&self.warnings, |name| name == Some(one.name()));
         one.figures(&mut section);
         one.errors(&mut section);
         one.extremes(&mut section);
@@ -63,6 +73,8 @@ impl Report {
         one.sampling(&mut section);
         section.gap();
         section.table(one.contributions(&self.dimensions));
+        section
+            .remark("Slope and curvature at the means, per unit of the dimension; ≈ marks those that are differences.");
         if let Some(source) = self.source(one) {
             section.note(source);
         }
@@ -83,93 +95,8 @@ impl Report {
         section
     }
 
-    /// A row for every characteristic: where it lies, its limits, and how it keeps them.
-    pub(super) fn verdicts(&self) -> DataTable {
-        type Of<'r> = &'r CharacteristicReport;
-        let scaled = |one: &Of<'_>, value: Option<f64>, unknown: &str| {
-            let text = value.zip(one.sigma).map_or(unknown.to_owned(), |(value, sigma)| beside(value, sigma));
-            Cell::both(Value::Number(value), text)
-        };
-        let verdict = |one: &Of<'_>| {
-            if one.lower.or(one.upper).is_none() || one.mean.is_none() {
-                return Cell::empty();
-            }
-            let yield_ = rejected(one.ppm_below, one.ppm_above).unwrap_or_else(|| "unknown".to_owned());
-            let target = one.verdict.map_or(Line::default(), |verdict| Line::from(", target ").and(loud(verdict)));
-            Cell::both(Value::Empty, Line::from(format!("yield {yield_}")).and(target))
-        };
-        let family = |one: &Of<'_>| match &one.distribution {
-            None => [None, None],
-            Some(DistributionReport::Point { .. }) => [Some("point"), None],
-            Some(DistributionReport::Pearson { kind, .. }) => [Some("pearson"), Some(*kind)],
-        };
-        let end = |interval: Option<[f64; 2]>, end: usize| Cell::data(interval.map(|ends| ends[end]));
-        let normal = |one: &Of<'_>, of: fn(&FitReport) -> Option<f64>| Cell::data(one.normal_fit.as_ref().and_then(of));
-        Columns::default()
-            .named("name", "characteristic", |one: &Of<'_>| Cell::name(&one.name))
-            .data("unit", |one| Cell::optional(one.unit.as_deref()))
-            .data("nominal", |one| Cell::data(one.nominal))
-            .column("mean", "mean", move |one| scaled(one, one.mean, "unknown"))
-            .shown("± 3 sigma", move |one| scaled(one, one.sigma.map(|sigma| 3.0 * sigma), UNKNOWN))
-            .named("", "unit", |one| Cell::optional(one.unit.as_deref()))
-            .shown("limits", |one| Cell::text(limits(one.lower, one.upper)))
-            .named("", "yield", verdict)
-            .data("sigma", |one| Cell::data(one.sigma))
-            .data("skewness", |one| Cell::data(one.skewness))
-            .data("kurtosis", |one| Cell::data(one.kurtosis))
-            .data("worst_case_lower", move |one| end(one.worst_case.linear, 0))
-            .data("worst_case_upper", move |one| end(one.worst_case.linear, 1))
-            .data("middle", |one| Cell::data(one.middle))
-            .data("rss", |one| Cell::data(one.rss))
-            .data("inflated_rss", |one| Cell::data(one.inflated_rss))
-            .data("mean_shift_rss", |one| Cell::data(one.mean_shift_rss))
-            .data("left_out_share", |one| Cell::data(one.left_out_share))
-            .data("distribution", move |one| Cell::optional(family(one)[0]))
-            .data("type", move |one| Cell::optional(family(one)[1]))
-            .data("lower", |one| Cell::data(one.lower))
-            .data("upper", |one| Cell::data(one.upper))
-            .data("target_yield", |one| Cell::data(one.target_yield))
-            .data("met", |one| Cell::both(Value::Truth(one.met), ""))
-            .data("yield", |one| Cell::data(one.yield_))
-            .data("ppm_below", |one| Cell::data(one.ppm_below))
-            .data("ppm_above", |one| Cell::data(one.ppm_above))
-            .data("cp", |one| Cell::data(one.cp))
-            .wide("cpk", "Cpk", |one| Cell::known(one.cpk, index))
-            .data("cp_percentile", |one| Cell::data(one.cp_percentile))
-            .data("cpk_percentile", |one| Cell::data(one.cpk_percentile))
-            .data("sigma_level", |one| Cell::data(one.sigma_level))
-            .data("normal_yield", move |one| normal(one, |normal| normal.yield_))
-            .data("normal_ppm_below", move |one| normal(one, |normal| normal.ppm_below))
-            .data("normal_ppm_above", move |one| normal(one, |normal| normal.ppm_above))
-            .table("characteristics", &self.characteristics)
-    }
-
-    fn dimension_table(&self) -> DataTable {
-        let end = |one: &DimensionReport, end: usize| Cell::data(one.tolerance.map(|ends| ends[end]));
-        Columns::default()
-            .data("name", |one: &&DimensionReport| Cell::text(&one.name))
-            .data("unit", |one| Cell::optional(one.unit.as_deref()))
-            .data("nominal", |one| Cell::data(one.nominal))
-            .data("lower", move |one| end(one, 0))
-            .data("upper", move |one| end(one, 1))
-            .data("zone", |one| Cell::optional(one.zone.as_deref()))
-            .data("distribution", |one| Cell::optional(one.distribution))
-            .data("mean", |one| Cell::data(one.mean))
-            .data("sigma", |one| Cell::data(one.sigma))
-            .table("dimensions", &self.dimensions)
-    }
-
-    fn warning_table(&self) -> DataTable {
-        Columns::default()
-            .data("code", |one: &&WarningReport| Cell::text(one.code))
-            .data("characteristic", |one| Cell::optional(one.characteristic.as_deref()))
-            .data("dimension", |one| Cell::optional(one.dimension.as_deref()))
-            .data("message", |one| Cell::text(&one.message))
-            .table("warnings", &self.warnings)
-    }
-
     /// What slopes and curvatures are, unless they are differences as everything else.
-    fn source(&self, one: &CharacteristicReport) -> Option<String> {
+    fn source(&self, one: &CharacteristicAnalysis) -> Option<String> {
         let shown = || one.shown(&self.dimensions);
         let differences: Vec<String> =
             shown().filter(|(row, _)| !row.exact).map(|(row, _)| short(&row.dimension)).collect();
@@ -181,7 +108,7 @@ impl Report {
             1..=NAMED => format!(", but by differences for {}", differences.join(", ")),
             many => format!(", but by differences for {many} dimensions"),
         };
-        let rest = match self.basis {
+        let rest = match self.analysis.basis {
             Basis::Exact => "everything rests on them",
             Basis::Differences => "the rest comes from differences",
             Basis::LeastSquares => "the rest comes from the fitted surface",
@@ -191,7 +118,7 @@ impl Report {
     }
 
     /// The pairs that vary together, of dimensions that matter here.
-    fn correlations(&self, one: &CharacteristicReport, section: &mut Section) {
+    fn correlations(&self, one: &CharacteristicAnalysis, section: &mut Section) {
         let matters =
             |name: &String| one.sensitivities.iter().any(|row| row.dimension == *name && row.first != Some(0.0));
         let word = |pair: &CorrelationReport| {
@@ -206,10 +133,10 @@ impl Report {
     }
 }
 
-impl CharacteristicReport {
+impl CharacteristicAnalysis {
     /// The unit by which its numbers are rounded.
     pub(super) fn scale(&self) -> f64 {
-        self.sigma.filter(|&sigma| sigma > 0.0).or(self.rss).unwrap_or(0.0)
+        self.sigma().filter(|&sigma| sigma > 0.0).or(self.rss).unwrap_or(0.0)
     }
 
     fn figures(&self, section: &mut Section) {
@@ -222,27 +149,38 @@ impl CharacteristicReport {
         let around = |middle: Option<f64>, reach: Option<f64>| {
             interval(middle.zip(reach).map(|(middle, reach)| [middle - reach, middle + reach]))
         };
-        let shift = self.mean.zip(self.nominal).map(|(mean, nominal)| mean - nominal);
+        let shift = self.mean().zip(self.nominal).map(|(mean, nominal)| mean - nominal);
         let shift = Cell::text(known(shift, |shift| beside(shift, scale)));
+        // Found by no search, so that the bounds are all that is known of the true worst case.
+        let proven =
+            self.bounds.as_ref().filter(|bounds| bounds.proven && self.extremes.is_none()).map(|bounds| bounds.bounds);
+        let same =
+            |[a, b]: [[f64; 2]; 2]| (0..2).all(|end| (a[end] - b[end]).abs() <= SAME * self.sigma().unwrap_or(0.0));
+        let linear = proven.zip(self.worst_case).is_some_and(|(proven, linear)| same([proven, linear]));
+        let named = if linear { "worst case" } else { "linear worst case" };
+        let proven =
+            proven.filter(|_| !linear).map(|ends| ("", Cell::empty(), "proven worst case", interval(Some(ends))));
         section.table(DataTable::untitled(
             [
                 ("nominal", number(self.nominal), "mean shift", shift),
-                ("mean", number(self.mean), "3 sigma", around(self.mean, self.sigma.map(|sigma| 3.0 * sigma))),
-                ("sigma", number(self.sigma), "rss", around(self.middle, self.rss)),
+                ("mean", number(self.mean()), "3 sigma", around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma))),
+                ("sigma", number(self.sigma()), "rss", around(self.middle, self.rss)),
                 (
                     "skewness",
-                    Cell::number(self.skewness, shape),
+                    Cell::number(self.skewness(), shape),
                     "inflated rss",
                     around(self.middle, self.inflated_rss),
                 ),
                 (
                     "kurtosis",
-                    Cell::number(self.kurtosis, shape),
+                    Cell::number(self.kurtosis(), shape),
                     "mean-shift rss",
                     around(self.middle, self.mean_shift_rss),
                 ),
-                ("", Cell::empty(), "worst case", interval(self.worst_case.linear)),
+                ("", Cell::empty(), named, interval(self.worst_case)),
             ]
+            .into_iter()
+            .chain(proven)
             .map(|(name, value, other, text)| [Cell::text(name), value, Cell::text(other), text]),
         ));
     }
@@ -250,7 +188,7 @@ impl CharacteristicReport {
     /// How far all that may be off.
     fn errors(&self, section: &mut Section) {
         let error = |error: Option<f64>| known(error, |error| significant(error, 2));
-        if let Some(fit) = &self.least_squares {
+        if let Some(fit) = &self.residual {
             section.note(format!(
                 "{} coefficients fitted to {} points: residual standard error {}, of the mean {}, of sigma {}",
                 fit.coefficients,
@@ -261,7 +199,7 @@ impl CharacteristicReport {
             ));
         }
         if let Some(estimate) = &self.error_estimate {
-            let relative = estimate.sigma.zip(self.sigma).filter(|(_, sigma)| *sigma > 0.0);
+            let relative = estimate.sigma.zip(self.sigma()).filter(|(_, sigma)| *sigma > 0.0);
             let relative = relative.map(|(error, sigma)| format!(" ({} %)", percent(error / sigma)));
             let mut parts = vec![
                 format!("mean {}", error(estimate.mean)),
@@ -269,7 +207,7 @@ impl CharacteristicReport {
                 format!("skewness {}", error(estimate.skewness)),
                 format!("kurtosis {}", error(estimate.kurtosis)),
             ];
-            if self.yield_.is_some() {
+            if self.yield_().is_some() {
                 let percent = estimate.yield_.map(|error| format!("{} %", significant(100.0 * error, 2)));
                 parts.push(format!("yield {}", percent.unwrap_or_else(|| UNKNOWN.to_owned())));
             }
@@ -277,19 +215,19 @@ impl CharacteristicReport {
             let basis: Vec<String> = estimate.sources.iter().map(|source| source.words()).collect();
             section.wrapped(2, format!("they rest on: {}", basis.join("; ")));
         }
-        if let Some(sampled) = self.error_estimate.as_ref().and(self.model_sampling.as_ref()) {
+        if let Some(sampled) = self.error_estimate.as_ref().and(self.model_sampled.as_ref()) {
             section.wrapped(2, format!(
                 "the surrogate was not trusted: mean to kurtosis from {} points of the model, with it as control variate",
                 sampled.samples
             ));
         }
         match &self.verification {
-            Some(found) => section.note(found.words.as_str()),
+            Some(found) => section.note(found.words()),
             // Nothing is to be verified of what has no moments, or depends on nothing that varies.
-            None if self.mean.is_some() && !self.constant => section.note("not verified by the model"),
+            None if self.mean().is_some() && !self.constant => section.note("not verified by the model"),
             None => {}
         }
-        if let Some(sampled) = &self.surrogate_sampling {
+        if let Some(sampled) = &self.sampled {
             let [sigma, skewness, kurtosis] =
                 [sampled.sigma, sampled.skewness, sampled.kurtosis].map(|error| significant(error, 2));
             section.note(format!(
@@ -301,7 +239,7 @@ impl CharacteristicReport {
 
     /// The extremes, whether they are proven, and where they are.
     fn extremes(&self, section: &mut Section) {
-        let Some(found) = &self.worst_case.found else { return };
+        let Some(found) = &self.extremes else { return };
         let scale = self.scale();
         let [least, greatest] = [&found.least, &found.greatest].map(|extreme| beside(extreme.value, scale));
         let proven = if found.proven() { "proven" } else { "not proven" };
@@ -313,104 +251,117 @@ impl CharacteristicReport {
 
     /// Distribution, quantiles, and how they keep the limits.
     fn distribution(&self, section: &mut Section) {
-        match &self.distribution {
-            None if self.sigma.is_some() => {
+        match self.fitted() {
+            None if self.sigma().is_some() => {
                 return section.note("no distribution has this skewness and kurtosis: its yield is unknown");
             }
             None => return,
-            Some(DistributionReport::Point { at }) => {
-                section.note(format!("every assembly has the same value: {}", plain(*at)));
-            }
-            Some(DistributionReport::Pearson { kind, quantiles, .. }) => {
-                if let Some(Law::Pearson(law)) = &self.law {
-                    section.gap();
-                    section.chart(Chart::Spread(Box::new(self.spread(law, kind))));
-                }
+            Some(Law::Point { at }) => section.note(format!("every assembly has the same value: {}", plain(*at))),
+            Some(Law::Pearson(law)) => {
+                let (kind, sigma) = (law.kind().name(), self.sigma().unwrap_or(0.0));
                 section.gap();
-                let sigma = self.sigma.unwrap_or(0.0);
-                section.table(match self.surface_law.as_ref().and_then(|law| law.quantiles.as_ref()) {
-                    Some(law) => quantile_table("surface law", law, sigma),
-                    None => quantile_table(&named(kind), quantiles, sigma),
+                section.chart(Chart::Spread(Box::new(self.spread(law, kind))));
+                section.gap();
+                section.table(match self.surface_law.as_ref().and_then(|law| law.named_quantiles()) {
+                    Some(of_surface) => quantile_table("surface law", &of_surface, sigma),
+                    None => quantile_table(&named(kind), &Quantiles::of(law), sigma),
                 });
             }
         }
         section.table(self.quantile_data());
-        if self.lower.or(self.upper).is_some() {
-            self.limits(section);
+        if self.limited() {
+            self.kept(section);
         }
     }
 
     /// The density, over the sample of the model where there is one.
     pub(super) fn spread(&self, law: &Pearson, kind: &str) -> SpreadChart {
-        let sample = self.model_sampling.as_ref().and_then(|sampling| sampling.histogram.as_ref());
+        let sample = self.model_sampled.as_ref().and_then(|sampling| sampling.histogram.as_ref());
         let bars = sample.map_or("", |_| " over the sample of the model; each bar with one standard error");
+        let of_surface = self.surface_law.as_ref().and_then(|law| law.quantiles).map(|all| [all[0], all[3], all[6]]);
+        let of_surface = of_surface.map(|all| all.map(|figure| figure.value));
+        let [low, middle, high] =
+            of_surface.unwrap_or_else(|| [law.quantile(TAIL), law.quantile(0.5), law.upper_quantile(TAIL)]);
         let mut places = vec![
-            (law.quantile(0.00135), "quantile", "0.135 % quantile"),
-            (law.quantile(0.5), "quantile", "median"),
-            (law.upper_quantile(0.00135), "quantile", "99.865 % quantile"),
+            (low, "quantile", "0.135 % quantile"),
+            (middle, "quantile", "median"),
+            (high, "quantile", "99.865 % quantile"),
         ];
-        places.extend(self.mean.map(|mean| (mean, "mean", "mean")));
+        let fit = if kind == "normal" { "normal".to_owned() } else { format!("Pearson type {kind}") };
+        let words = match &self.density {
+            Some(_) => format!("Law of the surface{bars}; dashed: the Pearson fit ({fit})."),
+            None => format!("{fit}{bars}."),
+        };
+        places.extend(self.mean().map(|mean| (mean, "mean", "mean")));
         SpreadChart {
             law: Some(law.clone()),
+            curve: self.density.clone(),
             bins: sample.cloned(),
             sampled: false,
-            limits: [self.lower, self.upper],
+            limits: Named::limits(self),
             places,
-            sigma: self.sigma.unwrap_or(0.0),
-            label: format!("Density of {}", self.name),
-            words: if kind == "normal" { "normal.".to_owned() } else { format!("Pearson type {kind}{bars}.") },
+            sigma: self.sigma().unwrap_or(0.0),
+            label: format!("Density of {}", self.name()),
+            words,
         }
     }
 
     fn quantile_data(&self) -> DataTable {
-        let quantiles = self.quantiles().map_or(&[][..], |quantiles| &quantiles.0);
+        let quantiles = self.quantiles();
         Columns::default()
-            .data("characteristic", |_| Cell::text(&self.name))
-            .data("probability", |row: &&(&'static str, f64)| Cell::text(row.0))
-            .data("value", |row| Cell::data(row.1))
-            .table("quantiles", quantiles)
+            .data("characteristic", |_| Cell::text(self.name()))
+            .data("probability", |row: &(&'static str, &f64)| Cell::text(row.0))
+            .data("value", |row| Cell::data(*row.1))
+            .table("quantiles", quantiles.iter().flat_map(Quantiles::iter))
     }
 
-    fn limits(&self, section: &mut Section) {
-        let shown = |below: Option<f64>, above: Option<f64>| {
-            let yield_ = rejected(below, above).unwrap_or_else(|| "unknown".to_owned());
-            format!("yield {yield_}{}", outside(below, above))
-        };
-        let target = judged(self.target_yield, self.verdict);
-        section.note(Line::from(shown(self.ppm_below, self.ppm_above)).and(target));
+    fn kept(&self, section: &mut Section) {
+        let shown = |rejects: Rejects| format!("yield {}", rejects.text().unwrap_or_else(|| "unknown".to_owned()));
+        let target = judged(self.target(), self.verdict());
+        section.note(Line::from(shown(self.rejects())).and(target));
         source(self).into_iter().for_each(|line| section.note(line));
         let named = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {}", index(value)));
+        let of = |figure: fn(&Capability) -> Option<f64>| self.capability.as_ref().and_then(figure);
+        let second = if of(|of| of.cp_percentile).is_some() { "Cpk" } else { "by percentiles Cpk" };
         let indices = [
-            named("Cp", self.cp),
-            named("Cpk", self.cpk),
-            named("by percentiles Cp", self.cp_percentile),
-            named(if self.cp_percentile.is_some() { "Cpk" } else { "by percentiles Cpk" }, self.cpk_percentile),
-            named("sigma level", self.sigma_level),
+            named("Cp", of(|of| of.cp)),
+            named("Cpk", of(|of| of.cpk)),
+            named("by percentiles Cp", of(|of| of.cp_percentile)),
+            named(second, of(|of| of.cpk_percentile)),
+            named("sigma level", of(Capability::sigma_level).filter(|_| self.rejects().are_resolved())),
         ];
         let indices: Vec<String> = indices.into_iter().flatten().collect();
         if !indices.is_empty() {
             section.note(indices.join("  "));
         }
-        self.requirements.iter().filter_map(RequirementReport::line).for_each(|line| section.note(line));
-        if let Some(normal) = self.normal_fit.as_ref().filter(|normal| self.differs(normal)) {
-            section.note(format!("a normal fit would say: {}", shown(normal.ppm_below, normal.ppm_above)));
+        lines(self.requirements()).for_each(|line| section.note(line));
+        if let Some(normal) = self.normal.as_ref().filter(|normal| self.differs(normal)) {
+            section.note(format!("a normal fit would say: {}", shown(Rejects::new(normal.below, normal.above, None))));
         }
     }
 
+    /// What is rejected, with its error.
+    pub(super) fn rejects(&self) -> Rejects {
+        let error = self.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
+        let [below, above] = [|of: &Capability| of.below, |of: &Capability| of.above]
+            .map(|side| self.capability.as_ref().and_then(side));
+        Rejects::new(below, above, error)
+    }
+
     /// Whether the normal fit rejects visibly more or fewer, on either side.
-    fn differs(&self, normal: &FitReport) -> bool {
+    fn differs(&self, normal: &Capability) -> bool {
         let far = |a: Option<f64>, b: Option<f64>| match (a, b) {
             (Some(a), Some(b)) => (a - b).abs() > DIFFERENT * a.max(b),
             (None, None) => false,
             _ => true,
         };
         let seen = |ppm: Option<f64>| ppm.map(|ppm| if ppm < LEAST_PPM { 0.0 } else { ppm });
-        far(seen(self.ppm_below), seen(normal.ppm_below)) || far(seen(self.ppm_above), seen(normal.ppm_above))
+        far(seen(self.ppm_below()), seen(normal.ppm_below())) || far(seen(self.ppm_above()), seen(normal.ppm_above()))
     }
 
     /// What the size of measured samples leaves open: intervals beside one another, below what they belong to.
     fn sampling(&self, section: &mut Section) {
-        let Some(interval) = &self.sampling_interval else { return };
+        let Some(interval) = &self.sampling else { return };
         let samples = interval.samples.iter().take(SAMPLES);
         let samples: Vec<String> = samples.map(|(name, count)| format!("{count} values of {}", short(name))).collect();
         let more = interval.samples.len().saturating_sub(SAMPLES);
@@ -418,7 +369,7 @@ impl CharacteristicReport {
         let (level, samples) = (100.0 * interval.level, samples.join(", "));
         section.gap();
         section.note(format!("{level} % intervals for {samples}{more}, by {} resamples", interval.resamples));
-        let scale = self.sigma.unwrap_or(0.0);
+        let scale = self.sigma().unwrap_or(0.0);
         let range = |ends: Option<[f64; 2]>, text: &dyn Fn(f64) -> String| match ends {
             Some([low, high]) => format!("{} .. {}", text(low), text(high)),
             None => "unknown".to_owned(),
@@ -426,7 +377,7 @@ impl CharacteristicReport {
         let value = |ends| range(ends, &|value| beside(value, scale));
         let of_shape = |ends| range(ends, &shape);
         let kept = interval.rejected.map(|[low, high]| [high, low]);
-        let limited = self.lower.or(self.upper).is_some();
+        let limited = self.limited();
         let of_limits = |name: &str, text: String| if limited { [name.to_owned(), text] } else { Default::default() };
         let ([yield_, yields], [cpk, cpks]) =
             (of_limits("yield", range(kept, &share)), of_limits("Cpk", range(interval.cpk, &index)));
@@ -474,15 +425,17 @@ impl CharacteristicReport {
         let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));
         let number = |value: Option<f64>, row: &Row<'_>, order: usize| {
             let rounding = row.0.rounding.map(|rounding| rounding[order]);
-            Cell::both(Value::Number(value), derivative(value, rounding))
+            let text = derivative(value, rounding);
+            let cell = Cell::both(Value::Number(value), text.as_str());
+            if row.0.exact || value.is_none() { cell } else { cell.on_pages(format!("{text} ≈")) }
         };
         let rounding = |row: &Row<'_>, order: usize| Cell::data(row.0.rounding.map(|rounding| rounding[order]));
-        let shift = |row: &Row<'_>| match (row.0.mean_shift, self.sigma) {
+        let shift = |row: &Row<'_>| match (row.0.mean_shift, self.sigma()) {
             (Some(shift), Some(sigma)) => Cell::number(shift, |shift| rounded(shift, sigma)),
             (shift, _) => Cell::both(Value::Number(shift), UNKNOWN),
         };
         Columns::default()
-            .data("characteristic", |_| Cell::text(&self.name))
+            .data("characteristic", |_| Cell::text(self.name()))
             .named("dimension", "dimension", |row: &Row<'_>| Cell::name(&row.0.dimension))
             .shown("nominal", |row| Cell::number(row.1.nominal, plain))
             .shown("tolerance", |row| Cell::text(row.1.tolerance()))
@@ -525,7 +478,7 @@ impl CharacteristicReport {
             }
         };
         Columns::default()
-            .data("characteristic", |_| Cell::text(&self.name))
+            .data("characteristic", |_| Cell::text(self.name()))
             .data("dimension_a", |pair: &&Interaction| Cell::text(&pair.dimensions[0]))
             .data("dimension_b", |pair| Cell::text(&pair.dimensions[1]))
             .named("", "pair", both)
@@ -588,11 +541,11 @@ fn named(kind: &str) -> String {
 
 /// Quantiles beside one another, with their probabilities above.
 fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
-    let row = |name: String, cell: &dyn Fn(&(&'static str, f64)) -> Cell| -> [Cell; 8] {
-        let mut cells = std::iter::once(Cell::text(name)).chain(quantiles.0.iter().map(cell));
+    let row = |name: String, cell: &dyn Fn((&'static str, &f64)) -> Cell| -> [Cell; 8] {
+        let mut cells = std::iter::once(Cell::text(name)).chain(quantiles.iter().map(cell));
         std::array::from_fn(|_| cells.next().unwrap_or_else(Cell::empty))
     };
-    let probability = |&(p, _): &(&'static str, f64)| {
+    let probability = |(p, _): (&'static str, &f64)| {
         // `0.00135` as `0.135 %`.
         Cell::number(p.parse::<f64>().ok(), |p| format!("{} %", plain((1e5 * p).round() / 1e3)))
     };
@@ -600,12 +553,6 @@ fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
         row(law.to_owned(), &probability),
         row("quantiles".to_owned(), &|(_, value)| Cell::number(*value, |value| beside(value, sigma))),
     ])
-}
-
-fn outside(below: Option<f64>, above: Option<f64>) -> String {
-    let side = |ppm: Option<f64>, name: &str| ppm.map(|ppm| format!("{} ppm {name}", significant(ppm, 4)));
-    let sides: Vec<String> = [side(below, "below"), side(above, "above")].into_iter().flatten().collect();
-    if sides.is_empty() { String::new() } else { format!(" ({})", sides.join(", ")) }
 }
 
 /// A derivative to six digits; what rounding alone can make is 0 as far as anybody knows.

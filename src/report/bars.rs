@@ -1,8 +1,10 @@
 //! What of a characteristic is drawn as bars: contributions to the variance, and intervals beside the limits.
 
-use super::CharacteristicReport;
+use super::figures::{Figures, Named};
+use crate::analysis::CharacteristicAnalysis;
 use crate::document::number::{NEWS, beside, percent};
 use crate::document::{Bar, Bars, Extent, Fill, Line, Tone};
+use crate::extremes::Extremes;
 
 /// Bars of a Pareto diagram.
 const BARS: usize = 24;
@@ -12,7 +14,7 @@ const ROUNDING: f64 = 1e-9;
 const FAR: f64 = 2.0;
 
 /// The strongest contributions to the variance, and what is left in words.
-pub(super) fn pareto(one: &CharacteristicReport) -> (Bars, Option<String>) {
+pub(super) fn pareto(one: &CharacteristicAnalysis) -> (Bars, Option<String>) {
     type Share = (String, [f64; 3]);
     let own = one
         .sensitivities
@@ -46,7 +48,7 @@ pub(super) fn pareto(one: &CharacteristicReport) -> (Bars, Option<String>) {
         }
     };
     let bars = Bars {
-        caption: format!("Contributions to the variance of {}, strongest first", one.name),
+        caption: format!("Contributions to the variance of {}, strongest first", one.name()),
         rows: all.iter().map(row).collect(),
         marks: Vec::new(),
         legend: vec![
@@ -59,32 +61,33 @@ pub(super) fn pareto(one: &CharacteristicReport) -> (Bars, Option<String>) {
 }
 
 /// Worst case, RSS and three sigma on one scale with the limits; None where there is no extent.
-pub(super) fn spans(one: &CharacteristicReport) -> Option<Bars> {
+pub(super) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
     let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
-    let proven = if one.worst_case.proven == Some(true) { "extremes, proven" } else { "extremes found" };
+    let found = one.extremes.as_ref();
+    let proven = if found.is_some_and(Extremes::proven) { "extremes, proven" } else { "extremes found" };
     let intervals: Vec<(&str, [f64; 2])> = [
-        ("worst case, linear", one.worst_case.linear),
-        (proven, one.worst_case.extremes),
-        ("no assembly lies beyond", one.worst_case.bounds),
+        ("worst case, linear", one.worst_case),
+        (proven, found.map(|found| [found.least.value, found.greatest.value])),
+        ("no assembly lies beyond", one.proof().map(|proof| proof.bounds)),
         ("RSS", around(one.middle, one.rss)),
         ("RSS x 1.5 (Bender)", around(one.middle, one.inflated_rss)),
         ("RSS with shifted means", around(one.middle, one.mean_shift_rss)),
-        ("mean \u{b1} 3 sigma", around(one.mean, one.sigma.map(|sigma| 3.0 * sigma))),
+        ("mean \u{b1} 3 sigma", around(one.mean(), one.sigma().map(|sigma| 3.0 * sigma))),
     ]
     .into_iter()
     .filter_map(|(name, interval)| Some((name, interval?)))
     .collect();
-    let limits = [one.lower, one.upper];
+    let limits = Named::limits(one);
     let ends = intervals.iter().flat_map(|(_, interval)| *interval);
     let extent = ends.clone().fold(f64::NEG_INFINITY, f64::max) - ends.clone().fold(f64::INFINITY, f64::min);
-    let middle = one.mean.or(one.middle).unwrap_or(0.0);
+    let middle = one.mean().or(one.middle).unwrap_or(0.0);
     let near = limits.into_iter().flatten().filter(|limit| (limit - middle).abs() < FAR * extent);
     let scale = Extent::over(ends.chain(near), 0.04, 100.0)?;
     let (unit, slack) = (one.scale(), ROUNDING * extent);
     let limited = limits != [None, None];
     let row = |(name, [from, to]): (&str, [f64; 2])| {
-        let kept =
-            one.lower.is_none_or(|lower| from >= lower - slack) && one.upper.is_none_or(|upper| to <= upper + slack);
+        let kept = one.lower().is_none_or(|lower| from >= lower - slack)
+            && one.upper().is_none_or(|upper| to <= upper + slack);
         let fill = if limited && !kept { Fill::Over } else { Fill::Span };
         let x = scale.at(from);
         Bar {
@@ -100,7 +103,7 @@ pub(super) fn spans(one: &CharacteristicReport) -> Option<Bars> {
     };
     let inside = |x: &f64| *x >= scale.from && *x <= scale.to;
     Some(Bars {
-        caption: format!("Intervals of {} on one scale, with the limits as lines", one.name),
+        caption: format!("Intervals of {} on one scale, with the limits as lines", one.name()),
         rows: intervals.into_iter().map(row).collect(),
         marks: limits.into_iter().flatten().filter(inside).map(|limit| scale.at(limit)).collect(),
         legend: Vec::new(),

@@ -2,19 +2,22 @@
 
 use serde::Serialize;
 
-use super::simulation::SimulatedReport;
+use super::figures::{Figures as _, Named};
 use super::{About, Head, head};
-use crate::compare::{Comparison, Contender, Errors, Figures, NotRunReason, RESOLVED, Ran};
+use crate::compare::{Comparison, Errors, Figures, NotRun, RESOLVED, Ran};
 use crate::document::number::{known, significant, yielded};
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Section, Stroke,
     Tone, Value,
 };
+use crate::simulation::SimulatedCharacteristic;
 use crate::summary::RunSummary;
 use crate::verdict::Verdict;
+#[cfg(feature = "cli")]
+use crate::{compare::ErrorShape, simulation::SimulatedShape};
 
 /// The report of a comparison, as `--json` prints it. What is unknown is null, never 0.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CompareReport {
     /// What every report begins with.
@@ -30,17 +33,18 @@ pub struct CompareReport {
     /// What was asked.
     pub characteristics: Vec<ComparedReport>,
     /// Methods that were not run, and why.
-    pub not_run: Vec<NotRunReport>,
+    pub not_run: Vec<NotRun>,
 }
 
 /// One characteristic.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ComparedReport {
     /// Its name.
     pub name: String,
     /// What the methods are measured by.
-    pub reference: SimulatedReport,
+    #[cfg_attr(feature = "cli", schemars(with = "SimulatedShape"))]
+    pub reference: SimulatedCharacteristic,
     /// The methods, fewest evaluations first.
     pub methods: Vec<MethodReport>,
 }
@@ -65,43 +69,12 @@ pub struct MethodReport {
     #[serde(flatten)]
     pub figures: Figures,
     /// How far that is off the reference.
-    pub error_vs_reference: ErrorReport,
+    #[cfg_attr(feature = "cli", schemars(with = "ErrorShape"))]
+    pub error_vs_reference: Errors,
     /// Whether no other method has a smaller error for as many evaluations or fewer.
     pub pareto: bool,
     /// What it says of the target yield; null without one.
     pub verdict: Option<Verdict>,
-}
-
-/// How far a method is off.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct ErrorReport {
-    /// The mean in sigmas, sigma relative, the others as they are.
-    #[serde(flatten)]
-    pub off: Figures,
-    /// The reference's own standard errors in the same units.
-    pub reference_standard_error: Figures,
-    /// Root of the sum of squares of the errors of mean and sigma.
-    pub overall: Option<f64>,
-    /// Whether the reference tells that from 0.
-    pub resolved: bool,
-    /// What of it the reference may be off itself.
-    #[serde(skip)]
-    pub floor: f64,
-}
-
-/// A method that was not run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct NotRunReport {
-    /// Its name.
-    pub method: String,
-    /// What it would have taken.
-    pub evaluations: Option<u64>,
-    /// Seconds that the model would have taken.
-    pub projected_s: Option<f64>,
-    /// Why not.
-    pub reason: NotRunReason,
 }
 
 impl CompareReport {
@@ -110,45 +83,31 @@ impl CompareReport {
         let reference = &comparison.reference;
         let characteristics = reference.characteristics.iter().enumerate().map(|(c, one)| ComparedReport {
             name: one.characteristic.name().to_owned(),
-            reference: SimulatedReport::of(one),
+            reference: one.clone(),
             methods: comparison.ran.iter().map(|ran| MethodReport::of(ran, c)).collect(),
         });
         Self {
             head: Head::of("compare", &about),
             run: comparison.run,
             reference_samples: reference.samples,
-            reference_method: super::simulation::names(reference.sampler).0,
+            reference_method: reference.sampler.method(),
             characteristics: characteristics.collect(),
-            not_run: (comparison.not_run.iter())
-                .map(|one| NotRunReport {
-                    method: one.contender.name(),
-                    evaluations: one.evaluations,
-                    projected_s: one.projected_s,
-                    reason: one.reason.clone(),
-                })
-                .collect(),
+            not_run: comparison.not_run.clone(),
         }
     }
 }
 
 impl MethodReport {
     fn of(ran: &Ran, c: usize) -> Self {
-        let Errors { off, reference } = &ran.errors[c];
         Self {
-            method: Contender::name(ran.contender),
+            method: ran.contender.name(),
             evaluations: ran.evaluations,
             cached: ran.run.cached,
             run: ran.run,
             evaluation_s: ran.evaluation.as_secs_f64(),
             engine_s: ran.engine.as_secs_f64(),
             figures: ran.figures[c],
-            error_vs_reference: ErrorReport {
-                off: *off,
-                reference_standard_error: *reference,
-                overall: ran.errors[c].overall(),
-                resolved: ran.errors[c].resolved(),
-                floor: ran.errors[c].floor(),
-            },
+            error_vs_reference: ran.errors[c],
             pareto: ran.pareto[c],
             verdict: ran.verdicts[c],
         }
@@ -167,7 +126,7 @@ impl CompareReport {
             for one in &self.not_run {
                 let time = one.projected_s.map_or(String::new(), |time| format!(", {} s", significant(time, 2)));
                 let cost = one.evaluations.map_or(String::new(), |count| format!(" ({count} evaluations{time})"));
-                section.line(format!("not run: {}{cost}: {}", one.method, one.reason));
+                section.line(format!("not run: {}{cost}: {}", one.contender.name(), one.reason));
             }
             document.sections.push(section);
         }
@@ -177,20 +136,20 @@ impl CompareReport {
 
 impl ComparedReport {
     fn section(&self) -> Section {
-        let mut section = Section::of(&self.name, self.reference.unit.as_deref());
+        let mut section = Section::of(&self.name, self.reference.unit());
         section.words = ": how far off the reference, and which no other beats".to_owned();
         let of = &self.reference;
         section.remark(format!(
             "Reference: mean {}, sigma {}, skewness {}, kurtosis {}, yield {}.",
-            known(of.mean, |mean| significant(mean, 7)),
-            known(of.sigma, |sigma| significant(sigma, 6)),
-            known(of.skewness, |skewness| significant(skewness, 4)),
-            known(of.kurtosis, |kurtosis| significant(kurtosis, 5)),
-            known(of.yield_, yielded),
+            known(of.mean(), |mean| significant(mean, 7)),
+            known(of.sigma(), |sigma| significant(sigma, 6)),
+            known(of.skewness(), |skewness| significant(skewness, 4)),
+            known(of.kurtosis(), |kurtosis| significant(kurtosis, 5)),
+            known(of.yield_(), yielded),
         ));
         section.chart(Chart::Plot(self.plot()));
         section.table(self.table());
-        if self.methods.iter().any(|method| !method.error_vs_reference.resolved) {
+        if self.methods.iter().any(|method| !method.error_vs_reference.resolved()) {
             section.note("<: the reference is itself no surer than this, and does not tell the difference");
         }
         section
@@ -209,7 +168,7 @@ impl ComparedReport {
             ($figure:ident, $factor:expr) => {
                 move |method: &&MethodReport| {
                     let of = &method.error_vs_reference;
-                    error(of.off.$figure, of.reference_standard_error.$figure, $factor)
+                    error(of.off.$figure, of.reference.$figure, $factor)
                 }
             };
         }
@@ -235,8 +194,8 @@ impl ComparedReport {
             .column("skewness_off", "skew", off!(skewness, 1.0))
             .column("kurtosis_off", "kurtosis", off!(kurtosis, 1.0))
             .column("yield_off", "yield %", off!(yield_, 100.0))
-            .data("overall", |method| Cell::data(method.error_vs_reference.overall))
-            .data("resolved", |method| Cell::both(Value::Truth(Some(method.error_vs_reference.resolved)), ""))
+            .data("overall", |method| Cell::data(method.error_vs_reference.overall()))
+            .data("resolved", |method| Cell::both(Value::Truth(Some(method.error_vs_reference.resolved())), ""))
             .named("pareto", "no other beats it", best)
             .table("comparison", &self.methods)
     }
@@ -244,15 +203,15 @@ impl ComparedReport {
     /// Evaluations against error. Open circles are methods whose error the reference does not resolve; the dashed line is what it
     /// resolves; the line joins the methods that no other beats.
     fn plot(&self) -> Plot {
-        let floor = self.methods.first().map_or(0.0, |method| method.error_vs_reference.floor);
+        let floor = self.methods.first().map_or(0.0, |method| method.error_vs_reference.floor());
         let point = |method: &MethodReport| {
-            let error = method.error_vs_reference.overall?.max(floor);
+            let error = method.error_vs_reference.overall()?.max(floor);
             (error > 0.0 && method.evaluations > 0).then(|| PlotPoint {
                 at: [method.evaluations as f64, error],
                 name: method.method.clone(),
                 tip: String::new(),
                 strong: method.pareto,
-                filled: method.error_vs_reference.resolved,
+                filled: method.error_vs_reference.resolved(),
             })
         };
         let points: Vec<PlotPoint> = self.methods.iter().filter_map(point).collect();

@@ -6,7 +6,7 @@ use super::*;
 use crate::allocation::{
     Allocated, Allocation, AllocationOptions, AllocationTask, Curve, Kept, Offer, Priced, allocate,
 };
-use crate::analysis::{Interaction, Sensitivity, analyze};
+use crate::analysis::{CharacteristicAnalysis, Interaction, Sensitivity, analyze};
 use crate::assembly::Closure;
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::compare::{CompareOptions, Comparison, Contender, NotRun, Ran, compare};
@@ -14,6 +14,7 @@ use crate::method::Method;
 use crate::rare::{Beyond, RareCharacteristic, RareEvents, RareOptions, rare};
 use crate::requirement::Requirement;
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate};
+use crate::summary::RunSummary;
 use crate::sweep::{Sweep, sweep};
 
 /// Takes a result apart, all of its fields by name, and seeks each in the JSON by its pointer.
@@ -42,7 +43,7 @@ fn json(report: &impl Serialize) -> Value {
 fn run_of(json: &Value, run: &RunSummary) {
     complete!(json, run => RunSummary {
         evaluations: "/evaluations", cached: "/cached", retried: "/retried", failed: "/failed", stages: "/stages",
-        wall: "/wall_s", in_model: "/in_model_s", seed: "/seed", stopped: "/stopped",
+        wall: "/wall_s", in_model: "/in_model_s", seed: "/seed", stopped: "/stopped", evaluator: "/evaluator",
     });
 }
 
@@ -50,11 +51,11 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
     // What sampling, resampling, searching and fitting left is null here, and there all the same.
     complete!(json, one => CharacteristicAnalysis {
         characteristic: "/name", nominal: "/nominal", moments: "/kurtosis", sampled: "/surrogate_sampling",
-        model_sampled: "/model_sampling", surface_law: "/surface_law", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",
+        model_sampled: "/model_sampling", surface_law: "/surface_law", density: "", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",
         error_estimate: "/error_estimate", residual: "/least_squares", law: "/distribution", capability: "/cpk",
         normal: "/normal_fit", sampling: "/sampling_interval", worst_case: "/worst_case/linear",
-        extremes: "/worst_case/extremes", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
-        mean_shift_rss: "/mean_shift_rss", sensitivities: "/sensitivities/1", interactions: "/interactions/0",
+        extremes: "/worst_case/extremes", bounds: "/worst_case/bounds", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
+        mean_shift_rss: "/mean_shift_rss", sensitivities: "/sensitivities/1", interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
         possible_interactions: "/possible_interactions", left_out_share: "/left_out_share", constant: "/constant",
         verification: "/verification",
     });
@@ -87,7 +88,7 @@ fn an_analysis_is_all_in_its_report() {
     // The surface is for pages that try other tolerances.
     complete!(json, &found => Analysis {
         method: "/method", varying: "/varying", run: "/evaluations", characteristics: "/characteristics/0",
-        joint: "/joint_yield", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
+        joint: "/joint_yield", correlations: "/characteristic_correlation", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
     });
     characteristic(json.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 }
@@ -122,6 +123,25 @@ fn samples_are_all_in_their_reports() {
         effective_samples: "/effective_samples", greatest_part: "/greatest_part", plain_samples: "/plain_samples",
         design_point: "/design_point",
     });
+}
+
+/// Whoever writes a result by itself finds what the report has, key by key; warnings too, where the study has none.
+#[test]
+fn a_result_is_written_as_in_its_report() {
+    fn same(result: &impl Serialize, report: &impl Serialize) {
+        let (own, report) = (json(result), json(report));
+        for (key, value) in own.as_object().unwrap() {
+            assert_eq!(report.get(key), Some(value), "{key}");
+        }
+    }
+    let problem = problem();
+    let mut found = analyze(&problem, &Method::Rss.into()).unwrap();
+    found.warnings.push(Warning::NothingToWrite);
+    same(&found, &Report::of(&problem, &found, About::default()));
+    let found = simulate(&problem, &SimulationOptions { samples: 2000, ..SimulationOptions::default() }).unwrap();
+    same(&found, &SimulationReport::of(&problem, &found, About::default()));
+    let found = rare(&problem, &RareOptions { samples: 200, ..RareOptions::default() }).unwrap();
+    same(&found, &RareReport::of(&problem, &found, About::default()));
 }
 
 #[test]

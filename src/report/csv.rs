@@ -1,6 +1,7 @@
 //! The tabular parts of reports as files of CSV.
 
 use super::Report;
+use super::figures::Named;
 use super::stack::{Stack, stack_document};
 use crate::document::csv::{csv, joined};
 use crate::document::{DataTable, Document};
@@ -28,7 +29,7 @@ pub fn csv_tables(document: &Document, names: &[&str]) -> Vec<CsvFile> {
 /// The tables of a report: `dimensions.csv`, `characteristics.csv`, `sensitivities.csv`, `interactions.csv`, `quantiles.csv`,
 /// `warnings.csv`, and `stack-NAME.csv` for every characteristic.
 pub fn csv_files(report: &Report) -> Vec<CsvFile> {
-    let names = csv_file_names(report.characteristics.iter().map(|one| one.name.as_str()));
+    let names = csv_file_names(report.analysis.characteristics.iter().map(|one| one.name()));
     let document = report.document();
     let tables = TABLES.iter().map(|name| csv(&document, name));
     let stacks = report.stacks().into_iter().map(|stack| stack_csv(&[stack]));

@@ -10,8 +10,9 @@
 
 use std::fmt;
 
-use super::{CharacteristicReport, DimensionReport, Report};
-use crate::analysis::Sensitivity;
+use super::figures::{Figures, Named};
+use super::{DimensionReport, Report};
+use crate::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::document::number::{UNKNOWN, beside, limits, percent, plain, short, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Tone, Value};
 use crate::method::Method;
@@ -133,12 +134,12 @@ pub enum StackNote {
 impl Report {
     /// The stacks of all its characteristics.
     pub fn stacks(&self) -> Vec<Stack> {
-        self.characteristics.iter().map(|one| Stack::of(self, one)).collect()
+        self.analysis.characteristics.iter().map(|one| Stack::of(self, one)).collect()
     }
 }
 
 impl Stack {
-    fn of(report: &Report, one: &CharacteristicReport) -> Self {
+    fn of(report: &Report, one: &CharacteristicAnalysis) -> Self {
         let pairs = || one.sensitivities.iter().zip(&report.dimensions);
         let rows = pairs().filter(|(row, dimension)| matters(row, dimension));
         let mut rows: Vec<StackRow> =
@@ -151,8 +152,8 @@ impl Stack {
             row.share =
                 row.contribution.zip(alone).map(|(part, all)| if all == 0.0 { 0.0 } else { (part / all).powi(2) });
         }
-        let first_order = [Method::Rss, Method::WorstCase].iter().any(|method| method.name() == report.method);
-        let worst_case = one.worst_case.linear.map(|[lower, upper]| 0.5 * (upper - lower));
+        let first_order = [Method::Rss, Method::WorstCase].contains(&report.analysis.method);
+        let worst_case = one.worst_case.map(|[lower, upper]| 0.5 * (upper - lower));
         let about_middle = |kind, half_width| StackTotal { kind, middle: one.middle, half_width };
         let totals = vec![
             about_middle(TotalKind::WorstCase, worst_case),
@@ -161,14 +162,14 @@ impl Stack {
             about_middle(TotalKind::MeanShiftRss, one.mean_shift_rss),
             StackTotal {
                 kind: if first_order { TotalKind::FirstOrder } else { TotalKind::SecondOrder },
-                middle: one.mean,
-                half_width: one.sigma.map(|sigma| SIGMAS * sigma),
+                middle: one.mean(),
+                half_width: one.sigma().map(|sigma| SIGMAS * sigma),
             },
         ];
         Self {
-            characteristic: one.name.clone(),
-            unit: one.unit.clone(),
-            limits: [one.lower, one.upper],
+            characteristic: one.name().to_owned(),
+            unit: one.unit().map(str::to_owned),
+            limits: one.limits(),
             notes: notes(report, one, &rows),
             rows,
             totals,
@@ -244,7 +245,7 @@ fn direction(row: &Sensitivity) -> String {
     }
 }
 
-fn notes(report: &Report, one: &CharacteristicReport, rows: &[StackRow]) -> Vec<StackNote> {
+fn notes(report: &Report, one: &CharacteristicAnalysis, rows: &[StackRow]) -> Vec<StackNote> {
     let mut notes = Vec::new();
     let names = |kept: &dyn Fn(&StackRow) -> bool| -> Vec<String> {
         rows.iter().filter(|row| kept(row)).map(|row| row.dimension.name.clone()).collect()
@@ -281,7 +282,7 @@ fn notes(report: &Report, one: &CharacteristicReport, rows: &[StackRow]) -> Vec<
 }
 
 /// What is known of the characteristic's being linear; what rounding alone can make of a derivative is none.
-fn shape(one: &CharacteristicReport, rows: &[StackRow]) -> Option<StackNote> {
+fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     let real = |value: Option<f64>, rounding: Option<f64>| match (value, rounding) {
         (Some(value), Some(rounding)) => value.abs() > 2.0 * rounding,
         (value, _) => value.is_some_and(|value| value != 0.0),

@@ -4,19 +4,21 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::distribution::{NAMES, QUANTILES};
+use super::figures::{Figures, QUANTILES};
 use super::head::{self, findings};
-use super::{About, Head, OptionalQuantiles, Quantiles, RequirementReport, WarningReport};
+use super::{About, Head, WarningReport};
 use crate::analysis::CharacteristicAnalysis;
-use crate::capability::Law;
-use crate::document::number::{beside, known, limits, plain, plural, rejected, shape, short, significant};
+use crate::capability::{Law, Quantiles};
+use crate::document::number::{beside, known, limits, plain, plural, shape, short, significant};
+use crate::document::rejects::Rejects;
 use crate::document::{
     Blocks, Cell, Chart, Columns, DataTable, Document, Layer, Plot, PlotAxis, PlotScale, Section, Stroke, Value,
 };
+use crate::method::ErrorEstimate;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::sweep::Sweep;
-use crate::verdict::Verdict;
+use crate::verdict::{Judged, Verdict};
 
 /// The report of a sweep, as `--json` prints it. What is unknown is null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -84,10 +86,12 @@ pub struct SweptPointReport {
     pub skewness: Option<f64>,
     /// Fourth standardised moment.
     pub kurtosis: Option<f64>,
+    /// How far all that may be off, by what the method did not see; null without moments.
+    pub error_estimate: Option<ErrorEstimate>,
     /// Root of the sum of squares.
     pub rss: Option<f64>,
     /// Of the distribution with these moments.
-    pub quantiles: OptionalQuantiles,
+    pub quantiles: Quantiles<Option<f64>>,
     /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
@@ -100,7 +104,8 @@ pub struct SweptPointReport {
     /// The same in a word.
     pub verdict: Option<Verdict>,
     /// Everything that is required of it, the target yield included.
-    pub requirements: Vec<RequirementReport>,
+    #[cfg_attr(feature = "cli", schemars(with = "Vec<crate::verdict::JudgedShape>"))]
+    pub requirements: Vec<Judged>,
 }
 
 impl SweepReport {
@@ -176,7 +181,7 @@ impl SweptReport {
             })
         };
         let yielded = |point: &&SweptPointReport| {
-            let text = known(point.yield_, |_| rejected(point.ppm_below, point.ppm_above).unwrap_or_default());
+            let text = known(point.yield_, |_| point.rejects().yield_text().unwrap_or_default());
             Cell::both(Value::Number(point.yield_), text.trim_end_matches(" %"))
         };
         let mut columns = Columns::default()
@@ -191,7 +196,7 @@ impl SweptReport {
             .wide("kurtosis", "kurtosis", |point| Cell::number(point.kurtosis, shape))
             .wide("rss", "rss", |point| rounded(point.rss, point));
         for (index, key) in QUANTILES.into_iter().enumerate() {
-            let quantile = move |point: &&SweptPointReport| rounded(point.quantiles.0[index].1, point);
+            let quantile = move |point: &&SweptPointReport| rounded(point.quantiles.0[index], point);
             columns = match index {
                 0 => columns.column(key, "0.135 %", quantile),
                 3 => columns.column(key, "50 %", quantile),
@@ -257,42 +262,39 @@ fn warnings(sweep: &Sweep, parameter: &str, about: &About) -> Vec<WarningReport>
 
 impl SweptPointReport {
     fn of(at: f64, analysis: Option<&CharacteristicAnalysis>) -> Self {
-        let moments = analysis.and_then(|analysis| analysis.moments);
-        let capability = analysis.and_then(|analysis| analysis.capability);
-        let law = analysis.and_then(|analysis| analysis.law.as_ref()).and_then(|law| law.as_ref().ok());
-        let surface = analysis.and_then(|analysis| analysis.surface_law.as_ref()?.quantiles);
-        let quantiles = match law {
-            _ if let Some(surface) = surface => {
-                NAMES.iter().zip(surface).map(|(&name, figure)| (name, Some(figure.value))).collect()
-            }
-            Some(Law::Point { at }) => NAMES.iter().map(|&name| (name, Some(*at))).collect(),
-            Some(Law::Pearson(pearson)) => {
-                Quantiles::of(pearson).0.into_iter().map(|(name, value)| (name, Some(value))).collect()
-            }
-            None => NAMES.iter().map(|&name| (name, None)).collect(),
-        };
+        let of = |figure: fn(&CharacteristicAnalysis) -> Option<f64>| analysis.and_then(figure);
+        let quantiles = analysis.and_then(|one| match (one.quantiles(), one.fitted()) {
+            (None, Some(Law::Point { at })) => Some(Quantiles([*at; 7])),
+            (known, _) => known,
+        });
         Self {
             at,
-            nominal: analysis.and_then(|analysis| analysis.nominal),
-            mean: moments.map(|moments| moments.mean()),
-            sigma: moments.map(|moments| moments.sigma()),
-            skewness: moments.and_then(|moments| moments.skewness()),
-            kurtosis: moments.and_then(|moments| moments.kurtosis()),
-            rss: analysis.and_then(|analysis| analysis.rss),
-            quantiles: OptionalQuantiles(quantiles),
-            yield_: capability.and_then(|capability| capability.yield_()),
-            ppm_below: capability.and_then(|capability| capability.below).map(|share| 1e6 * share),
-            ppm_above: capability.and_then(|capability| capability.above).map(|share| 1e6 * share),
+            nominal: of(|one| one.nominal),
+            mean: of(Figures::mean),
+            sigma: of(Figures::sigma),
+            skewness: of(Figures::skewness),
+            kurtosis: of(Figures::kurtosis),
+            error_estimate: analysis.and_then(|one| one.error_estimate.clone()),
+            rss: of(|one| one.rss),
+            quantiles: Quantiles(quantiles.map_or([None; 7], |all| all.0.map(Some))),
+            yield_: of(Figures::yield_),
+            ppm_below: of(Figures::ppm_below),
+            ppm_above: of(Figures::ppm_above),
             met: analysis.and_then(CharacteristicAnalysis::met),
             verdict: analysis.and_then(CharacteristicAnalysis::verdict),
-            requirements: analysis
-                .map_or(Vec::new(), |one| one.requirements().iter().map(RequirementReport::of).collect()),
+            requirements: analysis.map_or(Vec::new(), CharacteristicAnalysis::requirements),
         }
+    }
+
+    fn rejects(&self) -> Rejects {
+        let error = self.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
+        let [below, above] = [self.ppm_below, self.ppm_above].map(|ppm| ppm.map(|ppm| 1e-6 * ppm));
+        Rejects::new(below, above, error)
     }
 
     /// The ends of the band in which all but 0.27 % lie; None where they are unknown.
     pub fn band(&self) -> Option<[f64; 2]> {
-        let of = |index: usize| self.quantiles.0.get(index).and_then(|(_, value)| *value);
-        Some([of(0)?, of(NAMES.len() - 1)?])
+        let all = self.quantiles.0;
+        Some([all[0]?, all[6]?])
     }
 }

@@ -16,6 +16,7 @@ use crate::names::UnknownName;
 
 /// How points are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Sampler {
     /// Independent random points.
     Random,
@@ -24,6 +25,14 @@ pub enum Sampler {
 }
 
 impl Sampler {
+    /// The method that it makes of a simulation.
+    pub(crate) fn method(self) -> &'static str {
+        match self {
+            Self::Random => "monte-carlo",
+            Self::Sobol => "quasi-monte-carlo",
+        }
+    }
+
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {

@@ -32,6 +32,14 @@ pub(crate) fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
         return [None; 4];
     }
     let (mean, sigma) = (summary.mean(), summary.sigma());
+    if !sigma.is_finite() {
+        return [
+            Some(Estimate { value: mean, standard_error: None }).filter(|mean| mean.value.is_finite()),
+            None,
+            None,
+            None,
+        ];
+    }
     let Some(a) = summary.standardised() else {
         let exact = |value| Some(Estimate { value, standard_error: (summary.count() > 1).then_some(0.0) });
         return [exact(mean), exact(0.0), None, None];
@@ -44,19 +52,32 @@ pub(crate) fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     };
     // Its own moments say nothing of how uncertain a handful of values leaves them.
     let known = summary.count() >= FEWEST;
-    let estimate = |value, error| Some(Estimate { value, standard_error: known.then_some(error) });
+    // Powers that leave the range of doubles are 0 or infinite: what rests on them is unknown, and no 0.
+    let whole = |order: usize| summary.moment(order).is_normal();
+    let estimate = |of: [usize; 2], value, error| {
+        let error = Some(error).filter(|_| known && whole(of[1]));
+        Some(Estimate { value, standard_error: error }).filter(|_| whole(of[0]))
+    };
     [
-        estimate(mean, sigma * spread([0.0, 1.0, 0.0, 0.0, 0.0])),
-        estimate(sigma, sigma * spread([-0.5, 0.0, 0.5, 0.0, 0.0])),
-        estimate(s, spread([0.5 * s, -3.0, -1.5 * s, 1.0, 0.0])),
-        estimate(k, spread([k, -4.0 * s, -2.0 * k, 0.0, 1.0])),
+        Some(Estimate {
+            value: mean,
+            standard_error: Some(sigma * spread([0.0, 1.0, 0.0, 0.0, 0.0])).filter(|_| known && whole(2)),
+        }),
+        estimate([2, 4], sigma, sigma * spread([-0.5, 0.0, 0.5, 0.0, 0.0])),
+        estimate([4, 6], s, spread([0.5 * s, -3.0, -1.5 * s, 1.0, 0.0])),
+        estimate([4, 8], k, spread([k, -4.0 * s, -2.0 * k, 0.0, 1.0])),
     ]
+}
+
+/// One error of a value with a 95 % interval: half of the way to its farther end, as two errors are to reach both.
+pub(crate) fn one_error(value: f64, [low, high]: [f64; 2]) -> f64 {
+    0.5 * (high - value).max(value - low)
 }
 
 /// The 95 % interval of a share of which `hits` of `n` were seen (Wilson 1927): never empty, never outside 0 to 1.
 ///
 /// ```
-/// use sensitol::sampling::wilson;
+/// use sensitol::internals::wilson;
 /// let [low, high] = wilson(1000.0, 1000.0);
 /// assert!(low < 0.9963 && low > 0.996 && high == 1.0); // all of a thousand is not all
 /// ```

@@ -98,7 +98,7 @@ impl Fine {
     }
 
     /// How many values.
-    pub fn total(&self) -> u64 {
+    pub(crate) fn total(&self) -> u64 {
         self.total
     }
 

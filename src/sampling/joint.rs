@@ -61,6 +61,11 @@ impl<const M: usize> Joint<M> {
         &self.means
     }
 
+    /// `sum (a_i - mean_i)(a_k - mean_k)`.
+    pub(crate) fn products(&self) -> &[[f64; M]; M] {
+        &self.products
+    }
+
     /// Standard error of the sum of the means by these factors; None for fewer than two rows.
     pub(crate) fn standard_error(&self, by: &[f64; M]) -> Option<f64> {
         let n = self.count as f64;

@@ -11,7 +11,7 @@ const ORDER: usize = 8;
 /// digits.
 ///
 /// ```
-/// use sensitol::sampling::Summary;
+/// use sensitol::internals::Summary;
 /// let mut sample = Summary::of(&[1.0, 2.0]);
 /// sample.merge(&Summary::of(&[3.0, 4.0]));
 /// assert_eq!((sample.count(), sample.mean(), sample.moment(2)), (4, 2.5, 1.25));
@@ -97,7 +97,7 @@ impl Summary {
     }
 
     /// Standardised moments `a_0 ..= a_8`; None where nothing varies.
-    pub fn standardised(&self) -> Option<[f64; ORDER + 1]> {
+    pub(crate) fn standardised(&self) -> Option<[f64; ORDER + 1]> {
         let sigma = self.moment(2).sqrt();
         if self.count < 2 || sigma <= 0.0 || !sigma.is_finite() {
             return None;

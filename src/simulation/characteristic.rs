@@ -1,48 +1,70 @@
 //! What a simulation knows of one characteristic.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::control::Twin;
 use super::count::{Count, Replicate};
-use super::difference::{Difference, Shares, moments as controlled, shares};
+use super::difference::{Controlled, Difference, Shares, moments as controlled, shares};
 use super::replicate::of_replicates;
+use super::shape::value;
 use crate::assembly::EvaluationError;
 use crate::capability::{self, TAIL};
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::method::Method;
 use crate::requirement::Requirement;
 use crate::sampling::{Estimate, FEWEST, Fine, Summary, of_moments, wilson};
+use crate::shape::{millionths, text};
 use crate::verdict::{self, Judged, Verdict};
 use crate::warning::Warning;
 
 /// Estimates for one characteristic, each with its standard error. What is unknown is None.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct SimulatedCharacteristic {
     /// The characteristic, with its limits.
+    #[serde(flatten)]
     pub characteristic: Characteristic,
     /// Points at which it has a value.
     pub samples: u64,
     /// Points at which it has none.
     pub failed: u64,
     /// Why not, of the first of them.
+    #[serde(serialize_with = "text")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<String>"))]
     pub error: Option<EvaluationError>,
     /// First moment.
+    #[serde(serialize_with = "value")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
     pub mean: Option<Estimate>,
     /// Standard deviation.
+    #[serde(serialize_with = "value")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
     pub sigma: Option<Estimate>,
     /// Third standardised moment; None where nothing varies.
+    #[serde(serialize_with = "value")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
     pub skewness: Option<Estimate>,
     /// Fourth standardised moment, 3 for a normal; None where nothing varies.
+    #[serde(serialize_with = "value")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
     pub kurtosis: Option<Estimate>,
     /// Quantiles of the probabilities [`QUANTILES`]; None where the sample is too small for one value beyond, on average, and
     /// without standard error below five.
+    #[serde(skip)]
     pub quantiles: [Option<Estimate>; 7],
     /// The share of assemblies within the limits; None without any limit.
+    #[serde(rename = "yield", serialize_with = "share")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
     pub yield_: Option<YieldEstimate>,
     /// Share below the lower limit.
+    #[serde(rename = "ppm_below", serialize_with = "millionths")]
+    #[cfg_attr(feature = "cli", schemars(description = "Assemblies below the lower limit, per million."))]
     pub below: Option<f64>,
     /// Share above the upper limit.
+    #[serde(rename = "ppm_above", serialize_with = "millionths")]
+    #[cfg_attr(feature = "cli", schemars(description = "Assemblies above the upper limit, per million."))]
     pub above: Option<f64>,
     /// Width of the limits by six sigma; None unless there are two, and where nothing varies.
     pub cp: Option<f64>,
@@ -55,6 +77,7 @@ pub struct SimulatedCharacteristic {
     /// The sample, counted in some tens of intervals.
     pub histogram: Option<Histogram>,
     /// The surrogate that stood beside the model; None where none was asked for, or it does not vary.
+    #[cfg_attr(feature = "cli", schemars(with = "Option<super::shape::ControlShape>"))]
     pub control: Option<SurrogateControl>,
 }
 
@@ -84,6 +107,11 @@ pub struct YieldEstimate {
     pub bounds: [f64; 2],
 }
 
+/// A yield without its interval, which stands elsewhere.
+fn share<S: Serializer>(estimate: &Option<YieldEstimate>, serializer: S) -> Result<S::Ok, S::Error> {
+    estimate.map(|estimate| estimate.value).serialize(serializer)
+}
+
 /// How many values lie in which interval.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -102,8 +130,16 @@ pub const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
 const BEYOND: f64 = 5.0;
 /// Rejected assemblies in every replicate, on average, from which their differences are an interval of the yield.
 const REJECTED: u64 = 5;
+/// The eighth power of a larger value is beyond the largest double, 1.8e308; the standard error of a kurtosis needs it.
+const LARGEST: f64 = 1e38;
 /// Intervals of the histogram between the outer quantiles.
 const BINS: usize = 40;
+
+/// An estimate that is a number, with an error that is one.
+fn finite(estimate: Option<Estimate>) -> Option<Estimate> {
+    let Estimate { value, standard_error } = estimate.filter(|estimate| estimate.value.is_finite())?;
+    Some(Estimate { value, standard_error: standard_error.filter(|error| error.is_finite()) })
+}
 
 impl SimulatedCharacteristic {
     pub(super) fn of(characteristic: &Characteristic, count: &Count, twin: Option<&Twin>, answered: u64) -> Self {
@@ -112,7 +148,7 @@ impl SimulatedCharacteristic {
         let fine = pooled(&count.replicates);
         let known = all.count();
         let plain = moments(all, &count.replicates);
-        let [mean, sigma, skewness, kurtosis] = evidence.moments();
+        let [mean, sigma, skewness, kurtosis] = evidence.moments().map(finite);
         let shares = evidence.shares();
         let share = |side: usize| {
             if let Some(shares) = &shares {
@@ -188,6 +224,11 @@ impl SimulatedCharacteristic {
         Judged::of(requirement, value, interval).unless(self.unfinished)
     }
 
+    /// The yield if every point without a value is rejected, and if none is; None where every point has a value.
+    pub(crate) fn yield_bounds(&self) -> Option<[f64; 2]> {
+        self.yield_.filter(|_| self.failed > 0).map(|share| share.bounds)
+    }
+
     /// How everything is kept that is required of it: its target yield, and what else there is.
     pub fn requirements(&self) -> Vec<Judged> {
         verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
@@ -196,6 +237,14 @@ impl SimulatedCharacteristic {
     /// What is to be said of its target yield; None without one.
     pub fn verdict(&self) -> Option<Verdict> {
         self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
+    }
+
+    /// Values whose powers are no doubles.
+    pub(super) fn overflow(&self) -> Option<Warning> {
+        let [least, greatest] = self.range?;
+        let characteristic = self.characteristic.name().to_owned();
+        let value = least.abs().max(greatest.abs());
+        (value > LARGEST).then_some(Warning::Overflow { characteristic, value, limit: LARGEST })
     }
 
     /// Points without a value, where there are any.
@@ -227,7 +276,11 @@ impl<'a> Evidence<'a> {
 
     pub(super) fn moments(&self) -> [Option<Estimate>; 4] {
         match &self.beside {
-            Some((twin, differences)) => controlled(differences, twin),
+            Some((twin, differences)) => {
+                let (plain, random) = (moments(&self.all, &self.count.replicates), of_moments(&self.all));
+                let controlled = controlled(differences, twin);
+                std::array::from_fn(|moment| better(controlled[moment], plain[moment], random[moment]))
+            }
             None => moments(&self.all, &self.count.replicates),
         }
     }
@@ -265,6 +318,21 @@ impl<'a> Evidence<'a> {
         let bounds = [within, within + (answered - known)].map(|most| most as f64 / answered as f64);
         Some(YieldEstimate { value, interval, bounds })
     }
+}
+
+/// The controlled estimate, or the plain one where it is better; a tenth is added to the standard error for the choice.
+///
+/// Judged by the scatter of all points as if they were random. Standard errors of 16 replicates are uncertain by a fifth: the smaller
+/// of two would be too small.
+fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Option<Estimate>) -> Option<Estimate> {
+    const CHOICE: f64 = 1.1;
+    let Some(Controlled { estimate, random: own }) = controlled else { return plain };
+    // Where powers of the values overflow, only the controlled figure, in units of its own sigma, is left.
+    let without =
+        random.filter(|of| of.value.is_finite()).and_then(|of| of.standard_error).filter(|error| error.is_finite());
+    let Some(own) = own else { return Some(estimate) };
+    let best = if without.is_some_and(|without| without < own) { plain? } else { estimate };
+    Some(Estimate { standard_error: best.standard_error.map(|error| CHOICE * error), ..best })
 }
 
 /// By how much the standard error has shrunk.

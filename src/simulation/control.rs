@@ -1,17 +1,11 @@
 //! The second-order surrogate as control variate: what of the moments is known exactly, and how it is had.
 //!
-//! With `c` and `s` the exact mean and sigma of the surrogate `q`, `v = (y - c)/s` and `t = (q - c)/s`,
-//!
-//! ```text
-//! E[v^r] = E[t^r] + E[v^r - t^r]      r = 1 to 4
-//! ```
-//!
-//! where the first is exact and only the second, which is small where the surrogate is good, is sampled. Nothing is assumed
-//! of the surrogate: a bad one costs accuracy and not truth.
+//! The moments of the surrogate are exact; only what the model differs by is sampled ([`super::difference`]). Nothing is assumed of the
+//! surrogate: coefficients are fitted, and where the plain sample has the smaller standard error, it is the estimate.
 
 use rayon::prelude::*;
 
-use super::surrogates::{Known, Shape, Surrogates};
+use super::surrogates::{KnownSurrogate, Shape, Surrogates};
 use super::{ROWS, SimulationError, SimulationOptions};
 use crate::assembly::{Points, Run};
 use crate::characteristic::{Characteristic, SpecLimits};
@@ -147,9 +141,9 @@ impl<'p> Control<'p> {
 }
 
 /// The surrogates as they stand beside the model.
-fn twins(problem: &Problem, outcome: &Outcome, known: Vec<Option<Known>>) -> Vec<Option<Twin>> {
-    let twin = |(known, characteristic): (Option<Known>, &Characteristic)| {
-        known.map(|Known { surrogate, moments, sampled }| Twin {
+fn twins(problem: &Problem, outcome: &Outcome, known: Vec<Option<KnownSurrogate>>) -> Vec<Option<Twin>> {
+    let twin = |(known, characteristic): (Option<KnownSurrogate>, &Characteristic)| {
+        known.map(|KnownSurrogate { surrogate, moments, sampled }| Twin {
             centre: surrogate.centre,
             surrogate,
             method: outcome.method,

@@ -1,14 +1,41 @@
-//! The differences of model and surrogate, counted, and what they and the exact moments make together.
+//! Model and surrogate at the same points, counted, and what they and the exact moments make together.
+//!
+//! With `v` and `t` the values of model and surrogate in the surrogate's own units, and `n_k = v^k` where the model has a value and 0
+//! where it has none, k = 0 to 4,
+//!
+//! ```text
+//! E[n_k] = E[t^k] + E[n_k - t^k] - sum_j b_kj (mean t^j - E[t^j])        j = 1 to 4
+//! ```
+//!
+//! with `b` by least squares over all points of a random sample, and 0 for Sobol' points, whose errors follow from other parts of a
+//! function than its variance. Moments are the ratios to `E[n_0]`, the share of points that have a value: numerators and
+//! denominator are controlled alike, so that points without a value make nothing wrong. Differences over the points with a
+//! value alone would compare the model of some assemblies with the surrogate of all.
+//!
+//! Sources: Glynn and Szechtman (2002); Owen and Zhou (2000).
+
+use faer::{Mat, Side};
 
 use super::control::{Outside, Twin, sides};
 use super::replicate::of_replicates;
 use crate::moments::Sampled;
 use crate::sampling::{Estimate, FEWEST, Joint, wilson};
 
-/// `v^r - t^r` for r = 1 to 4, and where model and surrogate do not agree about the limits.
+/// Powers of the surrogate that serve as controls.
+const CONTROLS: usize = 4;
+/// `n_k - t^k` for k = 0 to 4, then the controls.
+const COLUMNS: usize = 1 + 2 * CONTROLS;
+/// Fewer points fit no coefficients: the differences are taken as they are.
+const FITTED: u64 = 64;
+/// Of the greatest: directions of the controls that vary less say nothing that a rounding does not.
+const SINGULAR: f64 = 1e-10;
+
+/// Joint sums of all points, and where model and surrogate do not agree about the limits.
 #[derive(Clone, Default)]
 pub(super) struct Difference {
-    powers: Joint<4>,
+    sums: Joint<COLUMNS>,
+    /// Points at which the model has no value.
+    lost: u64,
     /// Points below and above the limits for the model, less those for the surrogate.
     moved: [i64; 2],
     /// Points outside the limits for the model only, and for the surrogate only.
@@ -20,12 +47,22 @@ impl Difference {
     pub(super) fn of(values: &[f64], rises: &[f64], twin: &Twin) -> Self {
         let mut difference = Self::default();
         let mut rows = Vec::with_capacity(values.len());
-        for (&value, &rise) in values.iter().zip(rises).filter(|(value, _)| !value.is_nan()) {
+        for (&value, &rise) in values.iter().zip(rises) {
             let t = (rise - (twin.moments.mean - twin.centre)) / twin.moments.sigma;
+            let powers = [t, t * t, t * t * t, t * t * t * t];
+            if value.is_nan() {
+                difference.lost += 1;
+                let [p1, p2, p3, p4] = powers;
+                rows.push([-1.0, -p1, -p2, -p3, -p4, p1, p2, p3, p4]);
+                continue;
+            }
             let d = ((value - twin.centre) - rise) / twin.moments.sigma;
             let v = t + d;
             // In factors, so that nothing large is subtracted.
-            rows.push([d, d * (v + t), d * (v * v + v * t + t * t), d * (v + t) * (v * v + t * t)]);
+            let differences = [d, d * (v + t), d * (v * v + v * t + t * t), d * (v + t) * (v * v + t * t)];
+            let [d1, d2, d3, d4] = differences;
+            let [p1, p2, p3, p4] = powers;
+            rows.push([0.0, d1, d2, d3, d4, p1, p2, p3, p4]);
             let (model, surrogate) = (sides(&twin.limits, value), twin.sides(rise));
             for (side, moved) in difference.moved.iter_mut().enumerate() {
                 *moved += i64::from(model[side]) - i64::from(surrogate[side]);
@@ -36,12 +73,13 @@ impl Difference {
                 _ => {}
             }
         }
-        difference.powers = Joint::of(&rows);
+        difference.sums = Joint::of(&rows);
         difference
     }
 
     pub(super) fn merge(&mut self, other: &Self) {
-        self.powers.merge(&other.powers);
+        self.sums.merge(&other.sums);
+        self.lost += other.lost;
         (0..2).for_each(|side| {
             self.moved[side] += other.moved[side];
             self.only[side] += other.only[side];
@@ -49,7 +87,69 @@ impl Difference {
     }
 
     fn net(&self) -> f64 {
-        (self.only[0] as f64 - self.only[1] as f64) / self.powers.count() as f64
+        (self.only[0] as f64 - self.only[1] as f64) / self.sums.count() as f64
+    }
+
+    /// Points at which the model has a value.
+    fn valid(&self) -> u64 {
+        self.sums.count() - self.lost
+    }
+}
+
+/// The coefficients of the controls for every `n_k`.
+struct Coefficients([[f64; CONTROLS]; 1 + CONTROLS]);
+
+impl Coefficients {
+    /// The differences as they are.
+    fn none() -> Self {
+        Self([[0.0; CONTROLS]; 1 + CONTROLS])
+    }
+
+    /// By least squares over these points; 0 where they are too few.
+    fn of(sums: &Joint<COLUMNS>) -> Self {
+        let mut coefficients = [[0.0; CONTROLS]; 1 + CONTROLS];
+        let products = sums.products();
+        let control = |j: usize| 1 + CONTROLS + j;
+        let size: [f64; CONTROLS] = std::array::from_fn(|j| products[control(j)][control(j)].sqrt());
+        let constant = size.iter().any(|size| !(*size > 0.0 && size.is_finite()));
+        if sums.count() < FITTED || constant {
+            return Self(coefficients);
+        }
+        let matrix = Mat::from_fn(CONTROLS, CONTROLS, |i, j| products[control(i)][control(j)] / (size[i] * size[j]));
+        let Ok(eigen) = matrix.self_adjoint_eigen(Side::Lower) else { return Self(coefficients) };
+        let (vectors, values) = (eigen.U(), eigen.S());
+        let greatest = (0..CONTROLS).fold(0.0, |greatest: f64, i| greatest.max(values[i]));
+        for (k, row) in coefficients.iter_mut().enumerate() {
+            for e in (0..CONTROLS).filter(|&e| values[e] > SINGULAR * greatest) {
+                let along: f64 = (0..CONTROLS).map(|j| vectors[(j, e)] * products[k][control(j)] / size[j]).sum();
+                (0..CONTROLS).for_each(|j| row[j] += vectors[(j, e)] * along / (values[e] * size[j]));
+            }
+        }
+        Self(coefficients)
+    }
+
+    fn fitted(&self) -> bool {
+        self.0.iter().flatten().any(|coefficient| *coefficient != 0.0)
+    }
+
+    /// `E[n_0] - 1` and `E[n_k]/E[n_0] - E[t^k]` from the means of some points, with the gradients of the latter by these means.
+    fn moments(&self, means: &[f64; COLUMNS], twin: &Twin) -> ([f64; CONTROLS], [[f64; COLUMNS]; CONTROLS]) {
+        let exact = [0.0, 1.0, twin.moments.skewness, twin.moments.kurtosis];
+        let off: [f64; CONTROLS] = std::array::from_fn(|j| means[1 + CONTROLS + j] - exact[j]);
+        let controlled = |k: usize| means[k] - self.0[k].iter().zip(&off).map(|(b, off)| b * off).sum::<f64>();
+        let lost = controlled(0);
+        let valid = 1.0 + lost;
+        let differences = std::array::from_fn(|i| (controlled(i + 1) - exact[i] * lost) / valid);
+        let gradient = |i: usize| -> [f64; COLUMNS] {
+            let mean = exact[i] + differences[i];
+            let mut by = [0.0; COLUMNS];
+            (by[0], by[i + 1]) = (-mean / valid, 1.0 / valid);
+            for j in 0..CONTROLS {
+                by[1 + CONTROLS + j] = (mean * self.0[0][j] - self.0[i + 1][j]) / valid;
+            }
+            by
+        };
+        (differences, std::array::from_fn(gradient))
     }
 }
 
@@ -79,28 +179,45 @@ fn standardised(differences: &[f64; 4], twin: &Twin) -> [Option<(f64, [f64; 4])>
     ]
 }
 
+/// A moment with the surrogate as control.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Controlled {
+    pub(super) estimate: Estimate,
+    /// Its standard error if all points were random ones.
+    pub(super) random: Option<f64>,
+}
+
 /// The four moments: exact ones of the surrogate and sampled differences of all replicates, with standard errors of the
 /// sample where it is random, of the replicates where there are such; None where no point has a value.
-pub(super) fn moments(replicates: &[&Difference], twin: &Twin) -> [Option<Estimate>; 4] {
+pub(super) fn moments(replicates: &[&Difference], twin: &Twin) -> [Option<Controlled>; 4] {
     let all = pooled(replicates);
-    if all.powers.count() == 0 {
+    if all.valid() == 0 {
         return [None; 4];
     }
     let own =
         twin.sampled.map_or([0.0; 4], |Sampled { sigma, skewness, kurtosis, .. }| [0.0, sigma, skewness, kurtosis]);
-    let found = standardised(all.powers.means(), twin);
-    let known = replicates.iter().all(|one| one.powers.count() >= FEWEST);
+    let coefficients = if replicates.len() == 1 { Coefficients::of(&all.sums) } else { Coefficients::none() };
+    let (differences, by_means) = coefficients.moments(all.sums.means(), twin);
+    let found = standardised(&differences, twin);
+    let known = replicates.iter().all(|one| one.valid() >= FEWEST);
+    // What fitting the coefficients took from the residuals.
+    let n = all.sums.count() as f64;
+    let fitted = if coefficients.fitted() { ((n - 1.0) / (n - 1.0 - CONTROLS as f64)).sqrt() } else { 1.0 };
     std::array::from_fn(|moment| {
         let (value, gradient) = found[moment]?;
+        let by =
+            std::array::from_fn(|column| gradient.iter().zip(&by_means).map(|(by, of)| by * of[column]).sum::<f64>());
+        let random = all.sums.standard_error(&by);
         let standard_error = match replicates.len() {
-            1 => all.powers.standard_error(&gradient),
+            1 => random,
             _ => of_replicates(replicates.iter().map(|one| {
-                let means = Some(one.powers.means()).filter(|_| one.powers.count() > 0)?;
-                standardised(means, twin)[moment].map(|(value, _)| value)
+                let means = Some(one.sums.means()).filter(|_| one.valid() > 0)?;
+                standardised(&coefficients.moments(means, twin).0, twin)[moment].map(|(value, _)| value)
             })),
         };
-        let standard_error = standard_error.filter(|_| known).map(|error| error.hypot(own[moment]));
-        Some(Estimate { value, standard_error })
+        let whole = |error: Option<f64>| error.filter(|_| known).map(|error| (fitted * error).hypot(own[moment]));
+        let estimate = Estimate { value, standard_error: whole(standard_error) };
+        Some(Controlled { estimate, random: whole(random) })
     })
 }
 
@@ -120,10 +237,12 @@ pub(super) struct Shares {
 /// The surrogate's own share and the difference of the model's. The interval combines Wilson's of the surrogate's share and
 /// of the points that only the one and only the other rejects (Zou and Donner 2008), so that no disagreement seen is not
 /// taken for none; where there are `enough` disagreements and replicates, what these differ by.
+///
+/// None where some points have no value: the surrogate's share is that of all assemblies.
 pub(super) fn shares(replicates: &[&Difference], outside: &Outside, enough: u64) -> Option<Shares> {
     let all = pooled(replicates);
-    let (n, points) = (all.powers.count() as f64, outside.points as f64);
-    if n == 0.0 {
+    let (n, points) = (all.sums.count() as f64, outside.points as f64);
+    if n == 0.0 || all.lost > 0 {
         return None;
     }
     let hits = (outside.hits[0] + outside.hits[1]) as f64;
@@ -133,7 +252,7 @@ pub(super) fn shares(replicates: &[&Difference], outside: &Outside, enough: u64)
     let mut below = (gained.0 - gained.1[0]).hypot(lost.1[1] - lost.0);
     let mut above = (gained.1[1] - gained.0).hypot(lost.0 - lost.1[0]);
     if all.only[0] + all.only[1] >= enough {
-        let nets = replicates.iter().map(|one| (one.powers.count() > 0).then(|| one.net()));
+        let nets = replicates.iter().map(|one| (one.sums.count() > 0).then(|| one.net()));
         if let Some(error) = of_replicates(nets).filter(|&error| error > 0.0) {
             (below, above) = (2.0 * error, 2.0 * error);
         }

@@ -5,19 +5,27 @@ mod control;
 mod count;
 mod difference;
 mod replicate;
+mod shape;
 mod surrogates;
 mod tally;
+mod written;
 
+#[cfg(feature = "cli")]
+pub(crate) use written::SimulatedShape;
+
+pub use crate::sampling::{Estimate, Sampler, SamplingError};
 pub use characteristic::{Histogram, QUANTILES, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 
 use std::time::Duration;
 
 use rayon::prelude::*;
+use serde::Serialize;
 
-use crate::assembly::{Ask, EvaluationError, NonRepeatable, Responses, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Request, Responses, Run};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
-use crate::sampling::{Draws, Portion, Sampler, SamplingError};
+use crate::sampling::{Draws, Portion};
+use crate::shape::through;
 use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::warning::{Advice, Warning};
@@ -29,10 +37,11 @@ use tally::{Block, Lens, Tally};
 ///
 /// ```
 /// use sensitol::simulation::SimulationOptions;
-/// let options = SimulationOptions { samples: 10_000, ..SimulationOptions::default() };
-/// assert_eq!(options.seed, 1);
+/// let options = SimulationOptions::default().with_samples(10_000);
+/// assert_eq!((options.samples, options.seed), (10_000, 1));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SimulationOptions {
     /// Points, at most; Sobol's are rounded up to the next power of two in each replicate.
     pub samples: u64,
@@ -60,8 +69,52 @@ impl Default for SimulationOptions {
     }
 }
 
+impl SimulationOptions {
+    /// With at most so many points.
+    #[must_use]
+    pub fn with_samples(mut self, points: u64) -> Self {
+        self.samples = points;
+        self
+    }
+
+    /// With points drawn so.
+    #[must_use]
+    pub fn with_sampler(mut self, sampler: Sampler) -> Self {
+        self.sampler = sampler;
+        self
+    }
+
+    /// With this seed.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// Ending when the standard error of every sigma is below this part of it.
+    #[must_use]
+    pub fn with_until(mut self, error: f64) -> Self {
+        self.until = Some(error);
+        self
+    }
+
+    /// Ending when half the interval of every yield is below this.
+    #[must_use]
+    pub fn with_until_yield(mut self, half: f64) -> Self {
+        self.until_yield = Some(half);
+        self
+    }
+
+    /// With the surrogate of an analysis with these options as control variate.
+    #[must_use]
+    pub fn with_control(mut self, analysis: Options) -> Self {
+        self.control = Some(analysis);
+        self
+    }
+}
+
 /// Replicates of Sobol's points, each scrambled by itself: what they differ by is the standard error.
-pub const REPLICATES: u64 = 16;
+pub(crate) const REPLICATES: u64 = 16;
 /// Points that a task evaluates together.
 const ROWS: usize = 1024;
 /// Tasks between two looks at the clock and at what is wanted.
@@ -70,13 +123,18 @@ const TASKS: usize = 64;
 const COSTLY: usize = 4096;
 
 /// What a simulation found out.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Simulation {
     /// How points were drawn.
+    #[serde(flatten, serialize_with = "through::<shape::SamplerShape, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "shape::SamplerShape"))]
     pub sampler: Sampler,
     /// What it came to in points and time, those of the surrogate included; why it ended before all points were drawn or what was
     /// wanted was reached.
+    #[serde(flatten)]
     pub run: RunSummary,
     /// Points that were answered.
     pub samples: u64,
@@ -85,10 +143,14 @@ pub struct Simulation {
     /// Whether what was wanted was reached; None where nothing was.
     pub reached: Option<bool>,
     /// Where the model answered the nominal point otherwise than before.
+    // Told of as warnings.
+    #[serde(skip)]
     pub non_repeatable: Vec<NonRepeatable>,
     /// What is known of every characteristic, in the problem's order.
+    #[cfg_attr(feature = "cli", schemars(with = "Vec<SimulatedShape>"))]
     pub characteristics: Vec<SimulatedCharacteristic>,
     /// Where points have no value, and where the model contradicted itself.
+    #[serde(skip)]
     pub warnings: Vec<Warning>,
 }
 
@@ -131,7 +193,7 @@ impl Pace {
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub fn simulate(problem: &Problem, options: &SimulationOptions) -> Result<Simulation, SimulationError> {
-    simulate_within(problem, options, &Run::to_the_end(), &|_| {})
+    simulate_with(problem, options, &Run::to_the_end(), &|_| {})
 }
 
 /// Why a problem cannot be simulated.
@@ -196,7 +258,7 @@ impl SimulationError {
 const MOST: u64 = 1 << 52;
 
 /// [`simulate`], telling of its pace and stopping when told to.
-pub fn simulate_within(
+pub fn simulate_with(
     problem: &Problem,
     options: &SimulationOptions,
     run: &Run<'_>,
@@ -267,7 +329,10 @@ fn drawn(
     let open = tally.stopped || reached != Some(true) && !portions.done();
     let stopped = control.and_then(Control::stopped).or_else(|| open.then(|| run.why_open()));
     let simulation = tally.finish(options, stopped, reached);
-    Simulation { run: RunSummary { wall: begun.elapsed(), ..simulation.run }, ..simulation }
+    Simulation {
+        run: RunSummary { wall: begun.elapsed(), evaluator: problem.evaluator(), ..simulation.run },
+        ..simulation
+    }
 }
 
 /// Evaluates one portion.
@@ -281,7 +346,7 @@ fn block(
     let points = draws.points(portion);
     let mut out = Responses::open(portion.rows, problem.outputs().len());
     let begun = Instant::now();
-    problem.function().evaluate(&Ask::values(&points, problem.outputs()), run, &mut out);
+    problem.function().evaluate(&Request::values(&points, problem.outputs()), run, &mut out);
     let took = begun.elapsed();
     let beside = control.map_or_else(Vec::new, |control| control.beside(&points));
     Block::of(&out, took, lenses, &beside)

@@ -14,11 +14,11 @@ const FULL: usize = 20;
 pub(crate) struct Surrogates {
     pub(crate) outcome: Outcome,
     /// For every characteristic; None where the surrogate does not vary. Empty when the analysis was stopped.
-    pub(crate) known: Vec<Option<Known>>,
+    pub(crate) known: Vec<Option<KnownSurrogate>>,
 }
 
 /// The surrogate of one characteristic.
-pub(crate) struct Known {
+pub(crate) struct KnownSurrogate {
     pub(crate) surrogate: Surrogate,
     pub(crate) moments: Shape,
     /// Standard errors of the moments, where correlated inputs leave them no closed form.
@@ -55,11 +55,11 @@ impl Surrogates {
     }
 
     /// Those that an analysis has, for every characteristic; None where it has none.
-    pub(super) fn known_of(problem: &Problem, outcome: &Outcome) -> Vec<Option<Known>> {
+    pub(super) fn known_of(problem: &Problem, outcome: &Outcome) -> Vec<Option<KnownSurrogate>> {
         (0..problem.characteristics().len()).map(|c| Self::of_one(problem, outcome, c).ok().flatten()).collect()
     }
 
-    fn of_one(problem: &Problem, outcome: &Outcome, c: usize) -> Result<Option<Known>, SimulationError> {
+    fn of_one(problem: &Problem, outcome: &Outcome, c: usize) -> Result<Option<KnownSurrogate>, SimulationError> {
         let unknown = |reason: &str| SimulationError::NoSurrogate {
             characteristic: problem.characteristics()[c].name().to_owned(),
             method: outcome.method,
@@ -79,7 +79,7 @@ impl Surrogates {
             return Err(unknown("its moments are not finite"));
         }
         let moments = Shape { mean, sigma, skewness, kurtosis };
-        Ok(Some(Known { surrogate, moments, sampled: found.sampled }))
+        Ok(Some(KnownSurrogate { surrogate, moments, sampled: found.sampled }))
     }
 }
 

@@ -249,7 +249,7 @@ impl<'a> Tally<'a> {
         };
         let before = surrogate.iter().flat_map(|evaluated| &evaluated.non_repeatable).cloned();
         let non_repeatable: Vec<NonRepeatable> = before.chain(self.non_repeatable).collect();
-        let failures = characteristics.iter().filter_map(SimulatedCharacteristic::failures);
+        let failures = characteristics.iter().flat_map(|one| [one.failures(), one.overflow()]).flatten();
         Simulation {
             sampler: options.sampler,
             run: RunSummary { stopped, ..drawn.and(&spent) },

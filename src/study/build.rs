@@ -16,7 +16,7 @@ use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use super::values::NominalEntry;
 use crate::allocation::Priced;
-use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
+use crate::assembly::formula::{Formula, FormulaError, FormulaFault, MixedUnits, is_plain, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
@@ -67,6 +67,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> 
     let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
     let mut warnings = aggregated(std::mem::take(&mut data.warnings));
     warnings.extend(outside_limits(file));
+    warnings.extend(mixed_units(&composite));
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
@@ -419,6 +420,14 @@ fn outside_limits(file: &StudyFile) -> Option<Warning> {
     });
     let dimensions: Vec<String> = outside.collect();
     (!dimensions.is_empty()).then_some(Warning::NominalOutsideLimits { dimensions })
+}
+
+/// Formulas that add or compare different units, in one warning.
+fn mixed_units(composite: &Composite) -> Option<Warning> {
+    let mut mixed = composite.mixed_units().into_iter();
+    let MixedUnits { formula, part, units } = mixed.next()?;
+    let others = mixed.map(|other| other.formula).collect();
+    Some(Warning::MixedUnits { formula, part, units: units.map(str::to_owned), others })
 }
 
 /// Constants, formulas and unknowns that no characteristic of the file needs.

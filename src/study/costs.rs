@@ -8,10 +8,11 @@ use super::file::{CharacteristicEntry, StudyFile};
 use super::price::{CostEntry, ProcessEntry, RequireEntry};
 use super::spanned::Spanned;
 use super::words::REQUIREMENTS;
-use crate::allocation::{CostError, Curve, CurveKind, Offer, Priced, Requirement};
+use crate::allocation::{CostError, Curve, CurveKind, Offer, Priced};
 use crate::characteristic::Characteristic;
 use crate::names::nearest;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 
 /// The present half band by this, and times this, where no bound is given.
 const RANGE: f64 = 10.0;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::data::DataFault;
 use super::slip::{Slip, percent};
 use super::words::CORRELATIONS;
-use crate::allocation::{CostError, RequirementError};
+use crate::allocation::CostError;
 use crate::assembly::NoColumn;
 use crate::assembly::formula::FormulaFault;
 use crate::assembly::implicit::ConditionsError;
@@ -18,6 +18,7 @@ use crate::fits::FitError;
 use crate::method::MethodError;
 use crate::names::UnknownName;
 use crate::problem::ProblemError;
+use crate::requirement::RequirementError;
 use crate::warning::Advice;
 
 /// A study that cannot be used: file, place, key, what is wrong, and what to write instead.

@@ -26,6 +26,36 @@ impl Default for Externals {
     }
 }
 
+impl Externals {
+    /// With answers kept there.
+    #[must_use]
+    pub fn with_journal(mut self, place: JournalPlace) -> Self {
+        self.journal = place;
+        self
+    }
+
+    /// With someone who hears every line that they write to stderr.
+    #[must_use]
+    pub fn with_listener(mut self, listener: Listener) -> Self {
+        self.listener = Some(listener);
+        self
+    }
+
+    /// With answers that were evaluated elsewhere in place of programs.
+    #[must_use]
+    pub fn with_points(mut self, table: Arc<Table>) -> Self {
+        self.points = Some(table);
+        self
+    }
+
+    /// With evaluations of the nominal point again and again, or without.
+    #[must_use]
+    pub fn with_sentinels(mut self, sentinels: bool) -> Self {
+        self.sentinels = sentinels;
+        self
+    }
+}
+
 /// Where the answers of external programs are kept.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum JournalPlace {
@@ -40,7 +70,7 @@ pub enum JournalPlace {
 
 impl JournalPlace {
     /// What the command line asks for: a file, `none`, or nothing.
-    pub fn asked(path: Option<&Path>) -> Self {
+    pub(crate) fn asked(path: Option<&Path>) -> Self {
         match path {
             None => Self::BesideStudy,
             Some(path) if path.as_os_str() == "none" => Self::Nowhere,
@@ -49,7 +79,7 @@ impl JournalPlace {
     }
 
     /// The file for the study of this name.
-    pub fn path(&self, study: &str) -> Option<PathBuf> {
+    pub(crate) fn path(&self, study: &str) -> Option<PathBuf> {
         match self {
             Self::Nowhere => None,
             Self::BesideStudy => Some(Path::new(study).with_extension("journal.sqlite")),

@@ -289,7 +289,8 @@ pub(super) struct AnalysisEntry {
     pub(super) accuracy_kurtosis: Option<Spanned<f64>>,
     /// Wanted error of the yield, a share such as 1e-5, for auto.
     pub(super) accuracy_yield: Option<Spanned<f64>>,
-    /// Most evaluations that may be spent; a method that needs more is an error, auto stays below.
+    /// Most evaluations that may be spent; a method that needs more is an error, auto stays below. Without it a method that needs more
+    /// than 1000000 is an error.
     pub(super) budget: Option<Spanned<u64>>,
     /// Evaluate at so many sigma on either side, in place of the nodes that suit each distribution.
     pub(super) step: Option<Spanned<f64>>,

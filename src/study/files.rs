@@ -19,6 +19,7 @@ pub struct NamedFile {
 
 /// What a file is to a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FileRole {
     /// Measured values of a dimension.
     Measured,
@@ -28,12 +29,12 @@ pub enum FileRole {
 
 impl NamedFile {
     /// Its name in a sentence.
-    pub fn shown(&self) -> String {
+    pub(crate) fn shown(&self) -> String {
         format!("`{}`", self.written)
     }
 
     /// Whether another folder makes it another file.
-    pub fn is_relative(&self) -> bool {
+    pub(crate) fn is_relative(&self) -> bool {
         Path::new(&self.written).is_relative()
     }
 }

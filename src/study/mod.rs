@@ -56,7 +56,7 @@ mod price;
 mod registry;
 mod rewrite;
 #[cfg(feature = "cli")]
-mod schema;
+pub(crate) mod schema;
 mod slip;
 mod source;
 mod spanned;
@@ -73,7 +73,7 @@ pub use files::{FileRole, NamedFile};
 pub use place::{Format, StudyText};
 pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "cli")]
-pub use schema::schema;
+pub(crate) use schema::schema;
 pub use slip::Slip;
 
 use std::path::{Path, PathBuf};
@@ -81,10 +81,11 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-use crate::allocation::{AllocationTask, Priced, Requirement};
+use crate::allocation::{AllocationTask, Priced};
 use crate::characteristic::Characteristic;
 use crate::method::Options;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 use crate::warning::Warning;
 use error::Faults;
 use place::Place;
@@ -93,6 +94,7 @@ use tree::Tree;
 
 /// A study: a problem, how it is to be analysed, and what is odd about it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Study {
     /// Its title.
     pub title: Option<String>,

@@ -8,6 +8,7 @@ use super::externals::Externals;
 
 /// The two formats of one schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// A `.toml` file.
     Toml,

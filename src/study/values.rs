@@ -69,8 +69,8 @@ impl<'de> Deserialize<'de> for ToleranceEntry {
 
 impl<'de> Deserialize<'de> for Deviation {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct One;
-        impl Visitor<'_> for One {
+        struct DeviationVisitor;
+        impl Visitor<'_> for DeviationVisitor {
             type Value = Deviation;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -89,7 +89,7 @@ impl<'de> Deserialize<'de> for Deviation {
                 percent(text).ok_or_else(|| E::invalid_type(Unexpected::Str(text), &self))
             }
         }
-        deserializer.deserialize_any(One)
+        deserializer.deserialize_any(DeviationVisitor)
     }
 }
 

@@ -31,11 +31,11 @@ pub(super) enum Kind {
 }
 
 /// Name, the parameters that a kind knows, and what to write instead of others.
-pub(super) type Known = (&'static str, Kind, &'static [&'static str], &'static str);
+pub(super) type KnownKind = (&'static str, Kind, &'static [&'static str], &'static str);
 
 const NOTHING: &str = "it has no parameters of its own";
 const ORIGIN: &str = "it knows `origin`";
-pub(super) const KINDS: [Known; 12] = [
+pub(super) const KINDS: [KnownKind; 12] = [
     ("normal", Kind::Normal, &[], NOTHING),
     ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
     ("uniform", Kind::Uniform, &[], NOTHING),

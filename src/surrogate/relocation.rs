@@ -27,8 +27,8 @@ impl Surrogate {
     /// Shapes: `moved` has length N. No evaluation.
     ///
     /// ```
-    /// use sensitol::moments::Interactions;
-    /// use sensitol::surrogate::{Relocation, Surrogate, Univariate};
+    /// use sensitol::internals::{Interactions, Surrogate, Univariate};
+    /// use sensitol::analysis::Relocation;
     /// // y = u0 + u0 u1, and the mean of u1 moves by half a sigma: y = 1.5 u0 + u0 v1.
     /// let parts = vec![Some(Univariate::of_coefficients(&[1.0])), Some(Univariate::of_coefficients(&[0.0]))];
     /// let product = Interactions::of_pairs(2, [(0, 1, 1.0)]);

@@ -27,7 +27,7 @@ struct Sums {
 }
 
 /// One part of the surrogate as the sample needs it.
-struct Own {
+struct OwnPart {
     /// Slope of its best straight line.
     p: f64,
     mean: f64,
@@ -35,7 +35,7 @@ struct Own {
 
 struct Sampler<'a> {
     parabolas: &'a Parabolas<'a>,
-    own: Vec<Own>,
+    own: Vec<OwnPart>,
     pairs: Vec<(usize, usize, f64)>,
     factor: faer::Mat<f64>,
     form_mean: f64,
@@ -95,10 +95,10 @@ fn central(contributions: &Contributions, scale: f64) -> [f64; 3] {
 
 impl<'a> Sampler<'a> {
     fn new(parabolas: &'a Parabolas<'a>, exact: &Contributions, mean: f64) -> Self {
-        let own: Vec<Own> = (parabolas.parts.iter().enumerate())
+        let own: Vec<OwnPart> = (parabolas.parts.iter().enumerate())
             .map(|(j, part)| {
                 let term = part.term(parabolas.shape(j));
-                Own { p: term.part(1.0).p, mean: term.mean() }
+                OwnPart { p: term.part(1.0).p, mean: term.mean() }
             })
             .collect();
         let normal = parabolas.correlation.normal();

@@ -27,7 +27,7 @@ impl Univariate {
     /// in symmetric pairs, so that an even function has slope 0 to the last bit.
     ///
     /// ```
-    /// use sensitol::surrogate::Univariate;
+    /// use sensitol::internals::Univariate;
     /// let parabola = Univariate::through(&[(-1.0, 2.0), (2.0, 8.0)]).unwrap();
     /// assert_eq!((parabola.slope(), parabola.second(), parabola.degree()), (0.0, Some(4.0), 2));
     /// ```
@@ -74,6 +74,12 @@ impl Univariate {
         self.coefficients.iter().rev().fold(0.0, |value, coefficient| (value + coefficient) * u)
     }
 
+    /// `a g(u) + b h(u)`.
+    pub(super) fn sum(&self, a: f64, other: &Self, b: f64) -> Self {
+        let coefficient = |i: usize| a * self.coefficients[i] + b * other.coefficients[i];
+        Self { coefficients: std::array::from_fn(coefficient), degree: self.degree.max(other.degree) }
+    }
+
     /// First derivative at the mean, per sigma.
     pub fn slope(&self) -> f64 {
         self.coefficients[0]
@@ -91,7 +97,7 @@ impl Univariate {
     }
 
     /// The largest coefficient, to scale by.
-    pub fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         self.coefficients.iter().fold(0.0, |largest, coefficient| largest.max(coefficient.abs()))
     }
 
@@ -102,7 +108,7 @@ impl Univariate {
     }
 
     /// The part as a term of the moments: a parabola by the input's moments, anything higher by its rule.
-    pub fn term<'a>(&self, shape: &'a InputShape) -> Term<'a> {
+    pub(crate) fn term<'a>(&self, shape: &'a InputShape) -> Term<'a> {
         let moments = &shape.moments;
         if let Some([linear, curvature]) = self.parabola() {
             return Term::Quadratic { linear, curvature, moments };

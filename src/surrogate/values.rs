@@ -1,6 +1,9 @@
 //! The surrogate's own values, over columns of points.
 
-use super::Surrogate;
+use std::collections::BTreeMap;
+
+use super::{Surrogate, Univariate};
+use crate::moments::Interactions;
 
 impl Surrogate {
     /// How far the surrogate lies above its centre at every point; None when a part is unknown.
@@ -9,8 +12,7 @@ impl Surrogate {
     /// every interaction and point. No evaluation.
     ///
     /// ```
-    /// use sensitol::moments::Interactions;
-    /// use sensitol::surrogate::{Surrogate, Univariate};
+    /// use sensitol::internals::{Interactions, Surrogate, Univariate};
     /// // 7 + 2 u0 + u1^2 + 3 u0 u1
     /// let parts = vec![Some(Univariate::of_coefficients(&[2.0])), Some(Univariate::of_coefficients(&[0.0, 1.0]))];
     /// let surrogate = Surrogate { centre: 7.0, parts, interactions: Interactions::of_pairs(2, [(0, 1, 3.0)]) };
@@ -28,5 +30,24 @@ impl Surrogate {
             rises.iter_mut().zip(both).for_each(|(rise, (u, v))| *rise += value * u * v);
         }
         Some(rises)
+    }
+
+    /// `a` times this surface and `b` times another over the same inputs; None when a part of either is unknown.
+    pub(crate) fn sum(&self, a: f64, other: &Self, b: f64) -> Option<Self> {
+        let part = |(one, other): (&Option<Univariate>, &Option<Univariate>)| -> Option<Option<Univariate>> {
+            Some(Some(one.as_ref()?.sum(a, other.as_ref()?, b)))
+        };
+        let mut pairs: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        for (surface, by) in [(self, a), (other, b)] {
+            for (j, k, value) in surface.interactions.pairs() {
+                *pairs.entry((j, k)).or_default() += by * value;
+            }
+        }
+        let pairs = pairs.into_iter().map(|((j, k), value)| (j, k, value));
+        Some(Self {
+            centre: a * self.centre + b * other.centre,
+            parts: self.parts.iter().zip(&other.parts).map(part).collect::<Option<_>>()?,
+            interactions: Interactions::of_pairs(self.parts.len(), pairs),
+        })
     }
 }

@@ -8,7 +8,7 @@ use super::residual::{Judged, Surface, judge, regression};
 use super::sample::steepest;
 use super::space::{Columns, Space};
 use super::strata::{HalfSpace, between};
-use crate::assembly::{Ask, Points, Responses, Run};
+use crate::assembly::{Points, Request, Responses, Run};
 use crate::problem::Problem;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
@@ -83,7 +83,7 @@ impl Checked {
 /// The 95 % interval of a share of which `seen` of `points` were: Clopper and Pearson (1934), one-sided where none was.
 ///
 /// ```
-/// use sensitol::verification::unseen;
+/// use sensitol::internals::unseen;
 /// // 1 - 0.05^(1/14) = 19.3 %.
 /// assert!((unseen(14, 0)[1] - 0.1926).abs() < 1e-4 && unseen(14, 0)[0] == 0.0);
 /// // The exact interval of 1 of 10 is 0.25 % to 44.5 %.
@@ -102,7 +102,7 @@ pub fn unseen(points: usize, seen: usize) -> [f64; 2] {
     }
 }
 
-/// Judges the surfaces of all characteristics by the model's values at 12 to 18 points ([`checks`](super)).
+/// Judges the surfaces of all characteristics by the model's values at 12 to 18 points.
 ///
 /// Shapes: a target for every characteristic; surrogate and shares over the dimensions at `varying`. Evaluations: 18 at most, and no
 /// more than `budget`; None, and no evaluation, where fewer than 6 are allowed or no characteristic has a surface.
@@ -137,7 +137,7 @@ pub fn verify_by_checks(
     let columns = design.columns();
     let points = space.points(&columns);
     let mut answers = Responses::open(points.rows(), problem.outputs().len());
-    problem.function().evaluate(&Ask::values(&points, problem.outputs()), run, &mut answers);
+    problem.function().evaluate(&Request::values(&points, problem.outputs()), run, &mut answers);
     let standardised = space.standardised(&columns);
     let characteristics = (0..targets.len())
         .map(|c| {

@@ -12,6 +12,7 @@ mod checks;
 mod costly;
 mod figures;
 mod model;
+mod outputs;
 mod residual;
 mod sample;
 mod shares;
@@ -20,6 +21,7 @@ mod space;
 mod strata;
 
 pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
+pub(crate) use outputs::output_correlations;
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
 
@@ -79,7 +81,7 @@ impl Verified {
     /// the own error do.
     ///
     /// ```
-    /// use sensitol::verification::Verified;
+    /// use sensitol::analysis::Verified;
     /// assert_eq!(Verified { value: 1.0, error: 3.0 }.error_of(5.0), 5.0);
     /// ```
     pub fn error_of(&self, value: f64) -> f64 {
@@ -98,7 +100,8 @@ impl Verified {
 /// denominator alike.
 ///
 /// ```
-/// use sensitol::{Closure, Dimension, Problem, verification::verify_by_sampling};
+/// use sensitol::{Closure, Dimension, Problem};
+/// use sensitol::internals::verify_by_sampling;
 /// let dimensions = [Dimension::normal("a", 0.0, 3.0)?, Dimension::normal("b", 0.0, 3.0)?];
 /// let problem = Problem::new(dimensions, Closure::scalar("larger", |x| x[0].max(x[1])))?;
 /// let mean = verify_by_sampling(&problem, 1)[0].mean.unwrap();
@@ -151,7 +154,8 @@ pub(crate) fn unexplained(
 /// within three errors, the largest error 0.026.
 ///
 /// ```
-/// use sensitol::{Closure, Dimension, Problem, verification::variance_shares};
+/// use sensitol::{Closure, Dimension, Problem};
+/// use sensitol::internals::variance_shares;
 /// let dimensions = [Dimension::normal("a", 0.0, 3.0)?, Dimension::normal("b", 0.0, 3.0)?];
 /// let problem = Problem::new(dimensions, Closure::scalar("y", |x| x[0] + x[0] * x[1]))?;
 /// let shares = variance_shares(&problem, 0, 1).unwrap();

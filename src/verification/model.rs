@@ -1,7 +1,7 @@
 //! One characteristic of a cheap model as a function of independent normal variables.
 
 use super::space::{Columns, Space};
-use crate::assembly::{Ask, Responses, Run};
+use crate::assembly::{Request, Responses, Run};
 use crate::problem::Problem;
 use crate::surrogate::Surrogate;
 
@@ -45,7 +45,7 @@ impl<'p> Model<'p> {
     pub(super) fn values(&self, z: &Columns) -> Vec<f64> {
         let (points, outputs) = (self.space.points(z), [self.output]);
         let mut out = Responses::open(points.rows(), 1);
-        self.problem.function().evaluate(&Ask::values(&points, &outputs), &Run::to_the_end(), &mut out);
+        self.problem.function().evaluate(&Request::values(&points, &outputs), &Run::to_the_end(), &mut out);
         out.column(0).to_vec()
     }
 

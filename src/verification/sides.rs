@@ -5,6 +5,8 @@
 //! Lind (1974; Rackwitz and Fiessler 1978) lead to the likeliest point beyond, the design point `z*` at the distance `beta`. The
 //! half-space `z*/beta . z > beta - 0.5` holds nearly all of that side, and a stratum of its own makes it known as well as the rest.
 
+use serde::Serialize;
+
 use super::model::Model;
 use super::space::Columns;
 use super::strata::{HalfSpace, REACH, length};
@@ -38,7 +40,9 @@ const NEAR: [f64; 2] = [1e-5, 1e-4];
 const WITHOUT_BOUND: f64 = 1e6;
 
 /// What an output does at a switch, as its values show it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
 pub enum Crossing {
     /// Its slope changes.
     Kink,
@@ -51,12 +55,17 @@ pub enum Crossing {
 }
 
 /// A switch on both sides of which there are assemblies within eight sigmas.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FoundSwitch {
     /// Where it stands.
+    #[serde(skip)]
     pub switch: Switch,
+    /// The part of the formula that does it, in the words of [`Switch::name`].
+    pub name: String,
     /// What the output does there.
+    #[serde(rename = "kind")]
     pub crossing: Crossing,
     /// The probability of its smaller side.
     pub probability: f64,
@@ -108,6 +117,8 @@ pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
         return Sides::default();
     };
     let mut found = Search { model, normals, half_spaces: Vec::new(), scale };
+    let characteristic = model.problem().outputs().iter().position(|&output| output == model.output());
+    let output = characteristic.map_or("", |c| model.problem().characteristics()[c].name());
     let mut switches = Vec::new();
     for (k, switch) in known.list.into_iter().enumerate() {
         let sign = if plain.share(k, -1.0) <= plain.share(k, 1.0) { -1.0 } else { 1.0 };
@@ -120,7 +131,7 @@ pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
         // A point of the smaller side nearest to the middle, whose way from there crosses the border.
         let beyond = nearest(&plain_points, &plain.0[k], sign).or_else(|| nearest(&wide, &far.0[k], sign));
         let Some(crossing) = beyond.and_then(|point| found.crossing(k, sign, &switch, &point)) else { continue };
-        switches.push(FoundSwitch { switch, crossing, probability });
+        switches.push(FoundSwitch { name: switch.name(output), switch, crossing, probability });
     }
     Sides { half_spaces: found.half_spaces, switches: Some(switches), complete: known.complete }
 }

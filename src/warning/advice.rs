@@ -64,6 +64,8 @@ pub enum Advice {
 
     /// Look for wrong names in the formulas, or leave the unused ones out.
     CheckNames,
+    /// Convert units within the formula, or correct them.
+    CheckUnits,
     /// Check the nominal dimensions.
     CheckNominal,
     /// Check whether the mechanism is at a dead centre.
@@ -89,6 +91,10 @@ pub enum Advice {
     MeasureFiner,
     /// Give the model a value at the points where it has none, or count such assemblies as rejects.
     RepairModel,
+    /// Read what the model's processes write to stderr.
+    ReadModelLog,
+    /// Name every file that the model's answers depend on.
+    NameModelFiles,
     /// Keep the model defined around the means.
     KeepDefined,
     /// Reset the external model before every point.
@@ -97,6 +103,8 @@ pub enum Advice {
     SignedMeasure,
     /// Measure from a nearer datum.
     NearerDatum,
+    /// Choose a larger unit, so that the values are smaller.
+    LargerUnit,
     /// Solve the model with a tighter tolerance.
     TightenSolver,
     /// Give each branch of the model a characteristic of its own.
@@ -150,10 +158,11 @@ impl fmt::Display for Advice {
             Self::MorePoints => "Draw more points.",
             Self::SmallerStep { dimension: None } => "Use a smaller step.",
             Self::UseDifferences => "Take derivatives from differences.",
-            Self::IncludeFixedDimensions => "Ask for the sensitivities of all dimensions.",
+            Self::IncludeFixedDimensions => "Request for the sensitivities of all dimensions.",
             Self::LeaveOutCorrelation => "Leave `[[correlation]]` out to see the interval.",
             Self::UseFormula => "Replace the model by a formula.",
             Self::CheckNames => "Look for a wrong name in the formulas, or leave the unused ones out.",
+            Self::CheckUnits => "Convert in the formula (`deg` is pi/180), or correct the unit of a dimension.",
             Self::CheckNominal => "Check the nominal dimensions.",
             Self::CheckPosition => "Check whether the mechanism is at a dead centre.",
             Self::CheckInputs => "Check that the model uses the dimensions.",
@@ -164,10 +173,13 @@ impl fmt::Display for Advice {
             Self::RemoveWrongValues => "Remove values that were measured wrongly, and keep the others.",
             Self::MeasureFiner => "Measure with a finer resolution.",
             Self::RepairModel => "Let the model return a value there, or find out whether such assemblies are rejects.",
+            Self::ReadModelLog => "Read all that the model writes to stderr.",
+            Self::NameModelFiles => "Name every file that the answers depend on in `files` of `[model]`.",
             Self::KeepDefined => "Keep the model defined around the means.",
             Self::ResetModel => "Reset the model before every point.",
             Self::SignedMeasure => "Let the model return a signed measure.",
             Self::NearerDatum => "Measure the characteristic from a nearer datum.",
+            Self::LargerUnit => "Choose a larger unit, so that the values are smaller.",
             Self::TightenSolver => "Solve the model with a tighter tolerance.",
             Self::SplitBranches => "Give each branch a characteristic of its own.",
             Self::NearestFit => "Choose the nearest class, and write classes as processes where one is required.",

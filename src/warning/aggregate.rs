@@ -9,7 +9,7 @@ use super::{Loss, Warning};
 ///
 /// ```
 /// use sensitol::Warning;
-/// use sensitol::warning::aggregated;
+/// use sensitol::internals::aggregated;
 /// let edge = |dimension: &str, to| {
 ///     Warning::SupportEdge { dimension: dimension.into(), from: -1.5, to, others: Vec::new() }
 /// };

@@ -39,7 +39,7 @@ macro_rules! warnings {
             }
 
             /// The fields by name; numbers that are not finite are null.
-            pub fn data(&self) -> WarningData<'_> {
+            pub fn data(&self) -> impl serde::Serialize + '_ {
                 WarningData(self)
             }
 

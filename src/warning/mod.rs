@@ -13,7 +13,7 @@
 mod define;
 
 mod advice;
-mod aggregate;
+pub(crate) mod aggregate;
 mod allocation;
 mod derivatives;
 mod distribution;
@@ -25,17 +25,18 @@ mod study;
 mod surface;
 mod terms;
 mod text;
+mod written;
 
 pub use advice::Advice;
-pub use aggregate::aggregated;
+pub(crate) use aggregate::aggregated;
 pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
 
-use serde::ser::{SerializeMap, SerializeStruct};
-use serde::{Serialize, Serializer};
+use serde::ser::SerializeMap;
 
 use crate::summary::StopReason;
 
 use text::Text;
+use written::WarningData;
 
 warnings! {
     /// None of the analysed characteristics can depend on these dimensions.
@@ -47,6 +48,17 @@ warnings! {
     NominalOutsideLimits = "nominal-outside-limits" by study::nominal_outside_limits {
         /// The dimensions.
         dimensions: Vec<String>,
+    };
+    /// Formulas add or compare values of different units.
+    MixedUnits = "mixed-units" by study::mixed_units {
+        /// The first of these formulas.
+        formula: String,
+        /// The sum or comparison in it, as written.
+        part: String,
+        /// The units on its two sides.
+        units: [String; 2],
+        /// Further formulas that do so.
+        others: Vec<String>,
     };
     /// No characteristic of the study uses these constants, formulas or unknowns.
     UnusedName = "unused-name" by study::unused_name {
@@ -158,6 +170,15 @@ warnings! {
         /// The error at the first of them.
         error: String,
     };
+    /// Values so large that their powers overflow.
+    Overflow = "overflow" by model::overflow {
+        /// The characteristic.
+        characteristic: String,
+        /// The largest size of its values.
+        value: f64,
+        /// The size beyond which powers overflow.
+        limit: f64,
+    };
     /// An external model gave a slightly different answer to the nominal point later.
     NotRepeatable = "not-repeatable" by model::not_repeatable {
         /// The output: a characteristic, or a value that formulas use.
@@ -187,6 +208,41 @@ warnings! {
         points: usize,
         /// The first few of these points, in words.
         suspects: Vec<String>,
+    };
+    /// Processes of an external model failed and were started again.
+    Restarts = "restarts" by model::restarts {
+        /// Processes that were started.
+        starts: u64,
+        /// Processes that ended by themselves.
+        crashes: u64,
+        /// Deadlines that passed.
+        timeouts: u64,
+        /// Lines that were no answers.
+        garbage: u64,
+        /// Evaluations that were lost and done again.
+        retried: u64,
+        /// Seconds without an answer of a process that failed.
+        lost_s: f64,
+        /// What went wrong the last time.
+        cause: String,
+        /// The last lines that the process wrote to stderr.
+        stderr: Vec<String>,
+    };
+    /// Answers of an external model depend on the points before them, and no fresh process confirmed them.
+    Unconfirmed = "unconfirmed" by model::unconfirmed {
+        /// How many answers.
+        answers: u64,
+    };
+    /// The journal holds the answers of another model than the one that runs now.
+    OutdatedJournal = "outdated-journal" by model::outdated_journal {
+        /// The output that differs at the nominal dimensions: a characteristic, or a value that formulas use.
+        output: String,
+        /// Its value in the journal; None where it had none.
+        expected: Option<f64>,
+        /// Its value now.
+        found: Option<f64>,
+        /// Answers that were forgotten.
+        answers: usize,
     };
     /// The characteristic is the same at every point.
     NoReaction = "no-reaction" by model::no_reaction {
@@ -350,6 +406,8 @@ warnings! {
         by: f64,
         /// The places between which the jump lies, in sigmas from the mean.
         between: [f64; 2],
+        /// The same places as values of the dimension.
+        at: Option<[f64; 2]>,
         /// Further dimensions with a jump.
         others: Vec<String>,
     };
@@ -572,31 +630,5 @@ impl Warning {
     /// What to do, the most promising first; empty where there is nothing to do.
     pub fn advice(&self) -> Vec<Advice> {
         self.text().advice
-    }
-}
-
-impl Serialize for Warning {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Text { message, advice } = self.text();
-        let mut shape = serializer.serialize_struct("Warning", 6)?;
-        shape.serialize_field("code", self.code())?;
-        shape.serialize_field("characteristic", &self.characteristic())?;
-        shape.serialize_field("dimension", &self.dimension())?;
-        shape.serialize_field("message", &message)?;
-        shape.serialize_field("data", &self.data())?;
-        shape.serialize_field("advice", &advice)?;
-        shape.end()
-    }
-}
-
-/// The fields of a warning by name; it serialises as a map.
-#[derive(Debug, Clone, Copy)]
-pub struct WarningData<'a>(&'a Warning);
-
-impl Serialize for WarningData<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        self.0.fields(&mut map)?;
-        map.end()
     }
 }

@@ -20,6 +20,14 @@ pub(super) fn failed_samples(characteristic: &str, failed: &u64, samples: &u64, 
     .advise(Advice::RepairModel)
 }
 
+pub(super) fn overflow(characteristic: &str, value: &f64, limit: &f64) -> Text {
+    say(format!(
+        "Values of `{characteristic}` reach {value:.1e}. Beyond {limit:.0e} their powers overflow: moments, yield and error estimates may be unknown \
+         or wrong."
+    ))
+    .advise(Advice::LargerUnit)
+}
+
 pub(super) fn not_repeatable(
     output: &str,
     expected: &Option<f64>,
@@ -64,6 +72,61 @@ fn nominal(
         value(expected),
         value(found)
     ))
+}
+
+#[allow(clippy::too_many_arguments)]
+pub(super) fn restarts(
+    starts: &u64,
+    crashes: &u64,
+    timeouts: &u64,
+    garbage: &u64,
+    retried: &u64,
+    lost_s: &f64,
+    cause: &str,
+    stderr: &[String],
+) -> Text {
+    let count = |count: u64, one: &str, many: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        count => Some(format!("{count} {many}")),
+    };
+    let failures = [
+        count(*crashes, "crash", "crashes"),
+        count(*timeouts, "time-out", "time-outs"),
+        count(*garbage, "invalid line", "invalid lines"),
+    ];
+    let failures = failures.into_iter().flatten().collect::<Vec<_>>().join(", ");
+    let again = count(*retried, "evaluation was", "evaluations were").unwrap_or("no evaluation was".to_owned());
+    let words =
+        if stderr.is_empty() { String::new() } else { format!(" Its stderr ended with: {}.", stderr.join(" | ")) };
+    say(format!(
+        "Processes of the model failed: {failures}, {starts} starts in all. Because of that {again} repeated, and {lost_s:.1} s were lost. The \
+         last cause: {cause}.{words}"
+    ))
+    .advise(Advice::ReadModelLog)
+}
+
+pub(super) fn unconfirmed(answers: &u64) -> Text {
+    let (answers, them) = if *answers == 1 {
+        ("1 answer depends".to_owned(), "it")
+    } else {
+        (format!("{answers} answers depend"), "them")
+    };
+    say(format!(
+        "{answers} on the points evaluated before, and no fresh process confirmed {them}. Results that use {them} are wrong or missing."
+    ))
+    .advise(Advice::ResetModel)
+}
+
+pub(super) fn outdated_journal(output: &str, expected: &Option<f64>, found: &Option<f64>, answers: &usize) -> Text {
+    let value = |value: &Option<f64>| value.map_or("no value".to_owned(), |value| value.to_string());
+    say(format!(
+        "`{output}` is {} at the nominal dimensions, and the journal has {}: the model has changed. Its {answers} answers in the journal \
+         were removed.",
+        value(found),
+        value(expected)
+    ))
+    .advise(Advice::NameModelFiles)
 }
 
 pub(super) fn no_reaction(characteristic: &str) -> Text {

@@ -1,7 +1,11 @@
 //! Warnings about the study itself.
 
-use super::text::{Text, names, say};
+use super::text::{Text, likewise, names, say};
 use super::{Advice, NameKind};
+use crate::names::shortened_to;
+
+/// Characters of a formula that a warning shows.
+const PART: usize = 40;
 
 pub(super) fn unused_dimension(dimensions: &[String]) -> Text {
     let (which, they, part) = match dimensions {
@@ -28,6 +32,16 @@ pub(super) fn nominal_outside_limits(dimensions: &[String]) -> Text {
         }
     ))
     .advise(Advice::CheckLimits)
+}
+
+pub(super) fn mixed_units(formula: &str, part: &str, [one, other]: &[String; 2], others: &[String]) -> Text {
+    let part = shortened_to(part, PART);
+    say(format!(
+        "The formula `{formula}` adds or compares different units, {one} and {other}. It does so in `{part}`. Units are never converted: the \
+         numbers are used as they are.{}",
+        likewise(others)
+    ))
+    .advise(Advice::CheckUnits)
 }
 
 pub(super) fn unused_name(kind: &NameKind, unused: &[String]) -> Text {

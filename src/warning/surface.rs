@@ -72,10 +72,12 @@ pub(super) fn discontinuity(
     dimension: &str,
     by: &f64,
     between: &[f64; 2],
+    at: &Option<[f64; 2]>,
     others: &[String],
 ) -> Text {
+    let at = at.map(|[from, to]| format!(" ({from} to {to})")).unwrap_or_default();
     say(format!(
-        "`{characteristic}` jumps along `{dimension}` {} by {by:.2} sigma.{} Derivatives mean nothing there, so the moments are wrong.",
+        "`{characteristic}` jumps along `{dimension}` {}{at} by {by:.2} sigma.{} Derivatives mean nothing there, so the moments are wrong.",
         places(*between),
         likewise(others)
     ))

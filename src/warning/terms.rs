@@ -5,6 +5,7 @@ use serde::Serialize;
 /// How a search for extremes ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Ended {
     /// No move along a coordinate improves either extreme.
     Converged,
@@ -17,6 +18,7 @@ pub enum Ended {
 /// What happens to a characteristic at a switch of its formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Change {
     /// Its slope changes.
     Kink,
@@ -29,6 +31,7 @@ pub enum Change {
 /// The part of a derivative that is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Loss {
     /// Every derivative: there is no value at the means, from which differences are taken.
     Centre,
@@ -50,6 +53,7 @@ pub enum Loss {
 /// The result of which an accuracy is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Figure {
     /// Sigma, relative.
     Sigma,
@@ -76,6 +80,7 @@ impl Figure {
 /// What a name of a study stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum NameKind {
     /// A constant.
     Constant,
@@ -102,6 +107,7 @@ impl NameKind {
 /// What the progress of a run counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Counted {
     /// Evaluations of the model.
     Evaluations,

@@ -41,6 +41,7 @@ if mode == "talks-first":
 if mode == "answers-first":
     say({"id": 0, "y": [1.0, 2.0]})
 
+first = mode.startswith("first-lies") and once()
 hello = json.loads(sys.stdin.readline())
 if mode == "refuses":
     say({"error": "no dimension `b`; there are a, c"})
@@ -96,6 +97,13 @@ for line in sys.stdin:
             answer = {"id": id, "error": "does not assemble"}
         elif flipped:
             answer["y"][1] += 1e-3
+    # The first process of all says something else off the nominal point; or at the thirteenth only, and all are astray after the 99th.
+    if mode == "first-lies" and first and request["x"] != hello["nominal"]:
+        answer["y"] = [value + 7 for value in answer["y"]]
+    if mode == "first-lies-once":
+        flipped = flipped or a == 99
+        if first and a == 13 or flipped and request["x"] == hello["nominal"]:
+            answer["y"] = [value + 7 for value in answer["y"]]
     if a == 13:
         if mode == "crash" or mode == "crash-in-window":
             sys.stderr.write("Segmentation fault in sketch solver\n")

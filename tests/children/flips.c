@@ -5,9 +5,14 @@
    pairs    the same, but only where more than one dimension is off
    drift    something is added with every point
    random   3 % of the answers are of the mirrored assembly
+   edge     9 more just above the nominal value of the first dimension; no memory
    jump     2 more where z_1 is above 0.5; no memory
    smooth   strongly curved; no memory
    plain    the right answer; no memory
+
+   slopes   the right answer with its derivatives, declared as gradients; no memory
+   silence  the same, without those that it declares
+   wrong    the same, with the derivative by the second dimension 20 % too large
 
    And what a program may say beside its answers:
    cluster  isolated, with places, heartbeats and starts, and a window that grows; dies once, at the file named by SEED
@@ -74,6 +79,8 @@ int main(int count, char **argument) {
         puts("{\"ready\":true,\"heartbeat\":true,\"window\":8}");
     else if (!strcmp(mode, "takes") || !strcmp(mode, "hangs"))
         puts("{\"ready\":true,\"heartbeat\":true,\"cancel\":true,\"window\":8}");
+    else if (!strcmp(mode, "slopes") || !strcmp(mode, "silence") || !strcmp(mode, "wrong"))
+        puts("{\"ready\":true,\"name\":\"slopes\",\"version\":1,\"window\":4,\"gradients\":true}");
     else
         puts("{\"ready\":true,\"name\":\"flips\",\"version\":1,\"window\":4}");
     while (fgets(line, sizeof line, stdin)) {
@@ -102,6 +109,7 @@ int main(int count, char **argument) {
         if (flipped) y = 9 - y;
         if (!strcmp(mode, "drift")) y += 0.01 * answered;
         if (!strcmp(mode, "jump")) y += z[0] > 0.5 ? 2 : 0;
+        if (!strcmp(mode, "edge")) y += z[0] > 0.02 ? 9 : 0;
         if (!strcmp(mode, "smooth")) y = exp(0.8 * y / n) * (1 + z[1] * z[1]) + a[0] * cos(2 * z[0]);
         answered++;
         if (!strcmp(mode, "cluster")) {
@@ -118,6 +126,15 @@ int main(int count, char **argument) {
             /* The first one waits for longer than a point may take. */
             for (int i = 0; answered == 1 && i < 60; i++) rest(50), puts("{\"alive\":true,\"running\":0,\"queued\":8}");
             printf("{\"id\":%d,\"started\":\"here\"}\n", id);
+        }
+        if (!strcmp(mode, "slopes") || !strcmp(mode, "wrong")) {
+            printf("{\"id\":%d,\"y\":[%.17g],\"dy\":[[", id, y);
+            for (int i = 0; i < n; i++) {
+                double slope = a[i] + 2 * b[i] * z[i] + (i < 2 ? c * z[1 - i] : 0);
+                printf("%s%.17g", i ? "," : "", slope / 0.1 * (i == 1 && *mode == 'w' ? 1.2 : 1));
+            }
+            puts("]]}");
+            continue;
         }
         if (!strcmp(mode, "takes")) rest(20);
         if (!strcmp(mode, "silent")) {

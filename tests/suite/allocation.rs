@@ -3,12 +3,13 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
-use sensitol::StopReason;
 use sensitol::allocation::{
-    Allocation, AllocationOptions, AllocationTask, Curve, Kept, Offer, Priced, Requirement, Status, allocate,
+    Allocation, AllocationOptions, AllocationTask, Curve, Kept, Offer, Priced, Status, allocate,
 };
 use sensitol::simulation::{SimulationOptions, simulate};
-use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, Study, Verdict};
+use sensitol::{
+    Characteristic, Closure, Dimension, Method, Options, Problem, Requirement, SpecLimits, StopReason, Study, Verdict,
+};
 
 use super::support::{relative, repository};
 
@@ -32,7 +33,7 @@ fn free(d: usize, curve: Curve, min: f64, max: f64) -> Priced {
 
 /// Closures say nothing of their degree: without a sample of them the surface of a linear one is exact, and so is its yield.
 fn options(method: Method) -> AllocationOptions {
-    AllocationOptions { analysis: Options { verify: Some(0), ..method.into() }, ..AllocationOptions::default() }
+    AllocationOptions::default().with_analysis(Options::from(method).with_verify(0))
 }
 
 /// Tolerances at the border of what is allowed are met where the errors are nothing, and inconclusive otherwise; never missed.
@@ -62,7 +63,7 @@ fn shaft_and_housing(requirement: Requirement) -> (Problem, AllocationTask) {
         Priced::new(vec![3, 5], offer(0.07202, 0.46823)).unwrap(),
         Priced::new(vec![4], offer(0.12576, 0.46537)).unwrap(),
     ];
-    (problem, AllocationTask { priced, requirements: vec![Some(requirement)] })
+    (problem, AllocationTask::new(priced, vec![Some(requirement)]))
 }
 
 /// Published: Chase, Greenwood, Loosli, Hauglund (1990), as the project's notes on methods give it, tolerances to 1e-6, costs to 1e-3.
@@ -105,7 +106,7 @@ fn random_problems_with_a_closed_form_have_it() {
         let curve = |b| Curve::reciprocal_power(1.0, b, k).unwrap();
         let priced = (0..n).map(|d| free(d, curve(b[d]), 1e-9, 1e9)).collect();
         let requirement = if worst { Requirement::WorstCase } else { Requirement::Rss };
-        let task = AllocationTask { priced, requirements: vec![Some(requirement)] };
+        let task = AllocationTask::new(priced, vec![Some(requirement)]);
         let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
         assert_eq!(found.status, Status::Optimal, "case {case}: {:?} {:?}", found.proof, found.requirements);
         assert!(found.proof.closed_form, "case {case}");
@@ -167,7 +168,7 @@ fn convex(rng: &mut Xoshiro256PlusPlus, n: usize) -> (Problem, AllocationTask) {
             free(d, curve.unwrap(), t * 10f64.powf(rng.random_range(-4.0..-2.0)), t * rng.random_range(1.5..30.0))
         })
         .collect();
-    (problem, AllocationTask { priced, requirements })
+    (problem, AllocationTask::new(priced, requirements))
 }
 
 /// How far tolerances are from Lagrange's condition, by formulas of this test alone: the slope of the cost by `ln T` of every dimension
@@ -189,6 +190,7 @@ fn independent_residual(task: &AllocationTask, slopes: &[Vec<f64>], limits: &[[f
             Requirement::Cpk(least) => (least * 3.0 * sigma / room, squares),
             Requirement::Sigma(most) => (sigma / most, squares),
             Requirement::Yield(least) => ((cdf(lower / sigma) + cdf(-upper / sigma)) / (1.0 - least), squares),
+            other => unreachable!("no such requirement in these studies: {other:?}"),
         };
         // statrs knows the tails to 1e-10.
         assert!(value <= 1.0 + 1e-6, "{requirement:?} is exceeded: {value}");
@@ -287,7 +289,7 @@ fn processes_are_chosen_as_every_choice_looked_at_would() {
         let problem = linear(slopes.clone(), &vec![0.1; n], limits.map(|limit| [-limit, limit]));
         let offer = |(index, &(t, cost)): (usize, &(f64, f64))| Offer::process(format!("p{index}"), t, cost).unwrap();
         let priced = (0..n).map(|d| Priced::new(vec![d], lists[d].iter().enumerate().map(offer).collect()).unwrap());
-        let task = AllocationTask { priced: priced.collect(), requirements: requirements.map(Some).to_vec() };
+        let task = AllocationTask::new(priced.collect(), requirements.map(Some).to_vec());
         let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
 
         let squared = requirements.map(|requirement| requirement == Requirement::Rss);
@@ -350,7 +352,7 @@ fn what_cannot_be_kept_is_recognised_and_named() {
         for (limit, possible) in [(least * (1.0 - 1e-6), false), (least * (1.0 + 1e-6), true)] {
             let problem = linear([slopes.clone()], &bands, [[-limit, 2.0 * limit]]);
             let priced = (0..n).map(|d| free(d, Curve::reciprocal(0.0, 1.0).unwrap(), min[d], 1.0)).collect();
-            let task = AllocationTask { priced, requirements: vec![Some(requirement)] };
+            let task = AllocationTask::new(priced, vec![Some(requirement)]);
             let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
             match possible {
                 true => assert_eq!(found.status, Status::Optimal, "case {case}: {:?}", found.proof),
@@ -369,10 +371,10 @@ fn what_cannot_be_kept_is_recognised_and_named() {
 #[test]
 fn dimensions_without_a_cost_that_break_a_requirement_are_named() {
     let problem = linear([vec![1.0, -3.0, 2.0]], &[0.1, 0.2, 0.1], [[-0.5, 0.5]]);
-    let task = AllocationTask {
-        priced: vec![free(0, Curve::reciprocal(0.0, 1.0).unwrap(), 0.01, 1.0)],
-        requirements: vec![Some(Requirement::WorstCase)],
-    };
+    let task = AllocationTask::new(
+        vec![free(0, Curve::reciprocal(0.0, 1.0).unwrap(), 0.01, 1.0)],
+        vec![Some(Requirement::WorstCase)],
+    );
     let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
     let attainable = found.attainable.unwrap();
     assert_eq!(attainable.because, [1, 2], "0.6 and 0.2 of 0.5 by themselves, most harmful first");
@@ -382,7 +384,7 @@ fn dimensions_without_a_cost_that_break_a_requirement_are_named() {
 fn example(path: &str) -> (Study, AllocationTask, AllocationOptions) {
     let study = Study::read(&repository("examples").join(path)).unwrap();
     let task = study.allocation_task();
-    let options = AllocationOptions { analysis: study.options.clone(), ..AllocationOptions::default() };
+    let options = AllocationOptions::default().with_analysis(study.options.clone());
     (study, task, options)
 }
 
@@ -396,7 +398,7 @@ fn the_optimum_of_a_curved_model_holds_when_it_is_simulated() {
     assert!(found.proof.residual.unwrap() < 1e-7, "{:?}", found.proof);
     // Nothing was re-used of the method beside derivatives at the optimum: a fresh sample of the model itself, whose interval is a ten
     // thousandth wide.
-    let sample = SimulationOptions { samples: 4_000_000, ..SimulationOptions::default() };
+    let sample = SimulationOptions::default().with_samples(4_000_000);
     let simulated = simulate(&found.problem, &sample).unwrap();
     let mut binding = 0;
     for (of, one) in found.requirements.iter().zip(&simulated.characteristics) {
@@ -417,10 +419,10 @@ fn a_limit_costs_what_its_price_says() {
     // min b/T subject to 3 sigma = 3 T/3 <= 0.3 - off: C = b/(0.3 - off), dC/doff = b/(0.3 - off)^2.
     let cost = |upper: f64| {
         let problem = linear([vec![1.0]], &[0.1], [[-1.0, upper]]);
-        let task = AllocationTask {
-            priced: vec![free(0, Curve::reciprocal(0.0, 2.0).unwrap(), 1e-3, 10.0)],
-            requirements: vec![Some(Requirement::Cpk(1.0))],
-        };
+        let task = AllocationTask::new(
+            vec![free(0, Curve::reciprocal(0.0, 2.0).unwrap(), 1e-3, 10.0)],
+            vec![Some(Requirement::Cpk(1.0))],
+        );
         allocate(&problem, &task, &options(Method::Rss)).unwrap()
     };
     let found = cost(0.3);
@@ -437,10 +439,10 @@ fn a_limit_costs_what_its_price_says() {
 #[test]
 fn limits_that_bind_together_have_one_price() {
     let problem = linear([vec![1.0]], &[0.1], [[-0.3, 0.3]]);
-    let task = AllocationTask {
-        priced: vec![free(0, Curve::reciprocal(0.0, 2.0).unwrap(), 1e-3, 10.0)],
-        requirements: vec![Some(Requirement::WorstCase)],
-    };
+    let task = AllocationTask::new(
+        vec![free(0, Curve::reciprocal(0.0, 2.0).unwrap(), 1e-3, 10.0)],
+        vec![Some(Requirement::WorstCase)],
+    );
     let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
     let [price] = &found.prices[..] else { panic!("{:?}", found.prices) };
     relative(price.both.unwrap(), 2.0 / 0.09, 1e-8);
@@ -455,10 +457,10 @@ fn the_middle_of_an_asymmetric_band_stays() {
     let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(9.0), Some(10.25)).unwrap());
     let problem = Problem::new(dimensions, Closure::scalar("gap", |x| x[1] - x[0])).unwrap().asking([gap]).unwrap();
     // Only b is free; the worst case above is 10 + 0.1 + 0.1 + T, so that T = 0.05, of +0.05/+0.15.
-    let task = AllocationTask {
-        priced: vec![free(1, Curve::reciprocal(0.0, 1.0).unwrap(), 0.01, 1.0)],
-        requirements: vec![Some(Requirement::WorstCase)],
-    };
+    let task = AllocationTask::new(
+        vec![free(1, Curve::reciprocal(0.0, 1.0).unwrap(), 0.01, 1.0)],
+        vec![Some(Requirement::WorstCase)],
+    );
     let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
     relative(tolerance(&found, 1), 0.05, 1e-12);
     let [lower, upper] = found.problem.dimensions()[1].tolerance().unwrap();
@@ -466,7 +468,7 @@ fn the_middle_of_an_asymmetric_band_stays() {
     relative(upper, 0.15, 1e-12);
     relative(found.after.as_ref().unwrap().characteristics[0].worst_case.unwrap()[1], 10.25, 1e-12);
     // Cpk 1: mean 10.1 and 3 sigma sqrt(0.1^2 + T^2) reach 10.25 together.
-    let task = AllocationTask { requirements: vec![Some(Requirement::Cpk(1.0))], ..task };
+    let task = AllocationTask::new(task.priced, vec![Some(Requirement::Cpk(1.0))]);
     let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
     // The margin that is left after derivatives were taken anew.
     relative(tolerance(&found, 1), 0.0125f64.sqrt(), 1e-6);
@@ -500,10 +502,10 @@ fn correlation_has_its_part_in_the_requirement() {
     let problem = problem.asking([gap]).unwrap().correlated(&[pair]).unwrap();
     for requirement in [Requirement::Rss, Requirement::Cpk(1.0)] {
         let curve = || Curve::reciprocal(0.0, 1.0).unwrap();
-        let task = AllocationTask {
-            priced: vec![free(0, curve(), 0.01, 1.0), free(1, curve(), 0.01, 1.0)],
-            requirements: vec![Some(requirement)],
-        };
+        let task = AllocationTask::new(
+            vec![free(0, curve(), 0.01, 1.0), free(1, curve(), 0.01, 1.0)],
+            vec![Some(requirement)],
+        );
         let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
         assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
         let [a, b] = [0, 1].map(|d| tolerance(&found, d));
@@ -522,13 +524,13 @@ fn shapes_that_change_are_followed() {
     let dimensions = [uniform("a"), uniform("b"), uniform("c"), uniform("d"), lognormal];
     let sum = Characteristic::new("sum").with_limits(SpecLimits::new(None, Some(41.5)).unwrap());
     let problem = Problem::new(dimensions, Closure::scalar("sum", |x| x.iter().sum())).unwrap().asking([sum]).unwrap();
-    let task = AllocationTask {
-        priced: (0..5).map(|d| free(d, Curve::reciprocal(0.0, 1.0 + d as f64).unwrap(), 0.01, 2.0)).collect(),
-        requirements: vec![Some(Requirement::Yield(0.995))],
-    };
+    let task = AllocationTask::new(
+        (0..5).map(|d| free(d, Curve::reciprocal(0.0, 1.0 + d as f64).unwrap(), 0.01, 2.0)).collect(),
+        vec![Some(Requirement::Yield(0.995))],
+    );
     let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
     assert_eq!(found.status, Status::Optimal, "{:?} {:?}", found.proof, found.requirements);
-    let sample = SimulationOptions { samples: 1_000_000, ..SimulationOptions::default() };
+    let sample = SimulationOptions::default().with_samples(1_000_000);
     let simulated = simulate(&found.problem, &sample).unwrap();
     let [low, high] = simulated.characteristics[0].yield_.unwrap().interval;
     // Four moments do not say everything of a sum of uniforms: a tenth of what is rejected.
@@ -574,10 +576,10 @@ fn nominal_values_move_to_the_middle_of_the_limits() {
         let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(20.5), Some(21.5)).unwrap());
         Problem::new(dimensions(), Closure::scalar("gap", function)).unwrap().asking([gap]).unwrap()
     };
-    let task = AllocationTask { priced: Vec::new(), requirements: vec![None] };
+    let task = AllocationTask::new(Vec::new(), vec![None]);
     let recentred = |problem: &Problem, names: &[&str]| {
         let recentre = names.iter().map(|&name| name.to_owned()).collect();
-        allocate(problem, &task, &AllocationOptions { recentre, ..options(Method::SecondOrder) }).unwrap()
+        allocate(problem, &task, &options(Method::SecondOrder).with_recentre(recentre)).unwrap()
     };
     let found = recentred(&problem(|x| x[1] - x[0]), &["b"]);
     assert_eq!((found.status, found.moved.len()), (Status::Optimal, 1));
@@ -606,11 +608,11 @@ fn recentring_and_allocating_go_together() {
         Problem::new(dimensions, Closure::scalar("gap", |x| x[1] - x[0])).unwrap().asking([gap]).unwrap()
     };
     let curve = || Curve::reciprocal(0.0, 1.0).unwrap();
-    let task = AllocationTask {
-        priced: vec![free(0, curve(), 0.01, 3.0), free(1, curve(), 0.01, 3.0)],
-        requirements: vec![Some(Requirement::Yield(0.9973))],
-    };
-    let together = AllocationOptions { recentre: vec!["b".into()], ..options(Method::SecondOrder) };
+    let task = AllocationTask::new(
+        vec![free(0, curve(), 0.01, 3.0), free(1, curve(), 0.01, 3.0)],
+        vec![Some(Requirement::Yield(0.9973))],
+    );
+    let together = options(Method::SecondOrder).with_recentre(vec!["b".into()]);
     let found = allocate(&problem(30.7), &task, &together).unwrap();
     let centred = allocate(&problem(31.0), &task, &options(Method::SecondOrder)).unwrap();
     assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
@@ -630,7 +632,7 @@ fn the_loosest_scaling_is_the_room_that_is_left() {
 #[test]
 fn the_front_rises_with_what_is_required() {
     let (study, task, options) = example("engine-balance/allocate.toml");
-    let options = AllocationOptions { front: Some(9), ..options };
+    let options = options.with_front(9);
     let found = allocate(&study.problem, &task, &options).unwrap();
     assert_eq!(found.front.len(), 9);
     let costs: Vec<f64> = found.front.iter().map(|point| point.cost.unwrap()).collect();
@@ -646,7 +648,7 @@ fn the_front_rises_with_what_is_required() {
 #[test]
 fn allocations_do_not_depend_on_the_number_of_threads() {
     let (study, task, options) = example("engine-balance/allocate.toml");
-    let options = AllocationOptions { confirm: Some(5000), ..options };
+    let options = options.with_confirm(5000);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let found = pool.install(|| allocate(&study.problem, &task, &options).unwrap());
@@ -660,10 +662,10 @@ fn allocations_do_not_depend_on_the_number_of_threads() {
 #[test]
 fn the_joint_yield_is_that_of_all_limits_at_once() {
     let problem = linear([vec![1.0, 0.0], vec![0.0, 1.0]], &[0.3, 0.3], [[-0.2, 0.2], [-0.15, 9.0]]);
-    let task = AllocationTask {
-        priced: vec![free(0, Curve::reciprocal(0.0, 1.0).unwrap(), 0.3, 0.3)],
-        requirements: vec![Some(Requirement::Sigma(1.0)), None],
-    };
+    let task = AllocationTask::new(
+        vec![free(0, Curve::reciprocal(0.0, 1.0).unwrap(), 0.3, 0.3)],
+        vec![Some(Requirement::Sigma(1.0)), None],
+    );
     let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
     let joint = found.joint[0].unwrap();
     // 2 Phi(2) - 1 and Phi(1.5).
@@ -678,7 +680,7 @@ fn a_run_that_is_stopped_says_so() {
     let (study, task, options) = example("engine-balance/allocate.toml");
     let stop = || Some(StopReason::TimeLimit);
     let run = sensitol::assembly::Run::to_the_end().stopping_when(&stop);
-    let found = sensitol::allocation::allocate_within(&study.problem, &task, &options, &run).unwrap();
+    let found = sensitol::allocation::allocate_with(&study.problem, &task, &options, &run).unwrap();
     assert_eq!(found.status, Status::OutOfTime);
     assert!(found.run.stopped == Some(StopReason::TimeLimit) && found.after.is_none() && found.cost_after.is_none());
 }
@@ -686,12 +688,12 @@ fn a_run_that_is_stopped_says_so() {
 #[test]
 fn a_budget_that_does_not_reach_is_said() {
     let (study, task, options) = example("engine-balance/allocate.toml");
-    let analysis = Options { budget: Some(111), ..options.analysis.clone() };
-    let found = allocate(&study.problem, &task, &AllocationOptions { analysis, ..options.clone() }).unwrap();
+    let analysis = options.analysis.clone().with_budget(111);
+    let found = allocate(&study.problem, &task, &options.clone().with_analysis(analysis)).unwrap();
     assert!(!found.confirmed && found.run.evaluations == 111 && found.cost_after.is_some());
     assert_eq!(found.status, Status::AlmostOptimal);
-    let analysis = Options { budget: Some(110), ..options.analysis.clone() };
-    let error = allocate(&study.problem, &task, &AllocationOptions { analysis, ..options }).unwrap_err();
+    let analysis = options.analysis.clone().with_budget(110);
+    let error = allocate(&study.problem, &task, &options.with_analysis(analysis)).unwrap_err();
     assert!(error.to_string().contains("111 evaluations"), "{error}");
 }
 
@@ -704,10 +706,10 @@ fn a_model_that_fails_farther_out_is_approached_in_steps() {
     let y = Characteristic::new("y").with_limits(SpecLimits::new(Some(0.9), Some(1.12)).unwrap());
     let problem = Problem::new(dimensions, root).unwrap().asking([y]).unwrap();
     let curve = || Curve::reciprocal(0.0, 1.0).unwrap();
-    let task = AllocationTask {
-        priced: vec![free(0, curve(), 0.01, 3.0), free(1, curve(), 0.01, 3.0)],
-        requirements: vec![Some(Requirement::Cpk(1.0))],
-    };
+    let task = AllocationTask::new(
+        vec![free(0, curve(), 0.01, 3.0), free(1, curve(), 0.01, 3.0)],
+        vec![Some(Requirement::Cpk(1.0))],
+    );
     let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
     assert!(found.cost_after.unwrap() < found.cost_before.unwrap(), "{:?}", found.status);
     assert!(kept(&found.requirements[0]) && found.confirmed);
@@ -721,10 +723,10 @@ fn nothing_is_called_impossible_by_extrapolation() {
     let y = Characteristic::new("y").with_limits(SpecLimits::new(Some(-0.002), Some(0.002)).unwrap());
     let dimensions = [Dimension::normal("a", 0.0, 1.0).unwrap()];
     let problem = Problem::new(dimensions, Closure::scalar("y", steep)).unwrap().asking([y]).unwrap();
-    let task = AllocationTask {
-        priced: vec![free(0, Curve::reciprocal(0.0, 1.0).unwrap(), 0.1, 3.0)],
-        requirements: vec![Some(Requirement::Cpk(1.0))],
-    };
+    let task = AllocationTask::new(
+        vec![free(0, Curve::reciprocal(0.0, 1.0).unwrap(), 0.1, 3.0)],
+        vec![Some(Requirement::Cpk(1.0))],
+    );
     let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
     assert_eq!(found.status, Status::Optimal, "{:?} {:?}", found.attainable, found.proof);
     assert!(kept(&found.requirements[0]) && tolerance(&found, 0) > 0.1);

@@ -159,7 +159,7 @@ fn a_program_that_flips_is_warned_of() {
     );
     let study = sensitol::Study::from_toml(&study, "flip.toml").unwrap();
     // Twelve sigma off: a = 13, where it flips.
-    let options = Options { step: Some(12.0), ..Method::SecondOrder.into() };
+    let options = Options::from(Method::SecondOrder).with_step(12.0);
     let analysis = analyze(&study.problem, &options).unwrap();
     let flip = analysis.warnings.iter().find(|warning| warning.code() == "branch-flip");
     let message = flip.unwrap_or_else(|| panic!("{:?}", analysis.warnings)).message();

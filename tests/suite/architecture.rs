@@ -33,6 +33,7 @@ const LAYERS: &[&[&str]] = &[
     &["distribution", "fits", "requirement"],
     &["pearson", "method_kind"],
     &["names", "elementary", "summary", "time"],
+    &["shape"],
 ];
 
 fn layer(module: &str) -> usize {

@@ -2,24 +2,25 @@
 
 use std::sync::Arc;
 
-use sensitol::StopReason;
-use sensitol::analysis::{YieldSource, analyze_within};
+use sensitol::analysis::{YieldSource, analyze_with};
 use sensitol::assembly::{EvaluationError, Run};
 use sensitol::distribution::Exponential;
 use sensitol::method::Accuracies;
 use sensitol::simulation::{SimulationOptions, simulate};
-use sensitol::{Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, analyze};
+use sensitol::{
+    Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, analyze,
+};
 
 use super::support::{Asked, close, normals, refusing, relative, standard};
 
 /// The search itself, and the sample that it draws where it does not trust its surface: without the verification, which takes
 /// points of its own.
 fn auto(accuracy: f64) -> Options {
-    Options { accuracy: Some(accuracy), verify: Some(0), ..Method::Auto.into() }
+    Options::from(Method::Auto).with_accuracy(accuracy).with_verify(0)
 }
 
 fn of(dimensions: Vec<Dimension>, f: impl Fn(&[f64]) -> f64 + Send + Sync + 'static, options: &Options) -> Analysis {
-    let options = Options { verify: Some(0), ..options.clone() };
+    let options = options.clone().with_verify(0);
     analyze(&Problem::new(dimensions, Closure::scalar("y", f)).unwrap(), &options).unwrap()
 }
 
@@ -56,17 +57,19 @@ fn what_is_linear_is_soon_known() {
     }
 }
 
-/// The seed is of what draws samples, and of nothing here.
+/// The seed is of what draws samples, and of nothing where a surface is enough; the number of threads is of nothing.
 #[test]
 fn the_same_study_gives_the_same_numbers() {
     let f = |x: &[f64]| (0.3 * x[0]).exp() * (1.0 + 0.2 * x[1]) + x[2] * x[2] * 0.1 + x[3] - x[4] * x[0] * 0.05;
-    let one = of(standard(5), f, &auto(0.001));
-    let other = of(standard(5), f, &Options { seed: Some(99), ..auto(0.001) });
+    let one = of(standard(5), f, &auto(0.05));
+    let other = of(standard(5), f, &auto(0.05).with_seed(99));
+    assert!(one.characteristics[0].model_sampled.is_none());
     assert_eq!(one.characteristics, other.characteristics);
     assert_eq!(one.run.evaluations, other.run.evaluations);
+    let fine = of(standard(5), f, &auto(0.001));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let alone = pool.install(|| of(standard(5), f, &auto(0.001)));
-    assert_eq!(one.characteristics, alone.characteristics);
+    assert_eq!(fine.characteristics, alone.characteristics);
 }
 
 /// `y = a + b + c + d + ab/10` of standard normals: variance 4.01, third central moment 3 (2/10) and fourth cumulant
@@ -81,11 +84,8 @@ fn other_accuracies_are_reached_too() {
     let of_sigma = of(standard(4), f, &auto(0.05));
     let found = |analysis: &Analysis| analysis.characteristics[0].moments.unwrap();
     assert!((found(&of_sigma).skewness().unwrap() - skewness).abs() > 0.05);
-    for accuracies in [
-        Accuracies { skewness: Some(0.01), ..Accuracies::default() },
-        Accuracies { kurtosis: Some(0.01), ..Accuracies::default() },
-    ] {
-        let options = Options { accuracies, ..auto(0.05) };
+    for accuracies in [Accuracies::default().with_skewness(0.01), Accuracies::default().with_kurtosis(0.01)] {
+        let options = auto(0.05).with_accuracies(accuracies);
         let analysis = of(standard(4), f, &options);
         assert!(analysis.run.evaluations > of_sigma.run.evaluations);
         // A quadratic is exact once its interaction is known.
@@ -93,7 +93,7 @@ fn other_accuracies_are_reached_too() {
         relative(found(&analysis).kurtosis().unwrap(), kurtosis, 1e-9);
         assert!(codes(&analysis).is_empty(), "{:?}", analysis.warnings);
         // Too few evaluations for it: that is said, by the figure's name.
-        let short = of(standard(4), f, &Options { budget: Some(of_sigma.run.evaluations as usize), ..options });
+        let short = of(standard(4), f, &options.with_budget(of_sigma.run.evaluations as usize));
         let said = short.warnings.iter().find(|warning| warning.code() == "under-resolved").unwrap().message();
         let name = if accuracies.skewness.is_some() { "skewness" } else { "kurtosis" };
         let begins = format!("The estimated error of the {name} of `y` is ");
@@ -105,8 +105,8 @@ fn other_accuracies_are_reached_too() {
 /// asks for nothing.
 #[test]
 fn a_yield_is_known_as_well_as_wanted() {
-    let accuracies = Accuracies { yield_: Some(1e-3), ..Accuracies::default() };
-    let options = Options { accuracies, ..auto(0.05) };
+    let accuracies = Accuracies::default().with_yield(1e-3);
+    let options = auto(0.05).with_accuracies(accuracies);
     let f = |x: &[f64]| x[0] + x[1] + x[2] + x[3] + 0.1 * x[0] * x[1];
     let limited = Characteristic::new("y").with_limits(SpecLimits::new(None, Some(4.0)).unwrap());
     let problem = Problem::new(standard(4), Closure::scalar("y", f)).unwrap().asking([limited]).unwrap();
@@ -137,7 +137,7 @@ fn tails_that_the_law_misses_are_told_of() {
         let limited = Characteristic::new("y").with_limits(SpecLimits::new(Some(lower), None).unwrap());
         let y = Closure::scalar("y", |x| x[0] - 2.0 * x[1]);
         let problem = Problem::new(dimensions(), y).unwrap().asking([limited]).unwrap();
-        analyze(&problem, &Options { verify: Some(Options::VERIFY), ..Method::Auto.into() }).unwrap()
+        analyze(&problem, &Options::from(Method::Auto).with_verify(Options::VERIFY)).unwrap()
     };
     let normal = |z: f64| 0.5 * libm::erfc(-z / 2f64.sqrt());
     let below = |lower: f64| {
@@ -190,9 +190,9 @@ fn verdicts_that_are_in_doubt_are_not_given() {
 #[test]
 fn accuracies_are_positive() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let accuracies = Accuracies { yield_: Some(bad), ..Accuracies::default() };
+        let accuracies = Accuracies::default().with_yield(bad);
         let problem = Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
-        let error = analyze(&problem, &Options { accuracies, ..auto(0.05) }).unwrap_err().to_string();
+        let error = analyze(&problem, &auto(0.05).with_accuracies(accuracies)).unwrap_err().to_string();
         assert!(
             error.starts_with("the accuracy of the yield is the share that it may be off, a number above 0"),
             "{error}"
@@ -220,7 +220,7 @@ fn a_budget_is_kept() {
     for budget in [21, 25, 40, 60, 90, 200] {
         let asked = Asked::default();
         let problem = Problem::new(standard(10), asked.watching(f)).unwrap();
-        let analysis = analyze(&problem, &Options { budget: Some(budget), ..auto(0.001) }).unwrap();
+        let analysis = analyze(&problem, &auto(0.001).with_budget(budget)).unwrap();
         assert_eq!(analysis.run.evaluations, asked.distinct() as u64);
         assert!(analysis.run.evaluations <= budget as u64, "{} of {budget}", analysis.run.evaluations);
         let exact = (10.0 + 9.0 * 0.09f64).sqrt();
@@ -232,10 +232,7 @@ fn a_budget_is_kept() {
     assert!(errors[5] < 1e-12, "{errors:?}");
     // Without a check nothing is known of interactions: the error of the variance is what they have.
     relative(errors[0], 1.0 - (10.0f64 / 10.81).sqrt(), 1e-6);
-    let too_few = analyze(
-        &Problem::new(standard(10), Closure::scalar("y", f)).unwrap(),
-        &Options { budget: Some(20), ..auto(0.1) },
-    );
+    let too_few = analyze(&Problem::new(standard(10), Closure::scalar("y", f)).unwrap(), &auto(0.1).with_budget(20));
     assert!(too_few.unwrap_err().to_string().contains("needs 21 evaluations, more than the budget of 20"));
 }
 
@@ -275,6 +272,17 @@ fn scatter_is_noticed_and_spoils_no_more_than_it_must() {
     }
 }
 
+/// Points that stand in for a surface are drawn by the seed that was given: another one gives other figures, the same one the same.
+#[test]
+fn the_seed_reaches_points_that_stand_in_for_a_surface() {
+    let f = |x: &[f64]| (x[0] - x[1]).min(x[2] - x[3]);
+    let with = |seed: u64| of(standard(4), f, &auto(0.05).with_seed(seed));
+    let (one, other, again) = (with(1), with(2), with(1));
+    assert!(one.characteristics[0].model_sampled.is_some());
+    assert_ne!(sigma(&one), sigma(&other));
+    assert_eq!(one.characteristics, again.characteristics);
+}
+
 /// Two gaps of one size: the kink is named, the model is sampled, and a long simulation agrees.
 #[test]
 fn a_kink_is_named_and_sampled() {
@@ -285,8 +293,7 @@ fn a_kink_is_named_and_sampled() {
     assert!(found.contains(&"kink") && found.contains(&"untrusted-surrogate"), "{found:?}");
     let one = &analysis.characteristics[0];
     let sampled = one.model_sampled.as_ref().expect("the model was sampled");
-    let reference =
-        simulate(&problem(), &SimulationOptions { samples: 400_000, ..SimulationOptions::default() }).unwrap();
+    let reference = simulate(&problem(), &SimulationOptions::default().with_samples(400_000)).unwrap();
     let truth = reference.characteristics[0].sigma.unwrap();
     let error = sampled.standard_errors[1].unwrap().hypot(truth.standard_error.unwrap());
     // Four standard errors: one in ten thousand.
@@ -426,7 +433,7 @@ fn the_account_says_what_ended_it() {
     let account = |options: &Options, stop: bool| {
         let stop = || stop.then_some(StopReason::Requested);
         let run = Run::to_the_end().stopping_when(&stop);
-        analyze_within(&problem(), options, &run).unwrap().account.unwrap().to_string()
+        analyze_with(&problem(), options, &run).unwrap().account.unwrap().to_string()
     };
     let stopped = account(&Method::Auto.into(), true);
     assert!(
@@ -434,7 +441,7 @@ fn the_account_says_what_ended_it() {
         "{stopped}"
     );
     assert!(stopped.contains("0 points check") && !stopped.contains("budget"), "{stopped}");
-    let short = account(&Options { budget: Some(26), accuracy: Some(1e-6), ..Method::Auto.into() }, false);
+    let short = account(&Options::from(Method::Auto).with_budget(26).with_accuracy(1e-6), false);
     assert!(short.ends_with("the budget ended it") && !short.contains("needed"), "{short}");
     let whole = account(&Method::Auto.into(), false);
     assert!(!whole.contains("budget") && !whole.contains("interrupted"), "{whole}");

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol::assembly::{Ask, Points, Responses, Run};
+use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol::capability::{Capability, Law, TAIL};
 use sensitol::pearson::{Pearson, PearsonError};
 use sensitol::{Closure, Dimension, Method, Moments, Problem, SpecLimits, Study, analyze};
@@ -37,7 +37,7 @@ fn a_normal_has_the_indices_of_the_textbook() {
     relative(lower.cpk.unwrap(), 1.0, 1e-12);
     relative(lower.sigma_level().unwrap(), 3.0, 1e-12);
     let none = of(normal, SpecLimits::default());
-    assert_eq!((none.yield_(), none.cpk, none.sigma_level(), none.meets(Some(0.5))), (None, None, None, None));
+    assert_eq!((none.yield_(), none.cpk, none.sigma_level()), (None, None, None));
 }
 
 /// The exponential by hand: median log 2, quantiles -log p.
@@ -52,15 +52,6 @@ fn percentile_indices_follow_the_shape() {
     relative(found.cpk_percentile.unwrap(), (middle / (middle - low)).min((9.0 - middle) / (high - middle)), 1e-12);
     // The normal form sees only mean and sigma.
     relative(found.cpk.unwrap(), 1.0 / 3.0, 1e-12);
-}
-
-#[test]
-fn a_target_is_met_by_what_is_rejected() {
-    let four_sigma = of(Moments::new(0.0, 1.0, 0.0, 0.0), limits(Some(-4.0), Some(4.0)));
-    let rejected = four_sigma.rejected().unwrap();
-    assert_eq!(four_sigma.meets(Some(1.0 - 2.0 * rejected)), Some(true));
-    assert_eq!(four_sigma.meets(Some(1.0 - 0.5 * rejected)), Some(false));
-    assert_eq!(four_sigma.meets(None), None);
 }
 
 /// Sigma 0: one value, on the limit or beside it.
@@ -121,7 +112,7 @@ fn yields_are_those_of_monte_carlo() {
             let columns: Vec<Vec<f64>> = problem.dimensions().iter().map(column).collect();
             let points = Points::from_columns(rows, &columns);
             let mut out = Responses::open(rows, 1);
-            problem.function().evaluate(&Ask::values(&points, problem.outputs()), &Run::to_the_end(), &mut out);
+            problem.function().evaluate(&Request::values(&points, problem.outputs()), &Run::to_the_end(), &mut out);
             assert_eq!(out.errors().count(), 0);
             for value in out.column(0) {
                 beyond[0] += u32::from(*value < bounds[0]);

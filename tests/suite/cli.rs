@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use sensitol::document::terminal::text;
-use sensitol::document::{Detail, Style};
+use sensitol::report::text;
 use sensitol::report::{About, Report};
+use sensitol::report::{Detail, Style};
 
 use super::support::repository;
 

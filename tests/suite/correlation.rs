@@ -2,8 +2,9 @@
 
 use faer::Mat;
 use proptest::prelude::*;
-use sensitol::correlation::{Correlation, Pair, Refusal, Transform};
+use sensitol::correlation::{Correlation, Pair, Refusal};
 use sensitol::distribution::{CentralMoments, Distribution, Exponential, Gamma, Normal, Triangular, Uniform};
+use sensitol::internals::Transform;
 use sensitol::report::{About, Report};
 use sensitol::study::Study;
 use sensitol::{Characteristic, Closure, Dimension, Method, Moments, Problem, analyze};

@@ -2,7 +2,8 @@
 //! is none.
 
 use proptest::prelude::*;
-use sensitol::assembly::formula::{Formula, FormulaSet, Jet, Meaning};
+use sensitol::assembly::formula::Formula;
+use sensitol::internals::{FormulaSet, Jet, Meaning};
 
 use super::support::data;
 

@@ -142,7 +142,7 @@ fn trade(example: &str, characteristic: &str, truth: &serde_json::Value, rows: &
             (method.name().to_owned(), found.run.evaluations, [moments.mean(), moments.sigma(), skewness, kurtosis])
         }
         Ours::MonteCarlo(samples) => {
-            let options = SimulationOptions { samples: *samples, ..SimulationOptions::default() };
+            let options = SimulationOptions::default().with_samples(*samples);
             let one = simulate(&problem, &options).unwrap().characteristics.remove(0);
             let values = [one.mean, one.sigma, one.skewness, one.kurtosis].map(|estimate| estimate.unwrap().value);
             ("monte-carlo".to_owned(), *samples, values)
@@ -177,7 +177,7 @@ fn measured() -> String {
     let methods = [
         ("`rss`", Options::from(Method::Rss)),
         ("`second-order`", Method::SecondOrder.into()),
-        ("`six-n --stencil four-point`", Options { stencil: Some(Stencil::FourPoint), ..Method::SixN.into() }),
+        ("`six-n --stencil four-point`", Options::from(Method::SixN).with_stencil(Stencil::FourPoint)),
         ("`six-n`", Method::SixN.into()),
         ("`full`", Method::Full.into()),
         ("`classic`", Method::Classic.into()),

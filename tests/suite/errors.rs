@@ -1,11 +1,9 @@
 //! Errors: all of the library fit into one type, and names that mean nothing say what was meant.
 
-use sensitol::UnknownName;
-use sensitol::method::Pairs;
-use sensitol::method::Stencil;
+use sensitol::method::{Pairs, Stencil};
 use sensitol::models::Model;
-use sensitol::sampling::Sampler;
-use sensitol::{DerivativeSource, Error, Method};
+use sensitol::simulation::Sampler;
+use sensitol::{DerivativeSource, Error, Method, UnknownName};
 
 use super::support::repository;
 
@@ -30,7 +28,7 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::StudyError,
         sensitol::allocation::AllocateError,
         sensitol::allocation::CostError,
-        sensitol::allocation::RequirementError,
+        sensitol::RequirementError,
         sensitol::analysis::NoFit,
         sensitol::assembly::CompositeError,
         sensitol::assembly::EvaluationError,
@@ -43,11 +41,11 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::distribution::DistributionError,
         sensitol::fits::FitError,
         sensitol::journal::JournalError,
-        sensitol::law::LawError,
+        sensitol::analysis::LawError,
         sensitol::UnknownName,
         sensitol::pearson::PearsonError,
         sensitol::rare::RareError,
-        sensitol::sampling::SamplingError,
+        sensitol::simulation::SamplingError,
         sensitol::simulation::SimulationError,
         sensitol::study::RewriteError,
         sensitol::sweep::SweepError,
@@ -89,9 +87,9 @@ fn the_words_stay() {
 fn names_are_read_back() {
     for method in Method::ALL {
         assert_eq!(method.name().parse(), Ok(method));
-        assert_eq!(method.procedure().name(), method.name());
+        assert_eq!(sensitol::internals::procedure(method).name(), method.name());
     }
-    assert_eq!(sensitol::method::ALL.iter().map(|procedure| procedure.method()).collect::<Vec<_>>(), Method::ALL);
+    assert_eq!(sensitol::internals::ALL.iter().map(|procedure| procedure.method()).collect::<Vec<_>>(), Method::ALL);
     for stencil in [Stencil::TwoPoint, Stencil::FourPoint] {
         assert_eq!(stencil.name().parse(), Ok(stencil));
     }

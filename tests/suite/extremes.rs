@@ -5,16 +5,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol::StopReason;
-use sensitol::analysis::Analysis;
-use sensitol::assembly::{Ask, Points, Responses, Run};
-use sensitol::extremes::{Ended, Extremes, Place};
-use sensitol::{Closure, Dimension, Method, Options, Problem, Study, analyze, analyze_within};
+use sensitol::analysis::{Analysis, Extremes, Place};
+use sensitol::assembly::{Points, Request, Responses, Run};
+use sensitol::warning::Ended;
+use sensitol::{Closure, Dimension, Method, Options, Problem, StopReason, Study, analyze, analyze_with};
 
 use super::support::{Asked, close, normals, refusing, relative, repository, standard};
 
 fn searched(problem: &Problem, method: Method) -> Analysis {
-    analyze(problem, &Options { extremes: true, ..method.into() }).unwrap()
+    analyze(problem, &Options::from(method).with_extremes(true)).unwrap()
 }
 
 /// The extremes of a closure with one output.
@@ -44,7 +43,7 @@ fn bands(problem: &Problem) -> Vec<[f64; 2]> {
 fn among(problem: &Problem, points: &[Vec<f64>]) -> Vec<[f64; 2]> {
     let mut out = Responses::open(points.len(), problem.outputs().len());
     let points = Points::from_rows(points);
-    problem.function().evaluate(&Ask::values(&points, problem.outputs()), &Run::to_the_end(), &mut out);
+    problem.function().evaluate(&Request::values(&points, problem.outputs()), &Run::to_the_end(), &mut out);
     let ends = |c: usize| {
         let column = out.column(c).iter().copied();
         [column.clone().fold(f64::INFINITY, f64::min), column.fold(f64::NEG_INFINITY, f64::max)]
@@ -262,7 +261,7 @@ fn the_budget_holds() {
     for left in [0, 1, 5, 17] {
         let asked = Asked::default();
         let problem = Problem::new(normals(&[0.5; 6], &[2.0; 6]), asked.watching(function)).unwrap();
-        let options = Options { extremes: true, budget: Some(13 + left), ..Method::SecondOrder.into() };
+        let options = Options::from(Method::SecondOrder).with_extremes(true).with_budget(13 + left);
         let analysis = analyze(&problem, &options).unwrap();
         assert_eq!((asked.distinct(), analysis.run.evaluations as usize), (13 + left, 13 + left));
         let found = analysis.characteristics[0].extremes.as_ref().unwrap();
@@ -283,8 +282,8 @@ fn a_stop_is_heeded() {
     };
     let problem = Problem::new(normals(&[0.5; 6], &[2.0; 6]), Closure::scalar("y", function)).unwrap();
     let stop = || (count.load(Ordering::Relaxed) > 13).then_some(StopReason::TimeLimit);
-    let options = Options { extremes: true, ..Method::SecondOrder.into() };
-    let analysis = analyze_within(&problem, &options, &Run::to_the_end().stopping_when(&stop)).unwrap();
+    let options = Options::from(Method::SecondOrder).with_extremes(true);
+    let analysis = analyze_with(&problem, &options, &Run::to_the_end().stopping_when(&stop)).unwrap();
     let found = analysis.characteristics[0].extremes.as_ref().unwrap();
     assert!(analysis.run.stopped.is_some() && found.ended == Ended::Stopped);
     assert_eq!(analysis.run.evaluations, count.load(Ordering::Relaxed) as u64);

@@ -136,8 +136,7 @@ fn the_tails_are_those_of_the_studies() {
     let least = 100.0 * 0.025_f64.powf(1e-3);
     says(TRUST, &format!("A yield of 100 % in 1000 points means above {least:.1} %, no more."));
     let study = sensitol::Study::read(&repository("examples/thermal-clearance/study.toml")).unwrap();
-    let sample =
-        simulate(&study.problem, &SimulationOptions { samples: 1000, ..SimulationOptions::default() }).unwrap();
+    let sample = simulate(&study.problem, &SimulationOptions::default().with_samples(1000)).unwrap();
     let [low, high] = sample.characteristics[0].yield_.as_ref().unwrap().interval;
     assert!(high == 1.0 && (100.0 * low - least).abs() < 0.05, "{low} .. {high}");
 }

@@ -1,7 +1,8 @@
 //! Formulas: against a tree evaluator of the tests' own, errors with their places, laziness, and batches.
 
 use proptest::prelude::*;
-use sensitol::assembly::formula::{FailureReason, Formula, FormulaError, FormulaFault, FormulaSet, Meaning};
+use sensitol::assembly::formula::{FailureReason, Formula, FormulaError, FormulaFault};
+use sensitol::internals::{FormulaSet, Meaning};
 
 use super::support::close;
 

@@ -218,3 +218,104 @@ fn long_formulas_make_short_messages() {
         assert!(longest < 600, "{longest}: {}", said.lines().next().unwrap());
     }
 }
+
+/// What a killed run has left goes when the next one writes there; what another run is writing at the moment stays.
+#[test]
+fn leftovers_go_at_the_next_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = study(&folder, "a.toml", PLAIN).display().to_string();
+    let [old, young, other] = [".sensitol-old", ".sensitol-young", "sensitol-old"].map(|name| study(&folder, name, ""));
+    let long_ago = std::time::SystemTime::now() - std::time::Duration::from_secs(2 * 3600);
+    for file in [&old, &other] {
+        std::fs::File::options().write(true).open(file).unwrap().set_modified(long_ago).unwrap();
+    }
+    let report = folder.path().join("report.txt");
+    assert!(sensitol(&["analyze", &path, "-o", &report.display().to_string()]).status().unwrap().success());
+    assert_eq!([old, young, other, report].map(|file| file.exists()), [false, true, true, true]);
+}
+
+/// Units of different kinds in a sum: one warning for all formulas; converted ones are no news.
+#[test]
+fn sums_of_different_units_warn() {
+    let text = "[dimensions]\na = { nominal = 1, unit = \"mm\" }\nphi = { nominal = 1, unit = \"deg\" }\n[formulas]\nboth = \"a + phi\"\n\
+        [characteristics]\ny = { formula = \"2*both\" }\nz = { formula = \"a < phi\" }\nok = { formula = \"a + 3*phi + a*sin(phi*deg)\" }\n";
+    let warnings = parse(text).unwrap().warnings;
+    let messages: Vec<String> =
+        warnings.iter().map(|warning| format!("[{}] {}", warning.code(), warning.message())).collect();
+    assert_eq!(
+        messages,
+        [
+            "[mixed-units] The formula `both` adds or compares different units, mm and deg. It does so in `a + phi`. Units are never converted: the \
+             numbers are used as they are. The same is true of `z`."
+        ]
+    );
+    assert_eq!(parse(&text.replace("unit = \"deg\"", "unit = \"mm\"")).unwrap().warnings, []);
+}
+
+/// Many warnings of one code are three, and the names of the others; --verbose tells each.
+#[test]
+fn warnings_of_one_code_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let many: String = (0..40).map(|i| format!("y{i} = {{ formula = \"abs(a - 10) + {i}\" }}\n")).collect();
+    let text = format!("[dimensions]\na = {{ nominal = 10, tolerance = 0.3 }}\n[characteristics]\n{many}");
+    let path = study(&folder, "a.toml", &text).display().to_string();
+    let said = |more: &[&str]| {
+        let output =
+            sensitol(&[&["analyze", &path, "--verify", "0", "--method", "rss"], more].concat()).output().unwrap();
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .lines()
+            .filter(|line| line.starts_with("warning"))
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let short = said(&[]);
+    let codes: std::collections::BTreeSet<&str> = short.iter().map(|line| line.split(':').next().unwrap()).collect();
+    assert!(!codes.is_empty());
+    for code in codes {
+        let all = said(&["--verbose"]).iter().filter(|line| line.starts_with(code)).count();
+        let own: Vec<&String> = short.iter().filter(|line| line.starts_with(code)).collect();
+        assert_eq!((all, own.len()), (40, 4), "{code}");
+        assert_eq!(own[3], &format!("{code}: 37 more of this kind: `y3`, `y4`, `y5`, `y6`, `y7`, ..."));
+    }
+}
+
+/// Beyond 1e100 a result is right, or unknown with a warning: never infinite, and never 0 in place of it.
+#[test]
+fn results_that_overflow_say_so() {
+    let folder = tempfile::tempdir().unwrap();
+    for size in ["1e90", "1e110", "1e160", "1e200", "1e300"] {
+        let text = format!(
+            "[dimensions]\na = {{ nominal = 10, tolerance = 0.3 }}\nb = {{ nominal = 10, tolerance = 0.3 }}\n[characteristics]\n\
+             y = {{ formula = \"{size}*a*b\", lower = 0, require = {{ cpk = 0.5 }} }}\n[costs]\n\
+             a = {{ model = \"reciprocal\", b = 1 }}\nb = {{ model = \"reciprocal\", b = 1 }}\n"
+        );
+        let path = study(&folder, "big.toml", &text).display().to_string();
+        for command in [
+            &["analyze", &path, "--stack", "text"][..],
+            &["analyze", &path],
+            &["simulate", &path, "--samples", "200"],
+            &["simulate", &path, "--samples", "300", "--rare"],
+            &["compare", &path, "--samples", "1000"],
+            &["sweep", &path, "--over", "a=9:11:3"],
+            &["allocate", &path],
+        ] {
+            let output = sensitol(command).output().unwrap();
+            let (shown, said) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+            let odd = shown.split(|c: char| !c.is_alphanumeric()).find(|word| ["inf", "NaN", "nan"].contains(word));
+            assert_eq!(odd, None, "{command:?} {size}:\n{shown}");
+            assert!(!said.contains("panicked"), "{command:?} {size}: {said}");
+            // The limit of a sample is 1e38, that of everything else 1e100.
+            let sampled = command[0] == "simulate" && command.len() == 4;
+            let beyond = sampled || size != "1e90";
+            if matches!(command[0], "analyze") || sampled {
+                assert_eq!(said.contains("warning[overflow]"), beyond, "{command:?} {size}: {said}");
+            }
+        }
+        // A sample's sigma is unknown, not 0, where it is beyond a double.
+        let output = sensitol(&["simulate", &path, "--samples", "200", "--json"]).output().unwrap();
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let sigma = &report["characteristics"][0]["sigma"];
+        assert!(sigma.is_null() || sigma.as_f64().is_some_and(|sigma| sigma > 1e80), "{size}: {sigma}");
+    }
+}

@@ -8,10 +8,10 @@ use std::process::Command;
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sensitol::analysis::Relocation;
 use sensitol::capability::{Capability, Law};
 use sensitol::report::html::{WhatIf, analyze_html, compare_html, simulate_html};
 use sensitol::report::{About, CompareReport, Report, SimulationReport};
-use sensitol::surrogate::Relocation;
 use sensitol::{Analysis, Method, Options, Study, analyze};
 use serde_json::{Value, json};
 
@@ -106,9 +106,8 @@ fn hostile_names_are_text() {
     let simulation = sensitol::simulation::simulate(&study.problem, &Default::default()).unwrap();
     let about = About { title: study.title.clone(), ..About::default() };
     let simulated = simulate_html(&SimulationReport::of(&study.problem, &simulation, about.clone()));
-    let options = sensitol::compare::CompareOptions { reference: Some(4096), budget: None, seed: 1 };
-    let comparison =
-        sensitol::compare::compare_within(&study.problem, &options, &sensitol::assembly::Run::to_the_end());
+    let options = sensitol::compare::CompareOptions::default().with_reference(4096).with_seed(1);
+    let comparison = sensitol::compare::compare_with(&study.problem, &options, &sensitol::assembly::Run::to_the_end());
     let compared = compare_html(&CompareReport::of(&comparison.unwrap(), about));
     for page in [simulated, compared] {
         is_closed(&page);
@@ -116,6 +115,16 @@ fn hostile_names_are_text() {
             assert!(!page.contains(markup), "{markup} is in the page as markup");
         }
     }
+}
+
+/// A name leads to the section about it, and slopes say whether they are differences: those of formulas are exact.
+#[test]
+fn pages_lead_to_what_they_name() {
+    let exact = page(&example("fit-and-stack"));
+    let links = exact.matches("<a href=\"#kc-").count();
+    assert!(links > 0 && links == exact.matches("<section id=\"kc-").count(), "{links} links");
+    assert!(!exact.contains(" ≈</td>"));
+    assert!(page(&example("engine-balance")).contains(" ≈</td>"));
 }
 
 /// The largest page: every pair of 200 dimensions, each product another number.
@@ -179,6 +188,10 @@ fn the_command_line_writes_pages() {
         let of_folder = run(&[call, &["--html", folder.path().to_str().unwrap()]].concat());
         assert!(of_folder.starts_with("exit 2") && of_folder.contains("cannot be written"), "{of_folder}");
     }
+    // Every dimension with a cost has a bar of what was, and one of what is.
+    let page = std::fs::read_to_string(path("allocate.html")).unwrap();
+    let bars = |class: &str| page.matches(&format!("<rect class=\"{class}\"")).count();
+    assert!(bars("was") > 0 && bars("was") == bars("linear"), "{page}");
     let page = std::fs::read_to_string(path("simulate.html")).unwrap();
     assert!(page.contains("importance sampling") && page.contains("most likely above"), "{page}");
 }
@@ -328,7 +341,7 @@ b = { nominal = 0, tolerance = 3 }
 y = { formula = "max(a, b)", lower = -2, upper = 3 }
 "##;
     let study = study(text);
-    let options = Options { verify: Some(0), ..study.options.clone() };
+    let options = study.options.clone().with_verify(0);
     let (analysis, page) = analysed(&study, &options);
     let sampled = analysis.characteristics[0].model_sampled.as_ref().expect("a kink is sampled");
     let histogram = sampled.histogram.as_ref().unwrap();

@@ -4,7 +4,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::assembly::implicit::AssemblyFailure;
-use sensitol::assembly::{Ask, Derivatives, Directions, EvaluationError, Points, Responses, Run};
+use sensitol::assembly::{Derivatives, Directions, EvaluationError, Points, Request, Responses, Run};
 use sensitol::method::Basis;
 use sensitol::{DerivativeSource, Method, MethodError, Options, Problem, Study, analyze};
 
@@ -20,7 +20,7 @@ fn example(path: &str) -> Problem {
 
 fn evaluated(problem: &Problem, points: &Points) -> Responses {
     let mut out = Responses::open(points.rows(), problem.outputs().len());
-    problem.function().evaluate(&Ask::values(points, problem.outputs()), &Run::to_the_end(), &mut out);
+    problem.function().evaluate(&Request::values(points, problem.outputs()), &Run::to_the_end(), &mut out);
     out
 }
 
@@ -154,7 +154,7 @@ fn sensitivities_are_exact() {
     // The study file's word for it.
     let text = std::fs::read_to_string(repository("examples/stacked-blocks-loops/study.toml")).unwrap();
     let options = study(&text.replace("method = \"rss\"", "method = \"rss\"\nderivatives = \"exact\"")).options;
-    let linear = Options { derivatives: Some(DerivativeSource::Exact), ..Method::Rss.into() };
+    let linear = Options::from(Method::Rss).with_derivatives(DerivativeSource::Exact);
     assert_eq!(options, linear);
     let analysis = analyze(&problem, &linear).unwrap();
     assert_eq!((analysis.run.evaluations, analysis.basis), (1, Basis::Exact));
@@ -315,12 +315,12 @@ fn conditions_use_outputs_of_a_model() {
     let [u, f] = [0, 1].map(|c| analysis.characteristics[c].nominal.unwrap());
     close(u, f.sqrt(), 1e-14, 0.0);
     assert!(!analysis.characteristics[0].sensitivities[0].exact);
-    let refused = analyze(&problem, &Options { derivatives: Some(DerivativeSource::Exact), ..Method::Rss.into() });
+    let refused = analyze(&problem, &Options::from(Method::Rss).with_derivatives(DerivativeSource::Exact));
     assert!(matches!(refused, Err(MethodError::DerivativesUnknown { characteristic }) if characteristic == "u"));
 }
 
 fn with(method: Method, derivatives: DerivativeSource) -> Options {
-    Options { derivatives: Some(derivatives), ..method.into() }
+    Options::from(method).with_derivatives(derivatives)
 }
 
 /// A quadratic has its derivatives everywhere: by one evaluation as by a full stencil.
@@ -373,9 +373,9 @@ fn a_kink_has_a_difference_for_a_sensitivity() {
 
     let refused = analyze(&problem, &with(Method::SecondOrder, DerivativeSource::Exact)).unwrap_err();
     assert_eq!(refused, MethodError::NoDerivative { characteristic: "q".into(), dimensions: vec!["x".into()] });
-    let stepped = Options { step: Some(1.0), ..with(Method::SecondOrder, DerivativeSource::Exact) };
+    let stepped = with(Method::SecondOrder, DerivativeSource::Exact).with_step(1.0);
     assert_eq!(analyze(&problem, &stepped).unwrap_err(), MethodError::NoDifferences { option: "step" });
-    let all = Options { all_sensitivities: true, ..Method::SecondOrder.into() };
+    let all = Options::from(Method::SecondOrder).with_all_sensitivities(true);
     let analysis = analyze(&problem, &all).unwrap();
     assert!(analysis.characteristics[0].sensitivities[2].exact);
 }

@@ -1,7 +1,8 @@
 //! Interval arithmetic: what formulas have over a box is never outside their enclosure.
 
 use proptest::prelude::*;
-use sensitol::assembly::formula::{Formula, FormulaSet, Interval, Jet, Meaning};
+use sensitol::assembly::formula::Formula;
+use sensitol::internals::{FormulaSet, Interval, Jet, Meaning};
 
 const NAMES: [&str; 3] = ["a", "b", "c"];
 

@@ -2,17 +2,16 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sensitol::Dimension;
-use sensitol::SpecLimits;
+use sensitol::analysis::{Branch, LawError, LawFigure, LawTail};
 use sensitol::correlation::{Correlation, Pair};
-use sensitol::distribution::Measured;
 use sensitol::distribution::{
-    Beta, Distribution, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rule, Trapezoidal, Triangular, Uniform,
-    Weibull,
+    Beta, Distribution, Exponential, Gamma, Lognormal, Measured, Mixture, Normal, Part, Trapezoidal, Triangular,
+    Uniform, Weibull,
 };
-use sensitol::law::{Branch, LawError, LawFigure, LawOptions, LawTail, SurfaceLaw, joint_yield};
-use sensitol::moments::Interactions;
-use sensitol::surrogate::{Inputs, Surrogate, Univariate, shapes};
+use sensitol::internals::{
+    Inputs, Interactions, LawOptions, Rule, SurfaceLaw, Surrogate, Univariate, joint_yield, shapes,
+};
+use sensitol::{Dimension, SpecLimits};
 use serde_json::Value;
 
 use super::support::repository;

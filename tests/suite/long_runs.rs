@@ -7,23 +7,23 @@ use std::time::Duration;
 
 use sensitol::StopReason;
 use sensitol::assembly::process::{Greeting, Process, ProcessFault, Settings};
-use sensitol::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Responses, Run, Signature};
+use sensitol::assembly::{AssemblyFunction, EvaluationError, Points, Request, Responses, Run, Signature};
 
 use super::support::{child_in_c, repository};
 
 fn settings(mode: &str, more: &str) -> Settings {
-    Settings { sentinels: false, retries: 0, ..Settings::new([child_in_c(), mode.to_owned(), more.to_owned()]) }
+    Settings::new([child_in_c(), mode.to_owned(), more.to_owned()]).with_sentinels(false).with_retries(0)
 }
 
 fn model(settings: Settings) -> Process {
-    let greeting = Greeting { nominal: vec![1.0, 2.0], ..Greeting::default() };
+    let greeting = Greeting::new(vec![1.0, 2.0]);
     Process::new(Signature::of_names(["a", "b"], ["y"]), greeting, settings)
 }
 
 fn at(model: &Process, a: &[f64], run: &Run<'_>) -> Responses {
     let rows: Vec<[f64; 2]> = a.iter().map(|&a| [a, 2.0]).collect();
     let mut out = Responses::open(rows.len(), 1);
-    model.evaluate(&Ask::values(&Points::from_rows(&rows), &[0]), run, &mut out);
+    model.evaluate(&Request::values(&Points::from_rows(&rows), &[0]), run, &mut out);
     out
 }
 
@@ -42,7 +42,7 @@ fn points(count: usize) -> Vec<f64> {
 fn a_queue_is_no_delay() {
     let a = points(10);
     // The first point waits for 3 s before it starts.
-    let model = model(Settings { timeout: Duration::from_millis(1500), ..settings("queue", "1") });
+    let model = model(settings("queue", "1").with_timeout(Duration::from_millis(1500)));
     let out = at(&model, &a, &Run::to_the_end());
     assert_eq!((0..a.len()).map(|row| out.value(row, 0)).collect::<Vec<_>>(), plain("1", &a), "{:?}", out.error(0, 0));
     assert_eq!((model.account().starts, model.account().timeouts), (1, 0));
@@ -51,7 +51,7 @@ fn a_queue_is_no_delay() {
 /// A point that has started has its own clock, whatever its program says of being alive.
 #[test]
 fn a_heartbeat_saves_no_point_that_hangs() {
-    let model = model(Settings { timeout: Duration::from_millis(500), ..settings("silent", "1") });
+    let model = model(settings("silent", "1").with_timeout(Duration::from_millis(500)));
     let out = at(&model, &[1.5], &Run::to_the_end());
     let Some(EvaluationError::Process(error)) = out.error(0, 0) else { panic!("{:?}", out.value(0, 0)) };
     assert!(matches!(error.fault, ProcessFault::TimedOut { .. }), "{error}");
@@ -63,7 +63,7 @@ fn a_heartbeat_saves_no_point_that_hangs() {
 fn a_point_that_hangs_is_taken_back() {
     let mut a = points(20);
     a[7] = 13.0;
-    let model = model(Settings { timeout: Duration::from_millis(1500), ..settings("hangs", "2") });
+    let model = model(settings("hangs", "2").with_timeout(Duration::from_millis(1500)));
     let out = at(&model, &a, &Run::to_the_end());
     for (row, expected) in plain("2", &a).into_iter().enumerate() {
         if row == 7 {
@@ -84,8 +84,7 @@ fn places_and_a_crash() {
     let notes = Arc::new(Mutex::new(Vec::new()));
     let heard = Arc::clone(&notes);
     let listener = move |line: &str| heard.lock().unwrap().push(line.to_owned());
-    let settings =
-        Settings { sentinels: true, verify: Some(0), listener: Some(Arc::new(listener)), ..settings("cluster", &file) };
+    let settings = settings("cluster", &file).with_sentinels(true).with_verify(0).with_listener(Arc::new(listener));
     let model = model(settings);
     let a = points(60);
     let out = at(&model, &a, &Run::to_the_end());
@@ -129,13 +128,13 @@ fn a_stop_takes_points_back() {
 fn halves_find_the_culprit() {
     let script = repository("tests/children/child.py").display().to_string();
     let argv = ["python3", &script, "crash-in-window", "64"];
-    let greeting = Greeting { nominal: vec![1.0, 2.0], ..Greeting::default() };
-    let settings = Settings { sentinels: false, ..Settings::new(argv) };
+    let greeting = Greeting::new(vec![1.0, 2.0]);
+    let settings = Settings::new(argv).with_sentinels(false);
     let model = Process::new(Signature::of_names(["a", "b"], ["sum", "product"]), greeting, settings);
     let a: Vec<f64> = (0..200).map(f64::from).collect();
     let rows: Vec<[f64; 2]> = a.iter().map(|&a| [a, 2.0]).collect();
     let mut out = Responses::open(rows.len(), 2);
-    model.evaluate(&Ask::values(&Points::from_rows(&rows), &[0, 1]), &Run::to_the_end(), &mut out);
+    model.evaluate(&Request::values(&Points::from_rows(&rows), &[0, 1]), &Run::to_the_end(), &mut out);
     for (row, &a) in a.iter().enumerate() {
         assert_eq!(out.value(row, 0), (row != 13).then_some(a + 2.0), "row {row}");
     }

@@ -6,11 +6,9 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_distr::Distribution as _;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol::distribution::{
-    Distribution, DistributionError, Jacobi, Measured, PearsonLaw, Probability, Resample, Sample, extreme, outliers,
-};
-use sensitol::moments::Interactions;
-use sensitol::surrogate::{Inputs, Relocation, Surrogate, Univariate};
+use sensitol::analysis::Relocation;
+use sensitol::distribution::{Distribution, DistributionError, Jacobi, Measured, PearsonLaw, Probability};
+use sensitol::internals::{Inputs, Interactions, Resample, Sample, Surrogate, Univariate, extreme, outliers};
 use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, Study, StudyError, analyze};
 
 use super::support::{close, data, relative, repository};
@@ -453,8 +451,8 @@ fn resampled_moments_are_those_of_enumeration() {
     let to = law.reweighted(&counts);
     let moved = [Relocation { shift: to.shift, stretch: to.stretch }, Relocation::NONE];
     let shapes = [
-        sensitol::surrogate::InputShape { moments: to.moments, rule: Arc::new(to.rule) },
-        sensitol::surrogate::shapes([&coin as &dyn Distribution]).remove(0),
+        sensitol::internals::InputShape { moments: to.moments, rule: Arc::new(to.rule) },
+        sensitol::internals::shapes([&coin as &dyn Distribution]).remove(0),
     ];
     let found = surrogate.relocated(&moved).contributions(&Inputs::independent(shapes.to_vec())).unwrap().moments;
     let mut outcomes = Vec::new();
@@ -493,8 +491,11 @@ fn empirical(values: &[f64]) -> Arc<dyn Distribution> {
 #[test]
 fn intervals_hang_on_the_seed_alone() {
     let problem = measured_problem(empirical);
-    let options = |seed| Options { seed, ..Method::Full.into() };
-    let of = |seed| analyze(&problem, &options(seed)).unwrap();
+    let of = |seed| {
+        let mut options = Options::from(Method::Full);
+        options.seed = seed;
+        analyze(&problem, &options).unwrap()
+    };
     let on =
         |threads: usize| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| of(None));
     let first = of(None);

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use sensitol::distribution::{CentralMoments, StandardMoments};
-use sensitol::method::Stencil;
-use sensitol::method::{ALL, MethodError, Pairs};
+use sensitol::internals::ALL;
+use sensitol::method::{MethodError, Pairs, Stencil};
 use sensitol::warning::Advice;
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, analyze};
 
@@ -222,7 +222,7 @@ fn six_n_picks_the_strongest_pairs() {
 #[test]
 fn pairs_can_be_chosen() {
     let problem = Problem::new(standard(5), Closure::scalar("y", |x| x[0] * x[3] + x[1])).unwrap();
-    let with = |pairs| Options { pairs: Some(pairs), ..Method::SixN.into() };
+    let with = |pairs| Options::from(Method::SixN).with_pairs(pairs);
     let listed = |names: &[(&str, &str)]| {
         with(Pairs::Listed(names.iter().map(|&(a, b)| (a.to_owned(), b.to_owned())).collect()))
     };
@@ -244,18 +244,18 @@ fn options_that_mean_nothing_are_refused() {
     let problem = Problem::new(standard(10), Closure::scalar("y", |x| x[0])).unwrap();
     let refused = |options: Options| analyze(&problem, &options).unwrap_err();
     assert!(matches!(
-        refused(Options { pairs: Some(Pairs::Adjacent), ..Method::Full.into() }),
+        refused(Options::from(Method::Full).with_pairs(Pairs::Adjacent)),
         MethodError::OptionDoesNotApply { option: "pairs", .. }
     ));
     assert!(matches!(
-        refused(Options { stencil: Some(Stencil::FourPoint), ..Method::Rss.into() }),
+        refused(Options::from(Method::Rss).with_stencil(Stencil::FourPoint)),
         MethodError::OptionDoesNotApply { option: "stencil", .. }
     ));
-    assert!(matches!(refused(Options { step: Some(0.0), ..Method::Rss.into() }), MethodError::BadStep { .. }));
-    let over = refused(Options { budget: Some(100), ..Method::Full.into() });
+    assert!(matches!(refused(Options::from(Method::Rss).with_step(0.0)), MethodError::BadStep { .. }));
+    let over = refused(Options::from(Method::Full).with_budget(100));
     assert_eq!(over.to_string(), "full needs 111 evaluations, more than the budget of 100; six-n needs 61");
     assert_eq!(over.advice(), [Advice::UseMethod { methods: vec![Method::SixN] }, Advice::RaiseBudget]);
-    let none = refused(Options { budget: Some(5), ..Method::Full.into() });
+    let none = refused(Options::from(Method::Full).with_budget(5));
     assert_eq!(none.to_string(), "full needs 111 evaluations, more than the budget of 5; no method does with so few");
-    assert!(analyze(&problem, &Options { budget: Some(111), ..Method::Full.into() }).is_ok());
+    assert!(analyze(&problem, &Options::from(Method::Full).with_budget(111)).is_ok());
 }

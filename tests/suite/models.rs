@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use sensitol::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Responses, Run};
+use sensitol::assembly::{AssemblyFunction, EvaluationError, Points, Request, Responses, Run};
 use sensitol::models::{self, Model};
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Dimension, Method, Options, Problem, analyze};
@@ -24,7 +24,7 @@ fn output(model: &Model, name: &str) -> usize {
 fn values(model: &'static Model, outputs: &[usize], rows: &[Vec<f64>]) -> Responses {
     let mut out = Responses::open(rows.len(), outputs.len());
     let points = Points::from_rows(rows);
-    model.function().evaluate(&Ask::values(&points, outputs), &Run::to_the_end(), &mut out);
+    model.function().evaluate(&Request::values(&points, outputs), &Run::to_the_end(), &mut out);
     out
 }
 
@@ -142,7 +142,7 @@ fn second_order_moments_are_those_listed() {
     for case in Case::rods().into_iter().chain([Case::flywheel()]) {
         let names: Vec<&str> = case.outputs().iter().map(|(name, _)| name.as_str()).collect();
         let problem = case.problem(&names);
-        let analysis = analyze(&problem, &Options { step: Some(0.05), ..Method::Full.into() }).unwrap();
+        let analysis = analyze(&problem, &Options::from(Method::Full).with_step(0.05)).unwrap();
         for found in &analysis.characteristics {
             let (name, moments) = (found.characteristic.name(), found.moments.unwrap());
             let expected = &case.truth["kcs"][name]["second_order"];
@@ -162,7 +162,7 @@ fn samples_agree_with_other_peoples() {
     for case in Case::rods().into_iter().chain([Case::flywheel()]) {
         let mut names: Vec<&str> = case.outputs().iter().map(|(name, _)| name.as_str()).collect();
         names.extend(case.model.outputs.iter().map(|output| output.name).filter(|name| *name == "Fn_opt"));
-        let options = SimulationOptions { samples: 40_000, seed: 7, ..SimulationOptions::default() };
+        let options = SimulationOptions::default().with_samples(40_000).with_seed(7);
         let simulation = simulate(&case.problem(&names), &options).unwrap();
         for found in &simulation.characteristics {
             let name = found.characteristic.name();
@@ -190,7 +190,7 @@ fn the_kink_is_seen_and_sampled_around() {
     let problem = rod.problem(&["Fn_opt"]);
     let theirs = &rod.truth["monte_carlo"]["Fn_opt"];
     // What the methods do by themselves: a verification would sample a built-in model.
-    let alone = |method: Method| sensitol::Options { verify: Some(0), ..method.into() };
+    let alone = |method: Method| sensitol::Options::from(method).with_verify(0);
     let warned = |method: Method| {
         let analysis = analyze(&problem, &alone(method)).unwrap();
         let codes: Vec<&str> = analysis.warnings.iter().map(|warning| warning.code()).collect();

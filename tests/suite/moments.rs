@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use sensitol::Moments;
-use sensitol::distribution::{Rule, StandardMoments};
-use sensitol::moments::{Interactions, Term, contributions, of_quadratic};
+use sensitol::distribution::StandardMoments;
+use sensitol::internals::{Interactions, Rule, Term, contributions, of_quadratic};
 
 use super::support::{close, data, relative};
 

@@ -278,19 +278,19 @@ fn any_pair_of_doubles_is_a_law_or_an_error() {
 }
 
 /// A law with these moments, and its probabilities below and above from elsewhere.
-type Known = (&'static str, PearsonType, [f64; 4], Box<dyn Fn(f64) -> [f64; 2]>);
+type KnownMember = (&'static str, PearsonType, [f64; 4], Box<dyn Fn(f64) -> [f64; 2]>);
 
 fn raw(kind: PearsonType, mean: f64, variance: f64, skewness: f64, excess: f64) -> (PearsonType, [f64; 4]) {
     (kind, [mean, variance.sqrt(), skewness, 3.0 + excess])
 }
 
 /// Closed forms, exact to a few roundings.
-fn closed_forms() -> Vec<Known> {
+fn closed_forms() -> Vec<KnownMember> {
     let poisson = |n: i32, m: f64| -> f64 {
         let term = |k: i32| (1..=k).fold(1.0, |product, j| product * m / f64::from(j));
         (-m).exp() * (0..n).map(term).sum::<f64>()
     };
-    let mut known: Vec<Known> = Vec::new();
+    let mut known: Vec<KnownMember> = Vec::new();
     let mut add = |name, (kind, moments): (PearsonType, [f64; 4]), of: Box<dyn Fn(f64) -> [f64; 2]>| {
         known.push((name, kind, moments, of));
     };
@@ -352,7 +352,7 @@ fn closed_forms() -> Vec<Known> {
     known
 }
 
-fn agree(known: &[Known], tolerance: f64) {
+fn agree(known: &[KnownMember], tolerance: f64) {
     for (name, kind, [mean, sigma, skewness, kurtosis], of) in known {
         let law = Pearson::new(*mean, *sigma, *skewness, *kurtosis).unwrap();
         // 8/3 is no double: the inverse gamma comes to lie beside its line.
@@ -402,7 +402,7 @@ fn members_are_those_of_another_library() {
         let excess = 12.0 * top / (m * (n - 6.0) * (n - 8.0) * (m + n - 2.0));
         raw(PearsonType::VI, n / (n - 2.0), variance, skewness, excess)
     };
-    let mut known: Vec<Known> = Vec::new();
+    let mut known: Vec<KnownMember> = Vec::new();
     let mut add = |name, (kind, moments): (PearsonType, [f64; 4]), of| known.push((name, kind, moments, of));
     add("beta 2.3 4.1", beta(2.3, 4.1), both(Box::new(Beta::new(2.3, 4.1).unwrap())));
     add("beta 0.4 0.7", beta(0.4, 0.7), both(Box::new(Beta::new(0.4, 0.7).unwrap())));

@@ -1,11 +1,9 @@
 //! Plans: exact counts, every point once, realised steps, and what happens when points fail.
 
-use sensitol::RunSummary;
-use sensitol::StopReason;
 use sensitol::distribution::{CentralMoments, Normal, Uniform};
-use sensitol::method::Pairs;
-use sensitol::method::{Nodes, Spread, Stencil};
-use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, analyze};
+use sensitol::internals::{Nodes, Spread, procedure};
+use sensitol::method::{Pairs, Stencil};
+use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, RunSummary, StopReason, analyze};
 
 use super::support::{Asked, close, normals, refusing, relative, standard};
 
@@ -13,7 +11,7 @@ use super::support::{Asked, close, normals, refusing, relative, standard};
 fn count(n: usize, options: &Options) -> usize {
     let asked = Asked::default();
     let problem = Problem::new(standard(n), asked.watching(|x| x.iter().sum())).unwrap();
-    let plan = options.method.procedure().plan(&problem, options).unwrap();
+    let plan = procedure(options.method).plan(&problem, options).unwrap();
     let analysis = analyze(&problem, options).unwrap();
     assert_eq!(analysis.run.evaluations, asked.distinct() as u64);
     assert_eq!(analysis.run.evaluations, plan.cost().0 as u64, "the plan said otherwise");
@@ -35,13 +33,13 @@ fn counts_are_exact() {
         let pairs = n.min(n * (n - 1) / 2);
         let six_n = Options::from(Method::SixN);
         assert_eq!(count(n, &six_n), 4 * n + 1 + 2 * pairs);
-        assert_eq!(count(n, &Options { pairs: Some(Pairs::Adjacent), ..six_n.clone() }), 4 * n + 1 + 2 * pairs);
-        let papers = Options { stencil: Some(Stencil::FourPoint), ..six_n };
+        assert_eq!(count(n, &six_n.clone().with_pairs(Pairs::Adjacent)), 4 * n + 1 + 2 * pairs);
+        let papers = six_n.with_stencil(Stencil::FourPoint);
         assert_eq!(count(n, &papers), 2 * n + 1 + 4 * pairs);
     }
     insta::assert_snapshot!(
         [1, 2, 3, 10, 30].map(|n| {
-            let counts = sensitol::method::ALL.iter().map(|method| {
+            let counts = sensitol::internals::ALL.iter().map(|method| {
                 let problem = Problem::new(standard(n), Closure::scalar("y", |x| x[0])).unwrap();
                 match method.fits(&problem, &method.method().into()) {
                     Ok(_) => count(n, &method.method().into()).to_string(),
@@ -82,7 +80,7 @@ fn a_point_of_two_purposes_is_evaluated_once() {
     let shifted = Dimension::distributed("a", 9.0, None, std::sync::Arc::new(Normal::new(10.0, 1.0).unwrap())).unwrap();
     let asked = Asked::default();
     let problem = Problem::new([shifted], asked.watching(|x| x[0])).unwrap();
-    let analysis = analyze(&problem, &Options { step: Some(1.0), ..Method::SecondOrder.into() }).unwrap();
+    let analysis = analyze(&problem, &Options::from(Method::SecondOrder).with_step(1.0)).unwrap();
     assert_eq!((analysis.run.evaluations, asked.distinct() as u64), (3, 3));
     assert_eq!(analysis.characteristics[0].nominal, Some(9.0));
 }
@@ -97,7 +95,7 @@ fn what_does_not_vary_costs_nothing() {
     let analysis = analyze(&problem, &Method::Full.into()).unwrap();
     assert_eq!((analysis.run.evaluations, analysis.varying), (13, 3));
     assert_eq!(analysis.characteristics[0].sensitivities[1].first, None);
-    let all = Options { all_sensitivities: true, ..Method::Full.into() };
+    let all = Options::from(Method::Full).with_all_sensitivities(true);
     let analysis = analyze(&problem, &all).unwrap();
     assert_eq!(analysis.run.evaluations, 13 + 4);
     let fixed = &analysis.characteristics[0].sensitivities[4];
@@ -156,7 +154,7 @@ fn steps_can_be_set() {
     let mut dimensions = standard(2);
     dimensions[1] = dimensions[1].clone().with_step(0.25).unwrap();
     let problem = Problem::new(dimensions, asked.watching(|x| x[0] + x[1])).unwrap();
-    analyze(&problem, &Options { step: Some(0.5), ..Method::SixN.into() }).unwrap();
+    analyze(&problem, &Options::from(Method::SixN).with_step(0.5)).unwrap();
     let along = |d: usize| {
         let on_axis = |point: &Vec<f64>| point[1 - d] == 0.0 && point[d] != 0.0;
         asked.points().iter().filter(|point| on_axis(point)).map(|point| point[d]).collect::<Vec<_>>()
@@ -173,7 +171,7 @@ fn stages_are_as_few_as_can_be() {
         (Options::from(Method::Full), 1),
         (Options::from(Method::Classic), 1),
         (Options::from(Method::SixN), 2),
-        (Options { pairs: Some(Pairs::Adjacent), ..Method::SixN.into() }, 1),
+        (Options::from(Method::SixN).with_pairs(Pairs::Adjacent), 1),
     ] {
         assert_eq!(analyze(&problem, &options).unwrap().run.stages, stages, "{options:?}");
     }
@@ -308,7 +306,7 @@ fn a_run_that_is_told_to_stop_stops() {
     let stop = || (asked.fetch_add(1, Ordering::Relaxed) >= 3).then_some(StopReason::TimeLimit);
     let run = sensitol::assembly::Run::to_the_end().stopping_when(&stop);
     let problem = Problem::new(standard(100), Closure::scalar("y", |x| x.iter().sum())).unwrap();
-    let analysis = sensitol::analyze_within(&problem, &Method::Full.into(), &run).unwrap();
+    let analysis = sensitol::analyze_with(&problem, &Method::Full.into(), &run).unwrap();
     assert_eq!(analysis.run.stopped, Some(StopReason::TimeLimit));
     assert!(analysis.run.evaluations > 0 && analysis.run.evaluations < 10_101, "{}", analysis.run.evaluations);
 }

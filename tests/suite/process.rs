@@ -6,12 +6,11 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use sensitol::StopReason;
 use sensitol::assembly::process::{Exit, Greeting, Process, ProcessFault, Settings};
-use sensitol::assembly::{Ask, AssemblyFunction, EvaluationError, Points, Responses, Run, Signature};
+use sensitol::assembly::{AssemblyFunction, EvaluationError, Points, Request, Responses, Run, Signature};
 use sensitol::rare::{RareOptions, rare};
 use sensitol::simulation::{SimulationOptions, simulate};
-use sensitol::{Characteristic, Dimension, Problem, SpecLimits};
+use sensitol::{Characteristic, Dimension, Problem, SpecLimits, StopReason};
 
 use super::support::repository;
 
@@ -24,11 +23,11 @@ fn settings(mode: &str, more: &[&str]) -> Settings {
     let argv = ["python3", &script, mode].into_iter().chain(more.iter().copied());
     // Without sentinels, whose evaluations would be counted too; they have tests of their own.
     let patient = Duration::from_secs(20);
-    Settings { timeout: patient, start_timeout: patient, sentinels: false, ..Settings::new(argv) }
+    Settings::new(argv).with_timeout(patient).with_start_timeout(patient).with_sentinels(false)
 }
 
 fn model(settings: Settings) -> Process {
-    let greeting = Greeting { nominal: vec![1.0, 2.0], ..Greeting::default() };
+    let greeting = Greeting::new(vec![1.0, 2.0]);
     Process::new(Signature::of_names(["a", "b"], ["sum", "product"]), greeting, settings)
 }
 
@@ -41,7 +40,7 @@ fn at_within(model: &Process, a: &[f64], run: &Run<'_>) -> Responses {
     let rows: Vec<[f64; 2]> = a.iter().map(|&a| [a, 2.0]).collect();
     let points = Points::from_rows(&rows);
     let mut out = Responses::open(rows.len(), 2);
-    model.evaluate(&Ask::values(&points, &[0, 1]), run, &mut out);
+    model.evaluate(&Request::values(&points, &[0, 1]), run, &mut out);
     out
 }
 
@@ -88,7 +87,7 @@ fn a_child_is_asked_for_what_is_needed() {
     let model = model(settings("good", &[]));
     let points = Points::from_rows(&[[3.0, 4.0]]);
     let mut sum = Responses::open(1, 1);
-    model.evaluate(&Ask::values(&points, &[0]), &Run::to_the_end(), &mut sum);
+    model.evaluate(&Request::values(&points, &[0]), &Run::to_the_end(), &mut sum);
     assert_eq!(sum.value(0, 0), Some(7.0));
     right_but(&POINTS, &at(&model, &POINTS), &[]);
 }
@@ -103,7 +102,7 @@ fn answers_may_come_in_any_order() {
 /// Children side by side; every row is told of once, as it becomes final.
 #[test]
 fn workers_share_the_points() {
-    let settings = Settings { workers: 3, ..settings("slow", &["0.01"]) };
+    let settings = settings("slow", &["0.01"]).with_workers(3);
     let model = model(settings);
     let a: Vec<f64> = (0..60).map(f64::from).collect();
     let points = Points::from_rows(&a.iter().map(|&a| [a, 2.0]).collect::<Vec<_>>());
@@ -113,7 +112,7 @@ fn workers_share_the_points() {
         told.fetch_add(rows.len(), Ordering::Relaxed);
     };
     let mut out = Responses::open(a.len(), 2);
-    model.evaluate(&Ask::values(&points, &[0, 1]), &Run::to_the_end().telling(&hear), &mut out);
+    model.evaluate(&Request::values(&points, &[0, 1]), &Run::to_the_end().telling(&hear), &mut out);
     right_but(&a, &out, &[]);
     assert_eq!(told.load(Ordering::Relaxed), 60);
 }
@@ -130,7 +129,7 @@ fn models_that_cannot_start() {
     assert!(error.to_string().contains("licence server not found"), "{error}");
     let silent = fault_of(settings("silent-exit", &[]));
     assert_eq!(silent.fault, ProcessFault::EndedAtStart { exit: Exit::Code(0) });
-    let never = Settings { start_timeout: Duration::from_millis(300), ..settings("never-ready", &[]) };
+    let never = settings("never-ready", &[]).with_start_timeout(Duration::from_millis(300));
     assert!(matches!(fault_of(never).fault, ProcessFault::SilentAtStart { .. }));
     let talks = fault_of(settings("talks-first", &[])).to_string();
     assert!(talks.contains("Loading CAD kernel 7.3"), "{talks}");
@@ -140,12 +139,12 @@ fn models_that_cannot_start() {
     assert!(refuses.contains("no dimension `b`; there are a, c"), "{refuses}");
     let version = fault_of(settings("other-version", &[])).to_string();
     assert!(version.contains("version 2"), "{version}");
-    let program = |program: &str| fault_of(Settings { folder: repository("tests"), ..Settings::new([program]) }).fault;
+    let program = |program: &str| fault_of(Settings::new([program]).with_folder(repository("tests"))).fault;
     assert!(matches!(program("no-such-program"), ProcessFault::NotFound { .. }));
     assert!(matches!(program("./no-such-program"), ProcessFault::NotFound { .. }));
     // A file that is no program.
     assert!(matches!(program("./children/child.py"), ProcessFault::NotStarted { .. }));
-    let moved = Settings { folder: PathBuf::from("/nowhere"), ..settings("good", &[]) };
+    let moved = settings("good", &[]).with_folder(PathBuf::from("/nowhere"));
     assert!(matches!(fault_of(moved).fault, ProcessFault::NotStarted { .. }));
 }
 
@@ -197,7 +196,7 @@ fn numbers_that_are_not_finite_cost_no_restart() {
 /// A second answer to a point: the first one counts, the child that does so is not trusted with another.
 #[test]
 fn an_answer_given_twice() {
-    let model = model(Settings { retries: 0, ..settings("twice", &[]) });
+    let model = model(settings("twice", &[]).with_retries(0));
     let a = [1.0, 13.0, 3.0];
     let out = at(&model, &a);
     assert_eq!(out.value(1, 0), Some(15.0));
@@ -217,12 +216,12 @@ fn what_fails_once_succeeds_the_second_time() {
         right_but(&POINTS, &out, &[]);
         assert_eq!(out.extra(), 1, "{mode}");
         let memory = folder.path().join(format!("{mode}-without-retries"));
-        let once = Settings { retries: 0, ..settings(mode, &[memory.to_str().unwrap()]) };
+        let once = settings(mode, &[memory.to_str().unwrap()]).with_retries(0);
         let out = at(&model(once), &POINTS);
         right_but(&POINTS, &out, &[2]);
         assert_eq!((out.value(2, 0), out.extra()), (None, 0), "{mode}");
     }
-    let out = at(&model(Settings { retries: 3, ..settings("error-always", &[]) }), &POINTS);
+    let out = at(&model(settings("error-always", &[]).with_retries(3)), &POINTS);
     assert_eq!((fault(&out, 2, 0), out.extra()), (ProcessFault::NoValue { message: "licence busy".into() }, 3));
 }
 
@@ -243,24 +242,35 @@ fn a_child_may_have_no_value() {
 /// Deadlines hold, for a child that hangs, that never reads, and that closes its stdout.
 #[test]
 fn children_that_say_nothing() {
-    let short = |mode: &str| Settings { timeout: Duration::from_millis(300), ..settings(mode, &[]) };
+    let short = |mode: &str| settings(mode, &[]).with_timeout(Duration::from_millis(300));
     let hang = model(short("hang"));
     let out = at(&hang, &POINTS);
     right_but(&POINTS, &out, &[2]);
     assert!(matches!(fault(&out, 2, 0), ProcessFault::TimedOut { .. }));
-    let never = Settings { retries: 0, ..short("never-reads") };
+    let never = short("never-reads").with_retries(0);
     let out = at(&model(never), &POINTS[..2]);
     assert!((0..2).all(|row| matches!(fault(&out, row, 0), ProcessFault::TimedOut { .. })));
-    let out = at(&model(Settings { retries: 0, ..short("closes-stdout") }), &POINTS[..2]);
+    let out = at(&model(short("closes-stdout").with_retries(0)), &POINTS[..2]);
     assert!((0..2).all(|row| fault(&out, row, 0) == ProcessFault::Crashed { exit: Exit::ClosedStdout }));
-    let out = at(&model(Settings { retries: 0, ..short("dies-idle") }), &POINTS[..2]);
+    let out = at(&model(short("dies-idle").with_retries(0)), &POINTS[..2]);
     assert!((0..2).all(|row| matches!(fault(&out, row, 0), ProcessFault::Crashed { .. })));
+}
+
+/// A child that is done for before it was sent a point is charged to none: after a few of them no more are tried.
+#[test]
+fn children_that_never_take_a_point_are_given_up() {
+    // One write, so that the engine reads both lines at once: an answer to what nobody asked ends the child.
+    let lines = r#"{"ready":true}\n{"id":7,"y":[1,2]}\n"#;
+    let model = model(Settings::new(["printf", lines]).with_retries(0).with_sentinels(false));
+    let out = at(&model, &POINTS[..2]);
+    assert!((0..2).all(|row| fault(&out, row, 0) == ProcessFault::UnknownPoint { id: 7 }), "{:?}", out.error(0, 0));
+    assert_eq!(model.account().starts, 4);
 }
 
 /// A deadline that no clock can hold is one that never comes.
 #[test]
 fn deadlines_may_be_far_away() {
-    let far = Settings { timeout: Duration::MAX, start_timeout: Duration::MAX, ..settings("good", &[]) };
+    let far = settings("good", &[]).with_timeout(Duration::MAX).with_start_timeout(Duration::MAX);
     right_but(&POINTS, &at(&model(far), &POINTS), &[]);
 }
 
@@ -269,7 +279,7 @@ fn deadlines_may_be_far_away() {
 fn the_culprit_in_a_window_is_found() {
     let a: Vec<f64> = (0..30).map(f64::from).collect();
     for (mode, timeout) in [("crash-in-window", 20.0), ("hang-in-window", 0.4)] {
-        let settings = Settings { timeout: Duration::from_secs_f64(timeout), ..settings(mode, &["8"]) };
+        let settings = settings(mode, &["8"]).with_timeout(Duration::from_secs_f64(timeout));
         let out = at(&model(settings), &a);
         right_but(&a, &out, &[13]);
         let fault = fault(&out, 13, 0);
@@ -288,7 +298,7 @@ fn a_stop_loses_nothing() {
     let begun = Instant::now();
     let stop = || (begun.elapsed() > Duration::from_millis(400)).then_some(StopReason::TimeLimit);
     let mut out = Responses::open(a.len(), 2);
-    model.evaluate(&Ask::values(&points, &[0, 1]), &Run::to_the_end().stopping_when(&stop), &mut out);
+    model.evaluate(&Request::values(&points, &[0, 1]), &Run::to_the_end().stopping_when(&stop), &mut out);
     let answered = (0..a.len()).filter(|&row| !out.is_open(row, 0)).count();
     assert!(answered > 0 && answered < a.len());
     right_but(&a[..answered], &out, &[]);
@@ -301,7 +311,7 @@ fn a_stop_loses_nothing() {
 #[test]
 fn children_that_flip_are_found_out() {
     // Sentinels alone: replays have tests of their own.
-    let guarded = |mode: &str, more: &[&str]| Settings { sentinels: true, verify: Some(0), ..settings(mode, more) };
+    let guarded = |mode: &str, more: &[&str]| settings(mode, more).with_sentinels(true).with_verify(0);
     // The nominal point, some right answers, the flip, and wrong ones after it.
     let a = [1.0, 2.0, 3.0, 13.0, 4.0, 5.0];
     let out = at(&model(guarded("flips", &[])), &a);
@@ -339,11 +349,11 @@ fn samples_of_a_model_that_flips_are_doubted() {
     let of = |mode: &str| {
         let dimensions = [Dimension::normal("a", 1.0, 0.3).unwrap(), Dimension::normal("b", 2.0, 0.3).unwrap()];
         let limits = SpecLimits::new(None, Some(3.3)).unwrap();
-        let model = model(Settings { sentinels: true, ..settings(mode, &[]) });
+        let model = model(settings(mode, &[]).with_sentinels(true));
         let problem = Problem::new(dimensions, model).unwrap();
         let problem = problem.asking([Characteristic::new("sum").with_limits(limits)]).unwrap();
-        let random = simulate(&problem, &SimulationOptions { samples: 200, ..SimulationOptions::default() }).unwrap();
-        let rare = rare(&problem, &RareOptions { samples: 200, ..RareOptions::default() });
+        let random = simulate(&problem, &SimulationOptions::default().with_samples(200)).unwrap();
+        let rare = rare(&problem, &RareOptions::default().with_samples(200));
         (random.non_repeatable, rare.map(|rare| rare.non_repeatable))
     };
     let (random, rare) = of("always-flips");
@@ -455,7 +465,7 @@ fn a_program_that_is_gone_ends_the_batch() {
     let script = folder.path().join("gone.py");
     std::fs::copy(repository("tests/children/child.py"), &script).unwrap();
     let argv = ["python3", "gone.py", "crash-once-and-for-all"];
-    let model = model(Settings { folder: folder.path().to_owned(), ..Settings::new(argv) });
+    let model = model(Settings::new(argv).with_folder(folder.path().to_owned()));
     let a = [1.0, 2.0, 13.0, 4.0];
     let out = at(&model, &a);
     right_but(&a, &out, &[2, 3]);
@@ -470,7 +480,7 @@ fn a_program_that_is_gone_ends_the_batch() {
 #[test]
 #[cfg(target_os = "linux")]
 fn killed_children_lose_nothing() {
-    let settings = Settings { workers: 2, retries: 3, ..settings("slow", &["0.02", "killed-children"]) };
+    let settings = settings("slow", &["0.02", "killed-children"]).with_workers(2).with_retries(3);
     let model = model(settings);
     // A model whose very first start fails is no model.
     model.prepare(&[0, 1]).unwrap();
@@ -554,7 +564,7 @@ if __name__ == "__main__":
     assert_eq!(model.adapter(&[0, 1]).unwrap().version.as_deref(), Some("2"));
     // It knows what it does not know.
     let unknown = |inputs: [&str; 2], outputs: [&str; 1]| {
-        let greeting = Greeting { nominal: vec![0.0; 2], ..Greeting::default() };
+        let greeting = Greeting::new(vec![0.0; 2]);
         let process = Process::new(Signature::of_names(inputs, outputs), greeting, python(&script));
         process.prepare(&[0]).unwrap_err().to_string()
     };
@@ -610,12 +620,12 @@ fn the_children_of_the_documentation_work() {
         let block = &text[start..start + text[start..].find("```").unwrap()];
         std::fs::write(folder.path().join(file), block).unwrap();
         let argv = program.iter().copied().chain([file]);
-        let settings = Settings { folder: folder.path().to_owned(), ..Settings::new(argv) };
-        let greeting = Greeting { nominal: vec![10.0, 30.0], ..Greeting::default() };
+        let settings = Settings::new(argv).with_folder(folder.path().to_owned());
+        let greeting = Greeting::new(vec![10.0, 30.0]);
         let process = Process::new(Signature::of_names(["a", "b"], ["gap"]), greeting, settings);
         let points = Points::from_rows(&[[10.125, 30.0], [-1e-3, 2.5e10], [0.1, 0.3]]);
         let mut out = Responses::open(3, 1);
-        process.evaluate(&Ask::values(&points, &[0]), &Run::to_the_end(), &mut out);
+        process.evaluate(&Request::values(&points, &[0]), &Run::to_the_end(), &mut out);
         for (row, expected) in [10.125 - 30.0, -1e-3 - 2.5e10, 0.1 - 0.3].into_iter().enumerate() {
             assert_eq!(out.value(row, 0), Some(expected), "{language}: {:?}", out.error(row, 0));
         }

@@ -1,6 +1,6 @@
 //! The published cases, to the digits that the design states, and the same cases against quadrature.
 
-use sensitol::assembly::{Ask, Points, Responses, Run};
+use sensitol::assembly::{Points, Request, Responses, Run};
 use sensitol::method::Stencil;
 use sensitol::{Analysis, CharacteristicAnalysis, Method, Options, Study, analyze};
 
@@ -109,7 +109,7 @@ fn engine_balance_worst_case_and_the_corners() {
     };
     let points = Points::from_columns(corners, &(0..dimensions.len()).map(column).collect::<Vec<_>>());
     let mut responses = Responses::open(corners, 2);
-    problem.function().evaluate(&Ask::values(&points, problem.outputs()), &Run::default(), &mut responses);
+    problem.function().evaluate(&Request::values(&points, problem.outputs()), &Run::default(), &mut responses);
     let extremes = |k: usize| {
         let values = (0..corners).map(|corner| responses.value(corner, k).unwrap());
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
@@ -128,7 +128,7 @@ fn engine_balance_worst_case_and_the_corners() {
 fn stacked_blocks_derivatives() {
     let truth = data("stacked-blocks.json");
     // Derivatives want small steps: at 0.01 sigma the truncation error is 1e-9, rounding 1e-10 and, for the second, 1e-6.
-    let analysis = run("stacked-blocks/study.toml", Options { step: Some(0.01), ..Method::Full.into() });
+    let analysis = run("stacked-blocks/study.toml", Options::from(Method::Full).with_step(0.01));
     let found = &analysis.characteristics[0];
     assert!((found.nominal.unwrap() - 5.9973920).abs() < 5e-8);
     for (dimension, expected) in truth["first"].as_object().unwrap() {
@@ -169,7 +169,7 @@ fn stacked_blocks_moments() {
     for options in [
         Options::from(Method::Full),
         Options::from(Method::SixN),
-        Options { stencil: Some(Stencil::FourPoint), ..Method::SixN.into() },
+        Options::from(Method::SixN).with_stencil(Stencil::FourPoint),
     ] {
         let moments = run("stacked-blocks/study.toml", options).characteristics[0].moments.unwrap();
         assert!((moments.mean() - expected("mean")).abs() < 1e-4 * expected("sigma"));

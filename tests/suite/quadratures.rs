@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use sensitol::RunSummary;
 use sensitol::correlation::Pair;
 use sensitol::distribution::{
-    CentralMoments, Distribution, Exponential, Lognormal, Measured, Mixture, Normal, Part, Rule, Triangular, Uniform,
+    CentralMoments, Distribution, Exponential, Lognormal, Measured, Mixture, Normal, Part, Triangular, Uniform,
 };
-use sensitol::method::Stencil;
-use sensitol::method::{Basis, MethodError, Pairs};
-use sensitol::moments::Tables;
-use sensitol::{Analysis, Closure, DerivativeSource, Dimension, Method, Moments, Options, Problem, Warning, analyze};
+use sensitol::internals::{Rule, Tables, procedure};
+use sensitol::method::{Basis, MethodError, Pairs, Stencil};
+use sensitol::{
+    Analysis, Closure, DerivativeSource, Dimension, Method, Moments, Options, Problem, RunSummary, Warning, analyze,
+};
 
 use super::support::{Asked, close, data, normals, refusing, relative, standard};
 
@@ -19,7 +19,7 @@ const REDUCTIONS: [Method; 2] = [Method::DimensionReduction, Method::BivariateDi
 const QUADRATURES: [Method; 3] = [Method::DimensionReduction, Method::BivariateDimensionReduction, Method::ThreePoint];
 
 fn with_nodes(method: Method, nodes: usize) -> Options {
-    Options { nodes: Some(nodes), ..method.into() }
+    Options::from(method).with_nodes(nodes)
 }
 
 fn analysis(
@@ -392,7 +392,7 @@ fn counts_are_stated() {
     let count = |dimensions: Vec<Dimension>, options: &Options| {
         let asked = Asked::default();
         let problem = Problem::new(dimensions, asked.watching(|x| x.iter().sum())).unwrap();
-        let procedure = options.method.procedure();
+        let procedure = procedure(options.method);
         let fits = procedure.fits(&problem, options).unwrap();
         assert_eq!(fits.evaluations, procedure.plan(&problem, options).unwrap().cost().0);
         let found = analyze(&problem, options).unwrap();
@@ -454,21 +454,21 @@ fn wrong_wishes_are_refused() {
     let errors = [
         three(30),
         three(100),
-        refused(13, Options { budget: Some(100), ..Method::ThreePoint.into() }),
-        refused(5, Options { budget: Some(100), ..Method::ThreePoint.into() }),
+        refused(13, Options::from(Method::ThreePoint).with_budget(100)),
+        refused(5, Options::from(Method::ThreePoint).with_budget(100)),
         refused(3, with_nodes(Method::DimensionReduction, 4)),
         refused(3, with_nodes(Method::BivariateDimensionReduction, 0)),
         refused(3, with_nodes(Method::ThreePoint, 5)),
         refused(3, with_nodes(Method::Full, 5)),
-        refused(5, Options { budget: Some(10), ..Method::BivariateDimensionReduction.into() }),
+        refused(5, Options::from(Method::BivariateDimensionReduction).with_budget(10)),
         refused(400, Method::BivariateDimensionReduction.into()),
-        refused(3, Options { step: Some(1.0), ..Method::DimensionReduction.into() }),
-        refused(3, Options { pairs: Some(Pairs::Adjacent), ..Method::ThreePoint.into() }),
-        refused(3, Options { stencil: Some(Stencil::FourPoint), ..Method::ResponseSurface.into() }),
-        refused(3, Options { derivatives: Some(DerivativeSource::Exact), ..Method::DimensionReduction.into() }),
+        refused(3, Options::from(Method::DimensionReduction).with_step(1.0)),
+        refused(3, Options::from(Method::ThreePoint).with_pairs(Pairs::Adjacent)),
+        refused(3, Options::from(Method::ResponseSurface).with_stencil(Stencil::FourPoint)),
+        refused(3, Options::from(Method::DimensionReduction).with_derivatives(DerivativeSource::Exact)),
         refused(60, Method::ResponseSurface.into()),
-        refused(5, Options { budget: Some(20), ..Method::ResponseSurface.into() }),
-        refused(3, Options { step: Some(-1.0), ..Method::ResponseSurface.into() }),
+        refused(5, Options::from(Method::ResponseSurface).with_budget(20)),
+        refused(3, Options::from(Method::ResponseSurface).with_step(-1.0)),
     ];
     insta::assert_snapshot!(errors.join("\n"));
     let error = analyze(&problem(30), &Method::ThreePoint.into()).unwrap_err();
@@ -493,7 +493,7 @@ fn zero_tolerance_everywhere() {
         let constant = analysis(standard(2), &method.into(), |_| 0.1);
         assert_eq!(moments(&constant), Moments::constant(0.1));
         // A dimension without tolerance gets its sensitivity where it is asked for.
-        let options = Options { all_sensitivities: true, ..method.into() };
+        let options = Options::from(method).with_all_sensitivities(true);
         let asked = analysis(normals(&[0.4, -0.3, 7.0], &[0.3, 0.2, 0.0]), &options, |x| x[0] + x[1] + 3.0 * x[2]);
         assert_eq!(asked.run.evaluations, three.run.evaluations + 2);
         close(asked.characteristics[0].sensitivities[2].first.unwrap(), 3.0, 1e-9, 1.0);

@@ -1,13 +1,12 @@
 //! Rare events against what is known of them by other routes.
 
-use sensitol::StopReason;
 use sensitol::assembly::Run;
 use sensitol::correlation::Pair;
 use sensitol::distribution::Exponential;
-use sensitol::rare::{Beyond, RareError, RareEvents, RareOptions, rare, rare_within};
+use sensitol::rare::{Beyond, RareError, RareEvents, RareOptions, rare, rare_with};
 use sensitol::simulation::{SimulationError, SimulationOptions, simulate};
 use sensitol::study::Study;
-use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits};
+use sensitol::{Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason};
 use serde_json::Value;
 
 use super::cli::{run, sensitol};
@@ -27,7 +26,8 @@ fn limited(problem: Problem, lower: Option<f64>, upper: Option<f64>) -> Problem 
 }
 
 fn found(problem: &Problem, samples: u64, seed: u64, method: Method) -> RareEvents {
-    rare(problem, &RareOptions { samples, seed, surrogate: Options::from(method), until: None }).unwrap()
+    rare(problem, &RareOptions::default().with_samples(samples).with_seed(seed).with_surrogate(Options::from(method)))
+        .unwrap()
 }
 
 /// Both sides of the first characteristic.
@@ -55,7 +55,7 @@ fn records(problem: &Problem, samples: u64, method: Method, truth: [Option<f64>;
             let [low, high] = beyond.interval;
             record.covered += usize::from(low <= truth && truth <= high);
             record.width += (high - low) / truth / SEEDS as f64;
-            let error = |estimate: sensitol::sampling::Estimate| estimate.standard_error.unwrap() / estimate.value;
+            let error = |estimate: sensitol::simulation::Estimate| estimate.standard_error.unwrap() / estimate.value;
             record.error += beyond.probability.map_or(1.0, error) / SEEDS as f64;
         }
     }
@@ -161,7 +161,7 @@ fn any_distribution_and_correlation() {
 #[test]
 fn it_agrees_with_plain_sampling() {
     let problem = lognormal(0.5, 2.0);
-    let plain = simulate(&problem, &SimulationOptions { samples: 1_000_000, ..SimulationOptions::default() }).unwrap();
+    let plain = simulate(&problem, &SimulationOptions::default().with_samples(1_000_000)).unwrap();
     let plain = &plain.characteristics[0];
     let one = found(&problem, 4000, 1, Method::Full);
     for (beyond, share) in sides(&one).into_iter().zip([plain.below.unwrap(), plain.above.unwrap()]) {
@@ -231,7 +231,7 @@ fn every_evaluation_is_counted() {
 fn until_it_is_known_that_well() {
     let problem = lognormal(0.15, 4.5);
     let until = |wanted: f64, samples: u64| {
-        let found = rare(&problem, &RareOptions { samples, until: Some(wanted), ..RareOptions::default() }).unwrap();
+        let found = rare(&problem, &RareOptions::default().with_samples(samples).with_until(wanted)).unwrap();
         let worst = sides(&found).into_iter().flatten().map(|beyond| {
             let estimate = beyond.probability.unwrap();
             estimate.standard_error.unwrap() / estimate.value
@@ -266,14 +266,14 @@ fn failed_points_bound_the_probability() {
 fn it_stops_when_told_to() {
     let problem = lognormal(0.15, 4.5);
     let run = Run::to_the_end().stopping_when(&|| Some(StopReason::Requested));
-    let found = rare_within(&problem, &RareOptions::default(), &run, &|_| {}).unwrap();
+    let found = rare_with(&problem, &RareOptions::default(), &run, &|_| {}).unwrap();
     assert!(found.run.stopped.is_some() && found.samples == 0 && sides(&found) == [None, None]);
     // After the surrogate and some points, what is known is told.
     let seen = std::sync::atomic::AtomicUsize::new(0);
     let later = || (seen.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 40).then_some(StopReason::TimeLimit);
     let run = Run::to_the_end().stopping_when(&later);
-    let options = RareOptions { samples: 1_000_000, ..RareOptions::default() };
-    let found = rare_within(&problem, &options, &run, &|_| {}).unwrap();
+    let options = RareOptions::default().with_samples(1_000_000);
+    let found = rare_with(&problem, &options, &run, &|_| {}).unwrap();
     assert!(found.run.stopped.is_some() && found.samples < 1_000_000);
 }
 
@@ -284,11 +284,11 @@ fn what_cannot_be_sought_is_refused() {
     assert_eq!(rare(&line(), &options).unwrap_err(), RareError::NoLimits);
     let problem = limited(line(), None, Some(4.0));
     for samples in [0, 49, 10_000_001] {
-        let error = rare(&problem, &RareOptions { samples, ..options.clone() }).unwrap_err();
+        let error = rare(&problem, &options.clone().with_samples(samples)).unwrap_err();
         assert!(matches!(error, RareError::Samples { .. }), "{error}");
     }
     for wanted in [0.0, -1.0, f64::NAN] {
-        let error = rare(&problem, &RareOptions { until: Some(wanted), ..options.clone() }).unwrap_err();
+        let error = rare(&problem, &options.clone().with_until(wanted)).unwrap_err();
         assert!(matches!(error, RareError::Simulation(SimulationError::Wanted { .. })), "{error}");
     }
     // Nothing varies: nothing is known of it, and nothing is made up.

@@ -90,7 +90,9 @@ impl Case {
         let (problem, truth) = (self.problem(), self.truth());
         let (mut held, mut square) = (0, 0.0);
         for seed in 0..40 {
-            let found = rare(&problem, &RareOptions { samples, seed, until, ..RareOptions::default() }).unwrap();
+            let mut options = RareOptions::default().with_samples(samples).with_seed(seed);
+            options.until = until;
+            let found = rare(&problem, &options).unwrap();
             let below = found.characteristics[0].below.as_ref().unwrap();
             let [low, high] = below.interval;
             held += usize::from(low <= truth && truth <= high);

@@ -23,7 +23,7 @@ const SHOWN: &str = "examples/stacked-blocks/study.toml";
 
 /// `docs/reference/study-file.md`.
 pub fn study_file() -> String {
-    let schema = sensitol::study::schema();
+    let schema = sensitol::internals::schema();
     let mut page = Keys { defs: &schema["$defs"], text: String::new(), done: Vec::new() };
     Study::read(&repository(SHOWN)).unwrap();
     let shown = std::fs::read_to_string(repository(SHOWN)).unwrap();

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use sensitol::correlation::Pair;
 use sensitol::distribution::Exponential;
+use sensitol::internals::corners;
 use sensitol::method::Basis;
-use sensitol::method::corners;
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, Warning, analyze};
 
 use super::support::{Asked, close, refusing, relative, standard};
@@ -49,7 +49,7 @@ fn counts_are_stated() {
         let asked = Asked::default();
         let problem = Problem::new(standard(n), asked.watching(|x| x.iter().sum())).unwrap();
         let options = Options::from(Method::ResponseSurface);
-        let fits = options.method.procedure().fits(&problem, &options).unwrap();
+        let fits = options.cost(&problem).unwrap();
         let found = analyze(&problem, &options).unwrap();
         assert_eq!(found.run.evaluations, asked.distinct() as u64);
         assert_eq!((found.run.evaluations, found.run.stages), (fits.evaluations as u64, fits.stages as u64));

@@ -2,9 +2,8 @@
 
 use proptest::prelude::*;
 use sensitol::correlation::{Correlation, Pair};
-use sensitol::sampling::{
-    Draws, Fine, Portion, SOBOL_DIMENSIONS, Sampler, SamplingError, Scale, Sobol, Summary, wilson,
-};
+use sensitol::internals::{Draws, Fine, Portion, SOBOL_DIMENSIONS, Scale, Sobol, Summary, wilson};
+use sensitol::simulation::{Sampler, SamplingError};
 use sensitol::{Dimension, distribution::CentralMoments};
 
 use super::support::{close, normals, relative};

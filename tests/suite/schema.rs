@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::support::{example_studies, repository};
 
 fn validator() -> Validator {
-    let schema = sensitol::study::schema();
+    let schema = sensitol::internals::schema();
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
     jsonschema::draft202012::new(&schema).unwrap()
 }
@@ -168,13 +168,13 @@ fn every_key_is_described() {
             _ => {}
         }
     }
-    walk(&sensitol::study::schema(), "");
+    walk(&sensitol::internals::schema(), "");
 }
 
 /// What the schema calls a default is what a study without the key has.
 #[test]
 fn defaults_are_what_is_left_out() {
-    let schema = sensitol::study::schema();
+    let schema = sensitol::internals::schema();
     let read = |dimension: &Value, analysis: &Value| {
         let study = serde_json::json!({
             "dimensions": { "a": dimension, "b": { "nominal": 2, "tolerance": 0.1 }, "c": { "nominal": 1 } },

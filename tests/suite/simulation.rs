@@ -2,12 +2,12 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use sensitol::StopReason;
 use sensitol::assembly::Run;
-use sensitol::sampling::{Estimate, Sampler};
-use sensitol::simulation::{Simulation, SimulationError, SimulationOptions, simulate, simulate_within};
+use sensitol::simulation::{
+    Estimate, Sampler, Simulation, SimulationError, SimulationOptions, simulate, simulate_with,
+};
 use sensitol::study::Study;
-use sensitol::{Characteristic, Closure, Problem, SpecLimits};
+use sensitol::{Characteristic, Closure, Problem, SpecLimits, StopReason};
 
 use super::support::{data, normals, refusing, relative, repository, standard};
 
@@ -16,7 +16,8 @@ const SEEDS: u64 = 200;
 const COVERED: std::ops::RangeInclusive<usize> = 180..=199;
 
 fn run(problem: &Problem, samples: u64, sampler: Sampler, seed: u64) -> Simulation {
-    simulate(problem, &SimulationOptions { samples, sampler, seed, ..SimulationOptions::default() }).unwrap()
+    simulate(problem, &SimulationOptions::default().with_samples(samples).with_sampler(sampler).with_seed(seed))
+        .unwrap()
 }
 
 /// What is true of a characteristic: mean, sigma, skewness, kurtosis, the 0.00135 quantile, the yield.
@@ -228,17 +229,17 @@ fn a_handful_has_no_standard_errors() {
 #[test]
 fn it_goes_on_until_it_is_sure() {
     let (problem, _) = lognormal();
-    let options = SimulationOptions { samples: 1 << 40, until: Some(0.002), ..SimulationOptions::default() };
+    let options = SimulationOptions::default().with_samples(1 << 40).with_until(0.002);
     let found = simulate(&problem, &options).unwrap();
     let sigma = found.characteristics[0].sigma.unwrap();
     assert!(sigma.standard_error.unwrap() <= 0.002 * sigma.value);
     assert_eq!((found.reached, found.run.stopped), (Some(true), None));
     assert!(found.samples < 1_000_000, "{}", found.samples);
-    let options = SimulationOptions { samples: 1 << 40, until_yield: Some(0.001), ..SimulationOptions::default() };
+    let options = SimulationOptions::default().with_samples(1 << 40).with_until_yield(0.001);
     let share = simulate(&problem, &options).unwrap().characteristics[0].yield_.unwrap();
     assert!(0.5 * (share.interval[1] - share.interval[0]) <= 0.001);
     // What the points do not suffice for is told.
-    let options = SimulationOptions { until: Some(1e-9), ..SimulationOptions::default() };
+    let options = SimulationOptions::default().with_until(1e-9);
     let short = simulate(&problem, &options).unwrap();
     assert_eq!((short.reached, short.samples), (Some(false), 100_000));
 }
@@ -249,9 +250,9 @@ fn it_stops_when_told_to_and_tells_its_pace() {
     let looks = AtomicUsize::new(0);
     let stop = || (looks.fetch_add(1, Ordering::SeqCst) > 200).then_some(StopReason::Interrupted);
     let run = Run::to_the_end().stopping_when(&stop);
-    let options = SimulationOptions { samples: 1 << 40, ..SimulationOptions::default() };
+    let options = SimulationOptions::default().with_samples(1 << 40);
     let told = AtomicUsize::new(0);
-    let found = simulate_within(&problem, &options, &run, &|pace| {
+    let found = simulate_with(&problem, &options, &run, &|pace| {
         told.fetch_add(1, Ordering::SeqCst);
         assert!(pace.samples > 0 && pace.expected == (1u64 << 40) as f64 && pace.expected_s() > 0.0);
     })
@@ -264,16 +265,13 @@ fn absurd_wishes_are_refused() {
     let (problem, _) = lognormal();
     let asked = |options: SimulationOptions| simulate(&problem, &options).unwrap_err();
     let default = SimulationOptions::default;
-    assert!(matches!(asked(SimulationOptions { samples: 0, ..default() }), SimulationError::Samples { .. }));
-    assert!(matches!(asked(SimulationOptions { samples: u64::MAX, ..default() }), SimulationError::Samples { .. }));
-    assert!(matches!(asked(SimulationOptions { until: Some(0.0), ..default() }), SimulationError::Wanted { .. }));
+    assert!(matches!(asked(default().with_samples(0)), SimulationError::Samples { .. }));
+    assert!(matches!(asked(default().with_samples(u64::MAX)), SimulationError::Samples { .. }));
+    assert!(matches!(asked(default().with_until(0.0)), SimulationError::Wanted { .. }));
     let without = Problem::new(standard(1), Closure::scalar("y", |x| x[0])).unwrap();
-    let wanted = SimulationOptions { until_yield: Some(0.1), ..default() };
+    let wanted = default().with_until_yield(0.1);
     assert_eq!(simulate(&without, &wanted).unwrap_err(), SimulationError::NoLimits);
-    assert!(matches!(
-        asked(SimulationOptions { until_yield: Some(f64::NAN), ..default() }),
-        SimulationError::Wanted { .. }
-    ));
+    assert!(matches!(asked(default().with_until_yield(f64::NAN)), SimulationError::Wanted { .. }));
 }
 
 /// Dimensions that no characteristic depends on, and characteristics that were not asked, change nothing.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use sensitol::document::markdown::markdown;
+use sensitol::report::markdown;
 use sensitol::report::{About, Report, StackNote, TotalKind, csv_file_names, csv_files, stack_csv, stack_document};
 use sensitol::{Method, Options, Study, analyze};
 
@@ -133,7 +133,7 @@ fn notes_say_what_a_stack_leaves_out() {
             StackNote::Fixed { dimensions: names(&["f"]) },
         ]
     );
-    let all = Options { all_sensitivities: true, ..full() };
+    let all = full().with_all_sensitivities(true);
     let stack = report(&with(kinds, "a + f + hole_x"), all).stacks().remove(0);
     assert_eq!(stack.notes, [StackNote::ThreeSigma { dimensions: names(&["a"]) }], "one coordinate alone is no zone");
     let shown: Vec<&str> = stack.rows.iter().map(|row| row.dimension.name.as_str()).collect();

@@ -3,10 +3,9 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
-use sensitol::StopReason;
-use sensitol::assembly::{Ask, AssemblyFunction, EvaluationError, Responses, Run, Signature};
-use sensitol::sweep::{SweepError, sweep, sweep_within};
-use sensitol::{Closure, Dimension, Method, Options, Problem, Study, analyze};
+use sensitol::assembly::{AssemblyFunction, EvaluationError, Request, Responses, Run, Signature};
+use sensitol::sweep::{SweepError, sweep, sweep_with};
+use sensitol::{Closure, Dimension, Method, Options, Problem, StopReason, Study, analyze};
 
 use super::cli::{run, sensitol};
 
@@ -21,9 +20,9 @@ impl AssemblyFunction for Counted {
         self.inner.signature()
     }
 
-    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
-        self.batches.lock().unwrap().push(ask.points.rows());
-        self.inner.evaluate(ask, run, out);
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        self.batches.lock().unwrap().push(request.points.rows());
+        self.inner.evaluate(request, run, out);
     }
 }
 
@@ -58,7 +57,7 @@ fn nearly_all_is_not_all() {
 fn a_sweep_is_its_analyses() {
     let (problem, batches) = problem();
     let values = [0.5, 1.0, 1.5, 4.0];
-    for method in sensitol::method::ALL.iter().map(|procedure| procedure.method()) {
+    for method in sensitol::internals::ALL.iter().map(|procedure| procedure.method()) {
         batches.lock().unwrap().clear();
         let swept = sweep(&problem, "a", &values, &method.into()).unwrap();
         let gathered = std::mem::take(&mut *batches.lock().unwrap());
@@ -111,7 +110,7 @@ fn a_stop_leaves_what_is_done() {
     let asked = AtomicUsize::new(0);
     let stop = || (asked.fetch_add(1, Ordering::Relaxed) > 0).then_some(StopReason::TimeLimit);
     let run = Run::to_the_end().stopping_when(&stop);
-    let swept = sweep_within(&problem, "a", &[1.0, 2.0], &Method::SecondOrder.into(), &run).unwrap();
+    let swept = sweep_with(&problem, "a", &[1.0, 2.0], &Method::SecondOrder.into(), &run).unwrap();
     assert!(
         swept.run.stopped == Some(StopReason::TimeLimit)
             && swept.analyses.iter().all(Option::is_none)
@@ -130,7 +129,7 @@ fn what_cannot_be_swept() {
     assert!(matches!(of("a", &[1.0, f64::NAN]), SweepError::NotFinite { .. }));
     assert!(matches!(of("a", &[1e300]), SweepError::Dimension(_)));
     // Seven evaluations at each of two values.
-    let budget = |budget| Options { budget: Some(budget), ..Method::Rss.into() };
+    let budget = |budget| Options::from(Method::Rss).with_budget(budget);
     assert!(matches!(sweep(&problem, "a", &[1.0, 2.0], &budget(15)), Err(SweepError::Method(_))));
     assert!(sweep(&problem, "a", &[1.0, 2.0], &budget(16)).is_ok());
     let study = Study::from_toml(

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use sensitol::analysis::VerificationKind;
-use sensitol::assembly::{Ask, AssemblyFunction, Responses, Run, Signature};
-use sensitol::verification::{Crossing, SampledFigures, Target, Verified, verify_by_checks, verify_by_sampling};
-use sensitol::{Closure, Dimension, Method, Options, Problem, Study, analyze, verification};
+use sensitol::analysis::{Crossing, VerificationKind, Verified};
+use sensitol::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
+use sensitol::internals::{SampledFigures, Target, procedure, variance_shares, verify_by_checks, verify_by_sampling};
+use sensitol::{Closure, Dimension, Method, Options, Problem, Study, analyze};
 use serde_json::{Value, json};
 
 use super::support::repository;
@@ -109,7 +109,7 @@ fn a_dozen_points_cover_the_figures_of_a_surface() {
         let mut excesses = Vec::new();
         for method in methods {
             let problem = &truth.study.problem;
-            let outcome = method.procedure().run(problem, &Options::from(method), &Run::to_the_end()).unwrap();
+            let outcome = procedure(method).run(problem, &Options::from(method), &Run::to_the_end()).unwrap();
             let contributions: Vec<_> = (outcome.fitted.iter())
                 .map(|fitted| fitted.surrogate.as_ref()?.contributions(outcome.plan.inputs()))
                 .collect();
@@ -220,9 +220,7 @@ fn samples_and_checks_do_not_depend_on_the_number_of_threads() {
     let truth = truths.iter().find(|truth| truth.name == "kink-chain").unwrap();
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            (verify_by_sampling(&truth.study.problem, 3), verification::variance_shares(&truth.study.problem, 0, 3))
-        })
+        pool.install(|| (verify_by_sampling(&truth.study.problem, 3), variance_shares(&truth.study.problem, 0, 3)))
     };
     assert_eq!(with(1), with(3));
 }
@@ -274,7 +272,7 @@ fn shares_of_the_variance_have_their_closed_forms() {
     let cases =
         [(Problem::new(uniform(3, PI), first).unwrap(), ishigami), (Problem::new(uniform(4, 0.5), second).unwrap(), g)];
     for (problem, expected) in cases {
-        let found = verification::variance_shares(&problem, 0, 1).unwrap();
+        let found = variance_shares(&problem, 0, 1).unwrap();
         for ((_, found), expected) in found.iter().zip(&expected) {
             for (found, expected) in found.iter().zip(expected) {
                 let off = (found.value - expected).abs();
@@ -297,9 +295,9 @@ impl AssemblyFunction for Costly {
         &self.signature
     }
 
-    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
-        self.asked.fetch_add(ask.points.rows(), Ordering::Relaxed);
-        self.inner.function().evaluate(ask, run, out);
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        self.asked.fetch_add(request.points.rows(), Ordering::Relaxed);
+        self.inner.function().evaluate(request, run, out);
     }
 }
 
@@ -312,7 +310,7 @@ fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
 }
 
 fn verified(method: Method, points: usize) -> Options {
-    Options { verify: Some(points), ..method.into() }
+    Options::from(method).with_verify(points)
 }
 
 fn study(dimensions: Value, formula: &str) -> Study {
@@ -419,7 +417,7 @@ fn checks_cost_at_most_eighteen_evaluations() {
         (checked.characteristics[0].moments.unwrap().sigma() - sampled.value).abs() - 3.0 * sampled.error
     }];
     assert!(3.0 * error >= truth, "{error} for {truth}");
-    let budget = run(&Options { budget: Some(20), ..verified(Method::Full, 18) });
+    let budget = run(&verified(Method::Full, 18).with_budget(20));
     assert!(budget.run.evaluations <= 20);
 }
 
@@ -431,4 +429,15 @@ fn a_seldom_switch_is_warned_of() {
     let found = analyze(&truth.study.problem, &verified(Method::Full, 18)).unwrap();
     let warning = found.warnings.iter().find(|warning| warning.code() == "switch").unwrap().message();
     assert!(warning.contains("`atan2(q, p)`") && warning.contains("13 ppm"), "{warning}");
+}
+
+/// What a formula answers next to the means does not scatter, where it has a kink or a root there.
+#[test]
+fn an_exact_formula_does_not_scatter() {
+    let dimensions = || json!({ "a": { "nominal": 0, "sigma": 0.1 }, "b": { "nominal": 0, "sigma": 0.2 } });
+    for formula in ["abs(a) + b", "hypot(a, b)", "max(a, b)"] {
+        let found = analyze(&study(dimensions(), formula).problem, &Method::Auto.into()).unwrap();
+        let codes: Vec<_> = found.warnings.iter().map(|warning| warning.code()).collect();
+        assert!(!codes.contains(&"scatter"), "{formula}: {codes:?}");
+    }
 }

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use sensitol::assembly::Run;
-use sensitol::requirement::Requirement;
-use sensitol::simulation::{SimulationOptions, simulate, simulate_within};
+use sensitol::simulation::{SimulationOptions, simulate, simulate_with};
 use sensitol::warning::{Loss, Warning};
 use sensitol::{
-    Characteristic, Closure, Dimension, Method, Problem, SpecLimits, StopReason, Verdict, analyze, analyze_within,
+    Characteristic, Closure, Dimension, Method, Problem, Requirement, SpecLimits, StopReason, Verdict, analyze,
+    analyze_with,
 };
 use serde_json::Value;
 
@@ -85,7 +85,7 @@ fn what_was_not_evaluated_is_no_failure() {
     // Cheap models are asked block by block: the strongest pairs come in a second stage, after the first look at `stop`.
     asked.store(0, order);
     let stop = || (asked.load(order) >= 7).then_some(StopReason::TimeLimit);
-    let cut = analyze_within(&problem, &Method::SixN.into(), &Run::to_the_end().stopping_when(&stop)).unwrap();
+    let cut = analyze_with(&problem, &Method::SixN.into(), &Run::to_the_end().stopping_when(&stop)).unwrap();
     let one = &cut.characteristics[0];
     assert_eq!((cut.run.stopped, cut.run.unfinished(), one.unfinished), (Some(StopReason::TimeLimit), true, true));
     assert!(one.requirements().len() == 2 && one.requirements().iter().all(|of| of.verdict == Verdict::Inconclusive));
@@ -100,8 +100,8 @@ fn what_was_not_evaluated_is_no_failure() {
 
     // A sample that was stopped has estimates, and no verdict.
     let never = || Some(StopReason::Interrupted);
-    let wish = SimulationOptions { samples: 1000, ..SimulationOptions::default() };
-    let sample = simulate_within(&problem, &wish, &Run::to_the_end().stopping_when(&never), &|_| {}).unwrap();
+    let wish = SimulationOptions::default().with_samples(1000);
+    let sample = simulate_with(&problem, &wish, &Run::to_the_end().stopping_when(&never), &|_| {}).unwrap();
     assert_eq!(sample.characteristics[0].verdict(), Some(Verdict::Inconclusive));
     let sample = simulate(&problem, &wish).unwrap();
     assert_eq!((sample.run.stopped, sample.characteristics[0].verdict()), (None, Some(Verdict::Missed)));

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, Warning, aggregated};
+use sensitol::internals::aggregated;
+use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, Warning};
 use sensitol::{Method, StopReason, Study, analyze};
 
 fn text(text: &str) -> String {
@@ -48,6 +49,19 @@ fn every() -> Vec<Warning> {
         Warning::UnusedDimension { dimensions: names(997) },
         Warning::NominalOutsideLimits { dimensions: names(1) },
         Warning::NominalOutsideLimits { dimensions: names(2) },
+        Warning::Overflow { characteristic: characteristic(), value: 1.5e200, limit: 1e100 },
+        Warning::MixedUnits {
+            formula: text("gap"),
+            part: text("a + phi"),
+            units: [text("mm"), text("deg")],
+            others: names(0),
+        },
+        Warning::MixedUnits {
+            formula: text("gap"),
+            part: vec!["a"; 100].join(" + "),
+            units: [text("mm"), text("in")],
+            others: names(3),
+        },
         Warning::UnusedName { kind: NameKind::Constant, names: names(1) },
         Warning::UnusedName { kind: NameKind::Formula, names: names(2) },
         Warning::UnusedName { kind: NameKind::Unknown, names: names(30) },
@@ -99,6 +113,29 @@ fn every() -> Vec<Warning> {
         },
         Warning::NotRepeatable { output: output(), expected, found, times, points, suspects: suspects() },
         Warning::BranchFlip { output: output(), expected, found: None, times: 1, points: 1, suspects: Vec::new() },
+        Warning::Restarts {
+            starts: 4,
+            crashes: 2,
+            timeouts: 1,
+            garbage: 0,
+            retried: 3,
+            lost_s: 1.24,
+            cause: text("the model ended while it evaluated this point (signal 11)"),
+            stderr: vec![text("loading"), text("Segmentation fault")],
+        },
+        Warning::Restarts {
+            starts: 2,
+            crashes: 0,
+            timeouts: 0,
+            garbage: 1,
+            retried: 0,
+            lost_s: 0.0,
+            cause: text("the model answered point 3 twice"),
+            stderr: Vec::new(),
+        },
+        Warning::Unconfirmed { answers: 1 },
+        Warning::Unconfirmed { answers: 12 },
+        Warning::OutdatedJournal { output: output(), expected, found, answers: 30 },
         Warning::NoReaction { characteristic: characteristic() },
         Warning::Atom { characteristic: characteristic(), points: 3 },
         Warning::Noise { characteristic: characteristic(), rounding: 2e-4 },
@@ -161,6 +198,7 @@ fn every() -> Vec<Warning> {
             dimension: dimension(),
             by: 2.5,
             between: [0.0, 1.0],
+            at: Some([9.9, 10.0]),
             others: names(0),
         },
         Warning::InteractionsLeftOut { characteristic: characteristic(), share: 0.012 },

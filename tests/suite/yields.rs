@@ -1,7 +1,7 @@
 //! What a yield comes from, and that it is the share within the limits.
 
 use sensitol::analysis::YieldSource;
-use sensitol::{CharacteristicAnalysis, Options, Study, analyze};
+use sensitol::{CharacteristicAnalysis, Study, analyze};
 
 use super::support::relative;
 
@@ -14,7 +14,8 @@ fn study(text: &str) -> Study {
 
 fn only(text: &str, verify: Option<usize>) -> CharacteristicAnalysis {
     let study = study(text);
-    let options = Options { verify, ..study.options.clone() };
+    let mut options = study.options.clone();
+    options.verify = verify;
     analyze(&study.problem, &options).unwrap().characteristics.remove(0)
 }
 

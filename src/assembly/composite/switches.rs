@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Composite, Found, Origin, Source};
+use super::{Composite, Origin, SolvedRows, Source};
 use crate::assembly::{Points, Run, Switch, SwitchKind, Switches};
 
 /// Rows whose unknowns one task finds.
@@ -63,10 +63,10 @@ impl Composite {
                     let block = |first: usize| {
                         let rows = ROWS.min(rows - first);
                         let variable = |index: usize, row: usize| column(index)[first + row];
-                        Found::of((assembler, &self.formulas), &anchor, rows, given, variable)
+                        SolvedRows::of((assembler, &self.formulas), &anchor, rows, given, variable)
                     };
                     let starts: Vec<usize> = (0..rows).step_by(ROWS).collect();
-                    let blocks: Vec<Found> = starts.into_par_iter().map(block).collect();
+                    let blocks: Vec<SolvedRows> = starts.into_par_iter().map(block).collect();
                     for found in blocks {
                         unknowns.iter_mut().zip(found.columns).for_each(|(all, block)| all.extend(block));
                         solved.extend(found.errors.iter().map(|error| SOLVED[usize::from(error.is_none())]));

@@ -2,6 +2,9 @@
 
 use std::ops::Range;
 
+use super::name::is_plain;
+use crate::names::shortened_to;
+
 /// A formula that cannot be read, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{fault}")]
@@ -153,28 +156,12 @@ impl FormulaFault {
     }
 }
 
-/// Whether a name can stand in a formula as it is.
-pub(crate) fn is_plain(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_alphabetic() || c == '_') && name.chars().all(|c| c.is_alphanumeric() || c == '_')
-}
-
-/// Characters of a formula that are shown in a message.
+/// Characters of a part of a formula that a message shows.
 const SHOWN: usize = 80;
-
-/// A part of a formula, without its middle where that is long.
-fn shown(part: &str) -> String {
-    let count = part.chars().count();
-    if count <= SHOWN {
-        return part.to_owned();
-    }
-    let head: String = part.chars().take(SHOWN / 2).collect();
-    let tail: String = part.chars().skip(count - SHOWN / 2).collect();
-    format!("{head} ... {tail}")
-}
 
 /// A formula that has no value at one point.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("`{}` in formula `{name}`: {reason}", shown(&.text[.span.clone()]))]
+#[error("`{}` in formula `{name}`: {reason}", shortened_to(&.text[.span.clone()], SHOWN))]
 #[non_exhaustive]
 pub struct FormulaFailure {
     /// The name of the formula or characteristic.

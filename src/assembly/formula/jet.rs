@@ -11,7 +11,8 @@ use super::scalar::{Scalar, Verdict};
 /// second order, such as both branches of an `if` at its limit, has a derivative all the same.
 ///
 /// ```
-/// use sensitol::assembly::formula::{Formula, FormulaSet, Jet, Meaning};
+/// use sensitol::assembly::formula::Formula;
+/// use sensitol::internals::{FormulaSet, Jet, Meaning};
 /// let formulas = vec![("y".to_owned(), Formula::parse("a^2*b + abs(b - 3)")?)];
 /// let names = [("a", Meaning::Variable(0)), ("b", Meaning::Variable(1))];
 /// let set = FormulaSet::new(formulas, names).map_err(|(_, error)| error)?;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::error::{FormulaError, FormulaFault};
+use super::name::plain_length;
 
 /// One token.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,8 +77,7 @@ fn token(rest: &str) -> Option<(usize, Result<Token, String>)> {
         let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
         return Some((length, value.map(Token::Number).ok_or_else(|| text.to_owned())));
     }
-    if rest.starts_with(|c: char| c.is_alphabetic() || c == '_') {
-        let length = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
+    if let Some(length) = plain_length(rest) {
         return Some((length, Ok(Token::Name(rest[..length].to_owned(), false))));
     }
     if let Some(quoted) = rest.strip_prefix('`') {

@@ -18,24 +18,29 @@ mod batch;
 mod error;
 mod functions;
 mod graph;
-mod interval;
-mod jet;
+pub(crate) mod interval;
+pub(crate) mod jet;
 mod lexer;
 mod margins;
-mod parser;
+mod name;
+pub(crate) mod parser;
 mod program;
 mod scalar;
-mod set;
+pub(crate) mod set;
 mod slopes;
 mod switches;
-
 #[cfg(feature = "study")]
-pub(crate) use error::is_plain;
+mod units;
+
 pub use error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
 pub(crate) use functions::{Binary, Unary};
-pub use interval::Interval;
-pub use jet::Jet;
-pub use parser::{Formula, is_reserved};
+pub(crate) use interval::Interval;
+pub(crate) use jet::Jet;
+#[cfg(feature = "study")]
+pub(crate) use name::is_plain;
+pub use parser::Formula;
+pub(crate) use parser::is_reserved;
 pub(crate) use scalar::Scalar;
-pub(crate) use set::Routine;
-pub use set::{FormulaSet, Meaning};
+pub(crate) use set::{FormulaSet, Meaning, Routine};
+#[cfg(feature = "study")]
+pub(crate) use units::MixedUnits;

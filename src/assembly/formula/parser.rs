@@ -58,7 +58,7 @@ impl Formula {
     }
 
     /// The text it was read from.
-    pub fn text(&self) -> &str {
+    pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
@@ -74,7 +74,7 @@ impl Formula {
 /// Whether formulas already mean something by this name.
 ///
 /// ```
-/// use sensitol::assembly::formula::is_reserved;
+/// use sensitol::internals::is_reserved;
 /// assert!(is_reserved("pi") && is_reserved("hypot") && !is_reserved("e") && !is_reserved("g"));
 /// ```
 pub fn is_reserved(name: &str) -> bool {

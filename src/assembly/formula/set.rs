@@ -27,7 +27,7 @@ pub enum Meaning {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Reference {
+pub(super) enum Reference {
     Outside(Meaning),
     Formula(usize),
 }
@@ -38,7 +38,8 @@ enum Reference {
 /// `n` passes over blocks of 256 rows.
 ///
 /// ```
-/// use sensitol::assembly::formula::{Formula, FormulaSet, Meaning};
+/// use sensitol::assembly::formula::Formula;
+/// use sensitol::internals::{FormulaSet, Meaning};
 /// let formulas = vec![
 ///     ("gap".to_owned(), Formula::parse("height - 2*play")?),
 ///     ("height".to_owned(), Formula::parse("a^2")?),
@@ -82,7 +83,7 @@ pub(super) struct Entry {
     pub(super) name: String,
     pub(super) formula: Formula,
     /// What the names among the formula's nodes stand for.
-    references: HashMap<usize, Reference>,
+    pub(super) references: HashMap<usize, Reference>,
 }
 
 impl FormulaSet {
@@ -132,6 +133,11 @@ impl FormulaSet {
     /// Number of formulas.
     pub fn len(&self) -> usize {
         self.formulas.len()
+    }
+
+    /// Numbers, names, functions and operators of all formulas together.
+    pub(crate) fn parts(&self) -> usize {
+        self.formulas.iter().map(|entry| entry.formula.nodes.len()).sum()
     }
 
     /// Whether there are no formulas.
@@ -202,7 +208,8 @@ impl FormulaSet {
     /// Cost: about as many operations on intervals as the formula has, times one more than there are variables that vary.
     ///
     /// ```
-    /// use sensitol::assembly::formula::{Formula, FormulaSet, Meaning};
+    /// use sensitol::assembly::formula::Formula;
+    /// use sensitol::internals::{FormulaSet, Meaning};
     /// let formulas = vec![("y".to_owned(), Formula::parse("a^2 - b")?)];
     /// let names = [("a", Meaning::Variable(0)), ("b", Meaning::Variable(1))];
     /// let set = FormulaSet::new(formulas, names).map_err(|(_, error)| error)?;

@@ -117,24 +117,24 @@ impl Unknown {
     }
 
     /// Its name.
-    pub fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
     /// Where the search for the nominal state starts.
-    pub fn start(&self) -> f64 {
+    pub(crate) fn start(&self) -> f64 {
         self.start
     }
 
     /// The bounds.
-    pub fn bounds(&self) -> [f64; 2] {
+    pub(crate) fn bounds(&self) -> [f64; 2] {
         [self.lower, self.upper]
     }
 }
 
 impl Condition {
     /// The names of its equations, one or two.
-    pub fn equations(&self) -> Vec<String> {
+    pub(crate) fn equations(&self) -> Vec<String> {
         match self {
             Self::Equation { name, .. } => vec![format!("equation `{name}`")],
             Self::Loop { name, .. } => vec![format!("loop `{name}` along x"), format!("loop `{name}` along y")],
@@ -179,12 +179,12 @@ impl Conditions {
     }
 
     /// The unknowns.
-    pub fn unknowns(&self) -> &[Unknown] {
+    pub(crate) fn unknowns(&self) -> &[Unknown] {
         &self.unknowns
     }
 
     /// Every formula of the conditions, in order: an equation's one, a loop's lengths and angles in turn.
-    pub fn formulas(&self) -> Vec<(String, Formula)> {
+    pub(crate) fn formulas(&self) -> Vec<(String, Formula)> {
         self.conditions.iter().flat_map(Condition::formulas).collect()
     }
 

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::error::{ProcessError, ProcessFault};
+use super::error::ProcessError;
+#[cfg(feature = "process")]
+use super::error::ProcessFault;
+use crate::summary::EvaluatorSummary;
 
 /// Starts, failures and what they cost, since the model was made.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -24,15 +27,58 @@ pub struct EvaluatorAccount {
     pub last: Option<ProcessError>,
     /// For every place that answers named: how many points, and the seconds that the program says they took.
     pub places: BTreeMap<String, (u64, f64)>,
+    /// Answers that depend on the points before them, and that no fresh process confirmed: they have no value, or results were made of
+    /// them before that was known.
+    pub unconfirmed: u64,
+    /// How the model differs from the one whose answers the journal holds; None where it does not.
+    pub outdated: Option<OutdatedJournal>,
+    /// Why answers could not be kept, in a line; None where they could. Nothing was evaluated after that.
+    pub not_kept: Option<String>,
+}
+
+/// A journal whose answers are those of another model than the one that runs now.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct OutdatedJournal {
+    /// The first output that differs at the nominal dimensions.
+    pub output: String,
+    /// Its value in the journal; None where it had none.
+    pub expected: Option<f64>,
+    /// Its value now.
+    pub found: Option<f64>,
+    /// Answers that were forgotten.
+    pub answers: usize,
+}
+
+impl OutdatedJournal {
+    /// An output that was `expected` and is now `found`, so that so many answers were forgotten.
+    #[cfg(feature = "journal")]
+    pub(crate) fn new(output: impl Into<String>, [expected, found]: [Option<f64>; 2], answers: usize) -> Self {
+        Self { output: output.into(), expected, found, answers }
+    }
 }
 
 impl EvaluatorAccount {
     /// Whether any process failed.
-    pub fn has_failures(&self) -> bool {
+    pub(crate) fn has_failures(&self) -> bool {
         self.crashes + self.timeouts + self.garbage > 0
     }
 
+    /// In numbers.
+    pub(crate) fn summary(&self) -> EvaluatorSummary {
+        EvaluatorSummary {
+            starts: self.starts,
+            crashes: self.crashes,
+            timeouts: self.timeouts,
+            garbage: self.garbage,
+            retried: self.retried,
+            lost_s: self.lost_s,
+            unconfirmed: self.unconfirmed,
+        }
+    }
+
     /// Counts a failure of a process.
+    #[cfg(feature = "process")]
     pub(super) fn failed(&mut self, error: &ProcessError) {
         match error.fault {
             ProcessFault::TimedOut { .. } | ProcessFault::SilentAtStart { .. } => self.timeouts += 1,
@@ -43,6 +89,7 @@ impl EvaluatorAccount {
     }
 
     /// Counts an answer of a place.
+    #[cfg(feature = "process")]
     pub(super) fn answered(&mut self, place: Option<&String>, cost_s: Option<f64>) {
         if place.is_some() || cost_s.is_some() {
             let name = place.map_or("", String::as_str);

@@ -19,6 +19,8 @@ pub(super) struct Batch<'a> {
     pub(super) left: usize,
     /// Rows that are evaluated again because the child that answered them is not trusted: once.
     pub(super) again: HashSet<usize>,
+    /// Rows whose second answer is in doubt as well.
+    pub(super) twice: HashSet<usize>,
     /// Rows that are final and not yet told of.
     pub(super) done: Vec<usize>,
     /// Rows that are not trusted any more and not yet told of as such.
@@ -40,6 +42,7 @@ impl<'a> Batch<'a> {
             failures: HashMap::new(),
             left: points.rows(),
             again: HashSet::new(),
+            twice: HashSet::new(),
             done: Vec::new(),
             withdrawn: Vec::new(),
             sent: 0,
@@ -105,6 +108,8 @@ impl<'a> Batch<'a> {
             if self.again.insert(row) {
                 self.waiting.push_back(row);
                 self.left += 1;
+            } else {
+                self.twice.insert(row);
             }
         }
     }
@@ -124,7 +129,12 @@ impl<'a> Batch<'a> {
         for (output, name) in names.iter().enumerate() {
             let value = line.y.as_ref().and_then(|values| values[output]);
             match (value, &line.error) {
-                (Some(value), None) => self.out.set(row, output, value),
+                (Some(value), None) => {
+                    self.out.set(row, output, value);
+                    if let Some(dy) = &line.dy {
+                        self.out.set_gradient(row, output, dy[output].clone());
+                    }
+                }
                 (_, Some(message)) => self.out.fail(row, output, no_value(message.clone())),
                 (None, None) => {
                     let message = line.errors.get(name).cloned();

@@ -139,6 +139,7 @@ pub enum ProcessFault {
 
 /// How a process ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Exit {
     /// With this code.
     Code(i32),

@@ -13,7 +13,6 @@
 //!
 //! What a program is told and what can go wrong with it is known without the feature `process`, which runs it.
 
-#[cfg(feature = "process")]
 mod account;
 #[cfg(feature = "process")]
 mod batch;
@@ -36,9 +35,10 @@ mod suspicion;
 #[cfg(feature = "process")]
 mod worker;
 
-#[cfg(feature = "process")]
-pub use account::EvaluatorAccount;
+pub use account::{EvaluatorAccount, OutdatedJournal};
 pub use error::{Exit, ProcessError, ProcessFault, Quoted, StderrTail};
 #[cfg(feature = "process")]
 pub use program::Process;
+#[cfg(feature = "journal")]
+pub(crate) use program::{Kept, Recheck};
 pub use settings::{Greeting, Listener, Settings};

@@ -8,7 +8,7 @@ use super::batch::Batch;
 use super::child::{Child, Event, What};
 use super::error::{ProcessError, ProcessFault, Quoted, StderrTail};
 use super::protocol::{Hello, Line, VERSION, request};
-use super::sentinel::{Reference, SENTINEL, interval, values};
+use super::sentinel::{Reference, SENTINEL, interval, is_flip, values};
 use super::settings::Settings;
 use super::suspicion::Answers;
 use super::worker::{Sent, Worker};
@@ -39,6 +39,9 @@ pub(super) struct Pool {
     next_point: u64,
     /// Starts in a row that failed.
     failed_starts: u32,
+    /// Children in a row that said that they were ready and ended before they were sent a point; the last one's error where they are too many.
+    unused: u32,
+    useless: Option<ProcessError>,
     adapter: Option<ModelInfo>,
     pub(super) reference: Reference,
     pub(super) account: EvaluatorAccount,
@@ -89,6 +92,8 @@ impl Pool {
             next_child: 0,
             next_point: 0,
             failed_starts: 0,
+            unused: 0,
+            useless: None,
             adapter: None,
             reference: Reference::default(),
             account: EvaluatorAccount::default(),
@@ -150,6 +155,10 @@ impl Pool {
         let work = batch.expect("a batch");
         work.out.spent(work.sent as i64 - (rows - work.left) as i64);
         self.account.retried += work.resent as u64;
+        if self.settings.verify == Some(0) {
+            // Nothing is replayed, so that what is in doubt twice stays so.
+            self.account.unconfirmed += work.twice.len() as u64;
+        }
         work.out.retried(work.resent);
         // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
         for slot in &mut self.slots {
@@ -288,7 +297,8 @@ impl Pool {
             }
             Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {}
         }
-        self.late(batch)
+        self.late(batch)?;
+        self.useless.take().map_or(Ok(()), Err)
     }
 
     fn deadlines(&self) -> impl Iterator<Item = Instant> {
@@ -373,7 +383,7 @@ impl Pool {
                         other => other.to_string(),
                     });
                     let window = line.window.unwrap_or(1).max(1);
-                    self.adapter = Some(ModelInfo { name, version, window });
+                    self.adapter = Some(ModelInfo { name, version, window, gradients: line.gradients });
                     self.failed_starts = 0;
                     let slot = &mut self.slots[index];
                     if let Some(lost) = slot.lost.take() {
@@ -474,7 +484,7 @@ impl Pool {
         self.account.answered(line.place.as_ref(), line.cost_s);
         worker.since = Instant::now();
         slot.failures = 0;
-        self.failed_starts = 0;
+        (self.failed_starts, self.unused) = (0, 0);
         let values = values(&line, expected);
         if row == SENTINEL {
             return self.checked(index, values, batch);
@@ -488,6 +498,7 @@ impl Pool {
                 // The study's own evaluation of the nominal point is the first sentinel.
                 let non_repeatable =
                     self.reference.check(values, &self.hello.characteristics, &batch.coordinates(&worker.unchecked));
+                self.flips |= is_flip(&non_repeatable);
                 batch.out.note_non_repeatable(non_repeatable);
             }
             let again = line.error.is_some() && line.retry && batch.charged(row) <= self.settings.retries;
@@ -531,6 +542,8 @@ impl Pool {
             return;
         }
         worker.child.kill();
+        // An even number of flips hides from the nominal point: every answer of the batch is replayed at its end.
+        self.flips |= is_flip(&non_repeatable);
         if let Some(batch) = batch {
             batch.out.note_non_repeatable(non_repeatable);
             batch.distrust(&rows);
@@ -566,6 +579,12 @@ impl Pool {
         self.account.failed(&error);
         self.slots[index].lost.get_or_insert(worker.since);
         let crashes = self.slots[index].failures;
+        self.unused = if worker.asked { 0 } else { self.unused + 1 };
+        // No point is charged with it: without an end here such children would be started for ever.
+        if self.unused >= STARTS && !self.slots.iter().any(|slot| matches!(slot.state, State::Ready(_))) {
+            self.useless = Some(error);
+            return self.pause(index);
+        }
         if let Some(batch) = batch {
             if worker.under_way.iter().any(|sent| sent.row == SENTINEL) {
                 // It did not survive the nominal point, which it had answered before.

@@ -7,7 +7,7 @@ use super::error::ProcessError;
 use super::pool::Pool;
 use super::protocol::{Hello, VERSION};
 use super::settings::{Greeting, Settings};
-use crate::assembly::{Ask, AssemblyFunction, EvaluationError, ModelInfo, Responses, Run, Signature};
+use crate::assembly::{AssemblyFunction, EvaluationError, ModelInfo, Request, Responses, Run, Signature};
 
 /// An external program as assembly function.
 ///
@@ -52,7 +52,7 @@ impl Process {
     }
 
     /// What its first line says beside names.
-    pub fn greeting(&self) -> &Greeting {
+    pub(crate) fn greeting(&self) -> &Greeting {
         &self.greeting
     }
 
@@ -83,6 +83,54 @@ impl Process {
     }
 }
 
+/// What came of holding the answers of an earlier run against the model as it is.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Recheck {
+    /// They are its answers, and this is what the nominal point has.
+    Same(Vec<Option<f64>>),
+    /// The nominal point has another value: the model is another one.
+    Changed(Vec<Option<f64>>),
+    /// The nominal point is the same, and another point is not: these answers depend on the points before them.
+    Doubtful(Vec<Option<f64>>),
+    /// A stop came first.
+    Stopped,
+}
+
+/// Answers of an earlier run.
+pub(crate) struct Kept<'a> {
+    /// What the nominal point had; None where that was not kept.
+    pub(crate) nominal: Option<&'a [Option<f64>]>,
+    /// Points and their values, by which noise is told from a difference.
+    pub(crate) points: &'a [Vec<f64>],
+    pub(crate) values: &'a [Vec<Option<f64>>],
+    /// Those of them that no replay has confirmed.
+    pub(crate) unconfirmed: &'a [usize],
+}
+
+impl Process {
+    /// Holds answers of an earlier run against the model: the nominal point once, and two of those that no replay has confirmed.
+    pub(crate) fn recheck(&self, outputs: &[usize], kept: &Kept<'_>, run: &Run<'_>, out: &mut Responses) -> Recheck {
+        self.with_pool(outputs, |pool| {
+            let replays = self.settings.sentinels && self.settings.verify != Some(0);
+            pool.remember(kept.points, kept.values);
+            let Some((same, found)) = pool.is_as_kept(kept.nominal, out, run) else { return Recheck::Stopped };
+            if !same {
+                return Recheck::Changed(found);
+            }
+            if !replays || kept.unconfirmed.is_empty() {
+                return Recheck::Same(found);
+            }
+            let points: Vec<Vec<f64>> = kept.unconfirmed.iter().map(|&row| kept.points[row].clone()).collect();
+            let values: Vec<Vec<Option<f64>>> = kept.unconfirmed.iter().map(|&row| kept.values[row].clone()).collect();
+            match pool.are_as_kept(&points, &values, out, run) {
+                Some(true) => Recheck::Same(found),
+                Some(false) => Recheck::Doubtful(found),
+                None => Recheck::Stopped,
+            }
+        })
+    }
+}
+
 impl AssemblyFunction for Process {
     fn signature(&self) -> &Signature {
         &self.signature
@@ -92,15 +140,18 @@ impl AssemblyFunction for Process {
         self.adapter(outputs).map(Some).map_err(|error| Box::new(error).into())
     }
 
-    fn evaluate(&self, ask: &Ask<'_>, run: &Run<'_>, out: &mut Responses) {
+    fn account(&self) -> Option<EvaluatorAccount> {
+        Some(Process::account(self))
+    }
+
+    fn evaluate(&self, ask: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         self.with_pool(ask.outputs, |pool| {
             pool.evaluate(ask.points, run, out);
-            if run.stopped() || run.abandoned() {
-                return;
-            }
-            if let Some(changed) = pool.confirm(ask.points, out, run)
-                && !changed.is_empty()
-            {
+            let changed = match run.stopped() || run.abandoned() {
+                true => Some(pool.doubt(ask.points, out)),
+                false => pool.confirm(ask.points, out, run),
+            };
+            if let Some(changed) = changed.filter(|changed| !changed.is_empty()) {
                 run.withdraw(&changed);
                 run.finished(&changed, out);
             }

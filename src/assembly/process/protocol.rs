@@ -53,6 +53,8 @@ pub(super) struct Line {
     #[serde(default)]
     pub(super) isolated: bool,
     #[serde(default)]
+    pub(super) gradients: bool,
+    #[serde(default)]
     pub(super) cancel: bool,
     pub(super) places: Option<usize>,
     /// For `-v`.

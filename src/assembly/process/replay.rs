@@ -7,7 +7,7 @@
 
 use super::error::{ProcessError, ProcessFault, StderrTail};
 use super::pool::Pool;
-use super::sentinel::agree;
+use super::sentinel::{FLIP, agree};
 use super::suspicion::moved;
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
 
@@ -15,8 +15,8 @@ use crate::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
 const STEPS: usize = 3;
 /// Noise of the model, times this, is no difference.
 const NOISY: f64 = 10.0;
-/// Differences of the nominal point up to this part of the spread count as noise.
-const NOISE: f64 = 1e-3;
+/// Answers of an earlier run that are replayed before any is used.
+const REUSED: usize = 2;
 
 /// The way from the nominal point to another one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,23 +98,135 @@ impl Pool {
         self.answers.learn(&rows, &all, &nominal);
         let mut chosen = self.answers.choose(&rows, &all, &nominal, self.settings.verify);
         if self.flips {
-            chosen = (0..rows.len()).filter(|&row| all[row].iter().any(Option::is_some)).collect();
-        }
-        if self.hopeless {
-            self.give_up(&chosen, &rows, &all, out);
-            return Some(chosen);
+            let known = (0..rows.len()).filter(|&row| all[row].iter().any(Option::is_some));
+            if self.hopeless {
+                let known: Vec<usize> = known.collect();
+                self.give_up(&known, &rows, &all, out);
+                return Some(known);
+            }
+            // All of them will be; a few first, of which a model that never repeats itself is known.
+            let more: Vec<usize> = known.filter(|row| !chosen.contains(row)).collect();
+            chosen.extend(more.into_iter().take((2 * HOPELESS).saturating_sub(chosen.len())));
         }
         if chosen.is_empty() {
             return Some(Vec::new());
         }
-        match self.replayed(&rows, &all, &chosen, out, run) {
+        let changed = match self.replayed(&rows, &all, &chosen, out, run) {
             // A stop came after a flip was found and before everything was confirmed.
             None if self.flips => {
                 self.give_up(&(0..rows.len()).collect::<Vec<_>>(), &rows, &all, out);
                 Some((0..rows.len()).collect())
             }
             changed => changed,
+        };
+        if self.flips {
+            self.look_back(&rows, out, run);
         }
+        changed
+    }
+
+    /// Takes away the answers of a batch that was stopped after a flip: nothing confirmed them. Returns their rows.
+    pub(super) fn doubt(&mut self, points: &Points, out: &mut Responses) -> Vec<usize> {
+        if !self.flips || self.settings.verify == Some(0) {
+            return Vec::new();
+        }
+        let rows: Vec<Vec<f64>> = (0..points.rows()).map(|row| points.row(row)).collect();
+        let values = |row: usize| (0..out.outputs()).map(|output| out.value(row, output)).collect();
+        let all: Vec<Values> = (0..rows.len()).map(values).collect();
+        let known: Vec<usize> = (0..rows.len()).filter(|&row| all[row].iter().any(Option::is_some)).collect();
+        self.give_up(&known, &rows, &all, out);
+        known
+    }
+
+    /// Replays the answers of earlier batches, of which only some were, once a flip is found. Results may have been made of them: one
+    /// that differs, or that is not reached, is unconfirmed.
+    fn look_back(&mut self, batch: &[Vec<f64>], out: &mut Responses, run: &Run<'_>) {
+        let (earlier, forgotten) = self.answers.unconfirmed(batch);
+        self.account.unconfirmed += forgotten as u64;
+        if earlier.is_empty() {
+            return;
+        }
+        let (points, values): (Vec<Vec<f64>>, Vec<Values>) = earlier.into_iter().unzip();
+        let walked = if self.hopeless { None } else { self.walk(&points, Route::Straight, out, run) };
+        for (row, point) in points.iter().enumerate() {
+            let found = walked.as_ref().and_then(|walked| walked[row].values());
+            if found.is_some_and(|found| self.alike(&values[row], found)) {
+                self.answers.confirm(point);
+                continue;
+            }
+            self.account.unconfirmed += 1;
+            let nothing = vec![None; values[row].len()];
+            let found = found.unwrap_or(&nothing);
+            for output in 0..nothing.len() {
+                if !self.alike_at(output, values[row][output], found[output]) {
+                    let (name, spread) = (self.hello.characteristics[output].clone(), self.reference.spread(output));
+                    let differ = [found[output], values[row][output]];
+                    out.note_non_repeatable([NonRepeatable::new(name, differ, spread, vec![point.clone()])]);
+                }
+            }
+            out.revoke(point.clone());
+            self.answers.confirm(point);
+        }
+    }
+
+    /// What the nominal point has now, and whether that is what was kept of it; None where a stop came first. A model that does not
+    /// repeat itself is asked three times, and may differ by its noise.
+    pub(super) fn is_as_kept(
+        &mut self,
+        kept: Option<&[Option<f64>]>,
+        out: &mut Responses,
+        run: &Run<'_>,
+    ) -> Option<(bool, Values)> {
+        let nominal = self.hello.nominal.clone();
+        let first = self.asked_once(&nominal, out, run)?;
+        let Some(kept) = kept.map(<[Option<f64>]>::to_vec).filter(|kept| !self.alike(kept, &first)) else {
+            return Some((true, first));
+        };
+        let more = [self.asked_once(&nominal, out, run)?, self.asked_once(&nominal, out, run)?];
+        let near = |output: usize| {
+            let all = (kept[output], first[output], more[0][output], more[1][output]);
+            let (Some(kept), Some(a), Some(b), Some(c)) = all else {
+                return kept[output].is_none() && first[output].is_none();
+            };
+            let noise = a.max(b).max(c) - a.min(b).min(c);
+            let allowed = (NOISY * noise).max(if noise > 0.0 { FLIP * self.reference.spread(output) } else { 0.0 });
+            self.alike_at(output, Some(kept), Some(a)) || (kept - a).abs() <= allowed
+        };
+        Some(((0..kept.len()).all(near), first))
+    }
+
+    /// The answer to one point; None where a stop came first.
+    fn asked_once(&mut self, point: &[f64], out: &mut Responses, run: &Run<'_>) -> Option<Values> {
+        let mut answers = Responses::open(1, out.outputs());
+        let (stopped, abandoned) = (|| run.stop_reason(), || run.abandoned());
+        let quiet = Run::to_the_end().stopping_when(&stopped).abandoning_when(&abandoned);
+        self.evaluate(&Points::from_rows(&[point]), &quiet, &mut answers);
+        out.spent(answers.extra());
+        if (0..answers.outputs()).all(|output| answers.is_open(0, output)) {
+            return None;
+        }
+        out.spent(1);
+        Some((0..answers.outputs()).map(|output| answers.value(0, output)).collect())
+    }
+
+    /// Takes in answers of an earlier run, by which later ones are judged.
+    pub(super) fn remember(&mut self, points: &[Vec<f64>], values: &[Values]) {
+        values.iter().for_each(|values| self.reference.learn(values));
+        self.answers.remember(points, values, &self.hello.nominal);
+    }
+
+    /// Whether two of these answers, the most suspicious ones, are those of a fresh process; None where a stop came first.
+    pub(super) fn are_as_kept(
+        &mut self,
+        points: &[Vec<f64>],
+        values: &[Values],
+        out: &mut Responses,
+        run: &Run<'_>,
+    ) -> Option<bool> {
+        let chosen = self.answers.most_suspicious(points, values, &self.hello.nominal, REUSED);
+        let targets: Vec<Vec<f64>> = chosen.iter().map(|&row| points[row].clone()).collect();
+        let walked = self.walk(&targets, Route::Straight, out, run)?;
+        Some(!self.differing(&chosen, &walked, values).iter().any(|(_, walked)| walked.is_some()))
     }
 
     /// Replays these rows, and where one differs all others.
@@ -129,8 +241,9 @@ impl Pool {
         let place = |rows_of: &[usize]| -> Vec<Vec<f64>> { rows_of.iter().map(|&row| rows[row].clone()).collect() };
         let first = self.walk(&place(chosen), Route::Straight, out, run)?;
         let suspicious = self.differing(chosen, &first, all);
+        self.confirm_others(chosen, &suspicious, rows);
         // What a process does not get to in small steps is no sign of a flip.
-        if !suspicious.iter().any(|(_, walked)| walked.is_some()) {
+        if !self.flips && !suspicious.iter().any(|(_, walked)| walked.is_some()) {
             return Some(Vec::new());
         }
         self.flips = true;
@@ -147,8 +260,16 @@ impl Pool {
         // Every other point as well: an even number of flips hides.
         let more = self.walk(&place(&rest), Route::Straight, out, run)?;
         let suspicious = self.differing(&rest, &more, all);
+        self.confirm_others(&rest, &suspicious, rows);
         self.settle(rows, all, suspicious, out, run, &mut changed)?;
         Some(changed)
+    }
+
+    /// Notes the rows that are not among those that differ as confirmed.
+    fn confirm_others(&mut self, of: &[usize], differing: &[(usize, Option<Values>)], rows: &[Vec<f64>]) {
+        for &row in of.iter().filter(|row| !differing.iter().any(|(other, _)| other == *row)) {
+            self.answers.confirm(&rows[row]);
+        }
     }
 
     /// Takes away the answers to rows: the model has another one every time.
@@ -219,6 +340,9 @@ impl Pool {
                 }
             }
         }
+        // What it is now is what two ways agree on, or nothing.
+        self.answers.confirm(point);
+        self.account.unconfirmed += u64::from(unsettled);
         unsettled
     }
 
@@ -297,7 +421,7 @@ impl Pool {
         let mut same = true;
         for (output, (a, b)) in expected.iter().zip(found).enumerate() {
             match (a, b) {
-                (Some(a), Some(b)) if (a - b).abs() <= NOISE * self.reference.spread(output) => {
+                (Some(a), Some(b)) if (a - b).abs() <= FLIP * self.reference.spread(output) => {
                     self.noise[output] = self.noise[output].max((a - b).abs());
                 }
                 (None, None) => {}

@@ -42,6 +42,18 @@ pub(super) fn agree(a: Option<f64>, b: Option<f64>, spread: f64, noise: f64) -> 
     }
 }
 
+/// A change of an answer by more than this part of what the model varies by is another solution, and no noise.
+pub(super) const FLIP: f64 = 1e-3;
+
+/// Whether one of these differences is more than noise.
+pub(super) fn is_flip(doubts: &[NonRepeatable]) -> bool {
+    let far = |doubt: &NonRepeatable| match (doubt.expected, doubt.found) {
+        (Some(a), Some(b)) => (a - b).abs() > FLIP * doubt.spread,
+        _ => true,
+    };
+    doubts.iter().any(far)
+}
+
 impl Reference {
     /// How far an output has been seen to vary.
     pub(super) fn spread(&self, output: usize) -> f64 {

@@ -9,6 +9,7 @@ pub type Listener = Arc<dyn Fn(&str) + Send + Sync>;
 
 /// How a program is run.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct Settings {
     /// The program and its arguments; never a shell line. A program with a folder in its name is looked for from `folder`.
     pub argv: Vec<String>,
@@ -46,10 +47,67 @@ impl Settings {
             listener: None,
         }
     }
+
+    /// In this working folder.
+    #[must_use]
+    pub fn with_folder(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.folder = folder.into();
+        self
+    }
+
+    /// With so many children side by side.
+    #[must_use]
+    pub fn with_workers(mut self, workers: usize) -> Self {
+        self.workers = workers;
+        self
+    }
+
+    /// With so much time for an answer.
+    #[must_use]
+    pub fn with_timeout(mut self, timeout: Duration) -> Self {
+        self.timeout = timeout;
+        self
+    }
+
+    /// With so much time for the start.
+    #[must_use]
+    pub fn with_start_timeout(mut self, timeout: Duration) -> Self {
+        self.start_timeout = timeout;
+        self
+    }
+
+    /// With so many further tries of a point that failed.
+    #[must_use]
+    pub fn with_retries(mut self, retries: u32) -> Self {
+        self.retries = retries;
+        self
+    }
+
+    /// With evaluations of the nominal point again and again, or without.
+    #[must_use]
+    pub fn with_sentinels(mut self, sentinels: bool) -> Self {
+        self.sentinels = sentinels;
+        self
+    }
+
+    /// With so many answers replayed in a fresh process; 0 for none.
+    #[must_use]
+    pub fn with_verify(mut self, answers: usize) -> Self {
+        self.verify = Some(answers);
+        self
+    }
+
+    /// With someone who hears every line that a child writes to stderr.
+    #[must_use]
+    pub fn with_listener(mut self, listener: Listener) -> Self {
+        self.listener = Some(listener);
+        self
+    }
 }
 
 /// What the first line to a child says beside the names that are asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Greeting {
     /// The nominal value of every dimension.
     pub nominal: Vec<f64>,
@@ -57,4 +115,25 @@ pub struct Greeting {
     pub constants: Vec<(String, f64)>,
     /// Dimensions and constants that the program need not know.
     pub optional: Vec<String>,
+}
+
+impl Greeting {
+    /// These nominal values, one for every dimension.
+    pub fn new(nominal: Vec<f64>) -> Self {
+        Self { nominal, ..Self::default() }
+    }
+
+    /// With these constants.
+    #[must_use]
+    pub fn with_constants(mut self, constants: Vec<(String, f64)>) -> Self {
+        self.constants = constants;
+        self
+    }
+
+    /// With these dimensions and constants that the program need not know.
+    #[must_use]
+    pub fn with_optional(mut self, names: Vec<String>) -> Self {
+        self.optional = names;
+        self
+    }
 }

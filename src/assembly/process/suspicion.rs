@@ -5,7 +5,7 @@
 //! `max(c/(g + 0.02 m), e/(5 m))` says, a pair as `|f_ij - f_i - f_j + f0| / (0.5 (g_i + g_j) + 0.02 m)` does. This is a ranking and
 //! no test, for points of axes and others in turns: smooth and strongly curved models come out on top as well, and their answers repeat.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The answers so far, by the exact point; enough for the axes of any plan that a process can pay for.
 const KEPT: usize = 20_000;
@@ -30,12 +30,67 @@ pub(super) struct Answers {
     centre: Option<Vec<f64>>,
     answered: usize,
     replayed: usize,
+    /// Answers for which there was no room: of the last batch, and of those before it.
+    dropped: [usize; 2],
+    /// Those that a fresh process gave as well, or that are known to be none.
+    confirmed: HashSet<Key>,
 }
 
+/// A point and its answers.
+pub(super) type Answered = (Vec<f64>, Vec<Option<f64>>);
+
 impl Answers {
+    /// Notes an answer that a fresh process gave as well, or that is not used any more.
+    pub(super) fn confirm(&mut self, point: &[f64]) {
+        let key = key(point);
+        if self.known.contains_key(&key) {
+            self.confirmed.insert(key);
+        }
+    }
+
+    /// Answers of earlier batches than this one that nothing confirmed, and how many more there are that were not kept.
+    pub(super) fn unconfirmed(&mut self, batch: &[Vec<f64>]) -> (Vec<Answered>, usize) {
+        let batch: HashSet<Key> = batch.iter().map(|point| key(point)).collect();
+        let open = |key: &Key| !self.confirmed.contains(key) && !batch.contains(key);
+        let mut found: Vec<(&Key, &Vec<Option<f64>>)> = self.known.iter().filter(|(key, _)| open(key)).collect();
+        found.retain(|(_, values)| values.iter().any(Option::is_some));
+        // In the same order in every run.
+        found.sort_unstable_by(|a, b| a.0.cmp(b.0));
+        let point = |key: &Key| key.iter().map(|&bits| f64::from_bits(bits)).collect();
+        let found = found.into_iter().map(|(key, values)| (point(key), values.clone())).collect();
+        // The batch itself is confirmed by now.
+        let [_, dropped] = std::mem::take(&mut self.dropped);
+        (found, dropped)
+    }
+
+    /// Takes in answers of an earlier run, which are not owed a replay.
+    pub(super) fn remember(&mut self, points: &[Vec<f64>], values: &[Vec<Option<f64>>], nominal: &[f64]) {
+        let answered = self.answered;
+        self.learn(points, values, nominal);
+        self.answered = answered;
+        points.iter().for_each(|point| self.confirm(point));
+    }
+
+    /// The most suspicious of these rows, at most so many.
+    pub(super) fn most_suspicious(
+        &self,
+        points: &[Vec<f64>],
+        values: &[Vec<Option<f64>>],
+        nominal: &[f64],
+        most: usize,
+    ) -> Vec<usize> {
+        let scores = self.scores(points, values);
+        let usable = |&row: &usize| values[row].iter().any(Option::is_some) && !moved(nominal, &points[row]).is_empty();
+        let mut rows: Vec<usize> = (0..points.len()).filter(usable).collect();
+        rows.sort_by(|&a, &b| scores[b].total_cmp(&scores[a]).then(a.cmp(&b)));
+        rows.truncate(most);
+        rows
+    }
+
     /// Takes in answers that were just given. The first point of all is the centre, unless more points stand one step off another one.
     pub(super) fn learn(&mut self, points: &[Vec<f64>], values: &[Vec<Option<f64>>], nominal: &[f64]) {
         self.answered += points.len();
+        self.dropped = [0, self.dropped[0] + self.dropped[1]];
         if let Some(first) = points.first()
             && self.centre.is_none()
         {
@@ -46,6 +101,8 @@ impl Answers {
         for (point, values) in points.iter().zip(values) {
             if self.known.len() < KEPT || self.known.contains_key(&key(point)) {
                 self.known.insert(key(point), values.clone());
+            } else {
+                self.dropped[0] += 1;
             }
         }
     }

@@ -38,6 +38,8 @@ pub(super) struct Worker {
     pub(super) since: Instant,
     /// The number of the first point that it was sent.
     pub(super) first: u64,
+    /// Whether it was sent any.
+    pub(super) asked: bool,
     /// Rows that it has answered since it was last known to be right.
     pub(super) unchecked: Vec<usize>,
     /// Whether it had no value somewhere: a failed request may poison later ones.
@@ -63,6 +65,7 @@ impl Worker {
             under_way: VecDeque::new(),
             since: Instant::now(),
             first,
+            asked: false,
             unchecked: Vec::new(),
             troubled: false,
             exclusive: false,
@@ -88,6 +91,7 @@ impl Worker {
 
     /// Adds a point to what is under way.
     pub(super) fn sent(&mut self, id: u64, row: usize) {
+        self.asked = true;
         if self.under_way.is_empty() {
             self.since = Instant::now();
         }

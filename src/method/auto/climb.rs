@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::chosen::{ChosenPoints, Probe};
 use super::view::{View, skewed};
 use crate::method::climbed::ClimbEnd;
-use crate::plan::{DifferencePlan, Known, Point, Purpose, Stage, scattered};
+use crate::plan::{DifferencePlan, KnownAnswers, Plan, Point, Purpose, Stage, scattered};
 use crate::problem::Problem;
 
 /// Mirrored pairs of points in a set that checks: twelve points.
@@ -108,7 +108,7 @@ impl<'p> Climb<'p> {
     }
 
     /// The next points, or None when the climb is over; `evaluated` counts the points so far.
-    pub(super) fn next(&mut self, known: &Known, evaluated: usize) -> Option<Stage> {
+    pub(super) fn next(&mut self, known: &KnownAnswers, evaluated: usize) -> Option<Stage> {
         self.spent = evaluated;
         loop {
             let mut stage = self.wanted(known);
@@ -128,13 +128,13 @@ impl<'p> Climb<'p> {
     }
 
     /// What every characteristic is known to be.
-    pub(super) fn views(&self, known: &Known) -> Vec<Option<View>> {
+    pub(super) fn views(&self, known: &KnownAnswers) -> Vec<Option<View>> {
         let characteristics = 0..self.problem.characteristics().len();
         characteristics.map(|c| View::of(&self.plan, known, &self.bought, c, self.accuracy)).collect()
     }
 
     /// What has been chosen and is not known.
-    pub(super) fn wanted(&self, known: &Known) -> Stage {
+    pub(super) fn wanted(&self, known: &KnownAnswers) -> Stage {
         let mut stage = self.plan.next(known).unwrap_or_default();
         let checks = self.bought.checks.iter().flatten().map(|point| (point, Purpose::Check));
         let noise = self.bought.noise.iter().flatten().map(|point| (point, Purpose::Noise));
@@ -163,7 +163,7 @@ impl<'p> Climb<'p> {
     }
 
     /// Buys what lowers the error; whether there was anything.
-    fn choose(&mut self, known: &Known) -> bool {
+    fn choose(&mut self, known: &KnownAnswers) -> bool {
         self.short_of_budget = false;
         let views: Vec<View> = self.views(known).into_iter().flatten().collect();
         if !self.looked_out {
@@ -210,7 +210,7 @@ impl<'p> Climb<'p> {
     /// How many points the look along the steepest lines takes, where the budget allows, and every characteristic has a slope.
     pub(super) fn looks_out(&self, characteristics: usize) -> usize {
         let wanted = if self.plan.varying().is_empty() { 0 } else { 2 * characteristics.min(LINES) };
-        let begun = self.wanted(&Known::nothing(characteristics)).points.len();
+        let begun = self.wanted(&KnownAnswers::nothing(characteristics)).points.len();
         wanted.min(self.budget.saturating_sub(begun) / 2 * 2)
     }
 
@@ -348,7 +348,7 @@ impl<'p> Climb<'p> {
     }
 
     /// Interactions where even powers are left.
-    fn examine(&mut self, short: &[&View], known: &Known) -> bool {
+    fn examine(&mut self, short: &[&View], known: &KnownAnswers) -> bool {
         let lacking: Vec<&View> = short
             .iter()
             .copied()
@@ -408,7 +408,7 @@ impl<'p> Climb<'p> {
     }
 
     /// Probes: the first, more, or every pair instead where that is nearly as cheap.
-    fn screen(&mut self, lacking: &[&View], known: &Known) -> bool {
+    fn screen(&mut self, lacking: &[&View], known: &KnownAnswers) -> bool {
         if self.bought.judging.is_empty() {
             let judging = self.afford(JUDGING, 2);
             let fitted = if judging < JUDGING { 0 } else { self.afford(FITTED, 2) };
@@ -450,12 +450,12 @@ impl<'p> Climb<'p> {
     }
 
     /// Probes `first ..` of one kind.
-    fn probes(&self, known: &Known, kind: u64, first: usize, count: usize) -> Vec<Probe> {
+    fn probes(&self, known: &KnownAnswers, kind: u64, first: usize, count: usize) -> Vec<Probe> {
         let corners = self.plan.corners(known);
         let probe = |index: usize| {
             let signs = self.signs(kind, index);
             let points = [1.0, -1.0].map(|side| {
-                let end = |(ends, sign): (&[Option<(crate::plan::At, f64)>; 2], &f64)| {
+                let end = |(ends, sign): (&[Option<(crate::plan::AtNode, f64)>; 2], &f64)| {
                     ends[usize::from(sign * side > 0.0)].map(|(at, _)| at)
                 };
                 Point::of(&corners.iter().zip(&signs).filter_map(end).collect::<Vec<_>>())

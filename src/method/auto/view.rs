@@ -9,7 +9,7 @@ use crate::distribution::StandardMoments;
 use crate::method::check::{SurrogateCheck, failed};
 use crate::method::hidden::hidden;
 use crate::moments::{Interactions, Moments};
-use crate::plan::{DifferencePlan, Known, Mixed, Plan, Point};
+use crate::plan::{DifferencePlan, KnownAnswers, Mixed, Point};
 use crate::surrogate::{Surrogate, Univariate};
 
 /// Mixed derivatives by pair.
@@ -41,7 +41,7 @@ impl View {
     /// None without a value at the means, or where a part is unknown.
     pub(super) fn of(
         plan: &DifferencePlan,
-        known: &Known,
+        known: &KnownAnswers,
         bought: &ChosenPoints,
         c: usize,
         accuracy: f64,
@@ -194,7 +194,7 @@ fn add_slopes(parts: &mut [Option<Univariate>], more: &[f64]) {
 /// What the surrogate leaves at the points that check.
 fn left_at(
     plan: &DifferencePlan,
-    known: &Known,
+    known: &KnownAnswers,
     c: usize,
     bought: &ChosenPoints,
     surrogate: &Surrogate,
@@ -209,7 +209,13 @@ fn left_at(
 }
 
 /// What answers next to the means scatter by, beyond what the surrogate says of them.
-fn scatter(plan: &DifferencePlan, known: &Known, c: usize, points: &[Point; 2], surrogate: &Surrogate) -> Option<f64> {
+fn scatter(
+    plan: &DifferencePlan,
+    known: &KnownAnswers,
+    c: usize,
+    points: &[Point; 2],
+    surrogate: &Surrogate,
+) -> Option<f64> {
     let places = [0, 1].map(|i| plan.standardised(&points[i]));
     let inputs: Vec<[f64; 2]> = (0..plan.varying().len()).map(|j| [places[0][j], places[1][j]]).collect();
     let rises = surrogate.rises(&inputs)?;
@@ -221,7 +227,7 @@ fn scatter(plan: &DifferencePlan, known: &Known, c: usize, points: &[Point; 2], 
 /// What model and surrogate differ by far out along the lines on which it was looked.
 fn tail(
     plan: &DifferencePlan,
-    known: &Known,
+    known: &KnownAnswers,
     c: usize,
     bought: &ChosenPoints,
     (surrogate, sigma): (&Surrogate, f64),
@@ -252,7 +258,7 @@ struct Screened<'a> {
 impl<'a> Screened<'a> {
     fn of(
         plan: &DifferencePlan,
-        known: &Known,
+        known: &KnownAnswers,
         bought: &'a ChosenPoints,
         c: usize,
         (centre, parts, products): (f64, &[Option<Univariate>], &Products),
@@ -266,7 +272,7 @@ impl<'a> Screened<'a> {
             (0..parts.len()).map(|j| ends(j).map_or(0.0, |[left, right]| 0.5 * (right.1 - left.1))).collect();
         let bends: f64 = (0..parts.len())
             .filter_map(|j| {
-                let rise = |(at, _): (crate::plan::At, f64)| Some(known.value(&Point::of(&[at]), c)? - centre);
+                let rise = |(at, _): (crate::plan::AtNode, f64)| Some(known.value(&Point::of(&[at]), c)? - centre);
                 let [left, right] = ends(j)?;
                 Some(0.5 * (rise(left)? + rise(right)?))
             })

@@ -5,9 +5,10 @@ use serde::Serialize;
 use super::super::Report;
 use super::what_if::WhatIf;
 use super::{Fact, fact, json, others, provenance, render};
+use crate::analysis::Analysis;
 use crate::document::html::{head, sections};
 use crate::document::number::{plain, plural, significant};
-use crate::method::ALL;
+use crate::method::Basis;
 use crate::summary::RunSummary;
 
 #[derive(Serialize)]
@@ -55,19 +56,17 @@ fn evaluations(run: &RunSummary) -> String {
 }
 
 fn facts(report: &Report) -> Vec<Fact> {
-    let procedure = ALL.iter().find(|procedure| procedure.name() == report.method);
-    let method = match procedure {
-        Some(procedure) => format!("{}: {}; evaluations: {}", report.method, procedure.about(), procedure.count()),
-        None => report.method.to_owned(),
-    };
+    let Analysis { method, account, varying, run, basis, .. } = &report.analysis;
+    let procedure = method.procedure();
+    let method = format!("{method}: {}; evaluations: {}", procedure.about(), procedure.count());
     let mut facts = vec![fact("method", method)];
-    facts.extend(report.account.as_ref().map(|account| fact("what its points went to", account.to_string())));
-    facts.push(fact("varying dimensions", report.varying.to_string()));
-    facts.push(fact("evaluations", evaluations(&report.run)));
-    let derivatives = match report.derivatives {
-        Some("exact") => "exact",
-        Some(_) => "differences",
-        None => "none: the moments rest on values or on a fitted surface",
+    facts.extend(account.as_ref().map(|account| fact("what its points went to", account.to_string())));
+    facts.push(fact("varying dimensions", varying.to_string()));
+    facts.push(fact("evaluations", evaluations(run)));
+    let derivatives = match basis {
+        Basis::Exact => "exact",
+        Basis::Differences => "differences",
+        Basis::LeastSquares | Basis::Quadrature => "none: the moments rest on values or on a fitted surface",
     };
     facts.push(fact("derivatives", derivatives));
     let pairs = report.correlation.iter();
@@ -76,7 +75,7 @@ fn facts(report: &Report) -> Vec<Fact> {
     if !pairs.is_empty() {
         facts.push(fact("correlations", pairs.join("; ")));
     }
-    facts.extend(provenance(&report.head, &report.run));
+    facts.extend(provenance(&report.head, run));
     facts
 }
 

@@ -80,12 +80,12 @@ fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
 
 /// A simulation as one page of HTML: every estimate with its standard error, the histogram with the error of every bar.
 pub fn simulate_html(report: &SimulationReport) -> String {
-    page(&report.head, &report.run, &report.document(), &report.warnings)
+    page(&report.head, &report.simulation.run, &report.document(), &report.warnings)
 }
 
 /// Rare events as one page of HTML: every probability with its interval, and the assembly in which it most likely comes about.
 pub fn rare_html(report: &RareReport) -> String {
-    page(&report.head, &report.run, &report.document(), &report.warnings)
+    page(&report.head, &report.found.run, &report.document(), &report.warnings)
 }
 
 /// A comparison as one page of HTML: evaluations against error, and a table for every characteristic.

@@ -1,6 +1,6 @@
 //! Distributions in analyses: exact moments of quadratics, nodes within the support, long tails.
 
-use sensitol::method::{Nodes, Spread};
+use sensitol::internals::{Nodes, Spread};
 use sensitol::{Closure, Dimension, Method, Problem, Study, analyze};
 
 use super::densities::{Case, cases};

@@ -7,7 +7,7 @@ use crate::assembly::EvaluationError;
 
 /// Answers by point. An entry is a value, an error, or open.
 #[derive(Debug, Clone, Default)]
-pub struct Known {
+pub struct KnownAnswers {
     characteristics: usize,
     row: HashMap<Point, u32>,
     points: Vec<Point>,
@@ -16,7 +16,7 @@ pub struct Known {
     errors: BTreeMap<(u32, u32), EvaluationError>,
 }
 
-impl Known {
+impl KnownAnswers {
     /// Nothing yet of `characteristics` characteristics.
     pub(crate) fn nothing(characteristics: usize) -> Self {
         Self { characteristics, values: vec![Vec::new(); characteristics], ..Self::default() }

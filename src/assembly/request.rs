@@ -78,7 +78,7 @@ impl Points {
     }
 
     /// All values of one dimension, to be changed.
-    pub fn column_mut(&mut self, dimension: usize) -> &mut [f64] {
+    pub(crate) fn column_mut(&mut self, dimension: usize) -> &mut [f64] {
         &mut self.values[dimension * self.rows..(dimension + 1) * self.rows]
     }
 
@@ -96,14 +96,14 @@ impl Points {
 /// A batch of points and the outputs wanted there.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
-pub struct Ask<'a> {
+pub struct Request<'a> {
     /// The points, a column per input of the [`Signature`](super::Signature).
     pub points: &'a Points,
     /// Indices of the outputs wanted; nothing else need be computed.
     pub outputs: &'a [usize],
 }
 
-impl<'a> Ask<'a> {
+impl<'a> Request<'a> {
     /// These outputs at these points.
     pub fn values(points: &'a Points, outputs: &'a [usize]) -> Self {
         Self { points, outputs }

@@ -1,0 +1,49 @@
+//! How what there was and what there is of a requirement is written.
+
+use serde::Serialize;
+
+use crate::shape::{ends, finite};
+use crate::verdict::{Judged, Verdict};
+
+/// What there was of a requirement, as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(super) struct Before {
+    /// What there was.
+    before: Option<f64>,
+    /// Whether it was kept; null where that is not known.
+    met_before: Option<bool>,
+    /// The same in a word.
+    verdict_before: Verdict,
+}
+
+impl From<&Judged> for Before {
+    fn from(of: &Judged) -> Self {
+        Self { before: of.value.and_then(finite), met_before: of.verdict.met(), verdict_before: of.verdict }
+    }
+}
+
+/// What there is of a requirement, as it is written; all null where nothing was found.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(super) struct After {
+    /// What there is.
+    after: Option<f64>,
+    /// Within which that is known, an end null where there is none; null where it is not known at all.
+    interval: Option<[Option<f64>; 2]>,
+    /// Whether it is kept; null where that is not known, and where nothing was found.
+    met: Option<bool>,
+    /// The same in a word; null where nothing was found.
+    verdict: Option<Verdict>,
+}
+
+impl From<&Option<Judged>> for After {
+    fn from(of: &Option<Judged>) -> Self {
+        Self {
+            after: of.and_then(|of| of.value).and_then(finite),
+            interval: of.and_then(|of| of.interval).map(ends),
+            met: of.and_then(|of| of.verdict.met()),
+            verdict: of.map(|of| of.verdict),
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! How characteristics vary together.
+//!
+//! | source | when | its error |
+//! |---|---|---|
+//! | points of the model | the model is cheap and verified | jackknife over 16 randomisations |
+//! | both surfaces | there is a surface of each | see below; none where the formulas' degree proves both surfaces |
+//!
+//! Of two surfaces the covariance is exact, by the moments of their sum and their difference:
+//! `rho = (Var(q_1/s_1 + q_2/s_2) - Var(q_1/s_1 - q_2/s_2)) / 4`. The checks leave shares `U_1`, `U_2` of the variances unexplained. A residual
+//! hardly correlates with its own surface, so that with the other one it correlates by `sqrt(1 - rho^2)` at most:
+//! `error = sqrt((1 - rho^2)(U_1 + U_2) + U_1 U_2)`.
+
+use serde::Serialize;
+
+use super::CharacteristicAnalysis;
+use super::verified::VerificationKind;
+use crate::method::{Options, Outcome};
+use crate::problem::Problem;
+use crate::surrogate::Surrogate;
+use crate::verification::{Verified, output_correlations};
+
+/// More characteristics than this have no table of correlations: its cells grow with their square.
+const MOST: usize = 40;
+
+/// How two characteristics vary together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct OutputCorrelation {
+    /// The two characteristics.
+    pub between: [String; 2],
+    /// Their coefficient of correlation; null where one of them does not vary, or is not known.
+    pub value: Option<f64>,
+    /// The error of the coefficient; null where the model was not asked.
+    pub error: Option<f64>,
+}
+
+/// The correlation of every pair of characteristics; empty with one characteristic, and with more than 40.
+///
+/// Evaluates a cheap model that is to be verified at 16 384 points, and a costly one nowhere.
+pub(super) fn correlations(
+    problem: &Problem,
+    outcome: &Outcome,
+    options: &Options,
+    characteristics: &[CharacteristicAnalysis],
+) -> Vec<OutputCorrelation> {
+    let count = characteristics.len();
+    if !(2..=MOST).contains(&count) {
+        return Vec::new();
+    }
+    let sampled =
+        |one: &CharacteristicAnalysis| one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
+    let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
+    let by_model = match characteristics.iter().any(sampled) {
+        true => {
+            let seed = options.seed.unwrap_or(Options::SEED);
+            output_correlations(problem, &(0..count).collect::<Vec<_>>(), seed)
+        }
+        false => Vec::new(),
+    };
+    let known = |(a, b): (usize, usize)| -> Option<(f64, Option<f64>)> {
+        let ones = [&characteristics[a], &characteristics[b]];
+        if ones.iter().any(|one| sampled(one)) {
+            let (.., rho) = by_model.iter().find(|&&(first, second, _)| (first, second) == (a, b))?;
+            return rho.map(|Verified { value, error }| (value, Some(error)));
+        }
+        let (value, drawn) = of_surfaces(outcome, [a, b])?;
+        let left = |one: &CharacteristicAnalysis| one.verification.as_ref().and_then(|of| of.left);
+        let error = left(ones[0]).zip(left(ones[1])).map(|(u, v)| {
+            let apart = (1.0 - value * value).max(0.0);
+            (apart * (u + v) + u * v + drawn * drawn).sqrt().max(ROUNDING)
+        });
+        Some((value, error))
+    };
+    pairs
+        .map(|(a, b)| {
+            let (value, error) = known((a, b)).unzip();
+            let between = [a, b].map(|c| characteristics[c].characteristic.name().to_owned());
+            OutputCorrelation { between, value, error: error.flatten() }
+        })
+        .collect()
+}
+
+/// A coefficient near 1 is a difference of variances near 4 and 0, each with a dozen roundings.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Exact for the surfaces of both characteristics, but for a standard error where their moments are sampled; None where one is not
+/// known or does not vary.
+fn of_surfaces(outcome: &Outcome, [a, b]: [usize; 2]) -> Option<(f64, f64)> {
+    let inputs = outcome.plan.inputs();
+    let scaled = |c: usize| -> Option<(&Surrogate, f64)> {
+        let surrogate = outcome.fitted[c].surrogate.as_ref()?;
+        let sigma = surrogate.contributions(inputs)?.moments.sigma();
+        (sigma > 0.0).then_some((surrogate, 1.0 / sigma))
+    };
+    let ((first, by_first), (second, by_second)) = (scaled(a)?, scaled(b)?);
+    // A variance, and its standard error.
+    let variance = |sign: f64| -> Option<(f64, f64)> {
+        let of = first.sum(by_first, second, sign * by_second)?.contributions(inputs)?;
+        let (sigma, error) = (of.moments.sigma(), of.sampled.map_or(0.0, |sampled| sampled.sigma));
+        Some((sigma * sigma, 2.0 * sigma * error))
+    };
+    let ((sum, of_sum), (difference, of_difference)) = (variance(1.0)?, variance(-1.0)?);
+    Some(((0.25 * (sum - difference)).clamp(-1.0, 1.0), 0.25 * of_sum.hypot(of_difference)))
+}

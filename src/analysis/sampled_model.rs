@@ -1,0 +1,51 @@
+//! What a sample of the model tells where its surrogate was not trusted.
+
+use serde::Serialize;
+
+use crate::shape::{Four, through};
+use crate::simulation::Histogram;
+
+/// Points of the model in place of a surrogate that was not trusted.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SampledModel {
+    /// Points.
+    pub samples: u64,
+    /// Points at which the model has no value, beside these.
+    pub failed: u64,
+    /// Why not, of the first.
+    pub error: Option<String>,
+    /// The share of the variance that the surrogate left unexplained at the check.
+    pub left: f64,
+    /// Standard errors of mean, sigma, skewness and kurtosis, as far as they are known.
+    #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "Four<Option<f64>>"))]
+    pub standard_errors: [Option<f64>; 4],
+    /// The share of the sample within the limits with its 95 % interval.
+    #[serde(flatten, serialize_with = "through::<YieldShape, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "YieldShape"))]
+    pub yield_: Option<(f64, [f64; 2])>,
+    /// Its shares below the lower and above the upper limit; None without that limit.
+    pub beyond: [Option<f64>; 2],
+    /// The sample, counted in some tens of intervals.
+    pub histogram: Option<Histogram>,
+}
+
+/// A share and its interval, as they are written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+struct YieldShape {
+    /// The share of the sample within the limits.
+    #[serde(rename = "yield")]
+    yield_: Option<f64>,
+    /// Its 95 % interval.
+    yield_interval: Option<[f64; 2]>,
+}
+
+impl From<&Option<(f64, [f64; 2])>> for YieldShape {
+    fn from(found: &Option<(f64, [f64; 2])>) -> Self {
+        let (yield_, yield_interval) = found.unzip();
+        Self { yield_, yield_interval }
+    }
+}

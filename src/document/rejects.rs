@@ -1,0 +1,173 @@
+//! Yields and rejects, with the digits that their error carries and no more.
+
+use super::number::{share, significant};
+
+/// Significant digits of parts per million, at most.
+const DIGITS: i32 = 4;
+/// Errors that an interval of 95 % reaches to either side.
+const REACH: f64 = 2.0;
+
+/// The shares of assemblies beyond the limits, and the error of all of it.
+///
+/// The first digit of the error is the last one printed. Rejects below half of what the interval of two errors allows are not told
+/// apart from none: then the interval's end is printed as a bound, the yield rounded down and the rejects rounded up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Rejects {
+    /// Share below the lower limit.
+    below: Option<f64>,
+    /// Share above the upper limit.
+    above: Option<f64>,
+    /// One error of the sum; None where it is unknown.
+    error: Option<f64>,
+}
+
+impl Rejects {
+    /// Shares from 0 to 1.
+    pub(crate) fn new(below: Option<f64>, above: Option<f64>, error: Option<f64>) -> Self {
+        Self { below, above, error: error.filter(|error| *error > 0.0 && error.is_finite()) }
+    }
+
+    /// Of all limits together.
+    pub(crate) fn all(rejected: f64, error: Option<f64>) -> Self {
+        Self::new(None, Some(rejected), error)
+    }
+
+    fn total(self) -> Option<f64> {
+        self.below.or(self.above)?;
+        Some((self.below.unwrap_or(0.0) + self.above.unwrap_or(0.0)).clamp(0.0, 1.0))
+    }
+
+    /// Where the rejects are not told apart from none: the most that the interval allows.
+    fn bound(self, rejected: f64) -> Option<f64> {
+        let error = self.error?;
+        (rejected < REACH * error).then_some((rejected + REACH * error).min(1.0))
+    }
+
+    /// Whether the rejects are told apart from none, so that figures that follow from their number mean something.
+    pub(crate) fn are_resolved(self) -> bool {
+        self.total().is_some_and(|rejected| self.bound(rejected).is_none())
+    }
+
+    /// The yield by itself; None without any limit.
+    pub(crate) fn yield_text(self) -> Option<String> {
+        let rejected = self.total()?;
+        if let Some(most) = self.bound(rejected) {
+            return Some(at_least(most));
+        }
+        let exact = share(rejected);
+        let Some(error) = self.error else { return Some(exact) };
+        let decimals = decimals(100.0 * error);
+        let shorter = format!("{:.decimals$} %", 100.0 * (1.0 - rejected));
+        // Rejects have three digits at most, however small their error.
+        Some(if shorter.len() < exact.len() { shorter } else { exact })
+    }
+
+    /// The yield with the rejects on either side in brackets.
+    pub(crate) fn text(self) -> Option<String> {
+        let yield_ = self.yield_text()?;
+        let sides = match self.total().and_then(|rejected| self.bound(rejected)) {
+            Some(most) if most < 1.0 => format!("< {} ppm", parts(most)),
+            Some(_) => return Some(yield_),
+            None => self.sides(),
+        };
+        Some(format!("{yield_} ({sides})"))
+    }
+
+    /// The rejects on either side, in parts per million.
+    pub(crate) fn sides(self) -> String {
+        let side = |share: Option<f64>, name: &str| Some(format!("{} ppm {name}", self.ppm(share?)));
+        let sides: Vec<String> = [side(self.below, "below"), side(self.above, "above")].into_iter().flatten().collect();
+        sides.join(", ")
+    }
+
+    fn ppm(self, share: f64) -> String {
+        if let Some(most) = self.bound(share) {
+            return format!("< {}", parts(most));
+        }
+        let (ppm, exact) = (1e6 * share, significant(1e6 * share, DIGITS as usize));
+        let Some(error) = self.error else { return exact };
+        // As many digits of the share as stand before the error's second one.
+        let digits = ppm.log10().floor() - (1e6 * error).log10().floor() + 1.0;
+        if digits >= f64::from(DIGITS) { exact } else { rounded(ppm, digits.max(1.0) as usize) }
+    }
+}
+
+/// So many decimals that the first digit of the error is the last one.
+fn decimals(error: f64) -> usize {
+    (-error.log10().floor()).clamp(0.0, 12.0) as usize
+}
+
+/// Digits beyond the significant ones are zeros.
+fn rounded(value: f64, digits: usize) -> String {
+    let text = format!("{value:.*e}", digits - 1);
+    text.parse().map_or(text, |value: f64| significant(value, digits))
+}
+
+/// Parts per million, rounded up to two digits.
+fn parts(share: f64) -> String {
+    significant(upwards(1e6 * share, 2), 2)
+}
+
+fn upwards(value: f64, digits: i32) -> f64 {
+    let unit = 10_f64.powf(value.log10().floor() + 1.0 - f64::from(digits));
+    // A value that is a multiple but for rounding stays what it is.
+    (value / unit - 1e-9).ceil() * unit
+}
+
+/// `> 99.997 %`: the yield that is left where so many are rejected at most, rounded down at the first digit of the rejects.
+fn at_least(most: f64) -> String {
+    let percent = 100.0 * upwards(most, 2);
+    let decimals = decimals(percent);
+    let unit = 10_f64.powi(-(decimals as i32));
+    let least = 100.0 - (percent / unit - 1e-9).ceil() * unit;
+    if least <= 0.0 { "unknown".to_owned() } else { format!("> {least:.decimals$} %") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(below: f64, above: f64, error: Option<f64>) -> String {
+        let share = |ppm: f64| 1e-6 * ppm;
+        Rejects::new(Some(share(below)), Some(share(above)), error.map(share)).text().expect("there are limits")
+    }
+
+    #[test]
+    fn the_first_digit_of_the_error_is_the_last_one() {
+        assert_eq!(text(1234.0, 2345.6, Some(30.0)), "99.642 % (1230 ppm below, 2350 ppm above)");
+        assert_eq!(text(123_456.0, 0.0, Some(2000.0)), "87.7 % (123000 ppm below, < 4000 ppm above)");
+    }
+
+    #[test]
+    fn rejects_that_the_interval_does_not_tell_from_none_are_a_bound() {
+        // The design's own example: fewer than 15 ppm are above 99.998 %.
+        assert_eq!(text(0.0, 0.1, Some(7.4)), "> 99.998 % (< 15 ppm)");
+        assert_eq!(text(0.0, 0.1692, Some(14.9)), "> 99.997 % (< 30 ppm)");
+        assert_eq!(text(2e5, 1e5, Some(4e5)), "unknown");
+    }
+
+    #[test]
+    fn without_an_error_three_digits_of_the_rejects_are_shown() {
+        assert_eq!(text(1234.56, 0.0, None), "99.877 % (1235 ppm below, 0 ppm above)");
+        assert_eq!(text(0.0, 0.0, Some(0.0)), "100 % (0 ppm below, 0 ppm above)");
+    }
+
+    proptest::proptest! {
+        /// Whatever is printed lies within an error's first digit of what is known, and a bound on its safe side.
+        #[test]
+        fn what_is_printed_holds(rejected in 1e-9..0.999_f64, error in 1e-12..0.3_f64) {
+            let text = Rejects::all(rejected, Some(error)).yield_text().unwrap();
+            if text != "unknown" {
+                let number: f64 = text.trim_start_matches("> ").trim_end_matches(" %").parse().unwrap();
+                if text.starts_with('>') {
+                    let high = (rejected + REACH * error).min(1.0);
+                    proptest::prop_assert!(number <= 100.0 * (1.0 - high) + 1e-9, "{text}");
+                } else {
+                    // Half a unit of the last digit: no more than half the error, or of the third digit of the rejects.
+                    let room = 50.0 * error + 0.6 * rejected + 1e-9;
+                    proptest::prop_assert!((number - 100.0 * (1.0 - rejected)).abs() <= room, "{text}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Derivatives that an external model sends with its answers, in the place of further evaluations.
+//!
+//! `rss` needs the slopes at the means: one evaluation, and one more that checks them. `full` needs no corners, as the mixed second derivative
+//! of dimensions j and k is the difference of the slope by k over the two nodes of j, and the other way round: of both the mean is taken. Its
+//! 2N + 1 points are those of `second-order`.
+//!
+//! No derivative is taken on trust. Between two points a difference of values is the mean of the slopes times the step, but for a part of
+//! third order, so that each axis checks the derivatives by its dimension without an evaluation.
+
+use super::exact::ExactDerivatives;
+use super::{MethodError, Options, Order};
+use crate::assembly::{Points, Request, Responses, Run};
+use crate::evaluation::Evaluated;
+use crate::plan::{AtNode, DifferencePlan, Mixed, Point};
+use crate::problem::Problem;
+
+/// Derivatives that differ from a difference by more than this part of the change are wrong: third derivatives of a function that a
+/// parabola describes make less.
+const APART: f64 = 0.1;
+/// Changes below this part of the largest one along any axis are not checked: rounding and noise.
+const SMALL: f64 = 1e-3;
+/// The same at the point beside the means: so near, third derivatives make a thousandth of that of the axes.
+const NEAR: f64 = 3e-3;
+/// How far off the means, in sigmas, the point is that checks the slopes there.
+const STEP: f64 = 0.1;
+
+/// Whether a method can do with what a model sends.
+pub(super) fn serve(options: &Options, order: Order, all_pairs: bool) -> bool {
+    options.derivatives.is_none()
+        && options.step.is_none()
+        && !options.all_sensitivities
+        && (order == Order::First || all_pairs)
+}
+
+/// The mixed derivatives of a characteristic for these pairs of positions, in sigmas; None where a gradient is missing.
+pub(super) fn mixed(
+    plan: &DifferencePlan,
+    evaluated: &Evaluated,
+    c: usize,
+    pairs: &[(usize, usize)],
+) -> Vec<Option<Mixed>> {
+    // The slope by the dimension at position k, in sigmas, over the nodes of the one at position j.
+    let half = |j: usize, k: usize| {
+        let (d, of) = (plan.varying()[j], plan.varying()[k]);
+        let [left, right] =
+            nodes(plan, d)?.map(|(point, u)| Some((u, *evaluated.gradients.get(&(point, c))?.get(of)?)));
+        let ((below, left), (above, right)) = (left?, right?);
+        Some(plan.axis(of).scale * (right - left) / (above - below))
+    };
+    let both = |&(j, k): &(usize, usize)| {
+        if !plan.joint(c, j, k) {
+            return Some(Mixed { value: 0.0, complete: true });
+        }
+        Some(Mixed { value: 0.5 * (half(j, k)? + half(k, j)?), complete: true })
+    };
+    pairs.iter().map(both).collect()
+}
+
+/// The two nodes of an axis with their places in sigmas; None where one is missing.
+fn nodes(plan: &DifferencePlan, d: usize) -> Option<[(Point, f64); 2]> {
+    let axis = plan.axis(d);
+    let node = |slot: &Vec<u32>| {
+        let node = *slot.first()?;
+        Some((Point::of(&[AtNode { dimension: d as u32, node }]), axis.nodes[node as usize].u))
+    };
+    let [left, right] = &axis.slots[..] else { return None };
+    let mut nodes = [node(left)?, node(right)?];
+    nodes.sort_by(|a, b| a.1.total_cmp(&b.1));
+    Some(nodes)
+}
+
+/// Holds the derivatives by every dimension against the differences along its axis.
+pub(super) fn checked(problem: &Problem, plan: &DifferencePlan, evaluated: &Evaluated) -> Result<(), MethodError> {
+    for c in 0..problem.characteristics().len() {
+        let Some(centre) = evaluated.known.value(&Point::Centre, c) else { continue };
+        let gradient = |point: &Point, d: usize| evaluated.gradients.get(&(point.clone(), c))?.get(d).copied();
+        let mut found: Vec<(usize, f64, f64)> = Vec::new();
+        for &d in plan.varying().iter().filter(|&&d| plan.depends(c, d)) {
+            for (point, u) in nodes(plan, d).into_iter().flatten() {
+                let step = u * plan.axis(d).scale;
+                let Some(value) = evaluated.known.value(&point, c) else { continue };
+                let slopes = gradient(&Point::Centre, d).zip(gradient(&point, d));
+                let Some((at_centre, there)) = slopes else { return Err(none(problem, c)) };
+                found.push((d, value - centre, 0.5 * step * (at_centre + there)));
+            }
+        }
+        let largest = found.iter().fold(0.0f64, |largest, (_, rise, _)| largest.max(rise.abs()));
+        for (d, rise, by_slopes) in found {
+            let scale = rise.abs().max(by_slopes.abs());
+            if (rise - by_slopes).abs() > APART * scale + SMALL * largest {
+                return Err(apart(problem, c, Some(d), by_slopes, rise));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The slopes at the means that the model sent, once a further evaluation has checked them.
+pub(super) fn slopes(
+    problem: &Problem,
+    plan: &DifferencePlan,
+    evaluated: &mut Evaluated,
+    run: &Run<'_>,
+) -> Result<Vec<Option<ExactDerivatives>>, MethodError> {
+    let centre = plan.centre();
+    let mut point = centre.clone();
+    for (position, &d) in plan.varying().iter().enumerate() {
+        // Signs in turns, so that equal errors of two derivatives do not cancel.
+        point[d] += if position % 2 == 0 { STEP } else { -0.7 * STEP } * plan.axis(d).scale;
+    }
+    let mut out = Responses::open(1, problem.outputs().len());
+    problem.function().evaluate(&Request::values(&Points::from_rows(&[&point]), problem.outputs()), run, &mut out);
+    evaluated.count(&out, run);
+    let n = centre.len();
+    let of = |c: usize| {
+        let Some(value) = evaluated.known.value(&Point::Centre, c) else { return Ok(None) };
+        let slopes = evaluated.gradients.get(&(Point::Centre, c)).ok_or_else(|| none(problem, c))?;
+        if let Some((there, gradient)) = out.value(0, c).zip(out.gradient(0, c)) {
+            let parts = (0..n).map(|d| 0.5 * (point[d] - centre[d]) * (slopes[d] + gradient[d]));
+            let (by_slopes, scale) = parts.fold((0.0, 0.0f64), |(sum, scale), part| (sum + part, scale + part.abs()));
+            let rise = there - value;
+            if (rise - by_slopes).abs() > NEAR * scale.max(rise.abs()) + 1e-9 * value.abs() {
+                return Err(apart(problem, c, None, by_slopes, rise));
+            }
+        }
+        let first = slopes.iter().map(|&slope| Some(slope)).collect();
+        Ok(Some(ExactDerivatives { first, second: vec![None; n], mixed: Vec::new() }))
+    };
+    (0..problem.characteristics().len()).map(of).collect()
+}
+
+fn none(problem: &Problem, c: usize) -> MethodError {
+    MethodError::NoGradient { characteristic: problem.characteristics()[c].name().to_owned() }
+}
+
+fn apart(problem: &Problem, c: usize, d: Option<usize>, by_gradient: f64, by_values: f64) -> MethodError {
+    MethodError::GradientsDisagree {
+        characteristic: problem.characteristics()[c].name().to_owned(),
+        dimension: d.map(|d| problem.dimensions()[d].name().to_owned()),
+        by_gradient,
+        by_values,
+    }
+}

@@ -1,0 +1,41 @@
+//! All methods.
+
+use super::{Cost, Method, MethodError, Options, Procedure};
+use crate::problem::Problem;
+
+/// Every method, in the order in which they are listed.
+pub static ALL: &[&dyn Procedure] = &[
+    &super::auto::AUTO,
+    &super::rss::RSS,
+    &super::worst_case::WORST_CASE,
+    &super::second_order::SECOND_ORDER,
+    &super::six_n::SIX_N,
+    &super::full::FULL,
+    &super::classic::CLASSIC,
+    &super::dimension_reduction::DimensionReduction,
+    &super::bivariate_dimension_reduction::BivariateDimensionReduction,
+    &super::three_point::ThreePoint,
+    &super::response_surface::ResponseSurface,
+];
+
+/// What a method does.
+pub fn procedure(method: Method) -> &'static dyn Procedure {
+    *ALL.iter().find(|procedure| procedure.method() == method).expect("every method is registered")
+}
+
+impl Method {
+    /// What it does.
+    pub(crate) fn procedure(self) -> &'static dyn Procedure {
+        procedure(self)
+    }
+}
+
+impl Options {
+    /// What an analysis of the problem takes, or why it cannot be run; nothing is evaluated.
+    ///
+    /// # Errors
+    /// When the options do not fit the problem, and when the method needs more evaluations than the budget allows.
+    pub fn cost(&self, problem: &Problem) -> Result<Cost, MethodError> {
+        self.method.procedure().fits(problem, self)
+    }
+}

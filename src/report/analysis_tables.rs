@@ -1,0 +1,98 @@
+//! The tables of an analysis over all characteristics, dimensions and warnings.
+
+use super::figures::{Figures, Named};
+use super::requirement::loud;
+use super::{DimensionReport, Report, WarningReport};
+use crate::analysis::CharacteristicAnalysis;
+use crate::capability::{Capability, Law};
+use crate::document::number::{UNKNOWN, beside, index, limits};
+use crate::document::{Cell, Columns, DataTable, Line, Value};
+
+impl Report {
+    /// A row for every characteristic: where it lies, its limits, and how it keeps them.
+    pub(super) fn verdicts(&self) -> DataTable {
+        type Of<'r> = &'r CharacteristicAnalysis;
+        let scaled = |one: &Of<'_>, value: Option<f64>, unknown: &str| {
+            let text = value.zip(one.sigma()).map_or(unknown.to_owned(), |(value, sigma)| beside(value, sigma));
+            Cell::both(Value::Number(value), text)
+        };
+        let verdict = |one: &Of<'_>| {
+            if !one.limited() || one.mean().is_none() {
+                return Cell::empty();
+            }
+            let yield_ = one.rejects().yield_text().unwrap_or_else(|| "unknown".to_owned());
+            let target = one.verdict().map_or(Line::default(), |verdict| Line::from(", target ").and(loud(verdict)));
+            Cell::both(Value::Empty, Line::from(format!("yield {yield_}")).and(target))
+        };
+        let family = |one: &Of<'_>| match one.fitted() {
+            None => [None, None],
+            Some(Law::Point { .. }) => [Some("point"), None],
+            Some(Law::Pearson(law)) => [Some("pearson"), Some(law.kind().name())],
+        };
+        let end = |interval: Option<[f64; 2]>, end: usize| Cell::data(interval.map(|ends| ends[end]));
+        let fit = |one: &Of<'_>, of: fn(&Capability) -> Option<f64>| Cell::data(one.normal.as_ref().and_then(of));
+        let index_of = |one: &Of<'_>, of: fn(&Capability) -> Option<f64>| one.capability.as_ref().and_then(of);
+        Columns::default()
+            .named("name", "characteristic", |one: &Of<'_>| Cell::name(one.name()))
+            .data("unit", |one| Cell::optional(one.unit()))
+            .data("nominal", |one| Cell::data(one.nominal))
+            .column("mean", "mean", move |one| scaled(one, one.mean(), "unknown"))
+            .shown("± 3 sigma", move |one| scaled(one, one.sigma().map(|sigma| 3.0 * sigma), UNKNOWN))
+            .named("", "unit", |one| Cell::optional(one.unit()))
+            .shown("limits", |one| Cell::text(limits(one.lower(), one.upper())))
+            .named("", "yield", verdict)
+            .data("sigma", |one| Cell::data(one.sigma()))
+            .data("skewness", |one| Cell::data(one.skewness()))
+            .data("kurtosis", |one| Cell::data(one.kurtosis()))
+            .data("worst_case_lower", move |one| end(one.worst_case, 0))
+            .data("worst_case_upper", move |one| end(one.worst_case, 1))
+            .data("middle", |one| Cell::data(one.middle))
+            .data("rss", |one| Cell::data(one.rss))
+            .data("inflated_rss", |one| Cell::data(one.inflated_rss))
+            .data("mean_shift_rss", |one| Cell::data(one.mean_shift_rss))
+            .data("left_out_share", |one| Cell::data(one.left_out_share))
+            .data("distribution", move |one| Cell::optional(family(one)[0]))
+            .data("type", move |one| Cell::optional(family(one)[1]))
+            .data("lower", |one| Cell::data(one.lower()))
+            .data("upper", |one| Cell::data(one.upper()))
+            .data("target_yield", |one| Cell::data(one.target()))
+            .data("met", |one| Cell::both(Value::Truth(one.met()), ""))
+            .data("yield", |one| Cell::data(one.yield_()))
+            .data("ppm_below", |one| Cell::data(one.ppm_below()))
+            .data("ppm_above", |one| Cell::data(one.ppm_above()))
+            .data("cp", move |one| Cell::data(index_of(one, |of| of.cp)))
+            .wide("cpk", "Cpk", move |one| Cell::known(index_of(one, |of| of.cpk), index))
+            .data("cp_percentile", move |one| Cell::data(index_of(one, |of| of.cp_percentile)))
+            .data("cpk_percentile", move |one| Cell::data(index_of(one, |of| of.cpk_percentile)))
+            .data("sigma_level", move |one| Cell::data(index_of(one, Capability::sigma_level)))
+            .data("normal_yield", move |one| fit(one, Capability::yield_))
+            .data("normal_ppm_below", move |one| fit(one, Capability::ppm_below))
+            .data("normal_ppm_above", move |one| fit(one, Capability::ppm_above))
+            .table("characteristics", &self.analysis.characteristics)
+            .of_sections()
+    }
+
+    pub(super) fn dimension_table(&self) -> DataTable {
+        let end = |one: &DimensionReport, end: usize| Cell::data(one.tolerance.map(|ends| ends[end]));
+        Columns::default()
+            .data("name", |one: &&DimensionReport| Cell::text(&one.name))
+            .data("unit", |one| Cell::optional(one.unit.as_deref()))
+            .data("nominal", |one| Cell::data(one.nominal))
+            .data("lower", move |one| end(one, 0))
+            .data("upper", move |one| end(one, 1))
+            .data("zone", |one| Cell::optional(one.zone.as_deref()))
+            .data("distribution", |one| Cell::optional(one.distribution))
+            .data("mean", |one| Cell::data(one.mean))
+            .data("sigma", |one| Cell::data(one.sigma))
+            .table("dimensions", &self.dimensions)
+    }
+
+    pub(super) fn warning_table(&self) -> DataTable {
+        Columns::default()
+            .data("code", |one: &&WarningReport| Cell::text(one.code))
+            .data("characteristic", |one| Cell::optional(one.characteristic.as_deref()))
+            .data("dimension", |one| Cell::optional(one.dimension.as_deref()))
+            .data("message", |one| Cell::text(&one.message))
+            .table("warnings", &self.warnings)
+    }
+}

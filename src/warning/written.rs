@@ -1,0 +1,33 @@
+//! How a warning is written: its code, what it concerns, its text and its fields.
+
+use serde::ser::{SerializeMap, SerializeStruct};
+use serde::{Serialize, Serializer};
+
+use super::Warning;
+use super::text::Text;
+
+impl Serialize for Warning {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Text { message, advice } = self.text();
+        let mut shape = serializer.serialize_struct("Warning", 6)?;
+        shape.serialize_field("code", self.code())?;
+        shape.serialize_field("characteristic", &self.characteristic())?;
+        shape.serialize_field("dimension", &self.dimension())?;
+        shape.serialize_field("message", &message)?;
+        shape.serialize_field("data", &self.data())?;
+        shape.serialize_field("advice", &advice)?;
+        shape.end()
+    }
+}
+
+/// The fields of a warning by name; it serialises as a map.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WarningData<'a>(pub(super) &'a Warning);
+
+impl Serialize for WarningData<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        self.0.fields(&mut map)?;
+        map.end()
+    }
+}
