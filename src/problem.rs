@@ -220,11 +220,11 @@ impl Problem {
 
     /// What became of the processes of an external model so far, in numbers; None where there is none.
     pub(crate) fn evaluator(&self) -> Option<EvaluatorSummary> {
-        self.function.account().map(|account| account.summary())
+        self.function.account().map(|account| account.counts)
     }
 
     /// The outputs of the assembly function that the characteristics are.
-    pub fn outputs(&self) -> &[usize] {
+    pub(crate) fn outputs(&self) -> &[usize] {
         &self.outputs
     }
 

@@ -404,7 +404,7 @@ impl Constraint {
 
     /// The dimensions without a cost that break it by themselves, most harmful first; empty where it could be kept if the others had
     /// no tolerance at all.
-    pub(super) fn without_the_priced(&self, responses: &Responses, priced: &[Priced], factors: &[f64]) -> Vec<usize> {
+    pub(super) fn without_the_priced(&self, responses: &Responses, priced: &[Priced], factors: &[f64]) -> Vec<String> {
         let is_priced = |d: usize| priced.iter().any(|group| group.members.contains(&d));
         let alone = |only: Option<usize>| -> Vec<f64> {
             (0..factors.len())
@@ -423,7 +423,7 @@ impl Constraint {
             .filter(|(harm, _)| *harm > 0.0)
             .collect();
         harm.sort_by(|a, b| b.0.total_cmp(&a.0));
-        harm.into_iter().map(|(_, d)| d).collect()
+        harm.into_iter().map(|(_, d)| responses.dimensions[d].name().to_owned()).collect()
     }
 
     /// By how much the cost falls per unit by which the lower limit goes down, the upper one up, or a required sigma grows.

@@ -71,6 +71,11 @@ pub fn allocate(
     allocate_with(problem, task, options, &Run::to_the_end())
 }
 
+/// The unit of a characteristic.
+fn unit(problem: &Problem, characteristic: usize) -> Option<String> {
+    problem.characteristics()[characteristic].unit().map(str::to_owned)
+}
+
 /// [`allocate`], telling of finished points and stopping when told to.
 pub fn allocate_with(
     problem: &Problem,
@@ -243,7 +248,8 @@ impl Driver<'_> {
                 }
                 Choice::Infeasible(attainable, _) => {
                     allocation.status = Status::Infeasible;
-                    allocation.attainable = Some(attainable);
+                    let unit = unit(&original, attainable.characteristic);
+                    allocation.attainable = Some(Attainable { unit, ..attainable });
                     return Ok(());
                 }
                 Choice::Stopped => {
@@ -314,8 +320,10 @@ impl Driver<'_> {
         let met = values.iter().all(|&value| kept(value));
         let solved = last.as_ref().map(|(solved, ..)| solved);
         if let Some((solved, offers, proof)) = &last {
-            allocation.proof = proof.clone();
-            allocation.cost_after = Some(cost(&self.task.priced, &solved.at, offers));
+            let cost = cost(&self.task.priced, &solved.at, offers);
+            let gap = |bound: f64| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0);
+            allocation.proof = Proof { gap: proof.bound.map(gap), ..proof.clone() };
+            allocation.cost_after = Some(cost);
             allocation.tolerances = self.allocated(original, &solved.at, offers);
             let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
             if free {
@@ -344,6 +352,7 @@ impl Driver<'_> {
                 let one = &constraints[k];
                 Attainable {
                     characteristic: one.characteristic,
+                    unit: unit(original, one.characteristic),
                     requirement: one.requirement,
                     best: station.analysis.characteristics[one.characteristic].judge(one.requirement).value,
                     because: Vec::new(),

@@ -51,7 +51,7 @@ impl Default for AllocationOptions {
 
 impl AllocationOptions {
     /// How derivatives of this problem are taken.
-    pub fn derivatives(&self, problem: &Problem) -> Options {
+    pub(crate) fn derivatives(&self, problem: &Problem) -> Options {
         Options { extremes: false, ..chosen(problem, &self.analysis) }
     }
 
@@ -181,7 +181,7 @@ pub enum AllocateError {
 
 impl AllocateError {
     /// What to do about it.
-    pub fn advice(&self) -> Vec<Advice> {
+    pub(crate) fn advice(&self) -> Vec<Advice> {
         match self {
             Self::NothingToChoose => vec![Advice::WriteCosts, Advice::NameMovableDimensions],
             Self::NoSurrogate { .. } => {

@@ -183,7 +183,7 @@ fn fitted<S: Serializer>(law: &Option<Result<Law, PearsonError>>, serializer: S)
 
 impl CharacteristicAnalysis {
     /// All shares of its dimension: straight line and curvature.
-    pub fn share(&self, dimension: usize) -> Option<f64> {
+    pub(crate) fn share(&self, dimension: usize) -> Option<f64> {
         let sensitivity = &self.sensitivities[dimension];
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
     }
@@ -218,7 +218,7 @@ impl CharacteristicAnalysis {
     ///
     /// The interval of a yield is [`yield_interval`](Self::yield_interval); that of a Cpk and of sigma follows from the estimated
     /// errors of mean and sigma; rss and worst case are what they are by the slopes, without an error.
-    pub fn judge(&self, requirement: Requirement) -> Judged {
+    pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let limits = self.characteristic.limits();
         let error = |of: fn(&ErrorEstimate) -> Option<f64>| match self.constant {
             true => Some(0.0),
@@ -259,7 +259,7 @@ impl CharacteristicAnalysis {
     }
 
     /// Whether its target yield is met; None where it has none, and where that is not known.
-    pub fn met(&self) -> Option<bool> {
+    pub(crate) fn met(&self) -> Option<bool> {
         self.verdict()?.met()
     }
 

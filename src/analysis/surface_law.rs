@@ -119,18 +119,18 @@ impl SurfaceShares {
     }
 
     /// The numerical error of the share within the limits.
-    pub fn error(&self) -> f64 {
+    pub(crate) fn error(&self) -> f64 {
         [self.below, self.above].iter().flatten().map(|figure| figure.error).fold(0.0, f64::hypot)
     }
 
     /// The share beyond the limits; None without any.
-    pub fn rejected(&self) -> Option<f64> {
+    pub(crate) fn rejected(&self) -> Option<f64> {
         let beyond = [self.below, self.above];
         beyond.iter().any(Option::is_some).then(|| beyond.iter().flatten().map(|figure| figure.value).sum::<f64>())
     }
 
     /// The share within the limits; None without any.
-    pub fn yield_(&self) -> Option<f64> {
+    pub(crate) fn yield_(&self) -> Option<f64> {
         self.rejected().map(|rejected| 1.0 - rejected)
     }
 

@@ -1,5 +1,7 @@
 //! What can be chosen about an analysis.
 
+use std::fmt;
+
 use std::str::FromStr;
 
 use super::Method;
@@ -112,11 +114,17 @@ impl DerivativeSource {
     pub(crate) const NAMES: [&str; 2] = ["exact", "difference"];
 
     /// Its name in study files and on the command line.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
             Self::Difference => "difference",
         }
+    }
+}
+
+impl fmt::Display for DerivativeSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -160,7 +168,7 @@ impl FromStr for Pairs {
 
 impl Options {
     /// Check points of a costly model where [`verify`](Self::verify) does not say; a cheap one is sampled.
-    pub const VERIFY: usize = 12;
+    pub(crate) const VERIFY: usize = 12;
 
     /// How a result of such a function is verified: 0 for not at all.
     pub(crate) fn verification(&self, of: &crate::assembly::Signature) -> usize {
@@ -168,7 +176,7 @@ impl Options {
     }
 
     /// The seed where none is given: the same study gives the same numbers.
-    pub const SEED: u64 = 1;
+    pub(crate) const SEED: u64 = 1;
 
     /// With this relative error of sigma as the aim of `auto`.
     #[must_use]

@@ -203,7 +203,7 @@ impl SimulatedCharacteristic {
 impl SimulatedCharacteristic {
     /// How a requirement is kept, whether or not it is the characteristic's own: by the interval of the yield, where points without
     /// a value may all be rejected ones, or by two standard errors of mean and sigma. Of rss and worst case a sample knows nothing.
-    pub fn judge(&self, requirement: Requirement) -> Judged {
+    pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let limits = self.characteristic.limits();
         let known = |estimate: Option<Estimate>| estimate.map(|of| (of.value, of.standard_error));
         let (value, interval) = match requirement {

@@ -73,7 +73,7 @@ impl StudyError {
     }
 
     /// What to write instead, where that can be said.
-    pub fn help(&self) -> Option<String> {
+    pub(crate) fn help(&self) -> Option<String> {
         self.fault.help()
     }
 
@@ -335,12 +335,12 @@ impl From<UnknownName> for StudyFault {
 
 impl StudyFault {
     /// What to do about it, beside changing what is written.
-    pub fn advice(&self) -> Vec<Advice> {
+    pub(crate) fn advice(&self) -> Vec<Advice> {
         if let Self::Method(error) = self { error.advice() } else { Vec::new() }
     }
 
     /// What to write instead, where that can be said.
-    pub fn help(&self) -> Option<String> {
+    pub(crate) fn help(&self) -> Option<String> {
         let meant = |name: &String| format!("did you mean `{name}`?");
         let one_of = |known: &[String]| format!("it is one of {}", known.join(", "));
         match self {

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use sensitol::allocation::{
     Allocation, AllocationOptions, AllocationTask, Curve, Kept, Offer, Priced, Status, allocate,
 };
+use sensitol::internals::reach::*;
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{
     Characteristic, Closure, Dimension, Method, Options, Problem, Requirement, SpecLimits, StopReason, Study, Verdict,
@@ -377,7 +378,7 @@ fn dimensions_without_a_cost_that_break_a_requirement_are_named() {
     );
     let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
     let attainable = found.attainable.unwrap();
-    assert_eq!(attainable.because, [1, 2], "0.6 and 0.2 of 0.5 by themselves, most harmful first");
+    assert_eq!(attainable.because, ["x1", "x2"], "0.6 and 0.2 of 0.5 by themselves, most harmful first");
     assert_eq!(found.run.evaluations, 14, "the present tolerances were analysed, and the tightest");
 }
 
