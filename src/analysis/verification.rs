@@ -243,8 +243,6 @@ fn check(
         return RunSummary::default();
     };
     let Checked { answers, .. } = &checked;
-    let answered = |row: &usize| (0..answers.outputs()).any(|output| !answers.is_open(*row, output));
-    let spent = (0..answers.rows()).filter(answered).count();
     let not_given = |c: usize| {
         let given = |row: usize| !matches!(answers.error(row, c), Some(EvaluationError::NotGiven));
         (0..answers.rows()).any(|row| !given(row) || answers.is_open(row, c))
@@ -257,15 +255,7 @@ fn check(
             judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
         }
     }
-    RunSummary {
-        evaluations: (spent as i64 + answers.extra()).max(0) as u64,
-        cached: answers.count_reused() as u64,
-        retried: answers.count_retried() as u64,
-        failed: answers.failed_among(&(0..answers.rows()).collect::<Vec<_>>()) as u64,
-        stages: 1,
-        in_model: begun.elapsed(),
-        ..RunSummary::default()
-    }
+    answers.summary(begun.elapsed())
 }
 
 /// The errors of a method's figures: those of the surface, and what the method has beside the surface.
