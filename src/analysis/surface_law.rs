@@ -15,7 +15,7 @@ use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
 /// The probabilities of the quantiles of reports, lowest first, each by the tail that it leaves.
-pub const QUANTILES: [(LawTail, f64); 7] = [
+const QUANTILES: [(LawTail, f64); 7] = [
     (LawTail::Lower, TAIL),
     (LawTail::Lower, 0.01),
     (LawTail::Lower, 0.05),
@@ -55,7 +55,7 @@ pub struct SurfaceShares {
     pub below: Option<LawFigure>,
     /// The share above the upper limit; None without one.
     pub above: Option<LawFigure>,
-    /// At the probabilities of [`QUANTILES`]; None without limits: those of the Pearson fit are then reported. None
+    /// At the [`PROBABILITIES`](crate::capability::PROBABILITIES); None without limits: those of the Pearson fit are then reported. None
     /// too where the law could only be counted at points.
     pub quantiles: Option<[LawFigure; 7]>,
 }

@@ -14,6 +14,13 @@ pub struct ModelInfo {
     pub gradients: bool,
 }
 
+impl ModelInfo {
+    /// A model that takes so many points at once, without name and version.
+    pub fn of_window(window: usize) -> Self {
+        Self { window, ..Self::default() }
+    }
+}
+
 /// A model answered one point otherwise than before: the nominal point, or one that was asked again to see whether it repeats.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]

@@ -69,6 +69,11 @@ pub(crate) fn of_moments(summary: &Summary) -> [Option<Estimate>; 4] {
     ]
 }
 
+/// One error of a value with a 95 % interval: half of the way to its farther end, as two errors are to reach both.
+pub(crate) fn one_error(value: f64, [low, high]: [f64; 2]) -> f64 {
+    0.5 * (high - value).max(value - low)
+}
+
 /// The 95 % interval of a share of which `hits` of `n` were seen (Wilson 1927): never empty, never outside 0 to 1.
 ///
 /// ```

@@ -14,7 +14,7 @@ mod written;
 pub(crate) use written::SimulatedShape;
 
 pub use crate::sampling::{Estimate, Sampler, SamplingError};
-pub use characteristic::{Histogram, QUANTILES, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
+pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 
 use std::time::Duration;
 

@@ -41,7 +41,6 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::distribution::DistributionError,
         sensitol::fits::FitError,
         sensitol::journal::JournalError,
-        sensitol::analysis::LawError,
         sensitol::UnknownName,
         sensitol::pearson::PearsonError,
         sensitol::rare::RareError,

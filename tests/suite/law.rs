@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sensitol::analysis::{Branch, LawError, LawFigure, LawTail};
+use sensitol::analysis::{Branch, LawFigure};
 use sensitol::correlation::{Correlation, Pair};
 use sensitol::distribution::{
     Beta, Distribution, Exponential, Gamma, Lognormal, Measured, Mixture, Normal, Part, Trapezoidal, Triangular,
@@ -12,6 +12,7 @@ use sensitol::internals::reach::*;
 use sensitol::internals::{
     Inputs, Interactions, LawOptions, Rule, SurfaceLaw, Surrogate, Univariate, joint_yield, shapes,
 };
+use sensitol::internals::{LawError, LawTail};
 use sensitol::{Dimension, SpecLimits};
 use serde_json::Value;
 
