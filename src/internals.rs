@@ -46,7 +46,7 @@ pub mod reach {
         Beta, DistributionError, Jacobi, Rule, StandardMoments, Trapezoidal, Triangular, TruncatedNormal,
     };
     use crate::fits::FitError;
-    use crate::method::{ErrorEstimate, MethodError, Options};
+    use crate::method::{ErrorEstimate, MethodError};
     use crate::moments::Moments;
     use crate::pearson::{Pearson, PearsonError, TwoPoint};
     use crate::problem::Problem;
@@ -165,10 +165,6 @@ pub mod reach {
         OfMethodError of MethodError {
             fn advice(&self) -> Vec<Advice>;
             fn needed(&self) -> Option<u64>;
-        }
-        OfOptions of Options {
-            const SEED: u64;
-            const VERIFY: usize;
         }
         OfMoments of Moments {
             fn excess(&self) -> Option<f64>;

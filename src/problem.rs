@@ -106,7 +106,7 @@ impl Problem {
     /// With dimensions that vary together; without pairs, all independent.
     ///
     /// # Errors
-    /// When these dimensions cannot be correlated so: see [`Correlation::new`].
+    /// When these dimensions cannot be correlated so: see [`CorrelationError`].
     pub fn correlated(mut self, pairs: &[Pair]) -> Result<Self, CorrelationError> {
         self.correlation = match pairs {
             [] => None,

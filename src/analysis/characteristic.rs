@@ -82,7 +82,7 @@ pub struct CharacteristicAnalysis {
     #[serde(rename = "sampling_interval")]
     pub sampling: Option<SamplingInterval>,
     /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
-    /// band that hurts, and a point of a circular zone ([`Dimension::zone`](crate::Dimension::zone)) at its edge.
+    /// band that hurts, and a point of a circular zone ([`Dimension::within_zone`](crate::Dimension::within_zone)) at its edge.
     #[serde(skip)]
     pub worst_case: Option<[f64; 2]>,
     /// The least and the greatest value in the box of the tolerance bands, where they were searched and found.

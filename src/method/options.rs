@@ -168,7 +168,7 @@ impl FromStr for Pairs {
 
 impl Options {
     /// Check points of a costly model where [`verify`](Self::verify) does not say; a cheap one is sampled.
-    pub(crate) const VERIFY: usize = 12;
+    pub const VERIFY: usize = 12;
 
     /// How a result of such a function is verified: 0 for not at all.
     pub(crate) fn verification(&self, of: &crate::assembly::Signature) -> usize {
@@ -176,7 +176,7 @@ impl Options {
     }
 
     /// The seed where none is given: the same study gives the same numbers.
-    pub(crate) const SEED: u64 = 1;
+    pub const SEED: u64 = 1;
 
     /// With this relative error of sigma as the aim of `auto`.
     #[must_use]

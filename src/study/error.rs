@@ -36,7 +36,7 @@ pub struct StudyError {
     pub key: String,
     /// What is wrong.
     pub fault: Box<StudyFault>,
-    /// The other faults of the same study, in the order of the file: [`Study::MOST_FAULTS`](super::Study::MOST_FAULTS) in all at most.
+    /// The other faults of the same study, in the order of the file: 20 in all at most.
     pub more: Vec<StudyError>,
 }
 
