@@ -14,6 +14,7 @@ use crate::distribution::DistributionError;
 use crate::fits::FitError;
 #[cfg(feature = "journal")]
 use crate::journal::JournalError;
+use crate::law::LawError;
 use crate::method::MethodError;
 use crate::names::UnknownName;
 use crate::pearson::PearsonError;
@@ -43,6 +44,9 @@ pub enum Error {
     /// A formula cannot be read.
     #[error(transparent)]
     Formula(#[from] FormulaError),
+    /// A surface has no distribution that can be computed.
+    #[error(transparent)]
+    Law(#[from] LawError),
     /// Formulas do not fit together.
     #[error(transparent)]
     Composite(#[from] CompositeError),

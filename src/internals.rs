@@ -10,7 +10,7 @@ pub use crate::distribution::rule::Rule;
 pub use crate::distribution::sample::{Resample, Sample};
 #[cfg(feature = "journal")]
 pub use crate::journal::store::{Store, StoredAnswer};
-pub use crate::law::{LawError, LawOptions, LawTail, SurfaceLaw, joint_yield};
+pub use crate::law::{LawOptions, LawTail, SurfaceLaw, joint_yield};
 pub use crate::method::procedure::Procedure;
 pub use crate::method::registry::{ALL, procedure};
 pub use crate::moments::{Interactions, Tables, Term, contributions, of_quadratic};

@@ -29,7 +29,7 @@ mod written;
 mod yield_source;
 
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
-pub use crate::law::{Branch, LawFigure};
+pub use crate::law::{Branch, LawError, LawFigure};
 pub use crate::moments::{Contributions, Sampled};
 pub use crate::surrogate::Relocation;
 pub use crate::verification::{Crossing, FoundSwitch, Share, Verified};

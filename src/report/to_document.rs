@@ -6,12 +6,12 @@ use crate::document::Document;
 /// A report that can be shown to people.
 ///
 /// ```
-/// use sensitol::report::{About, Report, Style, ToDocument, text};
+/// use sensitol::report::{About, Report, ToDocument, markdown};
 /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
 /// let dimensions = [Dimension::normal("bore", 25.02, 0.01)?, Dimension::normal("shaft", 24.98, 0.01)?];
 /// let problem = Problem::new(dimensions, Closure::scalar("clearance", |x| x[0] - x[1]))?;
 /// let report = Report::of(&problem, &analyze(&problem, &Method::SecondOrder.into())?, About::default());
-/// assert!(text(&report.document(), Style::default()).contains("clearance"));
+/// assert!(markdown(&report.document()).contains("clearance"));
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub trait ToDocument {

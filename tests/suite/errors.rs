@@ -29,6 +29,7 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::allocation::AllocateError,
         sensitol::allocation::CostError,
         sensitol::RequirementError,
+        sensitol::analysis::LawError,
         sensitol::analysis::NoFit,
         sensitol::assembly::CompositeError,
         sensitol::assembly::EvaluationError,

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sensitol::analysis::{Branch, LawFigure};
+use sensitol::analysis::{Branch, LawError, LawFigure};
 use sensitol::correlation::{Correlation, Pair};
 use sensitol::distribution::{
     Beta, Distribution, Exponential, Gamma, Lognormal, Measured, Mixture, Normal, Part, Trapezoidal, Triangular,
