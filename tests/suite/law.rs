@@ -8,11 +8,11 @@ use sensitol::distribution::{
     Beta, Distribution, Exponential, Gamma, Lognormal, Measured, Mixture, Normal, Part, Trapezoidal, Triangular,
     Uniform, Weibull,
 };
+use sensitol::internals::LawTail;
 use sensitol::internals::reach::*;
 use sensitol::internals::{
     Inputs, Interactions, LawOptions, Rule, SurfaceLaw, Surrogate, Univariate, joint_yield, shapes,
 };
-use sensitol::internals::{LawError, LawTail};
 use sensitol::{Dimension, SpecLimits};
 use serde_json::Value;
 
