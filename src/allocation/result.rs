@@ -27,6 +27,8 @@ pub enum Status {
     AlmostOptimal,
     /// No tolerances within the bounds keep every requirement.
     Infeasible,
+    /// The search ended at tolerances that miss a requirement; that no others keep it is not proven.
+    NoFeasiblePointFound,
     /// Stopped before it was known.
     OutOfTime,
 }
@@ -38,6 +40,7 @@ impl Status {
             Self::Optimal => "optimal",
             Self::AlmostOptimal => "almost-optimal",
             Self::Infeasible => "infeasible",
+            Self::NoFeasiblePointFound => "no-feasible-point-found",
             Self::OutOfTime => "out-of-time",
         }
     }

@@ -52,7 +52,8 @@ impl Default for AllocationOptions {
 impl AllocationOptions {
     /// How derivatives of this problem are taken.
     pub(crate) fn derivatives(&self, problem: &Problem) -> Options {
-        Options { extremes: false, ..chosen(problem, &self.analysis) }
+        let model_figures = self.analysis.method == Method::Auto;
+        Options { extremes: false, model_figures, ..chosen(problem, &self.analysis) }
     }
 
     /// With derivatives taken so.

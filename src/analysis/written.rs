@@ -4,10 +4,10 @@ use serde::{Serialize, Serializer};
 
 use super::{Analysis, CharacteristicAnalysis};
 use crate::extremes::{Coordinate, Extremes};
-use crate::shape::{Own, whole};
+use crate::shape::{WithoutWarnings, whole};
 use crate::verdict::{Judged, Verdict};
 
-impl Own for Analysis {
+impl WithoutWarnings for Analysis {
     fn own<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         Self::serialize(self, serializer)
     }

@@ -51,6 +51,8 @@ pub struct Options {
     pub verify: Option<usize>,
     /// Whether the densities of surface laws are tabulated, for those who draw them.
     pub densities: bool,
+    /// Whether figures of a cheap model take the place of those of a surface that it refutes, as `auto` has it.
+    pub(crate) model_figures: bool,
 }
 
 /// The errors that are wanted beside that of sigma, absolute; None where nothing is.
@@ -287,6 +289,7 @@ impl Default for Options {
             derivatives: None,
             verify: None,
             densities: false,
+            model_figures: false,
         }
     }
 }

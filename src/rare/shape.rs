@@ -4,10 +4,10 @@ use serde::{Serialize, Serializer};
 
 use super::{Beyond, RareCharacteristic, RareEvents};
 use crate::sampling::Estimate;
-use crate::shape::{Own, whole};
+use crate::shape::{WithoutWarnings, whole};
 use crate::verdict::{Judged, Verdict};
 
-impl Own for RareEvents {
+impl WithoutWarnings for RareEvents {
     fn own<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         Self::serialize(self, serializer)
     }

@@ -6,10 +6,10 @@ use super::shape::{ControlShape, Reduction};
 use super::{SimulatedCharacteristic, Simulation, SurrogateControl};
 use crate::capability::Quantiles;
 use crate::sampling::Estimate;
-use crate::shape::{Four, Own, whole};
+use crate::shape::{Four, WithoutWarnings, whole};
 use crate::verdict::{Judged, Verdict};
 
-impl Own for Simulation {
+impl WithoutWarnings for Simulation {
     fn own<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         Self::serialize(self, serializer)
     }
