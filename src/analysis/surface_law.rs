@@ -8,9 +8,10 @@ use super::counted::counted;
 use crate::capability::{Law, Quantiles, TAIL};
 use crate::correlation::Correlation;
 use crate::distribution::{Distribution, Normal};
-use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, SurfaceLaw};
+use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, SurfaceLaw};
 use crate::method::Outcome;
 use crate::moments::Interactions;
+use crate::pearson::Pearson;
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
@@ -40,10 +41,6 @@ const ATOMS: usize = 64;
 const DRAWN: f64 = 1e-5;
 /// and has so many places: a pixel or two each.
 const PLACES: usize = 240;
-/// A quantile is found within this part of sigma,
-const NEAR: f64 = 1e-7;
-/// in so many steps from the quantile of the Pearson fit, or by the law's own search.
-const STEPS: usize = 8;
 
 /// What the law of a surface says of a characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,8 +52,7 @@ pub struct SurfaceShares {
     pub below: Option<LawFigure>,
     /// The share above the upper limit; None without one.
     pub above: Option<LawFigure>,
-    /// At the probabilities of [`QUANTILES`]; None without limits: those of the Pearson fit are then reported. None
-    /// too where the law could only be counted at points.
+    /// At the probabilities of [`QUANTILES`].
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
@@ -97,10 +93,6 @@ impl SurfaceShares {
         let known = |figure: &LawFigure| figure.value.is_finite() && figure.error.is_finite();
         if ![below, above].iter().flatten().all(known) {
             return Some((Self::counted(problem, outcome, c, seed)?, None));
-        }
-        // Seven quantiles take some 25 values of the law, up to half a second each: only where limits say that the tails matter.
-        if !limits.exist() {
-            return Some((Self { branch: whole.branch(), below, above, quantiles: None }, Some(whole)));
         }
         let full = match unexplained.filter(|_| beside) {
             Some(_) => {
@@ -215,50 +207,25 @@ pub(super) fn density(law: &SurfaceLaw) -> Option<Vec<[f64; 2]>> {
     (from < to && table.iter().all(|[_, density]| *density >= 0.0)).then_some(table)
 }
 
-/// All quantiles of reports; None where one of them is unknown.
+/// All quantiles of reports, sought from those of the Pearson fit, or of a normal distribution where nothing else has the moments; None
+/// where one of them is unknown.
 fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
-    let mut found = [LawFigure { value: f64::NAN, error: f64::INFINITY, proven: false }; 7];
-    for (figure, (tail, p)) in found.iter_mut().zip(QUANTILES) {
-        let start = fit.map(|fit| match tail {
+    let normal = || Pearson::normal(law.mean(), law.sigma()).ok();
+    let start = match fit {
+        Some(Law::Pearson(fit)) => Some(fit.as_ref().clone()),
+        _ => normal(),
+    };
+    let sought = QUANTILES.map(|(tail, p)| {
+        let near = start.as_ref().map(|fit| match tail {
             LawTail::Lower => fit.quantile(p),
             LawTail::Upper => fit.upper_quantile(p),
         });
-        *figure = quantile(law, tail, p, start);
-        if !figure.value.is_finite() {
-            return None;
-        }
-    }
-    Some(found)
-}
-
-/// By secants of the logarithm of the tail from a place that is nearly right, which takes three or four limits.
-fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64, start: Option<f64>) -> LawFigure {
-    let sigma = law.sigma();
-    let own = || law.quantile(tail, p);
-    let Some(start) = start.filter(|_| sigma > 0.0 && !law.is_step_function()) else { return own() };
-    let outward = if tail == LawTail::Upper { 1.0 } else { -1.0 };
-    let gap = |y: f64| {
-        let figure = law.tail(y, tail);
-        (libm::log(figure.value / p), figure.error / figure.value)
-    };
-    let mut last = (start, gap(start).0);
-    // Of a normal law half a sigma of its own tail: a step that need only be of the right size.
-    let mut at = start + outward * sigma * last.1.clamp(-1.0, 1.0) * 0.3;
-    for _ in 0..STEPS {
-        let (here, error) = gap(at);
-        let slope = (here - last.1) / (at - last.0);
-        let step = -here / slope;
-        if here == 0.0 || (slope * outward < 0.0 && step.abs() <= NEAR * sigma) {
-            let by = if here == 0.0 { 0.0 } else { step };
-            return LawFigure { value: at + by, error: (error / slope.abs()).max(NEAR * sigma), proven: false };
-        }
-        if !(slope * outward < 0.0 && step.abs() < sigma) {
-            return own();
-        }
-        last = (at, here);
-        at += step;
-    }
-    own()
+        let density = start.as_ref().zip(near).map_or(f64::NAN, |(fit, near)| fit.pdf(near));
+        Sought { tail, p, near: near.unwrap_or(f64::NAN), density }
+    });
+    let found = law.quantiles(&sought);
+    let known = found.iter().all(|figure| figure.value.is_finite());
+    found.try_into().ok().filter(|_| known)
 }
 
 /// What the law of the fitted surface says, as it is written.

@@ -43,6 +43,7 @@ mod tree;
 
 pub use held::HeldTail;
 pub use joint::joint_yield;
+pub(crate) use quantile::Sought;
 
 use std::sync::Arc;
 
@@ -341,6 +342,13 @@ impl SurfaceLaw {
             true => quantile::quantile(self, tail, p),
             false => quantile::quantile(self, tail.other(), 1.0 - p),
         }
+    }
+
+    /// Several quantiles at once, each from a place that is nearly right: to 1e-7 sigma, or to a small part of what points leave open.
+    ///
+    /// Those of one tail share a contour or points. Cost: three or four limits on it for each.
+    pub(crate) fn quantiles(&self, sought: &[Sought]) -> Vec<LawFigure> {
+        quantile::quantiles(self, sought)
     }
 
     /// The derivatives of a tail's probability by the logarithm of every input's tolerance, at fixed shape: the slope of input
