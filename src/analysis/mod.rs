@@ -19,7 +19,7 @@ mod shapes;
 mod shares;
 mod shorten;
 mod surface;
-mod surface_law;
+pub(crate) mod surface_law;
 mod trust;
 mod verification;
 mod verified;

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use super::counted::counted;
+use super::counted::{Counted, counted};
+use super::surface::Surface;
 use crate::capability::{Law, Quantiles, TAIL};
 use crate::correlation::Correlation;
 use crate::distribution::{Distribution, Normal};
@@ -13,7 +14,7 @@ use crate::method::Outcome;
 use crate::moments::Interactions;
 use crate::pearson::Pearson;
 use crate::problem::Problem;
-use crate::surrogate::{Surrogate, Univariate};
+use crate::surrogate::{Relocation, Surrogate, Univariate};
 
 /// The probabilities of the quantiles of reports, lowest first, each by the tail that it leaves.
 pub const QUANTILES: [(LawTail, f64); 7] = [
@@ -35,12 +36,22 @@ const POINTS: usize = 1 << 12;
 /// and terms of the surface, from which on there are fewer.
 const TERMS: usize = 1 << 10;
 const FEWEST: usize = 1 << 9;
-/// Measured values of one input from which on every point of a contour is a long sum: the surface is counted at points instead.
+/// Measured values of one input up to which every point of a contour is a short sum.
 const ATOMS: usize = 64;
+/// Beyond, terms of all points of a contour at most: the surface is counted at points instead where they are more,
+const TERMS_OF_ATOMS: f64 = 1e7;
+/// and points of a contour, as many as this by the part of sigma that has a density: beyond 8 by the sigma of that part its transform
+/// vanishes, and points are a third by the sigma of the whole from each other.
+const POINTS_OF_SIGMA: f64 = 24.0;
+const MOST_POINTS: f64 = 2048.0;
+/// Values of a step function that are listed.
+const STEPS: usize = 1 << 18;
 /// A drawn density ends where so little lies beyond,
 const DRAWN: f64 = 1e-5;
-/// and has so many places: a pixel or two each.
+/// and has so many places: a pixel or two each,
 const PLACES: usize = 240;
+/// or so many where each is a sum over points: lines between them are within 0.1 % of the peak of a normal density.
+const FEW_PLACES: usize = 96;
 
 /// What the law of a surface says of a characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,11 +59,15 @@ const PLACES: usize = 240;
 pub struct SurfaceShares {
     /// How the law is computed.
     pub branch: Branch,
+    /// Points of the surface at which its law was counted, because it could not be computed; None where it was.
+    pub counted: Option<usize>,
+    /// Whether it is a step function: every input that counts has measured values only.
+    pub steps: bool,
     /// The share below the lower limit; None without one.
     pub below: Option<LawFigure>,
     /// The share above the upper limit; None without one.
     pub above: Option<LawFigure>,
-    /// At the probabilities of [`QUANTILES`].
+    /// At the probabilities of [`QUANTILES`]; None where one of them is unknown.
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
@@ -75,8 +90,7 @@ impl SurfaceShares {
         }
         let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
         let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
-        let measured = inputs.iter().filter_map(|law| law.probability());
-        if measured.map(|law| law.atoms().len()).any(|atoms| atoms > ATOMS) {
+        if has_too_many_atoms(&surrogate, &inputs) {
             return Some((Self::counted(problem, outcome, c, seed)?, None));
         }
         let correlation = outcome.plan.inputs().correlation();
@@ -102,12 +116,22 @@ impl SurfaceShares {
             None => None,
         };
         let quantiles = quantiles(full.as_ref().unwrap_or(&whole), fit);
-        Some((Self { branch: whole.branch(), below, above, quantiles }, Some(whole)))
+        Some((
+            Self { branch: whole.branch(), counted: None, steps: whole.is_step_function(), below, above, quantiles },
+            Some(whole),
+        ))
     }
 
     fn counted(problem: &Problem, outcome: &Outcome, c: usize, seed: u64) -> Option<Self> {
-        let [below, above] = counted(problem, outcome, c, seed)?;
-        Some(Self { branch: Branch::Sampled, below, above, quantiles: None })
+        let Counted { beyond: [below, above], quantiles, points } = counted(problem, outcome, c, seed)?;
+        Some(Self {
+            branch: Branch::Sampled,
+            counted: Some(points),
+            steps: false,
+            below,
+            above,
+            quantiles: Some(quantiles),
+        })
     }
 
     /// The numerical error of the share within the limits.
@@ -137,6 +161,31 @@ impl SurfaceShares {
     }
 }
 
+/// Whether measured values make the points of a contour sums that are too long, and more of them than a list.
+fn has_too_many_atoms(surrogate: &Surrogate, inputs: &[Arc<dyn Distribution>]) -> bool {
+    let atoms: Vec<usize> = inputs.iter().map(|law| law.probability().map_or(0, |law| law.atoms().len())).collect();
+    if atoms.iter().all(|&count| count <= ATOMS) {
+        return false;
+    }
+    let counts = |j: &usize| surrogate.parts[*j].is_some_and(|part| part.largest() > 0.0);
+    let counting = || (0..inputs.len()).filter(counts);
+    let listed =
+        counting().try_fold(1usize, |all, j| all.checked_mul(atoms[j]).filter(|&all| (1..=STEPS).contains(&all)));
+    if listed.is_some() {
+        return false;
+    }
+    let products = surrogate.interactions.pairs();
+    if products.iter().any(|&(j, k, product)| product != 0.0 && atoms[j].max(atoms[k]) > ATOMS) {
+        return true;
+    }
+    let spread = |smooth: bool| {
+        let own = counting().filter(|&j| !smooth || atoms[j] == 0).filter_map(|j| surrogate.parts[j]);
+        own.map(|part| part.largest().powi(2)).sum::<f64>().sqrt()
+    };
+    let points = (POINTS_OF_SIGMA * spread(false) / spread(true)).max(1.0);
+    points > MOST_POINTS || points * atoms.iter().sum::<usize>() as f64 > TERMS_OF_ATOMS
+}
+
 /// The law of a characteristic's surface itself; None where there is no surface, or nothing but moments is known of an input.
 pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
     let (surrogate, inputs) = surface(problem, outcome, c, None)?;
@@ -150,6 +199,20 @@ pub(crate) fn law_over(
     correlation: Option<&Correlation>,
 ) -> Result<SurfaceLaw, LawError> {
     law(surrogate, inputs, correlation, points(surrogate))
+}
+
+/// The law of a characteristic's surface where its inputs have moved and keep their shapes, beside what the surface leaves out: what
+/// pages compute by themselves. None where the moments follow from no surface.
+pub fn law_at(
+    problem: &Problem,
+    surface: &Surface,
+    characteristic: usize,
+    moved: &[Relocation],
+) -> Option<Result<SurfaceLaw, LawError>> {
+    let fit = surface.characteristics[characteristic].as_ref().ok()?;
+    let inputs = surface.varying.iter().map(|&d| problem.dimensions()[d].law().cloned()).collect::<Option<_>>()?;
+    let (surrogate, inputs) = with(&fit.surrogate.relocated(moved), inputs, fit.unexplained);
+    Some(law_over(&surrogate, &inputs, None))
 }
 
 /// A surface and the distributions of its inputs, beside a variance that it leaves out.
@@ -194,17 +257,31 @@ fn law(
     SurfaceLaw::of(surrogate, inputs, correlation, &LawOptions { points, ..LawOptions::default() })
 }
 
-/// The density at places from one far quantile to the other, `[y, density]`; None where the law is sampled, each place of which is a
-/// sum over points, and where its values are steps.
-pub(super) fn density(law: &SurfaceLaw) -> Option<Vec<[f64; 2]>> {
-    if law.branch() == Branch::Sampled || law.is_step_function() {
+/// The density at places from one far quantile to the other, `[y, density, error]`; None where its values are steps, and where points are
+/// drawn of which none can be integrated.
+pub(super) fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[f64; 3]>> {
+    if law.is_step_function() {
         return None;
     }
-    let [from, to] = [LawTail::Lower, LawTail::Upper].map(|tail| law.quantile(tail, DRAWN).value);
-    let place = |i: usize| from + (to - from) * i as f64 / PLACES as f64;
-    let table: Vec<[f64; 2]> = (0..=PLACES).map(|i| [place(i), law.density(place(i)).value]).collect();
+    let sampled = law.branch() == Branch::Sampled;
+    let places = if sampled { FEW_PLACES } else { PLACES };
+    let [from, to] = match quantiles.filter(|_| sampled) {
+        // Half as far again: of a normal distribution from 3 to 4.5 sigma.
+        Some(all) => {
+            let [low, middle, high] = OUTER.map(|index| all[index].value);
+            let [least, most] = law.range();
+            [(low + 0.5 * (low - middle)).max(least), (high + 0.5 * (high - middle)).min(most)]
+        }
+        None => [LawTail::Lower, LawTail::Upper].map(|tail| law.quantile(tail, DRAWN).value),
+    };
+    let place = |i: usize| from + (to - from) * i as f64 / places as f64;
+    let at = |i: usize| {
+        let figure = law.drawn_density(place(i));
+        [place(i), figure.value, figure.error]
+    };
+    let table: Vec<[f64; 3]> = (0..=places).map(at).collect();
     // A density may be infinite at an end of its support.
-    (from < to && table.iter().all(|[_, density]| *density >= 0.0)).then_some(table)
+    (from < to && table.iter().all(|[_, density, _]| *density >= 0.0)).then_some(table)
 }
 
 /// All quantiles of reports, sought from those of the Pearson fit, or of a normal distribution where nothing else has the moments; None
@@ -234,6 +311,10 @@ fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
 pub(super) struct SurfaceLawShape {
     /// `exact`, `single` or `sampled`: how it is computed.
     branch: &'static str,
+    /// Points of the surface at which the law was counted, where it could not be computed; null where it was.
+    counted_points: Option<usize>,
+    /// Whether the law is a step function, because every input that counts has measured values only.
+    step_function: bool,
     /// The share within the limits; null without any.
     #[serde(rename = "yield")]
     yield_: Option<f64>,
@@ -243,7 +324,7 @@ pub(super) struct SurfaceLawShape {
     ppm_above: Option<f64>,
     /// The numerical error of the share within the limits: of the law of this surface, not of the surface.
     yield_error: Option<f64>,
-    /// Quantiles; null where the law could only be counted at points.
+    /// Quantiles; null where one of them is unknown.
     quantiles: Option<Quantiles>,
 }
 
@@ -256,6 +337,8 @@ impl Serialize for SurfaceShares {
                 Branch::Single => "single",
                 Branch::Sampled => "sampled",
             },
+            counted_points: self.counted,
+            step_function: self.steps,
             yield_: self.yield_(),
             ppm_below: ppm(self.below),
             ppm_above: ppm(self.above),

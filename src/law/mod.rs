@@ -37,6 +37,8 @@ mod single_sum;
 mod steps;
 mod surface;
 mod table;
+#[cfg(feature = "html")]
+mod tabulated;
 mod tilt;
 mod transform;
 mod tree;
@@ -44,6 +46,8 @@ mod tree;
 pub use held::HeldTail;
 pub use joint::joint_yield;
 pub(crate) use quantile::Sought;
+#[cfg(feature = "html")]
+pub(crate) use tabulated::TabulatedInput;
 
 use std::sync::Arc;
 
@@ -78,6 +82,11 @@ impl LawFigure {
 
     const fn proven(value: f64) -> Self {
         Self { value, error: 0.0, proven: true }
+    }
+
+    /// Of points that were counted.
+    pub(crate) const fn counted(value: f64, error: f64) -> Self {
+        Self::new(value, error)
     }
 
     fn complement(self) -> Self {
@@ -303,7 +312,7 @@ impl SurfaceLaw {
         }
     }
 
-    /// Density per unit of `y`; 0 where the law is a step function.
+    /// Density per unit of `y`; 0 where the law is a step function, NaN where points are drawn of which none can be integrated.
     pub fn density(&self, y: f64) -> LawFigure {
         let [least, most] = self.range;
         if y.is_nan() {
@@ -317,6 +326,15 @@ impl SurfaceLaw {
             Kind::Exact(inversion) => inversion.density(y),
             Kind::Single(single) => single.density(y),
             Kind::Sampled(sampled) => sampled.density(y, self.mean),
+        }
+    }
+
+    /// [`density`](Self::density) for a drawing: where points are drawn, from those of the law itself, which do for where it is visible.
+    pub(crate) fn drawn_density(&self, y: f64) -> LawFigure {
+        let [least, most] = self.range;
+        match &self.kind {
+            Kind::Sampled(sampled) if y >= least && y <= most && !self.step => sampled.plain_density(y),
+            _ => self.density(y),
         }
     }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::contour::Contour;
 use super::inversion::Inversion;
 use super::sampled::{Choice, Sampled};
+use super::single::Single;
 use super::{Kind, LawFigure, LawTail, SurfaceLaw};
 
 /// Steps at most: a dozen when all is well.
@@ -128,7 +129,11 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
         }
         // The tail is too heavy: the quantile lies farther out.
         let outward = (here > 0.0) == (tail == LawTail::Upper);
-        if outward { low = at } else { high = at }
+        if outward {
+            low = at
+        } else {
+            high = at
+        }
         slope = match (own_slope, last) {
             (Some(own), _) if own * sign < 0.0 && own.is_finite() => own,
             (_, Some((before, there))) if (here - there) * (at - before) * sign < 0.0 => (here - there) / (at - before),
@@ -153,6 +158,8 @@ enum Together<'l> {
     Line(&'l Inversion, Arc<Contour>, Cell<usize>),
     /// The points of a sample, and a contour of its control.
     Points(&'l Sampled, Option<(&'l Inversion, Arc<Contour>, Cell<usize>)>),
+    /// Panels with fewer digits.
+    Panels(&'l Single),
     Nothing,
 }
 
@@ -169,7 +176,8 @@ impl<'l> Together<'l> {
                 None => Self::Nothing,
             },
             Kind::Sampled(sampled) => Self::Points(sampled, sampled.control().and_then(line)),
-            _ => Self::Nothing,
+            Kind::Single(single) => Self::Panels(single),
+            Kind::Point(_) | Kind::Steps(_) => Self::Nothing,
         }
     }
 
@@ -195,6 +203,7 @@ impl<'l> Together<'l> {
                 };
                 (sampled.tail_by(y, tail, choice, exact), None)
             }
+            Self::Panels(single) => (single.tail_nearly(y, tail), None),
             Self::Nothing => (law.tail(y, tail), None),
         }
     }

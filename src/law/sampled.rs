@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::direction::{Direction, Terms};
 use super::input::Input;
 use super::inversion::Inversion;
-use super::panels::expectation;
+use super::panels::{EXACT, expectation};
 use super::points::{Along, REPLICATES, Sample, visit};
 use super::polynomial::{Quartic, derivative, roots, value};
 use super::surface::Surface;
@@ -120,6 +120,17 @@ impl Sampled {
     pub(super) fn density(&self, y: f64, mean: f64) -> LawFigure {
         let tail = if y < mean { LawTail::Lower } else { LawTail::Upper };
         self.figure(y, tail, Quantity::Density)
+    }
+
+    /// Density by the points of the law itself.
+    pub(super) fn plain_density(&self, y: f64) -> LawFigure {
+        if let Some(coordinate) = self.only() {
+            return self.convolved(coordinate, y, Quantity::Density);
+        }
+        let exact = self.exact(y, Quantity::Density);
+        let off = y - self.surface.centre;
+        let found = self.estimates(&self.direction, &self.sample(None), off, Quantity::Density, exact);
+        LawFigure { value: found.best().value.max(0.0), ..found.best() }
     }
 
     fn sample(&self, tilted: Option<(LawTail, usize, &Proposal)>) -> Arc<Sample> {
@@ -309,7 +320,8 @@ impl Sampled {
     fn convolved(&self, coordinate: usize, y: f64, quantity: Quantity) -> LawFigure {
         let off = y - self.surface.centre;
         let part = &self.surface.parts[coordinate];
-        let found = expectation(&self.surface.inputs[coordinate], &[], |z| self.beside(off - value(part, z), quantity));
+        let found =
+            expectation(&self.surface.inputs[coordinate], &[], EXACT, |z| self.beside(off - value(part, z), quantity));
         LawFigure::new(found.value, found.error + TABULATED * found.value)
     }
 
@@ -319,7 +331,8 @@ impl Sampled {
             (Some((table, _)), Quantity::LawTail(tail)) => table.tail(y, tail),
             (Some((table, _)), Quantity::Density) => table.density(y),
             (None, Quantity::LawTail(tail)) => f64::from(u8::from(tail.sign() * -y > 0.0)),
-            (None, Quantity::Density) => 0.0,
+            // An indicator has no density.
+            (None, Quantity::Density) => f64::NAN,
         }
     }
 
