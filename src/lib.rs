@@ -69,7 +69,7 @@ pub use warning::Warning;
 /// What the tests and the benchmarks of this repository reach inside: not part of the public interface, and no promise.
 #[doc(hidden)]
 pub mod internals {
-    pub use crate::analysis::surface_law::law_at;
+    pub use crate::analysis::law_at::law_at;
     pub use crate::assembly::formula::interval::Interval;
     pub use crate::assembly::formula::jet::Jet;
     pub use crate::assembly::formula::parser::is_reserved;

@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use super::surface_law::QUANTILES;
 use crate::law::{LawFigure, LawTail};
 use crate::method::Outcome;
 use crate::problem::Problem;
@@ -28,8 +27,13 @@ pub(super) struct Counted {
     pub(super) points: usize,
 }
 
-/// Of one characteristic; None where its inputs cannot be drawn, or a part of its surface is unknown.
-pub(super) fn counted(problem: &Problem, outcome: &Outcome, c: usize, seed: u64) -> Option<Counted> {
+/// Of one characteristic, with its quantiles at these probabilities; None where its inputs cannot be drawn, or a part of its surface is unknown.
+pub(super) fn counted(
+    problem: &Problem,
+    outcome: &Outcome,
+    (c, seed): (usize, u64),
+    quantiles: [(LawTail, f64); 7],
+) -> Option<Counted> {
     let surrogate = outcome.fitted[c].surrogate.as_ref()?;
     let varying = outcome.plan.varying();
     let sampler = if varying.len() <= SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
@@ -51,7 +55,7 @@ pub(super) fn counted(problem: &Problem, outcome: &Outcome, c: usize, seed: u64)
     };
     Some(Counted {
         beyond: [below, above].map(|count| count.map(share)),
-        quantiles: QUANTILES.map(|(tail, p)| quantile(&values, tail, p)),
+        quantiles: quantiles.map(|(tail, p)| quantile(&values, tail, p)),
         points: values.len(),
     })
 }

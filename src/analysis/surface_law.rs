@@ -5,7 +5,6 @@ use std::sync::Arc;
 use serde::{Serialize, Serializer};
 
 use super::counted::{Counted, counted};
-use super::surface::Surface;
 use crate::capability::{Law, Quantiles, TAIL};
 use crate::correlation::Correlation;
 use crate::distribution::{Distribution, Normal};
@@ -14,7 +13,7 @@ use crate::method::Outcome;
 use crate::moments::Interactions;
 use crate::pearson::Pearson;
 use crate::problem::Problem;
-use crate::surrogate::{Relocation, Surrogate, Univariate};
+use crate::surrogate::{Surrogate, Univariate};
 
 /// The probabilities of the quantiles of reports, lowest first, each by the tail that it leaves.
 pub const QUANTILES: [(LawTail, f64); 7] = [
@@ -123,7 +122,7 @@ impl SurfaceShares {
     }
 
     fn counted(problem: &Problem, outcome: &Outcome, c: usize, seed: u64) -> Option<Self> {
-        let Counted { beyond: [below, above], quantiles, points } = counted(problem, outcome, c, seed)?;
+        let Counted { beyond: [below, above], quantiles, points } = counted(problem, outcome, (c, seed), QUANTILES)?;
         Some(Self {
             branch: Branch::Sampled,
             counted: Some(points),
@@ -201,20 +200,6 @@ pub(crate) fn law_over(
     law(surrogate, inputs, correlation, points(surrogate))
 }
 
-/// The law of a characteristic's surface where its inputs have moved and keep their shapes, beside what the surface leaves out: what
-/// pages compute by themselves. None where the moments follow from no surface.
-pub fn law_at(
-    problem: &Problem,
-    surface: &Surface,
-    characteristic: usize,
-    moved: &[Relocation],
-) -> Option<Result<SurfaceLaw, LawError>> {
-    let fit = surface.characteristics[characteristic].as_ref().ok()?;
-    let inputs = surface.varying.iter().map(|&d| problem.dimensions()[d].law().cloned()).collect::<Option<_>>()?;
-    let (surrogate, inputs) = with(&fit.surrogate.relocated(moved), inputs, fit.unexplained);
-    Some(law_over(&surrogate, &inputs, None))
-}
-
 /// A surface and the distributions of its inputs, beside a variance that it leaves out.
 fn surface(
     problem: &Problem,
@@ -232,11 +217,12 @@ fn points(surrogate: &Surrogate) -> usize {
 }
 
 /// The surface beside what it leaves out, as a normal input of its own.
-fn with(
+pub(super) fn with(
     own: &Surrogate,
     mut inputs: Vec<Arc<dyn Distribution>>,
     unexplained: Option<f64>,
 ) -> (Surrogate, Vec<Arc<dyn Distribution>>) {
+    let own = &own.without_rounding();
     let mut surrogate = own.clone();
     let least = IDLE * own.parts.iter().flatten().map(|part| part.largest().powi(2)).sum::<f64>();
     let normal = Normal::new(0.0, 1.0).ok();

@@ -92,8 +92,8 @@ pub(crate) struct Sought {
 const NEAR: f64 = 1e-7;
 /// or this part of what a sample leaves open,
 const OPEN: f64 = 0.02;
-/// in so many steps, or by the search of [`quantile`].
-const FEW: usize = 12;
+/// in so many steps, or by the search of [`quantile`]: a jump takes 30 halvings.
+const MANY: usize = 80;
 /// Of the way from the mean to the farthest quantile: the tilt of a limit there serves all of them. At three sigma it costs a digit.
 const SHARED: f64 = 0.7;
 /// Sigmas beyond the farthest place at which a shared contour is still right.
@@ -109,24 +109,26 @@ pub(super) fn quantiles(law: &SurfaceLaw, sought: &[Sought]) -> Vec<LawFigure> {
     sought.iter().map(one).collect()
 }
 
-/// Newton's method on the logarithm of a tail; bounds keep it from running away.
+/// Newton's method on the logarithm of a tail between bounds, which are halved where it does not close in.
 fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
     let Sought { tail, p, near, density } = *sought;
     let (sign, sigma) = (tail.sign(), law.sigma());
-    let own = || law.quantile(tail, p);
-    if !(near.is_finite() && density > 0.0) || law.step {
-        return own();
+    if matches!(side, Together::Nothing) && (law.step || !(near.is_finite() && density > 0.0)) {
+        return law.quantile(tail, p);
     }
     let [mut low, mut high] = law.range();
-    let (mut at, mut slope) = (near.clamp(low, high), -sign * density / p);
+    let inner = |y: f64, low: f64, high: f64| y > low && y < high;
+    let mut at = if inner(near, low, high) { near } else { law.mean };
+    let mut slope = if density > 0.0 { -sign * density / p } else { -sign / sigma };
     let choice = side.choice(at, tail, p);
-    let mut last: Option<(f64, f64)> = None;
-    for _ in 0..FEW {
+    let (mut last, mut steps, mut widen): (Option<(f64, f64)>, _, _) = (None, [f64::INFINITY; 2], 0.5 * sigma);
+    let mut open = f64::INFINITY;
+    for _ in 0..MANY {
         let (value, own_slope) = side.at(law, at, tail, &choice);
-        let here = libm::log(value.value / p);
-        if !here.is_finite() {
-            return own();
+        if !value.value.is_finite() {
+            break;
         }
+        let here = libm::log(value.value / p);
         // The tail is too heavy: the quantile lies farther out.
         let outward = (here > 0.0) == (tail == LawTail::Upper);
         if outward {
@@ -139,17 +141,29 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
             (_, Some((before, there))) if (here - there) * (at - before) * sign < 0.0 => (here - there) / (at - before),
             _ => slope,
         };
-        let open = (value.error / value.value / slope).abs();
-        let close = (NEAR * sigma).max(OPEN * open);
         let step = -here / slope;
+        let known = (value.error / value.value / slope).abs();
+        open = if known.is_finite() { known } else { open };
+        let close = (NEAR * sigma).max(if open.is_finite() { OPEN * open } else { 0.0 });
         if here == 0.0 || step.abs() <= close {
-            return LawFigure::new(at + step, open + close);
+            return LawFigure::new((at + step).clamp(low, high), open + close);
         }
-        last = Some((at, here));
-        let next = at + step.clamp(-sigma, sigma);
-        at = if next > low && next < high { next } else { 0.5 * (low.max(at - sigma) + high.min(at + sigma)) };
+        if high - low <= close {
+            return LawFigure::new(0.5 * (low + high), open.min(high - low) + close);
+        }
+        last = here.is_finite().then_some((at, here)).or(last);
+        let closing = step.abs() <= 0.5 * steps[0] && inner(at + step, low, high);
+        steps = [steps[1], step.abs()];
+        at = match (closing, low.is_finite() && high.is_finite()) {
+            (true, _) if step.abs() <= 2.0 * sigma => at + step,
+            (_, true) => 0.5 * (low + high),
+            _ => {
+                widen *= 2.0;
+                if outward { at + widen } else { at - widen }
+            }
+        };
     }
-    own()
+    law.quantile(tail, p)
 }
 
 /// What the quantiles of one tail have in common.

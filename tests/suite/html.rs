@@ -8,7 +8,7 @@ use std::process::Command;
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol::analysis::{LawFigure, Relocation};
+use sensitol::analysis::{Branch, LawFigure, Relocation};
 use sensitol::capability::{Capability, Law};
 use sensitol::internals::law_at;
 use sensitol::report::html::{WhatIf, analyze_html, compare_html, simulate_html};
@@ -256,9 +256,10 @@ fn engine(study: &Study, analysis: &Analysis, moved: &[Relocation]) -> Value {
         let capability = law.map(|law| Capability::of(&law, moments.mean(), moments.sigma(), limits));
         // Of the surface: both shares with the errors that are stated for them.
         let surface = law_at(&study.problem, &analysis.surface, c, moved)?.ok()?;
+        let by_law = surface.branch() != Branch::Sampled;
         let figure = |figure: LawFigure| json!([figure.value, figure.error]);
-        let below = limits.lower().map(|y| figure(surface.below(y)));
-        let above = limits.upper().map(|y| figure(surface.above(y)));
+        let below = limits.lower().filter(|_| by_law).map(|y| figure(surface.below(y)));
+        let above = limits.upper().filter(|_| by_law).map(|y| figure(surface.above(y)));
         Some(json!({
             "mean": moments.mean(), "sigma": moments.sigma(), "skewness": moments.skewness(), "excess": moments.excess(),
             "below": capability.and_then(|one| one.below), "above": capability.and_then(|one| one.above),

@@ -14,7 +14,7 @@ use super::support::relative;
 type Law = Arc<dyn Distribution>;
 
 fn uniform(half: f64) -> Law {
-    Arc::new(Uniform::about(0.0, half / 3f64.sqrt()).unwrap())
+    Arc::new(Uniform::about(0.0, half).unwrap())
 }
 
 fn triangular(half: f64) -> Law {
@@ -156,7 +156,7 @@ fn a_sampled_density_is_within_its_error() {
             let found = law.density(y);
             // The stated error leaves one in a hundred beyond; differences are good to 1e-9.
             assert!((found.value - exact).abs() <= 1.2 * found.error + 1e-8, "{b} {k}: {found:?} for {exact}");
-            assert!(found.error < 0.03 * exact, "{b} {k}: {found:?} for {exact}");
+            assert!(found.error < 0.03 * exact + 1e-3 / law.sigma(), "{b} {k}: {found:?} for {exact}");
         }
     }
 }

@@ -161,12 +161,14 @@ impl WhatIf {
     /// Of an analysis; `lines` and `costs` are those of the study, none where the problem was built without one.
     pub fn of(problem: &Problem, analysis: &Analysis, lines: &[Line], costs: &[Priced]) -> Self {
         let surface = &analysis.surface;
+        let clean = |fit: &Fit| Fit { surrogate: fit.surrogate.without_rounding(), ..fit.clone() };
+        let fits: Vec<Result<Fit, NoFit>> =
+            surface.characteristics.iter().map(|fit| fit.as_ref().map(clean).map_err(|&no| no)).collect();
         // A dimension takes nodes only where its part has a higher degree than its closed form.
         let degree = |j: usize| {
-            let own =
-                |fit: &Result<Fit, NoFit>| Some(fit.as_ref().ok()?.surrogate.parts.get(j)?.as_ref()?.coefficients());
+            let own = |fit: &Fit| Some(fit.surrogate.parts.get(j)?.as_ref()?.coefficients());
             let degree = |c: [f64; 4]| c.iter().rposition(|&c| c != 0.0).map_or(0, |place| place + 1);
-            surface.characteristics.iter().filter_map(own).map(degree).max().unwrap_or(0)
+            fits.iter().flatten().filter_map(own).map(degree).max().unwrap_or(0)
         };
         let mut tables: Vec<TabulatedInput> = Vec::new();
         let mut table = |(j, &d): (usize, &usize)| {
@@ -190,7 +192,7 @@ impl WhatIf {
             Tried::of(&problem.dimensions()[d], index(shape, law))
         };
         let dimensions = surface.varying.iter().zip(&surface.shapes).zip(&laws).map(dimension).collect();
-        let all = analysis.characteristics.iter().zip(&surface.characteristics);
+        let all = analysis.characteristics.iter().zip(&fits);
         let characteristics = all.map(|(found, fit)| {
             let one = &found.characteristic;
             let limits = one.limits();
