@@ -9,7 +9,7 @@ use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_with};
 use crate::assembly::Run;
 use crate::method::{self, Method, Options, Procedure};
 use crate::problem::Problem;
-use crate::sampling::{Estimate, Sampler};
+use crate::sampling::{Estimate, Sampler, one_error};
 use crate::shape::seconds;
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_with};
 use crate::summary::RunSummary;
@@ -509,8 +509,7 @@ fn errors(found: &Figures, reference: &SimulatedCharacteristic) -> Errors {
             sigma: own(reference.sigma, unit),
             skewness: own(reference.skewness, Some(1.0)),
             kurtosis: own(reference.kurtosis, Some(1.0)),
-            // The 95 % interval has about two standard errors on either side.
-            yield_: reference.yield_.map(|share| 0.25 * (share.interval[1] - share.interval[0])),
+            yield_: reference.yield_.map(|share| one_error(share.value, share.interval)),
         },
     }
 }

@@ -120,8 +120,7 @@ impl Evaluated {
 
     /// Counts an evaluation beside the plan.
     pub(crate) fn count(&mut self, out: &Responses, run: &Run<'_>) {
-        let answered = |row: &usize| (0..out.outputs()).any(|output| !out.is_open(*row, output));
-        let rows = (0..out.rows()).filter(answered).count();
+        let rows = out.answered().count();
         if rows < out.rows() {
             self.stopped.get_or_insert_with(|| run.why_open());
         }

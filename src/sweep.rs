@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use serde::Serialize;
 
@@ -208,15 +209,8 @@ struct Memory {
 }
 
 impl Memory {
-    fn count(&mut self, out: &Responses) {
-        let answered = |row: usize| (0..out.outputs()).any(|output| !out.is_open(row, output));
-        let failed = |row: usize| (0..out.outputs()).any(|output| out.error(row, output).is_some());
-        let rows = (0..out.rows()).filter(|&row| answered(row)).count();
-        self.run.evaluations = (self.run.evaluations + rows as u64).saturating_add_signed(out.extra());
-        self.run.cached += out.count_reused() as u64;
-        self.run.retried += out.count_retried() as u64;
-        self.run.failed += (0..out.rows()).filter(|&row| failed(row)).count() as u64;
-        self.run.stages += 1;
+    fn count(&mut self, out: &Responses, in_model: Duration) {
+        self.run = self.run.and(&out.summary(in_model));
     }
 }
 
@@ -251,8 +245,7 @@ impl Gatherer {
             let begun = Instant::now();
             self.function().evaluate(&Request::values(&Points::from_rows(batch), outputs), run, &mut out);
             let mut memory = self.memory();
-            memory.run.in_model += begun.elapsed();
-            memory.count(&out);
+            memory.count(&out, begun.elapsed());
             for (row, point) in batch.iter().enumerate() {
                 let answer = |output: usize| {
                     let error = || out.error(row, output).cloned().map(Err);
@@ -297,8 +290,7 @@ impl AssemblyFunction for Gatherer {
             let begun = Instant::now();
             self.function().evaluate(request, run, out);
             let mut memory = self.memory();
-            memory.run.in_model += begun.elapsed();
-            memory.count(out);
+            memory.count(out, begun.elapsed());
             return;
         }
         let mut memory = self.memory();

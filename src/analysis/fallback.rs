@@ -8,7 +8,7 @@ use crate::capability::{Capability, Law};
 use crate::method::{Climbed, ErrorEstimate, ErrorSource, Outcome};
 use crate::moments::Moments;
 use crate::problem::Problem;
-use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler};
+use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
 use crate::summary::RunSummary;
 use crate::warning::Figure;
@@ -106,11 +106,9 @@ fn known(found: &SimulatedCharacteristic, climbed: &Climbed) -> bool {
             Figure::Sigma => true,
             Figure::Skewness => within(error(found.skewness), wanted),
             Figure::Kurtosis => within(error(found.kurtosis), wanted),
-            // Half of a 95 % interval is two standard errors.
-            Figure::Yield => found.yield_.is_none_or(|share| {
-                let [low, high] = share.interval;
-                within(Some(0.25 * (high - low)), wanted)
-            }),
+            Figure::Yield => {
+                found.yield_.is_none_or(|share| within(Some(one_error(share.value, share.interval)), wanted))
+            }
         }
     };
     within(sigma, climbed.accuracy) && climbed.accuracies.wanted().into_iter().all(each)
@@ -134,7 +132,7 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
     let yield_ = found.yield_.map(|share| (share.value, share.interval));
     // The fit of four moments is off the sample itself by what it is off, and the sample by its interval.
     let of_fit = one.capability.and_then(|capability| capability.yield_()).zip(yield_);
-    let off = of_fit.map(|(fit, (value, [low, high]))| (fit - value).abs() + 0.25 * (high - low));
+    let off = of_fit.map(|(fit, (value, interval))| (fit - value).abs() + one_error(value, interval));
     let of_moments = of_yield(&estimate, &moments, limits);
     one.error_estimate =
         Some(ErrorEstimate { yield_: of_moments.map(|error| error.max(off.unwrap_or(0.0))), ..estimate });

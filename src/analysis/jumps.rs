@@ -132,18 +132,7 @@ impl FoundJumps {
         let mut out = Responses::open(rows.len(), problem.outputs().len());
         let begun = Instant::now();
         problem.function().evaluate(&Request::values(&Points::from_rows(&rows), problem.outputs()), run, &mut out);
-        let answered = |row: &usize| (0..out.outputs()).any(|output| !out.is_open(*row, output));
-        let answered = (0..rows.len()).filter(answered).count();
-        let spent = RunSummary {
-            evaluations: (answered as i64 + out.extra()).max(0) as u64,
-            cached: out.count_reused() as u64,
-            retried: out.count_retried() as u64,
-            failed: out.failed_among(&(0..rows.len()).collect::<Vec<_>>()) as u64,
-            stages: 1,
-            in_model: begun.elapsed(),
-            ..RunSummary::default()
-        };
-        self.run = self.run.and(&spent);
+        self.run = self.run.and(&out.summary(begun.elapsed()));
         self.non_repeatable.extend(out.non_repeatable().iter().cloned());
         for (row, side) in sides.iter_mut().enumerate() {
             let value = out.value(row, side.characteristic).zip(outcome.fitted[side.characteristic].centre);

@@ -158,7 +158,8 @@ pub(crate) fn analyze_keeping(
     };
     outcome.evaluated.non_repeatable.extend(jumps.non_repeatable);
     let left = left.map(|left| left.saturating_sub(jumps.run.evaluations as usize));
-    let verified = verification::verify(problem, &outcome, options, left, &mut characteristics, run);
+    let (verified, doubted) = verification::verify(problem, &outcome, options, left, &mut characteristics, run);
+    outcome.evaluated.non_repeatable.extend(doubted);
     if options.verification(signature) > 0 && !run.stopped() {
         enclose_all(problem, &outcome, &mut characteristics, run);
     }

@@ -58,11 +58,10 @@ pub(super) fn correlations(
         }
         false => Vec::new(),
     };
-    let known = |(a, b): (usize, usize)| -> Option<(f64, Option<f64>)> {
+    let known = |index: usize, (a, b): (usize, usize)| -> Option<(f64, Option<f64>)> {
         let ones = [&characteristics[a], &characteristics[b]];
         if ones.iter().any(|one| sampled(one)) {
-            let (.., rho) = by_model.iter().find(|&&(first, second, _)| (first, second) == (a, b))?;
-            return rho.map(|Verified { value, error }| (value, Some(error)));
+            return by_model[index].map(|Verified { value, error }| (value, Some(error)));
         }
         let (value, drawn) = of_surfaces(outcome, [a, b])?;
         let left = |one: &CharacteristicAnalysis| one.verification.as_ref().and_then(|of| of.left);
@@ -73,8 +72,9 @@ pub(super) fn correlations(
         Some((value, error))
     };
     pairs
-        .map(|(a, b)| {
-            let (value, error) = known((a, b)).unzip();
+        .enumerate()
+        .map(|(index, (a, b))| {
+            let (value, error) = known(index, (a, b)).unzip();
             let between = [a, b].map(|c| characteristics[c].characteristic.name().to_owned());
             OutputCorrelation { between, value, error: error.flatten() }
         })
@@ -90,16 +90,11 @@ fn of_surfaces(outcome: &Outcome, [a, b]: [usize; 2]) -> Option<(f64, f64)> {
     let inputs = outcome.plan.inputs();
     let scaled = |c: usize| -> Option<(&Surrogate, f64)> {
         let surrogate = outcome.fitted[c].surrogate.as_ref()?;
-        let sigma = surrogate.contributions(inputs)?.moments.sigma();
+        let sigma = surrogate.variance(inputs)?.0.sqrt();
         (sigma > 0.0).then_some((surrogate, 1.0 / sigma))
     };
     let ((first, by_first), (second, by_second)) = (scaled(a)?, scaled(b)?);
-    // A variance, and its standard error.
-    let variance = |sign: f64| -> Option<(f64, f64)> {
-        let of = first.sum(by_first, second, sign * by_second)?.contributions(inputs)?;
-        let (sigma, error) = (of.moments.sigma(), of.sampled.map_or(0.0, |sampled| sampled.sigma));
-        Some((sigma * sigma, 2.0 * sigma * error))
-    };
+    let variance = |sign: f64| first.sum(by_first, second, sign * by_second)?.variance(inputs);
     let ((sum, of_sum), (difference, of_difference)) = (variance(1.0)?, variance(-1.0)?);
     Some(((0.25 * (sum - difference)).clamp(-1.0, 1.0), 0.25 * of_sum.hypot(of_difference)))
 }

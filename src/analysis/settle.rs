@@ -19,6 +19,7 @@ use crate::characteristic::SpecLimits;
 use crate::law::{Branch, SurfaceLaw, joint_yield};
 use crate::method::{ErrorEstimate, Outcome};
 use crate::problem::Problem;
+use crate::sampling::one_error;
 use crate::verification::Verified;
 
 /// A share beyond each limit, and the error of all of it.
@@ -150,9 +151,8 @@ fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &Charac
 fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let source = YieldSource::Samples;
     if let Some(sampled) = &one.model_sampled {
-        let (_, [low, high]) = sampled.yield_?;
-        // Half of a 95 % interval is two standard errors.
-        return Some(Rejected { source, beyond: sampled.beyond, error: Some(0.25 * (high - low)) });
+        let (value, interval) = sampled.yield_?;
+        return Some(Rejected { source, beyond: sampled.beyond, error: Some(one_error(value, interval)) });
     }
     let verification = one.verification.as_ref().filter(|of| of.kind == VerificationKind::Sample)?;
     let own = verification.yield_?;

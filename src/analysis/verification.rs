@@ -7,7 +7,7 @@
 use super::CharacteristicAnalysis;
 use super::errors::of_yield;
 use super::verified::{VarianceShare, Verification, VerificationKind};
-use crate::assembly::{EvaluationError, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::capability::{Capability, Law};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome};
 use crate::moments::Moments;
@@ -41,7 +41,8 @@ const SELDOM: f64 = 1e-7;
 /// What differences may make of one rounding of the value at the means.
 const ROUNDINGS: f64 = 8.0;
 
-/// Verifies every characteristic, unless that is switched off: see [`Options::verify`].
+/// Verifies every characteristic, unless that is switched off: see [`Options::verify`]. Returns what that took, and where the model answered
+/// otherwise than before.
 pub(super) fn verify(
     problem: &Problem,
     outcome: &Outcome,
@@ -49,15 +50,15 @@ pub(super) fn verify(
     left: Option<usize>,
     characteristics: &mut [CharacteristicAnalysis],
     run: &Run<'_>,
-) -> RunSummary {
+) -> (RunSummary, Vec<NonRepeatable>) {
     let most = options.verification(problem.function().signature());
     if most == 0 || outcome.evaluated.stopped.is_some() || run.stopped() {
-        return RunSummary::default();
+        return Default::default();
     }
     let open: Vec<usize> =
         (0..characteristics.len()).filter(|&c| !proven(problem, outcome, c, &mut characteristics[c])).collect();
     if open.is_empty() {
-        return RunSummary::default();
+        return Default::default();
     }
     if problem.function().signature().costly {
         return check(problem, outcome, options, most.min(left.unwrap_or(usize::MAX)), (&open, characteristics), run);
@@ -70,7 +71,7 @@ pub(super) fn verify(
         }
         sample(problem, outcome, options, c, &mut characteristics[c], (seed, run));
     }
-    RunSummary::default()
+    Default::default()
 }
 
 /// Whether the formula's own degree proves that the surface is the function; then its errors are roundings.
@@ -227,7 +228,7 @@ fn check(
     budget: usize,
     (open, characteristics): (&[usize], &mut [CharacteristicAnalysis]),
     run: &Run<'_>,
-) -> RunSummary {
+) -> (RunSummary, Vec<NonRepeatable>) {
     let varying = outcome.plan.varying();
     let begun = Instant::now();
     let shares: Vec<Vec<f64>> =
@@ -240,11 +241,9 @@ fn check(
         .collect();
     let seed = options.seed.unwrap_or(Options::SEED);
     let Some(checked) = verify_by_checks(problem, varying, &targets, seed, budget, run) else {
-        return RunSummary::default();
+        return Default::default();
     };
     let Checked { answers, .. } = &checked;
-    let answered = |row: &usize| (0..answers.outputs()).any(|output| !answers.is_open(*row, output));
-    let spent = (0..answers.rows()).filter(answered).count();
     let not_given = |c: usize| {
         let given = |row: usize| !matches!(answers.error(row, c), Some(EvaluationError::NotGiven));
         (0..answers.rows()).any(|row| !given(row) || answers.is_open(row, c))
@@ -257,15 +256,7 @@ fn check(
             judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
         }
     }
-    RunSummary {
-        evaluations: (spent as i64 + answers.extra()).max(0) as u64,
-        cached: answers.count_reused() as u64,
-        retried: answers.count_retried() as u64,
-        failed: answers.failed_among(&(0..answers.rows()).collect::<Vec<_>>()) as u64,
-        stages: 1,
-        in_model: begun.elapsed(),
-        ..RunSummary::default()
-    }
+    (answers.summary(begun.elapsed()), answers.non_repeatable().to_vec())
 }
 
 /// The errors of a method's figures: those of the surface, and what the method has beside the surface.

@@ -1,9 +1,11 @@
 //! What an assembly function answered.
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use super::EvaluationError;
 use super::NonRepeatable;
+use crate::summary::RunSummary;
 
 /// Answers of a batch: a column per asked output, and an error wherever there is no value.
 ///
@@ -104,6 +106,24 @@ impl Responses {
     pub fn fail(&mut self, row: usize, output: usize, error: EvaluationError) {
         self.values[output * self.rows + row] = f64::NAN;
         self.errors.insert((row, output), error);
+    }
+
+    /// Rows of which something was answered: a row that is open in every output was not sent, or not finished.
+    pub(crate) fn answered(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.rows).filter(|&row| (0..self.outputs).any(|output| !self.is_open(row, output)))
+    }
+
+    /// What this batch came to, as one stage that the model took so long for.
+    pub(crate) fn summary(&self, in_model: Duration) -> RunSummary {
+        RunSummary {
+            evaluations: (self.answered().count() as i64 + self.extra).max(0) as u64,
+            cached: self.reused as u64,
+            retried: self.retried as u64,
+            failed: self.failed_among(&(0..self.rows).collect::<Vec<_>>()) as u64,
+            stages: 1,
+            in_model,
+            ..RunSummary::default()
+        }
     }
 
     /// The value, where there is one.

@@ -30,6 +30,8 @@ pub(super) struct PlanReport {
     count: &'static str,
     varying: usize,
     evaluations: usize,
+    /// Evaluations where the program sends derivatives (`"gradients":true`); null where these save none, and for formulas.
+    with_gradients: Option<usize>,
     /// The fewest and the most, of a method that chooses as it goes.
     range: Option<[usize; 2]>,
     /// Batches that wait for each other, the fewest; with `range` or `extremes` more may follow.
@@ -90,6 +92,9 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         count: if study.options.derivatives == Some(DerivativeSource::Exact) { EXACT } else { procedure.count() },
         varying: plan.varying().len(),
         evaluations,
+        with_gradients: (study.problem.function().signature().costly)
+            .then(|| procedure.with_gradients(&study.problem, &study.options))
+            .flatten(),
         range: procedure.range(&study.problem, &study.options),
         rounds: stages,
         largest_batch: first.points.len().max(evaluations.saturating_sub(first.points.len())),
@@ -159,6 +164,9 @@ impl PlanReport {
         document.line(format!("{}: {}", self.method, self.about));
         let (evaluations, varying) = (self.evaluations, self.varying);
         document.line(format!("{evaluations} evaluations for {varying} varying dimensions ({})", self.count));
+        if let Some(fewer) = self.with_gradients {
+            document.line(format!("{fewer} where the model sends derivatives with its answers"));
+        }
         document.line(rounds(self));
         for (index, stage) in self.stages.iter().enumerate() {
             let chosen = if stage.known_beforehand { "" } else { ", chosen by the answers so far" };

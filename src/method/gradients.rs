@@ -2,17 +2,19 @@
 //!
 //! `rss` needs the slopes at the means: one evaluation, and one more that checks them. `full` needs no corners, as the mixed second derivative
 //! of dimensions j and k is the difference of the slope by k over the two nodes of j, and the other way round: of both the mean is taken. Its
-//! 2N + 1 points are those of `second-order`.
+//! 2N + 1 points are those of `second-order` without derivatives. `second-order` itself takes one node an axis, N + 1 points: value and slope at
+//! the means and at the node determine a cubic (Hermite's interpolation).
 //!
 //! No derivative is taken on trust. Between two points a difference of values is the mean of the slopes times the step, but for a part of
 //! third order, so that each axis checks the derivatives by its dimension without an evaluation.
 
 use super::exact::ExactDerivatives;
-use super::{MethodError, Options, Order};
+use super::{MethodError, Options};
 use crate::assembly::{Points, Request, Responses, Run};
 use crate::evaluation::Evaluated;
 use crate::plan::{AtNode, DifferencePlan, Mixed, Point};
 use crate::problem::Problem;
+use crate::surrogate::Univariate;
 
 /// Derivatives that differ from a difference by more than this part of the change are wrong: third derivatives of a function that a
 /// parabola describes make less.
@@ -24,12 +26,9 @@ const NEAR: f64 = 3e-3;
 /// How far off the means, in sigmas, the point is that checks the slopes there.
 const STEP: f64 = 0.1;
 
-/// Whether a method can do with what a model sends.
-pub(super) fn serve(options: &Options, order: Order, all_pairs: bool) -> bool {
-    options.derivatives.is_none()
-        && options.step.is_none()
-        && !options.all_sensitivities
-        && (order == Order::First || all_pairs)
+/// Whether what a model sends serves what was asked for.
+pub(super) fn serve(options: &Options) -> bool {
+    options.derivatives.is_none() && options.step.is_none() && !options.all_sensitivities
 }
 
 /// The mixed derivatives of a characteristic for these pairs of positions, in sigmas; None where a gradient is missing.
@@ -42,9 +41,9 @@ pub(super) fn mixed(
     // The slope by the dimension at position k, in sigmas, over the nodes of the one at position j.
     let half = |j: usize, k: usize| {
         let (d, of) = (plan.varying()[j], plan.varying()[k]);
-        let [left, right] =
-            nodes(plan, d)?.map(|(point, u)| Some((u, *evaluated.gradients.get(&(point, c))?.get(of)?)));
-        let ((below, left), (above, right)) = (left?, right?);
+        let slope = |(point, u): (Point, f64)| Some((u, *evaluated.gradients.get(&(point, c))?.get(of)?));
+        let both: Vec<(f64, f64)> = nodes(plan, d).into_iter().map(slope).collect::<Option<_>>()?;
+        let [(below, left), (above, right)] = both[..] else { return None };
         Some(plan.axis(of).scale * (right - left) / (above - below))
     };
     let both = |&(j, k): &(usize, usize)| {
@@ -56,17 +55,37 @@ pub(super) fn mixed(
     pairs.iter().map(both).collect()
 }
 
-/// The two nodes of an axis with their places in sigmas; None where one is missing.
-fn nodes(plan: &DifferencePlan, d: usize) -> Option<[(Point, f64); 2]> {
+/// The part of a characteristic by one dimension that has one node, in sigmas: with the rise `r` at the node `u`, the slope `a` at the means
+/// and `b` at the node it is `a u + c u^2 + d u^3` with `c = (3 r/u - 2 a - b)/u` and `d = (a + b - 2 r/u)/u^2`. None where a value or a
+/// slope is missing. Accuracy: exact for polynomials up to the third degree.
+pub(super) fn part(plan: &DifferencePlan, evaluated: &Evaluated, c: usize, d: usize) -> Option<Univariate> {
+    if !plan.depends(c, d) {
+        return Some(Univariate::of_coefficients(&[0.0, 0.0]));
+    }
+    let axis = plan.axis(d);
+    let slope = |point: &Point| Some(axis.scale * evaluated.gradients.get(&(point.clone(), c))?.get(d)?);
+    let centre = evaluated.known.value(&Point::Centre, c)?;
+    let a = slope(&Point::Centre)?;
+    let at = |&node: &u32| {
+        let point = Point::of(&[AtNode { dimension: d as u32, node }]);
+        let chord = (evaluated.known.value(&point, c)? - centre) / axis.nodes[node as usize].u;
+        Some((axis.nodes[node as usize].u, chord, slope(&point)?))
+    };
+    // Where the model has no value at the node, one of its replacements has.
+    let (u, chord, b) = axis.slots.first()?.iter().find_map(at)?;
+    Some(Univariate::of_coefficients(&[a, (3.0 * chord - 2.0 * a - b) / u, (a + b - 2.0 * chord) / (u * u)]))
+}
+
+/// The nodes of an axis with their places in sigmas, from below; replacements of nodes without a value are not among them.
+fn nodes(plan: &DifferencePlan, d: usize) -> Vec<(Point, f64)> {
     let axis = plan.axis(d);
     let node = |slot: &Vec<u32>| {
         let node = *slot.first()?;
         Some((Point::of(&[AtNode { dimension: d as u32, node }]), axis.nodes[node as usize].u))
     };
-    let [left, right] = &axis.slots[..] else { return None };
-    let mut nodes = [node(left)?, node(right)?];
+    let mut nodes: Vec<(Point, f64)> = axis.slots.iter().filter_map(node).collect();
     nodes.sort_by(|a, b| a.1.total_cmp(&b.1));
-    Some(nodes)
+    nodes
 }
 
 /// Holds the derivatives by every dimension against the differences along its axis.
@@ -76,7 +95,7 @@ pub(super) fn checked(problem: &Problem, plan: &DifferencePlan, evaluated: &Eval
         let gradient = |point: &Point, d: usize| evaluated.gradients.get(&(point.clone(), c))?.get(d).copied();
         let mut found: Vec<(usize, f64, f64)> = Vec::new();
         for &d in plan.varying().iter().filter(|&&d| plan.depends(c, d)) {
-            for (point, u) in nodes(plan, d).into_iter().flatten() {
+            for (point, u) in nodes(plan, d) {
                 let step = u * plan.axis(d).scale;
                 let Some(value) = evaluated.known.value(&point, c) else { continue };
                 let slopes = gradient(&Point::Centre, d).zip(gradient(&point, d));

@@ -55,6 +55,10 @@ impl Procedure for Ladder {
         Ok(Arc::new(self.differences(problem, options)?))
     }
 
+    fn with_gradients(&self, problem: &Problem, options: &Options) -> Option<usize> {
+        self.can_use_gradients(options).then(|| self.by_gradients(problem).1.evaluations)
+    }
+
     fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
         let plan = self.differences(problem, options)?;
         let gradients = self.can_use_gradients(options);
@@ -85,8 +89,24 @@ impl Ladder {
     /// Whether it needs fewer evaluations of a model that sends derivatives.
     fn can_use_gradients(&self, options: &Options) -> bool {
         let all = matches!(self.interactions, Examined::All(_)) && self.spread == Spread::Pair;
-        let slopes = self.method == Method::Rss;
-        self.method == self.runs && (all || slopes) && gradients::serve(options, self.order, all)
+        let slopes = matches!(self.method, Method::Rss | Method::SecondOrder);
+        self.method == self.runs && (all || slopes) && gradients::serve(options)
+    }
+
+    /// What is evaluated of a model that sends derivatives.
+    fn by_gradients(&self, problem: &Problem) -> (DifferencePlan, Cost) {
+        let spread = match (self.order, self.method) {
+            (Order::First, _) => Spread::Bare,
+            (Order::Second, Method::SecondOrder) => Spread::Upper,
+            (Order::Second, _) => self.spread,
+        };
+        let layout =
+            Layout { spread, pairs: PairChoice::None, stencil: Stencil::TwoPoint, step: None, fixed_too: false };
+        let plan = DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout);
+        let cost = Cost::of(&plan);
+        // Slopes at the means alone are checked by a point beside them.
+        let checks = usize::from(self.order == Order::First);
+        (plan, Cost { evaluations: cost.evaluations + checks, ..cost })
     }
 
     /// By the derivatives that the model sends; `whole` is the plan without them.
@@ -97,17 +117,10 @@ impl Ladder {
         whole: &DifferencePlan,
         run: &Run<'_>,
     ) -> Result<Outcome, MethodError> {
+        let (plan, cost) = self.by_gradients(problem);
+        cost.within(self.name(), problem, options)?;
         let first = self.order == Order::First;
-        let layout = Layout {
-            spread: if first { Spread::Bare } else { self.spread },
-            pairs: PairChoice::None,
-            stencil: Stencil::TwoPoint,
-            step: None,
-            fixed_too: false,
-        };
-        let plan = DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout);
-        let cost = Cost::of(&plan);
-        Cost { evaluations: cost.evaluations + usize::from(first), ..cost }.within(self.name(), problem, options)?;
+        let one_node = self.method == Method::SecondOrder;
         let mut evaluated = evaluate(problem, &plan, run);
         let pairs = whole.pairs(None);
         let fitted: Vec<Fitted> = if first {
@@ -117,8 +130,9 @@ impl Ladder {
         } else {
             gradients::checked(problem, &plan, &evaluated)?;
             let fit = |c| {
-                let mixed = gradients::mixed(&plan, &evaluated, c, &pairs);
-                self.fitted(&plan, &evaluated, c, &pairs, (None, false), Some(mixed))
+                let all = || (0..plan.centre().len()).map(|d| gradients::part(&plan, &evaluated, c, d)).collect();
+                let (parts, mixed) = (one_node.then(all), gradients::mixed(&plan, &evaluated, c, &pairs));
+                self.fitted(&plan, &evaluated, c, &pairs, (None, false), (parts, Some(mixed)))
             };
             (0..problem.characteristics().len()).map(fit).collect()
         };
@@ -202,10 +216,10 @@ impl Ladder {
         derivatives: Option<ExactDerivatives>,
         exact: bool,
     ) -> Fitted {
-        self.fitted(plan, evaluated, c, pairs, (derivatives, exact), None)
+        self.fitted(plan, evaluated, c, pairs, (derivatives, exact), (None, None))
     }
 
-    /// The same, with mixed derivatives from elsewhere where there are some.
+    /// The same, with parts and mixed derivatives from elsewhere where there are some.
     fn fitted(
         &self,
         plan: &DifferencePlan,
@@ -213,7 +227,7 @@ impl Ladder {
         c: usize,
         pairs: &[(usize, usize)],
         (derivatives, exact): (Option<ExactDerivatives>, bool),
-        mixed: Option<Vec<Option<Mixed>>>,
+        (parts, mixed): (Option<Vec<Option<Univariate>>>, Option<Vec<Option<Mixed>>>),
     ) -> Fitted {
         let known = &evaluated.known;
         let dimensions = plan.centre().len();
@@ -222,7 +236,7 @@ impl Ladder {
             Some(derivatives) if plan.depends(c, d) => derivatives.part(plan, d),
             _ => plan.part(known, c, d),
         };
-        let parts: Vec<Option<Univariate>> = (0..dimensions).map(part).collect();
+        let parts: Vec<Option<Univariate>> = parts.unwrap_or_else(|| (0..dimensions).map(part).collect());
         let mixed = mixed
             .unwrap_or_else(|| exactly.map_or_else(|| plan.mixed(known, c, pairs), |exact| exact.mixed(plan, pairs)));
         let used = |&d: &usize| match self.order {

@@ -40,6 +40,12 @@ pub trait Procedure: Sync {
         Cost::of(&*plan).within(self.name(), problem, options)
     }
 
+    /// The evaluations of a model that sends derivatives with its answers; None where these save none.
+    fn with_gradients(&self, problem: &Problem, options: &Options) -> Option<usize> {
+        let _ = (problem, options);
+        None
+    }
+
     /// The fewest and the most evaluations of a method that chooses as it goes; None for one whose plan says how many.
     fn range(&self, problem: &Problem, options: &Options) -> Option<[usize; 2]> {
         let _ = (problem, options);

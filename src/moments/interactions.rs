@@ -109,7 +109,7 @@ impl Interactions {
     }
 
     /// Variance of `factor` times all products.
-    pub(super) fn variance(&self, factor: f64) -> f64 {
+    pub(crate) fn variance(&self, factor: f64) -> f64 {
         0.5 * self.fold(0.0, |sum, value| sum + (factor * value) * (factor * value))
     }
 

@@ -103,9 +103,10 @@ impl Axis {
         let nominal = dimension.nominal();
         let scale = SENSITIVITY_STEP * nominal.abs().max(1.0);
         let mut axis = Self { mean: nominal, scale, ..Self::still(dimension) };
-        if spread != Spread::Bare {
-            axis.open_slot(-1.0);
-            axis.open_slot(1.0);
+        match spread {
+            Spread::Bare => {}
+            Spread::Upper => axis.open_slot(1.0),
+            Spread::Pair | Spread::Five => [-1.0, 1.0].into_iter().for_each(|u| axis.open_slot(u)),
         }
         axis
     }

@@ -7,6 +7,8 @@ use crate::distribution::{Distribution, Rule};
 pub enum Spread {
     /// None: derivatives come from elsewhere.
     Bare,
+    /// One, the upper one of a pair: slopes come with the values.
+    Upper,
     /// Two: slope and curvature.
     Pair,
     /// Four: up to the fourth derivative.
@@ -80,7 +82,10 @@ impl Nodes {
         let (u, moved, rule, long) = match five {
             Some((u, rule)) => (u, Vec::new(), Some(rule), LONG_FIVE),
             None => {
-                let (u, moved) = pair(distribution, support);
+                let (mut u, moved) = pair(distribution, support);
+                if spread == Spread::Upper {
+                    u.retain(|&u| u > 0.0);
+                }
                 (u, moved, None, LONG_PAIR)
             }
         };
@@ -92,6 +97,7 @@ impl Nodes {
     pub(crate) fn stepped(step: f64, spread: Spread) -> Self {
         let u = match spread {
             Spread::Bare => Vec::new(),
+            Spread::Upper => vec![step],
             Spread::Pair => vec![-step, step],
             Spread::Five => vec![-2.0 * step, -step, step, 2.0 * step],
         };

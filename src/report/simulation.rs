@@ -13,7 +13,7 @@ use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Line, S
 use crate::moments::Moments;
 use crate::pearson::Pearson;
 use crate::problem::Problem;
-use crate::sampling::Estimate;
+use crate::sampling::{Estimate, one_error};
 use crate::simulation::{SimulatedCharacteristic, Simulation, YieldEstimate};
 
 /// The report of a simulation, as `--json` prints it. What is unknown is null, never 0.
@@ -98,8 +98,7 @@ impl SimulatedCharacteristic {
     fn kept(&self, section: &mut Section, yield_: YieldEstimate) {
         let [low, high] = yield_.interval.map(yielded);
         let target = judged(self.target(), self.verdict());
-        // A quarter of a 95 % interval is one standard error.
-        let error = 0.25 * (yield_.interval[1] - yield_.interval[0]);
+        let error = one_error(yield_.value, yield_.interval);
         let rejects = Rejects::new(self.below, self.above, Some(error));
         let text = rejects.yield_text().unwrap_or_else(|| yielded(yield_.value));
         section.note(Line::from(format!("yield {text}, 95 % interval {low} to {high}")).and(target));

@@ -10,7 +10,7 @@ mod summary;
 
 pub use draws::{Draws, Portion, Sampler, SamplingError};
 pub use estimate::{Estimate, wilson};
-pub(crate) use estimate::{FEWEST, of_moments};
+pub(crate) use estimate::{FEWEST, of_moments, one_error};
 pub use fine::{Fine, Scale};
 pub(crate) use joint::Joint;
 pub(crate) use normals::Normals;

@@ -20,7 +20,7 @@ pub use relocation::Relocation;
 pub use shape::{InputShape, shapes};
 pub use univariate::Univariate;
 
-use crate::moments::{Contributions, Interactions, Term, contributions};
+use crate::moments::{Contributions, Interactions, Term, contributions, exact};
 
 /// One characteristic's surrogate over N dimensions.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,5 +47,23 @@ impl Surrogate {
         let terms: Option<Vec<Term<'_>>> =
             self.parts.iter().zip(inputs.shapes()).map(|(part, shape)| Some(part.as_ref()?.term(shape))).collect();
         Some(contributions(self.centre, &terms?, &self.interactions))
+    }
+
+    /// The variance and its standard error, 0 where it is exact; None when a part is unknown.
+    ///
+    /// Of independent inputs it takes a pass over the parts and products, where all four moments take the cube of N.
+    pub(crate) fn variance(&self, inputs: &Inputs) -> Option<(f64, f64)> {
+        if inputs.correlation().is_some() {
+            let of = self.contributions(inputs)?;
+            let (sigma, error) = (of.moments.sigma(), of.sampled.map_or(0.0, |sampled| sampled.sigma));
+            return Some((sigma * sigma, 2.0 * sigma * error));
+        }
+        let parts: Option<Vec<f64>> = self
+            .parts
+            .iter()
+            .zip(inputs.shapes())
+            .map(|(part, shape)| Some(part.as_ref()?.term(shape).variance(1.0)))
+            .collect();
+        Some((exact(parts?.into_iter().chain([self.interactions.variance(1.0)])), 0.0))
     }
 }

@@ -14,16 +14,12 @@ const ROWS: usize = 1 << 10;
 /// Sums of a pair: points, first, second, their squares, their product.
 const SUMS: usize = 6;
 
-/// The coefficient of correlation of every pair of these characteristics, `(first, second, rho)`, over the points at which both have
-/// a value; None where one of them does not vary.
+/// The coefficient of correlation of every pair of these characteristics, over the points at which both have a value, in the order
+/// `(0, 1), (0, 2), ..., (1, 2), ...`; None where one of them does not vary.
 ///
 /// 16 randomisations of 1024 Sobol' points of all dimensions that vary, errors by the jackknife and Student's quantile. Pure in
 /// problem and seed. Accuracy: errors of some 1e-3 where the characteristics are smooth.
-pub(crate) fn output_correlations(
-    problem: &Problem,
-    characteristics: &[usize],
-    seed: u64,
-) -> Vec<(usize, usize, Option<Verified>)> {
+pub(crate) fn output_correlations(problem: &Problem, characteristics: &[usize], seed: u64) -> Vec<Option<Verified>> {
     let varying: Vec<usize> =
         (0..problem.dimensions().len()).filter(|&d| problem.dimensions()[d].sigma() > 0.0).collect();
     let models: Vec<Model<'_>> = characteristics.iter().map(|&c| Model::over(problem, c, &varying)).collect();
@@ -43,13 +39,12 @@ pub(crate) fn output_correlations(
             pairs.iter().map(|&(a, b)| sums([&columns[a], &columns[b]], [units[a], units[b]])).collect()
         })
         .collect();
-    (pairs.iter().enumerate())
-        .map(|(index, &(a, b))| {
+    (0..pairs.len())
+        .map(|index| {
             let sums: Vec<Vec<f64>> = (0..SUMS).map(|of| rows.iter().map(|row| row[index][of]).collect()).collect();
             let (value, error) = (coefficient(&totals(&sums))[0], jackknife(coefficient, &sums)[0]);
             let known = value.is_finite() && error.is_finite();
-            let rho = known.then(|| Verified { value, error: student(REPLICATES) * error });
-            (characteristics[a], characteristics[b], rho)
+            known.then(|| Verified { value, error: student(REPLICATES) * error })
         })
         .collect()
 }

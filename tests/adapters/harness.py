@@ -109,20 +109,32 @@ def shown(example):
     """The README of an example shows what the program prints: each console block is run again.
 
     Lines may change places (rows of equal shares do), the last digits of a kernel's numbers are its own, and how many
-    sentinels there are depends on which process was free.
+    sentinels there are depends on which process was free. With SENSITOL_UPDATE_DOCS=1 a block that differs is renewed.
     """
-    text = (EXAMPLES / example / "README.md").read_text(encoding="utf-8")
+    readme = EXAMPLES / example / "README.md"
+    text = readme.read_text(encoding="utf-8")
     blocks = [part.split("```", 1)[0] for part in text.split("```console\n")[1:]]
     assert blocks, f"{example} shows nothing"
     for block in blocks:
         command, expected = block.split("\n", 1)
         assert command.startswith("$ sensitol "), command
         out, errors = sensitol(*command.split()[2:])
-        lines = [sorted(line.split() for line in text.splitlines() if line.strip()) for text in (expected, out + errors)]
-        assert len(lines[0]) == len(lines[1]), f"{example}: `{command}` prints\n{out}{errors}"
-        for kept, found in zip(*lines):
-            alike = len(kept) == len(found) and all(_alike(a, b, kept) for a, b in zip(kept, found))
-            assert alike, f"{example}: `{command}` prints\n{' '.join(found)}\nand the README has\n{' '.join(kept)}"
+        difference = _difference(expected, out + errors)
+        if difference and os.environ.get("SENSITOL_UPDATE_DOCS"):
+            text = text.replace(block, f"{command}\n{out}{errors}")
+            readme.write_text(text, encoding="utf-8")
+            difference = None
+        assert difference is None, f"{example}: `{command}` {difference}"
+
+
+def _difference(expected, printed):
+    lines = [sorted(line.split() for line in text.splitlines() if line.strip()) for text in (expected, printed)]
+    if len(lines[0]) != len(lines[1]):
+        return f"prints\n{printed}"
+    for kept, found in zip(*lines):
+        if len(kept) != len(found) or not all(_alike(a, b, kept) for a, b in zip(kept, found)):
+            return f"prints\n{' '.join(found)}\nand the README has\n{' '.join(kept)}"
+    return None
 
 
 def _alike(kept, found, line):

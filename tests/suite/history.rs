@@ -6,7 +6,7 @@ use sensitol::assembly::process::{Greeting, Process, Settings};
 use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run, Signature};
 use sensitol::journal::Journaled;
 use sensitol::probe::probe;
-use sensitol::{Dimension, Method, Problem, Warning, analyze};
+use sensitol::{Dimension, Method, Options, Problem, Warning, analyze};
 
 use super::cli::sensitol;
 use super::support::{child_in_c, repository};
@@ -163,6 +163,19 @@ fn sums(process: &dyn AssemblyFunction, a: impl Iterator<Item = usize>) -> Respo
     let mut out = Responses::open(rows.len(), 2);
     process.evaluate(&Request::values(&Points::from_rows(&rows), &[0, 1]), &Run::to_the_end(), &mut out);
     out
+}
+
+/// Steps of 0.4 sigmas never take the model to its other assembly, the check points do: what they find out is said too.
+#[test]
+fn flips_of_check_points_are_told() {
+    let dimension = |d: usize| Dimension::normal(format!("x{d}"), 1.0, 0.3).unwrap();
+    let problem = || Problem::new((0..DIMENSIONS).map(dimension), process("toggle", 1)).unwrap();
+    let codes = |points: usize| -> Vec<&'static str> {
+        let options = Options::from(Method::SecondOrder).with_step(0.4).with_verify(points);
+        analyze(&problem(), &options).unwrap().warnings.iter().map(|warning| warning.code()).collect()
+    };
+    assert!(!codes(0).contains(&"branch-flip"), "{:?}", codes(0));
+    assert!(codes(12).contains(&"branch-flip"), "{:?}", codes(12));
 }
 
 /// A flip that is found in a later batch puts the answers of earlier ones to the test: the wrong one is named, and nothing else.

@@ -73,10 +73,11 @@ fn bounds_of_a_formula_cost_nothing() {
     assert!(of("p = { formula = \"u^2\" }\n", Some(0)).characteristics[0].bounds.is_none());
 }
 
-/// A position lies within its circle: `3 x + 4 y` reaches 5 radii, and the corners of the box about the circle, at 7, are no worst case.
+/// A position lies within its circle: `3 x + 4 y` reaches 5 radii, and
+/// the corners of the box about the circle, at 7, are no worst case.
 #[test]
 fn corners_of_the_box_of_a_circle_are_no_worst_case() {
-    let text = "[dimensions]\nhole = { position = [0, 0], tolerance = 0.1 }\n\
+    let text = "[dimensions]\nhole = { nominal = [0, 0], position = 0.2 }\n\
                 [characteristics]\ny = { formula = \"3*hole_x + 4*hole_y\" }\n";
     let study = Study::from_toml(text, "study.toml").unwrap();
     let one = analyze(&study.problem, &study.options).unwrap().characteristics.remove(0);

@@ -440,8 +440,7 @@ impl Pool {
         self.walking = true;
         self.evaluate(&Points::from_rows(way), &quiet, &mut answers);
         self.walking = false;
-        let answered = |row: &usize| (0..answers.outputs()).any(|output| !answers.is_open(*row, output));
-        let sent = (0..way.len()).filter(answered).count();
+        let sent = answers.answered().count();
         out.spent(sent as i64 + answers.extra());
         if sent < way.len() {
             return Err(Walked::Stopped);
