@@ -115,7 +115,7 @@ impl Responses {
                 let found = &analysis.characteristics[c];
                 let limits = found.characteristic.limits();
                 // A law that could only be counted has no slopes.
-                let by_law = limits.exist() && found.surface_law.is_some_and(|law| law.quantiles.is_some());
+                let by_law = limits.exist() && found.surface_law.is_some_and(|law| law.counted.is_none());
                 Response {
                     surrogate: fitted.surrogate.clone(),
                     nominal: fitted.nominal,

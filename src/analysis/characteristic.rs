@@ -48,10 +48,10 @@ pub struct CharacteristicAnalysis {
     /// What the law of its surface says; None where its moments follow from no surface.
     #[cfg_attr(feature = "cli", schemars(with = "Option<super::surface_law::SurfaceLawShape>"))]
     pub surface_law: Option<SurfaceShares>,
-    /// The density of that law as `[y, density]`, to be drawn; None unless [asked for](crate::Options::densities), and where the law is
-    /// sampled.
+    /// The density of that law as `[y, density, error]`, to be drawn; None unless [asked for](crate::Options::densities), and where the
+    /// law has none.
     #[serde(skip)]
-    pub density: Option<Vec<[f64; 2]>>,
+    pub density: Option<Vec<[f64; 3]>>,
     /// What its yield comes from; None without a yield.
     pub yield_source: Option<YieldSource>,
     /// Whether planned points were not evaluated because the run was stopped: no verdict follows from the others.

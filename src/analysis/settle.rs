@@ -48,7 +48,8 @@ pub(super) fn settle(
         if follows_from_a_surface(one) {
             let (shares, law) = SurfaceShares::of(problem, outcome, c, fit(one), (is_sampled(one), seed)).unzip();
             (one.surface_law, laws[c]) = (shares, law.flatten());
-            one.density = laws[c].as_ref().filter(|_| densities).and_then(density);
+            let quantiles = one.surface_law.as_ref().and_then(|law| law.quantiles.as_ref());
+            one.density = laws[c].as_ref().filter(|_| densities).and_then(|law| density(law, quantiles));
         }
         let Some(found) = rejected(problem, outcome, c, one) else { continue };
         one.yield_source = one.characteristic.limits().exist().then_some(found.source);

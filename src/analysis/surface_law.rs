@@ -4,18 +4,19 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
 
-use super::counted::counted;
+use super::counted::{Counted, counted};
 use crate::capability::{Law, Quantiles, TAIL};
 use crate::correlation::Correlation;
 use crate::distribution::{Distribution, Normal};
-use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, SurfaceLaw};
+use crate::law::{Branch, LawError, LawFigure, LawOptions, LawTail, Sought, SurfaceLaw};
 use crate::method::Outcome;
 use crate::moments::Interactions;
+use crate::pearson::Pearson;
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
 /// The probabilities of the quantiles of reports, lowest first, each by the tail that it leaves.
-const QUANTILES: [(LawTail, f64); 7] = [
+pub const QUANTILES: [(LawTail, f64); 7] = [
     (LawTail::Lower, TAIL),
     (LawTail::Lower, 0.01),
     (LawTail::Lower, 0.05),
@@ -34,16 +35,22 @@ const POINTS: usize = 1 << 12;
 /// and terms of the surface, from which on there are fewer.
 const TERMS: usize = 1 << 10;
 const FEWEST: usize = 1 << 9;
-/// Measured values of one input from which on every point of a contour is a long sum: the surface is counted at points instead.
+/// Measured values of one input up to which every point of a contour is a short sum.
 const ATOMS: usize = 64;
+/// Beyond, terms of all points of a contour at most: the surface is counted at points instead where they are more,
+const TERMS_OF_ATOMS: f64 = 1e7;
+/// and points of a contour, as many as this by the part of sigma that has a density: beyond 8 by the sigma of that part its transform
+/// vanishes, and points are a third by the sigma of the whole from each other.
+const POINTS_OF_SIGMA: f64 = 24.0;
+const MOST_POINTS: f64 = 2048.0;
+/// Values of a step function that are listed.
+const STEPS: usize = 1 << 18;
 /// A drawn density ends where so little lies beyond,
 const DRAWN: f64 = 1e-5;
-/// and has so many places: a pixel or two each.
+/// and has so many places: a pixel or two each,
 const PLACES: usize = 240;
-/// A quantile is found within this part of sigma,
-const NEAR: f64 = 1e-7;
-/// in so many steps from the quantile of the Pearson fit, or by the law's own search.
-const STEPS: usize = 8;
+/// or so many where each is a sum over points: lines between them are within 0.1 % of the peak of a normal density.
+const FEW_PLACES: usize = 96;
 
 /// What the law of a surface says of a characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,12 +58,15 @@ const STEPS: usize = 8;
 pub struct SurfaceShares {
     /// How the law is computed.
     pub branch: Branch,
+    /// Points of the surface at which its law was counted, because it could not be computed; None where it was.
+    pub counted: Option<usize>,
+    /// Whether it is a step function: every input that counts has measured values only.
+    pub steps: bool,
     /// The share below the lower limit; None without one.
     pub below: Option<LawFigure>,
     /// The share above the upper limit; None without one.
     pub above: Option<LawFigure>,
-    /// At the [`PROBABILITIES`](crate::capability::PROBABILITIES); None without limits: those of the Pearson fit are then reported. None
-    /// too where the law could only be counted at points.
+    /// At the [`PROBABILITIES`](crate::capability::PROBABILITIES); None where one of them is unknown.
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
@@ -79,8 +89,7 @@ impl SurfaceShares {
         }
         let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
         let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
-        let measured = inputs.iter().filter_map(|law| law.probability());
-        if measured.map(|law| law.atoms().len()).any(|atoms| atoms > ATOMS) {
+        if has_too_many_atoms(&surrogate, &inputs) {
             return Some((Self::counted(problem, outcome, c, seed)?, None));
         }
         let correlation = outcome.plan.inputs().correlation();
@@ -98,10 +107,6 @@ impl SurfaceShares {
         if ![below, above].iter().flatten().all(known) {
             return Some((Self::counted(problem, outcome, c, seed)?, None));
         }
-        // Seven quantiles take some 25 values of the law, up to half a second each: only where limits say that the tails matter.
-        if !limits.exist() {
-            return Some((Self { branch: whole.branch(), below, above, quantiles: None }, Some(whole)));
-        }
         let full = match unexplained.filter(|_| beside) {
             Some(_) => {
                 let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
@@ -110,12 +115,22 @@ impl SurfaceShares {
             None => None,
         };
         let quantiles = quantiles(full.as_ref().unwrap_or(&whole), fit);
-        Some((Self { branch: whole.branch(), below, above, quantiles }, Some(whole)))
+        Some((
+            Self { branch: whole.branch(), counted: None, steps: whole.is_step_function(), below, above, quantiles },
+            Some(whole),
+        ))
     }
 
     fn counted(problem: &Problem, outcome: &Outcome, c: usize, seed: u64) -> Option<Self> {
-        let [below, above] = counted(problem, outcome, c, seed)?;
-        Some(Self { branch: Branch::Sampled, below, above, quantiles: None })
+        let Counted { beyond: [below, above], quantiles, points } = counted(problem, outcome, (c, seed), QUANTILES)?;
+        Some(Self {
+            branch: Branch::Sampled,
+            counted: Some(points),
+            steps: false,
+            below,
+            above,
+            quantiles: Some(quantiles),
+        })
     }
 
     /// The numerical error of the share within the limits.
@@ -143,6 +158,34 @@ impl SurfaceShares {
     pub(super) fn capability_quantiles(&self) -> Option<[f64; 3]> {
         self.quantiles.map(|all| OUTER.map(|index| all[index].value))
     }
+}
+
+/// Whether measured values make the points of a contour sums that are too long, and more of them than a list.
+fn has_too_many_atoms(surrogate: &Surrogate, inputs: &[Arc<dyn Distribution>]) -> bool {
+    let atoms: Vec<usize> = inputs.iter().map(|law| law.probability().map_or(0, |law| law.atoms().len())).collect();
+    if atoms.iter().all(|&count| count <= ATOMS) {
+        return false;
+    }
+    let counts = |j: &usize| surrogate.parts[*j].is_some_and(|part| part.largest() > 0.0);
+    let counting = || (0..inputs.len()).filter(counts);
+    let listed =
+        counting().try_fold(1usize, |all, j| all.checked_mul(atoms[j]).filter(|&all| (1..=STEPS).contains(&all)));
+    if listed.is_some() {
+        return false;
+    }
+    let products = surrogate.interactions.pairs();
+    if products.iter().any(|&(j, k, product)| product != 0.0 && atoms[j].max(atoms[k]) > ATOMS) {
+        return true;
+    }
+    let spread = |smooth: bool| {
+        let own = counting().filter(|&j| !smooth || atoms[j] == 0).filter_map(|j| surrogate.parts[j]);
+        own.map(|part| part.largest().powi(2)).sum::<f64>().sqrt()
+    };
+    if spread(true) <= 0.0 {
+        return true;
+    }
+    let points = (POINTS_OF_SIGMA * spread(false) / spread(true)).max(1.0);
+    points > MOST_POINTS || points * atoms.iter().sum::<usize>() as f64 > TERMS_OF_ATOMS
 }
 
 /// The law of a characteristic's surface itself; None where there is no surface, or nothing but moments is known of an input.
@@ -177,11 +220,12 @@ fn points(surrogate: &Surrogate) -> usize {
 }
 
 /// The surface beside what it leaves out, as a normal input of its own.
-fn with(
+pub(super) fn with(
     own: &Surrogate,
     mut inputs: Vec<Arc<dyn Distribution>>,
     unexplained: Option<f64>,
 ) -> (Surrogate, Vec<Arc<dyn Distribution>>) {
+    let own = &own.without_rounding();
     let mut surrogate = own.clone();
     let least = IDLE * own.parts.iter().flatten().map(|part| part.largest().powi(2)).sum::<f64>();
     let normal = Normal::new(0.0, 1.0).ok();
@@ -202,63 +246,52 @@ fn law(
     SurfaceLaw::of(surrogate, inputs, correlation, &LawOptions { points, ..LawOptions::default() })
 }
 
-/// The density at places from one far quantile to the other, `[y, density]`; None where the law is sampled, each place of which is a
-/// sum over points, and where its values are steps.
-pub(super) fn density(law: &SurfaceLaw) -> Option<Vec<[f64; 2]>> {
-    if law.branch() == Branch::Sampled || law.is_step_function() {
+/// The density at places from one far quantile to the other, `[y, density, error]`; None where its values are steps, and where points are
+/// drawn of which none can be integrated.
+pub(super) fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> Option<Vec<[f64; 3]>> {
+    if law.is_step_function() {
         return None;
     }
-    let [from, to] = [LawTail::Lower, LawTail::Upper].map(|tail| law.quantile(tail, DRAWN).value);
-    let place = |i: usize| from + (to - from) * i as f64 / PLACES as f64;
-    let table: Vec<[f64; 2]> = (0..=PLACES).map(|i| [place(i), law.density(place(i)).value]).collect();
+    let sampled = law.branch() == Branch::Sampled;
+    let places = if sampled { FEW_PLACES } else { PLACES };
+    let [from, to] = match quantiles.filter(|_| sampled) {
+        // Half as far again: of a normal distribution from 3 to 4.5 sigma.
+        Some(all) => {
+            let [low, middle, high] = OUTER.map(|index| all[index].value);
+            let [least, most] = law.range();
+            [(low + 0.5 * (low - middle)).max(least), (high + 0.5 * (high - middle)).min(most)]
+        }
+        None => [LawTail::Lower, LawTail::Upper].map(|tail| law.quantile(tail, DRAWN).value),
+    };
+    let place = |i: usize| from + (to - from) * i as f64 / places as f64;
+    let at = |i: usize| {
+        let figure = law.drawn_density(place(i));
+        [place(i), figure.value, figure.error]
+    };
+    let table: Vec<[f64; 3]> = (0..=places).map(at).collect();
     // A density may be infinite at an end of its support.
-    (from < to && table.iter().all(|[_, density]| *density >= 0.0)).then_some(table)
+    (from < to && table.iter().all(|[_, density, _]| *density >= 0.0)).then_some(table)
 }
 
-/// All quantiles of reports; None where one of them is unknown.
+/// All quantiles of reports, sought from those of the Pearson fit, or of a normal distribution where nothing else has the moments; None
+/// where one of them is unknown.
 fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
-    let mut found = [LawFigure { value: f64::NAN, error: f64::INFINITY, proven: false }; 7];
-    for (figure, (tail, p)) in found.iter_mut().zip(QUANTILES) {
-        let start = fit.map(|fit| match tail {
+    let normal = || Pearson::normal(law.mean(), law.sigma()).ok();
+    let start = match fit {
+        Some(Law::Pearson(fit)) => Some(fit.as_ref().clone()),
+        _ => normal(),
+    };
+    let sought = QUANTILES.map(|(tail, p)| {
+        let near = start.as_ref().map(|fit| match tail {
             LawTail::Lower => fit.quantile(p),
             LawTail::Upper => fit.upper_quantile(p),
         });
-        *figure = quantile(law, tail, p, start);
-        if !figure.value.is_finite() {
-            return None;
-        }
-    }
-    Some(found)
-}
-
-/// By secants of the logarithm of the tail from a place that is nearly right, which takes three or four limits.
-fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64, start: Option<f64>) -> LawFigure {
-    let sigma = law.sigma();
-    let own = || law.quantile(tail, p);
-    let Some(start) = start.filter(|_| sigma > 0.0 && !law.is_step_function()) else { return own() };
-    let outward = if tail == LawTail::Upper { 1.0 } else { -1.0 };
-    let gap = |y: f64| {
-        let figure = law.tail(y, tail);
-        (libm::log(figure.value / p), figure.error / figure.value)
-    };
-    let mut last = (start, gap(start).0);
-    // Of a normal law half a sigma of its own tail: a step that need only be of the right size.
-    let mut at = start + outward * sigma * last.1.clamp(-1.0, 1.0) * 0.3;
-    for _ in 0..STEPS {
-        let (here, error) = gap(at);
-        let slope = (here - last.1) / (at - last.0);
-        let step = -here / slope;
-        if here == 0.0 || (slope * outward < 0.0 && step.abs() <= NEAR * sigma) {
-            let by = if here == 0.0 { 0.0 } else { step };
-            return LawFigure { value: at + by, error: (error / slope.abs()).max(NEAR * sigma), proven: false };
-        }
-        if !(slope * outward < 0.0 && step.abs() < sigma) {
-            return own();
-        }
-        last = (at, here);
-        at += step;
-    }
-    own()
+        let density = start.as_ref().zip(near).map_or(f64::NAN, |(fit, near)| fit.pdf(near));
+        Sought { tail, p, near: near.unwrap_or(f64::NAN), density }
+    });
+    let found = law.quantiles(&sought);
+    let known = found.iter().all(|figure| figure.value.is_finite());
+    found.try_into().ok().filter(|_| known)
 }
 
 /// What the law of the fitted surface says, as it is written.
@@ -267,6 +300,10 @@ fn quantile(law: &SurfaceLaw, tail: LawTail, p: f64, start: Option<f64>) -> LawF
 pub(super) struct SurfaceLawShape {
     /// `exact`, `single` or `sampled`: how it is computed.
     branch: &'static str,
+    /// Points of the surface at which the law was counted, where it could not be computed; null where it was.
+    counted_points: Option<usize>,
+    /// Whether the law is a step function, because every input that counts has measured values only.
+    step_function: bool,
     /// The share within the limits; null without any.
     #[serde(rename = "yield")]
     yield_: Option<f64>,
@@ -276,7 +313,7 @@ pub(super) struct SurfaceLawShape {
     ppm_above: Option<f64>,
     /// The numerical error of the share within the limits: of the law of this surface, not of the surface.
     yield_error: Option<f64>,
-    /// Quantiles; null where the law could only be counted at points.
+    /// Quantiles; null where one of them is unknown.
     quantiles: Option<Quantiles>,
 }
 
@@ -289,6 +326,8 @@ impl Serialize for SurfaceShares {
                 Branch::Single => "single",
                 Branch::Sampled => "sampled",
             },
+            counted_points: self.counted,
+            step_function: self.steps,
             yield_: self.yield_(),
             ppm_below: ppm(self.below),
             ppm_above: ppm(self.above),

@@ -109,6 +109,12 @@ impl Side {
 
     /// The contour for a limit.
     pub(super) fn contour(&self, transform: &Transform, y: f64) -> Arc<Contour> {
+        self.contour_to(transform, y, y)
+    }
+
+    /// The contour for one limit, with points so near to each other that it serves all of this side up to another one, which may lie
+    /// farther out.
+    pub(super) fn contour_to(&self, transform: &Transform, y: f64, farthest: f64) -> Arc<Contour> {
         let (place, rung) = self.rung(transform, y);
         let (theta, [log, _, spread]) = (rung.theta, rung.cumulants);
         let end = match self.tail {
@@ -121,7 +127,7 @@ impl Side {
         let least = below(if rung.until.is_finite() { rung.until } else { transform.mean })
             .max(if room.is_finite() { ROOM / room } else { 0.0 })
             .max(10.0 * spread.max(0.0).sqrt());
-        let doublings = libm::ceil(2.0 * libm::log2(below(y) / least)).max(0.0);
+        let doublings = libm::ceil(2.0 * libm::log2(below(farthest) / least)).max(0.0);
         let spacing = least * libm::exp2(0.5 * doublings);
         let bend = match transform.vertex {
             // 0.12 of the distance that a parabola can be bent by without leaving the domain.

@@ -217,6 +217,11 @@ impl Direction {
         c
     }
 
+    /// Whether several inputs are mixtures of normal coordinates.
+    pub(super) fn is_mixed(&self) -> bool {
+        self.block.len() > 1
+    }
+
     /// The input that is the direction by itself.
     pub(super) fn own(&self) -> Option<usize> {
         if let [(j, _)] = self.slopes[..] { Some(j) } else { None }

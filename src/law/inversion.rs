@@ -9,7 +9,9 @@
 //! atoms), a smooth window ends the sum: that changes the result only where a corner of the law lies within 110/T of the limit.
 //! T is doubled until two windows agree.
 
+use std::cell::Cell;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use super::complex::Complex;
 use super::contour::{Contour, Side};
@@ -23,8 +25,10 @@ const FIRST: usize = 64;
 const LAST: [usize; 2] = [1 << 11, 1 << 14];
 /// A term that is below this part of the sum ends it.
 const ENDED: f64 = 1e-14;
-/// Two windows agree.
+/// Two windows agree,
 const AGREED: f64 = 1e-11;
+/// or do so well enough for a quantile, which moves by no more than a third of that in sigmas.
+const NEARLY: f64 = 1e-8;
 /// How steeply a window falls: at its ends it is 1e-13 off 1 and 0.
 const STEEPNESS: f64 = 10.4;
 /// What a window leaves, by the sum: its own ends.
@@ -95,6 +99,29 @@ impl Inversion {
         self.sum(y, tail, Quantity::Density)
     }
 
+    /// A contour for several limits of one side: right at the first of these places, and still so up to the second, which lies farther
+    /// out. None where every limit has its own at little cost.
+    pub(super) fn shared(&self, tail: LawTail, [y, farthest]: [f64; 2]) -> Option<Arc<Contour>> {
+        let many = !self.transform.is_form();
+        many.then(|| self.side(tail).contour_to(&self.transform, y - self.centre, farthest - self.centre))
+    }
+
+    /// A tail and the density along a contour that was chosen for several limits; `points` is how many the last of them took.
+    pub(super) fn tail_and_density(
+        &self,
+        contour: &Contour,
+        y: f64,
+        tail: LawTail,
+        points: &Cell<usize>,
+    ) -> [LawFigure; 2] {
+        let y = y - self.centre;
+        let (value, window) = self.along(contour, y, Quantity::LawTail(tail), Extent::Nearly(points.get()));
+        // The window before the last one, so that two are compared again.
+        points.set(window.points / 2);
+        let (density, _) = self.along(contour, y, Quantity::Density, Extent::Fixed(window));
+        [value, density]
+    }
+
     /// Whether the law is a normal distribution.
     pub(super) fn is_normal(&self) -> bool {
         self.transform.forms.is_normal() && self.transform.is_form()
@@ -112,14 +139,19 @@ impl Inversion {
     /// Of a limit that is counted from the centre.
     fn sum(&self, y: f64, tail: LawTail, quantity: Quantity) -> LawFigure {
         let contour = self.side(tail).contour(&self.transform, y);
-        self.along(&contour, y, quantity, None).0
+        self.along(&contour, y, quantity, Extent::From(FIRST)).0
     }
 
     /// The sum along a contour, over as many points as it takes or as many as it is told; and how many these were.
-    fn along(&self, contour: &Contour, y: f64, quantity: Quantity, fixed: Option<Window>) -> (LawFigure, Window) {
+    fn along(&self, contour: &Contour, y: f64, quantity: Quantity, extent: Extent) -> (LawFigure, Window) {
         let transform = &self.transform;
         let most = LAST[usize::from(transform.is_cheap())];
-        let (mut count, mut before) = (fixed.map_or(FIRST, |window| window.points), f64::NAN);
+        let (mut count, agreed, fixed) = match extent {
+            Extent::From(points) => (points.max(FIRST), AGREED, None),
+            Extent::Nearly(points) => (points.max(FIRST), NEARLY, None),
+            Extent::Fixed(window) => (window.points, AGREED, Some(window)),
+        };
+        let mut before = f64::NAN;
         let (sum, off, largest, window) = loop {
             let terms = terms(contour, transform, y, quantity, count);
             if terms.is_empty() {
@@ -140,7 +172,7 @@ impl Inversion {
             }
             let now = windowed(&terms);
             let off = (now - before).abs();
-            if off < AGREED * now.abs() || count >= most || terms.len() < count {
+            if off < agreed * now.abs() || count >= most || terms.len() < count {
                 let off = if off.is_nan() { now.abs() } else { 4.0 * off + LEFT * now.abs() };
                 break (now, off, largest, window(true));
             }
@@ -160,7 +192,7 @@ impl Inversion {
         let outward = tail.sign() * (y - self.transform.mean) / self.sigma();
         let own = if outward < -CENTRAL { tail.other() } else { tail };
         let contour = self.side(own).contour(&self.transform, y);
-        let (_, window) = self.along(&contour, y, Quantity::LawTail(own), None);
+        let (_, window) = self.along(&contour, y, Quantity::LawTail(own), Extent::From(FIRST));
         Line {
             tail: own,
             complement: own != tail,
@@ -179,7 +211,7 @@ impl Inversion {
         }
         let y = y - self.centre;
         let contour = Contour::fixed(&self.transform, line.theta, line.step, line.bend);
-        let (found, _) = self.along(&contour, y, Quantity::LawTail(line.tail), Some(line.window));
+        let (found, _) = self.along(&contour, y, Quantity::LawTail(line.tail), Extent::Fixed(line.window));
         Some(if line.complement { found.complement() } else { found })
     }
 
@@ -207,6 +239,17 @@ impl Inversion {
         };
         changes(&contour, terms.len()).iter().map(of).collect()
     }
+}
+
+/// Over how many points a sum is taken.
+#[derive(Debug, Clone, Copy)]
+enum Extent {
+    /// Over so many, and more where they do not agree with fewer.
+    From(usize),
+    /// The same, with fewer digits.
+    Nearly(usize),
+    /// As another one.
+    Fixed(Window),
 }
 
 /// How many points a sum has, and whether it ends with a window.

@@ -37,12 +37,17 @@ mod single_sum;
 mod steps;
 mod surface;
 mod table;
+#[cfg(feature = "html")]
+mod tabulated;
 mod tilt;
 mod transform;
 mod tree;
 
 pub use held::HeldTail;
 pub use joint::joint_yield;
+pub(crate) use quantile::Sought;
+#[cfg(feature = "html")]
+pub(crate) use tabulated::TabulatedInput;
 
 use std::sync::Arc;
 
@@ -77,6 +82,11 @@ impl LawFigure {
 
     const fn proven(value: f64) -> Self {
         Self { value, error: 0.0, proven: true }
+    }
+
+    /// Of points that were counted.
+    pub(crate) const fn counted(value: f64, error: f64) -> Self {
+        Self::new(value, error)
     }
 
     fn complement(self) -> Self {
@@ -302,7 +312,7 @@ impl SurfaceLaw {
         }
     }
 
-    /// Density per unit of `y`; 0 where the law is a step function.
+    /// Density per unit of `y`; 0 where the law is a step function, NaN where points are drawn of which none can be integrated.
     pub fn density(&self, y: f64) -> LawFigure {
         let [least, most] = self.range;
         if y.is_nan() {
@@ -316,6 +326,15 @@ impl SurfaceLaw {
             Kind::Exact(inversion) => inversion.density(y),
             Kind::Single(single) => single.density(y),
             Kind::Sampled(sampled) => sampled.density(y, self.mean),
+        }
+    }
+
+    /// [`density`](Self::density) for a drawing: where points are drawn, from those of the law itself, which do for where it is visible.
+    pub(crate) fn drawn_density(&self, y: f64) -> LawFigure {
+        let [least, most] = self.range;
+        match &self.kind {
+            Kind::Sampled(sampled) if y >= least && y <= most && !self.step => sampled.plain_density(y),
+            _ => self.density(y),
         }
     }
 
@@ -341,6 +360,13 @@ impl SurfaceLaw {
             true => quantile::quantile(self, tail, p),
             false => quantile::quantile(self, tail.other(), 1.0 - p),
         }
+    }
+
+    /// Several quantiles at once, each from a place that is nearly right: to 1e-7 sigma, or to a small part of what points leave open.
+    ///
+    /// Those of one tail share a contour or points. Cost: three or four limits on it for each.
+    pub(crate) fn quantiles(&self, sought: &[Sought]) -> Vec<LawFigure> {
+        quantile::quantiles(self, sought)
     }
 
     /// The derivatives of a tail's probability by the logarithm of every input's tolerance, at fixed shape: the slope of input

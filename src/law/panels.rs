@@ -2,8 +2,10 @@
 
 use super::input::{GAUSS, Input};
 
-/// Part of the whole by which two rules on a panel may differ.
-const TOLERANCE: f64 = 1e-15;
+/// Part of the whole by which two rules on a panel may differ: all digits,
+pub(super) const EXACT: f64 = 1e-15;
+/// or as many as a quantile takes.
+pub(super) const NEARLY: f64 = 1e-10;
 /// Panels at most.
 const MOST: usize = 6000;
 /// Halvings of a panel at most: a kink is then known to the last digit.
@@ -17,13 +19,14 @@ pub(super) struct Expectation {
 }
 
 /// `E f(z)` of a function that is smooth between these places and a few others.
-pub(super) fn expectation(input: &Input, splits: &[f64], f: impl Fn(f64) -> f64) -> Expectation {
+pub(super) fn expectation(input: &Input, splits: &[f64], tolerance: f64, f: impl Fn(f64) -> f64) -> Expectation {
     let rule = |from: f64, to: f64, factor: f64| -> f64 {
         let width = to - from;
         let at = |x: f64| {
             let z = from + width * x;
             let density = input.density(z);
-            if density > 0.0 { density * f(z) } else { 0.0 }
+            // A place next to an end may be rounded onto it, where a broken power is infinite.
+            if density > 0.0 && density.is_finite() { density * f(z) } else { 0.0 }
         };
         factor * width * GAUSS.iter().map(|(x, w)| w * at(*x)).sum::<f64>()
     };
@@ -50,7 +53,7 @@ pub(super) fn expectation(input: &Input, splits: &[f64], f: impl Fn(f64) -> f64)
         // A narrow spike that the first rule has missed makes the whole larger.
         total += left.abs() + right.abs() - coarse.abs();
         taken += 1;
-        let fine = off <= TOLERANCE * total || !(from < middle && middle < to);
+        let fine = off <= tolerance * total || !(from < middle && middle < to);
         if fine || depth >= DEEPEST || taken >= MOST {
             value += left + right;
             error += off;

@@ -5,13 +5,14 @@
 //! ones by its own distribution function. The nearest exact surface, without the products that make it inexact, is the
 //! control: `P = P_exact + mean(1 - 1_control)` at the same points.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::direction::{Direction, Terms};
 use super::input::Input;
 use super::inversion::Inversion;
-use super::panels::expectation;
+use super::panels::{EXACT, expectation};
 use super::points::{Along, REPLICATES, Sample, visit};
 use super::polynomial::{Quartic, derivative, roots, value};
 use super::surface::Surface;
@@ -46,6 +47,15 @@ pub(super) struct Sampled {
     seed: u64,
     plain: Mutex<Option<Arc<Sample>>>,
     tilted: Mutex<BTreeMap<(LawTail, usize), Arc<Sample>>>,
+}
+
+/// Points and estimate for several limits of one tail.
+#[derive(Debug, Default)]
+pub(super) struct Choice {
+    /// Rung and proposal of the tilt; None for own points.
+    tilted: Option<(usize, Arc<Proposal>)>,
+    /// Whether beside the control; None until a limit has been estimated.
+    beside: Cell<Option<bool>>,
 }
 
 /// What is averaged.
@@ -112,6 +122,17 @@ impl Sampled {
         self.figure(y, tail, Quantity::Density)
     }
 
+    /// Density by the points of the law itself.
+    pub(super) fn plain_density(&self, y: f64) -> LawFigure {
+        if let Some(coordinate) = self.only() {
+            return self.convolved(coordinate, y, Quantity::Density);
+        }
+        let exact = self.exact(y, Quantity::Density);
+        let off = y - self.surface.centre;
+        let found = self.estimates(&self.direction, &self.sample(None), off, Quantity::Density, exact);
+        LawFigure { value: found.best().value.max(0.0), ..found.best() }
+    }
+
     fn sample(&self, tilted: Option<(LawTail, usize, &Proposal)>) -> Arc<Sample> {
         let control = self.control.as_ref().map(|(terms, _)| terms);
         let along = Along { direction: &self.direction, full: &self.full, control };
@@ -158,8 +179,8 @@ impl Sampled {
         })
     }
 
-    /// The estimate that rules: the proposal, None for the own law; whether beside the control; and the estimates.
-    fn chosen(&self, y: f64, tail: LawTail, quantity: Quantity) -> (Option<Arc<Proposal>>, bool, Estimates) {
+    /// The estimate that rules: the proposal and its rung, None for the own law; whether beside the control; and the estimates.
+    fn chosen(&self, y: f64, tail: LawTail, quantity: Quantity) -> (Option<(usize, Arc<Proposal>)>, bool, Estimates) {
         let off = y - self.surface.centre;
         let exact = self.exact(y, quantity);
         let plain = self.estimates(&self.direction, &self.sample(None), off, quantity, exact);
@@ -179,8 +200,45 @@ impl Sampled {
             own.error < GOOD * own.value && (found.value - own.value).abs() > 2.0 * (found.error + own.error);
         match own.value > 0.0 && (own.error <= found.error || contradicted) || found.value <= 0.0 {
             true => (None, plain.is_beside(), plain),
-            false => (Some(proposal), tilted.is_beside(), tilted),
+            false => (Some((rung, proposal)), tilted.is_beside(), tilted),
         }
+    }
+
+    /// With what several limits of a tail are estimated: own points, or those of the tilt that leads to a limit where that does better.
+    pub(super) fn choice(&self, tilted_to: Option<f64>, tail: LawTail) -> Choice {
+        match tilted_to.filter(|_| self.only().is_none()) {
+            None => Choice::default(),
+            Some(y) => {
+                let (tilted, beside, _) = self.chosen(y, tail, Quantity::LawTail(tail));
+                Choice { tilted, beside: Cell::new(Some(beside)) }
+            }
+        }
+    }
+
+    /// The exact law of the control.
+    pub(super) fn control(&self) -> Option<&Inversion> {
+        self.control.as_ref().filter(|_| self.only().is_none()).map(|(_, law)| law)
+    }
+
+    /// A tail by the estimate that was chosen for several limits, beside what `exact` says of the control.
+    pub(super) fn tail_by(
+        &self,
+        y: f64,
+        tail: LawTail,
+        choice: &Choice,
+        exact: impl FnOnce() -> Option<LawFigure>,
+    ) -> LawFigure {
+        let quantity = Quantity::LawTail(tail);
+        if let Some(coordinate) = self.only() {
+            return self.convolved(coordinate, y, quantity);
+        }
+        let sample = self.sample(choice.tilted.as_ref().map(|(rung, proposal)| (tail, *rung, proposal.as_ref())));
+        let exact = if choice.beside.get() == Some(false) { None } else { exact() };
+        let found = self.estimates(&self.direction, &sample, y - self.surface.centre, quantity, exact);
+        // What rules the first limit rules them all: no quantile lies on a jump from one estimate to the other.
+        let beside = choice.beside.get().unwrap_or_else(|| found.is_beside());
+        choice.beside.set(Some(beside));
+        found.beside.filter(|_| beside).unwrap_or(found.alone)
     }
 
     /// The points and the estimate that rules a tail.
@@ -191,7 +249,7 @@ impl Sampled {
             Some(_) => (None, false),
             None => {
                 let (proposal, beside, _) = self.chosen(y, nearer, quantity);
-                (proposal, beside)
+                (proposal.map(|(_, proposal)| proposal), beside)
             }
         };
         let (direction, tilts) = (self.direction.clone(), Arc::clone(&self.tilts));
@@ -223,7 +281,7 @@ impl Sampled {
         let nearer = if y < mean { LawTail::Lower } else { LawTail::Upper };
         let sign = if nearer == tail { 1.0 } else { -1.0 };
         let off = y - self.surface.centre;
-        let (proposal, ..) = self.chosen(y, nearer, Quantity::LawTail(nearer));
+        let proposal = self.chosen(y, nearer, Quantity::LawTail(nearer)).0.map(|(_, proposal)| proposal);
         let exact = self.others.as_ref().map(|(table, law)| {
             let places =
                 (0..self.surface.len()).filter(|j| self.direction.members().binary_search(j).is_err()).collect();
@@ -262,7 +320,8 @@ impl Sampled {
     fn convolved(&self, coordinate: usize, y: f64, quantity: Quantity) -> LawFigure {
         let off = y - self.surface.centre;
         let part = &self.surface.parts[coordinate];
-        let found = expectation(&self.surface.inputs[coordinate], &[], |z| self.beside(off - value(part, z), quantity));
+        let found =
+            expectation(&self.surface.inputs[coordinate], &[], EXACT, |z| self.beside(off - value(part, z), quantity));
         LawFigure::new(found.value, found.error + TABULATED * found.value)
     }
 
@@ -272,7 +331,8 @@ impl Sampled {
             (Some((table, _)), Quantity::LawTail(tail)) => table.tail(y, tail),
             (Some((table, _)), Quantity::Density) => table.density(y),
             (None, Quantity::LawTail(tail)) => f64::from(u8::from(tail.sign() * -y > 0.0)),
-            (None, Quantity::Density) => 0.0,
+            // An indicator has no density.
+            (None, Quantity::Density) => f64::NAN,
         }
     }
 

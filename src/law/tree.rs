@@ -25,8 +25,8 @@ const MOST: usize = 1 << 22;
 
 /// Sigmas of its neighbours that an input's nodes resolve the products with; half of them may add to the weight of a node.
 const REACH: f64 = 8.0;
-/// Points of a contour that share their nodes.
-const SHARED: usize = 16;
+/// Points of a contour that share their nodes: next to the real axis, where nodes double from few points to few points, and beyond.
+const SHARED: [usize; 2] = [16, 64];
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// A tree of products, from the leaves to the root.
@@ -230,8 +230,9 @@ impl Tree {
 
     /// Multiplies `M(s)/M(theta)` into the points of a block; false where the tables would be too large.
     pub(super) fn multiply(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> bool {
-        let blocks = out.chunks_mut(SHARED).enumerate();
-        blocks.fold(true, |all, (block, out)| all && self.few(theta, from + step * (block * SHARED) as f64, step, out))
+        let shared = SHARED[usize::from(from > 0.0)];
+        let blocks = out.chunks_mut(shared).enumerate();
+        blocks.fold(true, |all, (block, out)| all && self.few(theta, from + step * (block * shared) as f64, step, out))
     }
 
     /// The same for points that share their nodes.

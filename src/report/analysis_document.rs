@@ -268,6 +268,12 @@ impl CharacteristicAnalysis {
                 });
             }
         }
+        if self.surface_law.is_some_and(|law| law.steps) && self.sigma().is_some_and(|sigma| sigma > 0.0) {
+            section.note("the surface law is a step function: all that varies are measured values");
+        }
+        if let Some(points) = self.surface_law.as_ref().and_then(|law| law.counted) {
+            section.note(format!("the surface law is counted at {points} points of the surface"));
+        }
         section.table(self.quantile_data());
         if self.limited() {
             self.kept(section);
@@ -289,13 +295,13 @@ impl CharacteristicAnalysis {
         ];
         let fit = if kind == "normal" { "normal".to_owned() } else { format!("Pearson type {kind}") };
         let words = match &self.density {
-            Some(_) => format!("Law of the surface{bars}; dashed: the Pearson fit ({fit})."),
+            Some(table) => format!("Law of the surface{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
             None => format!("{fit}{bars}."),
         };
         places.extend(self.mean().map(|mean| (mean, "mean", "mean")));
         SpreadChart {
             law: Some(law.clone()),
-            curve: self.density.clone(),
+            curve: self.density.as_ref().map(|table| table.iter().map(|&[y, density, _]| [y, density]).collect()),
             bins: sample.cloned(),
             sampled: false,
             limits: Named::limits(self),
@@ -489,6 +495,18 @@ impl CharacteristicAnalysis {
             .data("rounding", |pair| Cell::data(pair.rounding))
             .table("interactions", &self.interactions)
             .at_most(most, String::new())
+    }
+}
+
+/// How far a drawn density is off, where that can be seen.
+fn accuracy(table: &[[f64; 3]]) -> String {
+    /// Of the peak: the width of a line.
+    const SEEN: f64 = 1e-3;
+    let most = |of: fn(&[f64; 3]) -> f64| table.iter().map(of).filter(|x| x.is_finite()).fold(0.0, f64::max);
+    let (peak, error) = (most(|row| row[1]), most(|row| row[2]));
+    match error > SEEN * peak {
+        true => format!(" from points, within ± {} % of its peak", significant(100.0 * error / peak, 2)),
+        false => String::new(),
     }
 }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::figures::{Figures, QUANTILES};
 use super::head::{self, findings};
 use super::{About, Head, WarningReport};
-use crate::analysis::CharacteristicAnalysis;
+use crate::analysis::{CharacteristicAnalysis, YieldSource};
 use crate::capability::{Law, Quantiles};
 use crate::document::number::{beside, known, limits, plain, plural, shape, short, significant};
 use crate::document::rejects::Rejects;
@@ -90,11 +90,13 @@ pub(crate) struct SweptPointReport {
     pub(crate) error_estimate: Option<ErrorEstimate>,
     /// Root of the sum of squares.
     pub(crate) rss: Option<f64>,
-    /// Of the distribution with these moments.
+    /// By the law of the surface where there is one, by the Pearson fit elsewhere.
     pub(crate) quantiles: Quantiles<Option<f64>>,
     /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
     pub(crate) yield_: Option<f64>,
+    /// What it comes from; null without limits.
+    pub(crate) yield_source: Option<YieldSource>,
     /// Rejected below the lower limit, in parts per million.
     pub(crate) ppm_below: Option<f64>,
     /// Rejected above the upper limit.
@@ -164,6 +166,9 @@ impl SweepReport {
         section.blocks.extend(findings(&self.warnings, |name| name == Some(&one.name)));
         section.chart(Chart::Plot(one.plot(with_unit(&of.name, of.unit.as_deref()))));
         section.table(one.table(&of.name));
+        if let Some(source) = one.source() {
+            section.note(source);
+        }
         section
     }
 }
@@ -209,6 +214,14 @@ impl SweptReport {
             None => columns.data("yield", yielded),
         };
         columns.table("sweep", &self.points)
+    }
+
+    /// What the yields come from, where there are any.
+    fn source(&self) -> Option<String> {
+        let mut sources: Vec<&str> = self.points.iter().filter_map(|point| Some(point.yield_source?.words())).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        (!sources.is_empty()).then(|| format!("yields by {}", sources.join(", or by ")))
     }
 
     /// Mean, nominal value and the band of all but 0.27 %, over the parameter.
@@ -278,6 +291,7 @@ impl SweptPointReport {
             rss: of(|one| one.rss),
             quantiles: Quantiles(quantiles.map_or([None; 7], |all| all.0.map(Some))),
             yield_: of(Figures::yield_),
+            yield_source: analysis.and_then(|one| one.yield_source),
             ppm_below: of(Figures::ppm_below),
             ppm_above: of(Figures::ppm_above),
             met: analysis.and_then(CharacteristicAnalysis::met),

@@ -79,6 +79,12 @@ impl Univariate {
         self
     }
 
+    /// Without factors of higher powers that are no larger than this.
+    pub(crate) fn without_bends(mut self, least: f64) -> Self {
+        self.coefficients[1..].iter_mut().filter(|c| c.abs() <= least).for_each(|c| *c = 0.0);
+        self
+    }
+
     /// With this much added to the slope.
     pub(crate) fn with_slope(mut self, more: f64) -> Self {
         self.coefficients[0] += more;

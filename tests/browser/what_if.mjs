@@ -8,8 +8,8 @@ const data = JSON.parse(scripts[0]);
 // All but what needs a document.
 const mathematics = scripts[1].slice(0, scripts[1].indexOf("// The what-if of the page"));
 const live = runInNewContext(`${mathematics}; live`);
-const figures = ({ mean, sigma, skewness, excess, below, above, cpk, linear, curvature, shares }) =>
-  ({ mean, sigma, skewness, excess, below, above, cpk, linear: [...linear], curvature: [...curvature], shares: [...shares] });
+const figures = ({ mean, sigma, skewness, excess, below, above, cpk, linear, curvature, shares, by, error, pearson }) =>
+  ({ mean, sigma, skewness, excess, below, above, cpk, linear: [...linear], curvature: [...curvature], shares: [...shares], by, error, pearson });
 const found = JSON.parse(readFileSync(file, "utf8")).map((settings) => ({
   toml: live.toml(data, settings),
   cost: live.cost(data, settings),

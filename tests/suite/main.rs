@@ -31,6 +31,7 @@ mod init;
 mod intervals;
 mod journal;
 mod law;
+mod law_quantiles;
 mod long_runs;
 mod measured;
 mod memory;

@@ -41,11 +41,24 @@ const live = (() => {
     const { mean, sigma, skewness, excess } = found;
     const shares = new Float64Array(surrogate.pairs.a.length);
     for (let i = 0; i < shares.length; i++) shares[i] = (surrogate.pairs.a[i] * found.perSigma) ** 2;
-    const law = skewness === null ? null : pearson.law(mean, sigma, skewness, excess);
-    let kept = { below: null, above: null, rejected: null, yield: null, cp: null, cpk: null, met: null };
-    if (law !== null) kept = limited(one, mean, sigma, law.tails);
-    if (sigma === 0) kept = limited(one, mean, sigma, (x) => [mean < x ? 1 : 0, mean > x ? 1 : 0]);
-    return { ...found, kurtosis: excess === null ? null : 3 + excess, shares, law, ...kept };
+    const fit = skewness === null ? null : pearson.law(mean, sigma, skewness, excess);
+    const none = { below: null, above: null, rejected: null, yield: null, cp: null, cpk: null, met: null };
+    const of_fit = fit === null ? none : limited(one, mean, sigma, fit.tails);
+    const here = { ...found, kurtosis: excess === null ? null : 3 + excess, shares, fit, pearson: of_fit.yield };
+    if (sigma === 0) {
+      return { ...here, law: null, by: "surface", error: 0, ...limited(one, mean, sigma, (x) => [mean < x ? 1 : 0, mean > x ? 1 : 0]) };
+    }
+    // The law of the surface where the page can compute it; elsewhere the Pearson fit, and the page says so.
+    const law = one.law ? surface.law(surrogate, shapes, one.unexplained) : null;
+    if (law !== null && !law.steps) {
+      const tails = new Map([one.lower, one.upper].filter((limit) => limit !== null).map((limit) => [limit, law.tails(limit)]));
+      if ([...tails.values()].flat().every(law.shown)) {
+        const kept = limited(one, mean, sigma, (x) => tails.get(x).map((tail) => tail.value));
+        const error = Math.hypot(one.lower === null ? 0 : tails.get(one.lower)[0].error, one.upper === null ? 0 : tails.get(one.upper)[1].error);
+        return { ...here, law, by: "surface", error, ...kept };
+      }
+    }
+    return { ...here, law: fit, by: "pearson", error: null, ...of_fit };
   };
 
   /// What these settings cost, by the cheapest process that holds the tightest member of each group, as the engine counts it

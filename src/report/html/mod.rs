@@ -25,8 +25,13 @@ use crate::summary::RunSummary;
 
 const STYLE: &str = include_str!("page.css");
 /// The mathematics of the what-if, and then what shows it.
-const SCRIPT: &str =
-    concat!(include_str!("what_if.js"), include_str!("pearson.js"), include_str!("live.js"), include_str!("page.js"));
+const SCRIPT: &str = concat!(
+    include_str!("what_if.js"),
+    include_str!("pearson.js"),
+    include_str!("law.js"),
+    include_str!("live.js"),
+    include_str!("page.js")
+);
 const TEMPLATES: [(&str, &str); 2] =
     [("page.html", include_str!("page.html")), ("what_if.html", include_str!("what_if.html"))];
 

@@ -71,6 +71,8 @@
     const most = Math.min(Math.max(...heights), 4 / Math.min(old.sigma || Infinity, now.sigma || Infinity));
     card.querySelector(".before").setAttribute("d", path(dashed, most));
     card.querySelector(".now").setAttribute("d", path(solid, most));
+    // The Pearson fit as a thin line beside a better law.
+    card.querySelector(".fit").setAttribute("d", now.by === "surface" ? path(drawing(now.fit, from, to), most) : "");
     for (const side of ["lower", "upper"]) {
       const x = one[side] === null ? NaN : WIDTH * (one[side] - from) / (to - from);
       card.querySelector(`[data-limit="${side}"]`).setAttribute("d", x >= 0 && x <= WIDTH ? `M${x.toFixed(1)} 0V200` : "");
@@ -104,11 +106,19 @@
     });
   };
 
-  // The counterpart of the module `verdict`: the interval of the yield reaches as far as at the tolerances of the study.
-  const judged = (found, { target, reach }) => {
-    if (reach === null) return "inconclusive";
-    if (found - reach[0] >= target) return "met";
-    return found + reach[1] < target ? "missed" : "inconclusive";
+  // The counterpart of the module `verdict`: the interval of the yield reaches as far as at the tolerances of the study, from the law
+  // by which it was computed there.
+  const judged = (found, then, { target, reach }) => {
+    if (reach === null || found.by !== then.by) return "inconclusive";
+    if (found.yield - reach[0] >= target) return "met";
+    return found.yield + reach[1] < target ? "missed" : "inconclusive";
+  };
+  const source = (found, one) => {
+    if (found.by === "surface") {
+      const differs = found.pearson !== null && found.yield !== null && Math.abs(found.pearson - found.yield) > 0.01 * Math.max(1 - found.pearson, found.rejected);
+      return `by the surface law${differs ? `; Pearson fit ${share(1 - found.pearson)}` : ""}`;
+    }
+    return `by the Pearson fit: ${one.law ? "the surface law is not accurate enough here" : one.why_fit}`;
   };
 
   const show = () => {
@@ -120,8 +130,10 @@
         cell.classList.toggle("changed", text !== then[name]);
         cards[i].querySelector(`[data-before="${name}"]`).textContent = then[name];
       }
+      const by = cards[i].querySelector('[data-by]');
+      by.textContent = source(results[i], of.one);
       const badge = cards[i].querySelector('[data-figure="verdict"]');
-      const verdict = met === null ? null : judged(results[i].yield, of.one);
+      const verdict = met === null ? null : judged(results[i], before[i], of.one);
       badge.textContent = verdict === null ? "" : verdict === "inconclusive" ? verdict : `target ${verdict}`;
       badge.classList.toggle("good", verdict === "met");
       badge.classList.toggle("bad", verdict === "missed");

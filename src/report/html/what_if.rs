@@ -3,9 +3,10 @@
 use serde::Serialize;
 
 use crate::allocation::{Curve, CurveKind, Priced};
-use crate::analysis::{Analysis, CharacteristicAnalysis, Fit};
+use crate::analysis::{Analysis, Branch, CharacteristicAnalysis, Fit, NoFit};
 use crate::dimension::Dimension;
 use crate::distribution::StandardMoments;
+use crate::law::TabulatedInput;
 use crate::problem::Problem;
 use crate::surrogate::InputShape;
 
@@ -63,6 +64,8 @@ struct Shape {
     h8: f64,
     nodes: Vec<f64>,
     weights: Vec<f64>,
+    /// Its distribution; null where nothing but moments is known of it, or a table of it is too large for a page.
+    law: Option<TabulatedInput>,
 }
 
 /// A dimension that varies.
@@ -98,7 +101,11 @@ pub(super) struct Wanted {
     parts: Vec<[f64; 4]>,
     pairs: Pairs,
     unexplained: Option<f64>,
-    /// How far below and above its yield the interval reaches within which it is known; None where that is not known.
+    /// Whether the page computes the law of its surface.
+    law: bool,
+    /// Why it does not; null where it does.
+    why_fit: Option<&'static str>,
+    /// How far below and above its yield by that law the interval reaches within which it is known; None where that is not known.
     reach: Option<[f64; 2]>,
 }
 
@@ -110,33 +117,89 @@ struct Pairs {
     a: Vec<f64>,
 }
 
-/// How far the interval of a yield reaches on either side of the Pearson fit, which is what the page computes: where the fit is off,
-/// both ends may lie on one side of it.
-fn reach(found: &CharacteristicAnalysis) -> Option<[f64; 2]> {
-    let (value, [low, high]) = found.pearson?.yield_().zip(found.yield_interval().filter(|_| !found.unfinished))?;
+/// How far the interval of a yield reaches on either side of what the page computes, the law of the surface or the Pearson fit: where
+/// that is off, both ends may lie on one side of it.
+fn reach(found: &CharacteristicAnalysis, by_law: bool) -> Option<[f64; 2]> {
+    let value = match by_law {
+        true => found.surface_law.as_ref()?.yield_(),
+        false => found.pearson?.yield_(),
+    };
+    let (value, [low, high]) = value.zip(found.yield_interval().filter(|_| !found.unfinished))?;
     Some([value - low, high - value])
+}
+
+/// Why the page shows the Pearson fit of a characteristic; None where it computes the law of its surface, which it does for sums of
+/// single inputs and products of normal ones.
+fn why_fit(found: &CharacteristicAnalysis, fit: &Fit, laws: &[Option<TabulatedInput>]) -> Option<&'static str> {
+    let Fit { surrogate, .. } = fit;
+    let counts = |j: &usize| {
+        surrogate.parts[*j].is_some_and(|part| part.largest() > 0.0)
+            || surrogate.interactions.pairs().iter().any(|&(a, b, product)| product != 0.0 && (a == *j || b == *j))
+    };
+    let counting = || (0..laws.len()).filter(counts);
+    if counting().any(|j| laws[j].is_none()) {
+        return Some("the distribution of a dimension is not in the page");
+    }
+    if counting().all(|j| laws[j].as_ref().is_some_and(TabulatedInput::is_discrete)) {
+        return Some("every dimension has a few values only");
+    }
+    let parabola = |j: usize| {
+        laws[j].as_ref().is_some_and(TabulatedInput::is_normal)
+            && surrogate.parts[j].is_some_and(|part| part.coefficients()[2..] == [0.0; 2])
+    };
+    if surrogate.interactions.pairs().iter().any(|&(j, k, product)| product != 0.0 && !(parabola(j) && parabola(k))) {
+        return Some("dimensions interact that are not normal");
+    }
+    match found.surface_law {
+        Some(law) if law.branch != Branch::Sampled => None,
+        Some(_) => Some("the tail of a dimension is too heavy"),
+        None => Some("there is no law of the surface"),
+    }
 }
 
 impl WhatIf {
     /// Of an analysis; `lines` and `costs` are those of the study, none where the problem was built without one.
     pub fn of(problem: &Problem, analysis: &Analysis, lines: &[Line], costs: &[Priced]) -> Self {
         let surface = &analysis.surface;
+        let clean = |fit: &Fit| Fit { surrogate: fit.surrogate.without_rounding(), ..fit.clone() };
+        let fits: Vec<Result<Fit, NoFit>> =
+            surface.characteristics.iter().map(|fit| fit.as_ref().map(clean).map_err(|&no| no)).collect();
+        // A dimension takes nodes only where its part has a higher degree than its closed form.
+        let degree = |j: usize| {
+            let own = |fit: &Fit| Some(fit.surrogate.parts.get(j)?.as_ref()?.coefficients());
+            let degree = |c: [f64; 4]| c.iter().rposition(|&c| c != 0.0).map_or(0, |place| place + 1);
+            fits.iter().flatten().filter_map(own).map(degree).max().unwrap_or(0)
+        };
+        let mut tables: Vec<TabulatedInput> = Vec::new();
+        let mut table = |(j, &d): (usize, &usize)| {
+            let own = TabulatedInput::of(problem.dimensions()[d].law()?, degree(j))?;
+            let known = tables.iter().position(|known| known.is_near(&own)).unwrap_or_else(|| {
+                tables.push(own);
+                tables.len() - 1
+            });
+            Some(tables[known].clone())
+        };
+        let laws: Vec<Option<TabulatedInput>> = surface.varying.iter().enumerate().map(&mut table).collect();
         let mut shapes: Vec<Shape> = Vec::new();
-        let mut index = |shape: &InputShape| {
-            let shape = Shape::of(shape);
+        let mut index = |shape: &InputShape, law: &Option<TabulatedInput>| {
+            let shape = Shape::of(shape, law);
             shapes.iter().position(|known| *known == shape).unwrap_or_else(|| {
                 shapes.push(shape);
                 shapes.len() - 1
             })
         };
-        let dimension = |(&d, shape): (&usize, &InputShape)| Tried::of(&problem.dimensions()[d], index(shape));
-        let dimensions = surface.varying.iter().zip(&surface.shapes).map(dimension).collect();
-        let all = analysis.characteristics.iter().zip(&surface.characteristics);
+        let dimension = |((&d, shape), law): ((&usize, &InputShape), &Option<TabulatedInput>)| {
+            Tried::of(&problem.dimensions()[d], index(shape, law))
+        };
+        let dimensions = surface.varying.iter().zip(&surface.shapes).zip(&laws).map(dimension).collect();
+        let all = analysis.characteristics.iter().zip(&fits);
         let characteristics = all.map(|(found, fit)| {
             let one = &found.characteristic;
             let limits = one.limits();
             let empty = || (0.0, Vec::new(), Pairs::default(), None);
             let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), contents);
+            let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, &laws));
+            let law = fit.is_ok() && why_fit.is_none();
             Wanted {
                 name: one.name().to_owned(),
                 unit: one.unit().map(str::to_owned),
@@ -148,7 +211,9 @@ impl WhatIf {
                 parts,
                 pairs,
                 unexplained,
-                reach: reach(found),
+                law,
+                why_fit,
+                reach: reach(found, law),
             }
         });
         let characteristics = characteristics.collect();
@@ -226,10 +291,10 @@ impl Cost {
 }
 
 impl Shape {
-    fn of(shape: &InputShape) -> Self {
+    fn of(shape: &InputShape, law: &Option<TabulatedInput>) -> Self {
         let StandardMoments { skewness, excess, m5, m6, h6, h7, h8, .. } = shape.moments;
         let (nodes, weights) = (shape.rule.nodes.clone(), shape.rule.weights.clone());
-        Self { s: skewness, k: excess, m5, m6, h6, h7, h8, nodes, weights }
+        Self { s: skewness, k: excess, m5, m6, h6, h7, h8, nodes, weights, law: law.clone() }
     }
 }
 

@@ -1,0 +1,21 @@
+//! The law of a surface whose inputs have moved.
+
+use super::surface::Surface;
+use super::surface_law::{law_over, with};
+use crate::law::{LawError, SurfaceLaw};
+use crate::problem::Problem;
+use crate::surrogate::Relocation;
+
+/// The law of a characteristic's surface where its inputs have moved and keep their shapes, beside what the surface leaves out: what
+/// pages compute by themselves. None where the moments follow from no surface.
+pub fn law_at(
+    problem: &Problem,
+    surface: &Surface,
+    characteristic: usize,
+    moved: &[Relocation],
+) -> Option<Result<SurfaceLaw, LawError>> {
+    let fit = surface.characteristics[characteristic].as_ref().ok()?;
+    let inputs = surface.varying.iter().map(|&d| problem.dimensions()[d].law().cloned()).collect::<Option<_>>()?;
+    let (surrogate, inputs) = with(&fit.surrogate.relocated(moved), inputs, fit.unexplained);
+    Some(law_over(&surrogate, &inputs, None))
+}
