@@ -181,6 +181,9 @@ fn has_too_many_atoms(surrogate: &Surrogate, inputs: &[Arc<dyn Distribution>]) -
         let own = counting().filter(|&j| !smooth || atoms[j] == 0).filter_map(|j| surrogate.parts[j]);
         own.map(|part| part.largest().powi(2)).sum::<f64>().sqrt()
     };
+    if spread(true) <= 0.0 {
+        return true;
+    }
     let points = (POINTS_OF_SIGMA * spread(false) / spread(true)).max(1.0);
     points > MOST_POINTS || points * atoms.iter().sum::<usize>() as f64 > TERMS_OF_ATOMS
 }

@@ -25,7 +25,8 @@ pub(super) fn expectation(input: &Input, splits: &[f64], tolerance: f64, f: impl
         let at = |x: f64| {
             let z = from + width * x;
             let density = input.density(z);
-            if density > 0.0 { density * f(z) } else { 0.0 }
+            // A place next to an end may be rounded onto it, where a broken power is infinite.
+            if density > 0.0 && density.is_finite() { density * f(z) } else { 0.0 }
         };
         factor * width * GAUSS.iter().map(|(x, w)| w * at(*x)).sum::<f64>()
     };

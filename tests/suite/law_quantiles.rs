@@ -170,8 +170,8 @@ fn densities_of_every_branch_are_drawn() {
         let table = found.density.unwrap_or_else(|| panic!("{branch:?} has a density"));
         let area: f64 = table.windows(2).map(|two| 0.5 * (two[1][0] - two[0][0]) * (two[0][1] + two[1][1])).sum();
         let error: f64 = table.windows(2).map(|two| 0.5 * (two[1][0] - two[0][0]) * (two[0][2] + two[1][2])).sum();
-        // Trapezia over corners of a density, and 1e-4 beyond the ends.
-        assert!((area - 1.0).abs() < 2e-3 + error && error < 0.02, "{branch:?}: {area} ± {error}");
+        // Trapezia over corners, and over the logarithmic peak of a form of two normal inputs; 1e-4 beyond the ends.
+        assert!((area - 1.0).abs() < 4e-3 + error && error < 0.02, "{branch:?}: {area} ± {error}");
         assert!(table.iter().all(|[_, density, error]| *density >= 0.0 && *error >= 0.0));
     }
 }

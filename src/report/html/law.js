@@ -254,13 +254,14 @@ const surface = (() => {
       return end;
     });
     const contours = new Map();
-    /// The contour of a limit, counted from the centre, on one side: the nearest of tilts in steps of a tenth.
-    const contour = (sign, y) => {
+    /// The contour of a limit, counted from the centre, on one side, good up to another one that lies farther out: the nearest of tilts in
+    /// steps of a fifth.
+    const contour = (sign, y, farthest = y) => {
       const end = ends[sign < 0 ? 0 : 1], least = Math.min(LEAST / sigma, 0.5 * end), largest = Math.min(0.75 * end, MOST / sigma);
       let size = least;
       while (size < largest && sign * (y - cumulants(of, sign * size)[1]) > 0) size = Math.min(1.2 * size, largest);
       const theta = sign * size, [log, , spread] = cumulants(of, theta), room = end - size;
-      const needed = Math.max((NEIGHBOUR + Math.max(0, theta * y - log)) / size, room < Infinity ? ROOM / room : 0, 10 * Math.sqrt(spread));
+      const needed = Math.max((NEIGHBOUR + Math.max(0, theta * farthest - log)) / size, room < Infinity ? ROOM / room : 0, 10 * Math.sqrt(spread));
       const doubled = 2 ** Math.ceil(2 * Math.log2(needed * sigma)), spacing = Math.sqrt(doubled) / sigma, key = `${theta} ${spacing}`;
       if (!contours.has(key)) contours.set(key, contourOf(of, theta, log, spacing));
       return contours.get(key);
@@ -278,8 +279,10 @@ const surface = (() => {
       shown: (tail) => tail.error <= SHOWN * Math.min(tail.value, 1 - tail.value) || tail.error <= 1e-12,
       density: (y) => {
         if (y - centre <= of.range[0] || y - centre >= of.range[1]) return 0;
-        const off = y - centre, sign = off < mean ? -1 : 1;
-        return Math.max(0, along(contour(sign, mean + sign * 5 * sigma), off, false, 1024).value);
+        // All places of one side share a contour, of a limit at two sigma or well within the range.
+        const off = y - centre, sign = off < mean ? -1 : 1, room = sign * (of.range[sign < 0 ? 0 : 1] - mean);
+        const [near, far] = [Math.min(2 * sigma, 0.5 * room), Math.min(6 * sigma, room)];
+        return Math.max(0, along(contour(sign, mean + sign * near, mean + sign * far), off, false, 1024).value);
       },
       steps: of.straight === 0 && of.curved.length === 0 && of.halves.length === 0 && closed,
     };
