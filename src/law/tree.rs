@@ -18,15 +18,17 @@ use super::single_sum::{Table, level, own_ends_weigh_nothing};
 use super::surface::Surface;
 use crate::elementary::{Elementary, Exp};
 
-/// Nodes whose weight may be below `exp` of minus this, relative to the heaviest, are left out.
-const LEAST: f64 = 50.0;
+/// Nodes whose weight may be below `exp` of minus this, relative to the heaviest, are left out: 1e-17 of the whole.
+const LEAST: f64 = 40.0;
 /// Elements of a table of products at most: beyond, the contour ends where it is, with the error that this leaves.
 const MOST: usize = 1 << 22;
 
 /// Sigmas of its neighbours that an input's nodes resolve the products with; half of them may add to the weight of a node.
 const REACH: f64 = 8.0;
 /// Points of a contour that share their nodes: next to the real axis, where nodes double from few points to few points, and beyond.
-const SHARED: [usize; 2] = [16, 64];
+const SHARED: [usize; 2] = [8, 64];
+/// A transform that stays below this part of itself on the real axis for a block of points is rounding.
+const VANISHED: f64 = 1e-15;
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// A tree of products, from the leaves to the root.
@@ -231,8 +233,19 @@ impl Tree {
     /// Multiplies `M(s)/M(theta)` into the points of a block; false where the tables would be too large.
     pub(super) fn multiply(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> bool {
         let shared = SHARED[usize::from(from > 0.0)];
-        let blocks = out.chunks_mut(shared).enumerate();
-        blocks.fold(true, |all, (block, out)| all && self.few(theta, from + step * (block * shared) as f64, step, out))
+        let mut ended = false;
+        for (block, out) in out.chunks_mut(shared).enumerate() {
+            if ended {
+                out.fill(Complex::ZERO);
+                continue;
+            }
+            if !self.few(theta, from + step * (block * shared) as f64, step, out) {
+                return false;
+            }
+            // Nodes double from block to block: what has vanished is not resolved any further.
+            ended = out.iter().all(|value| value.abs() < VANISHED);
+        }
+        true
     }
 
     /// The same for points that share their nodes.
