@@ -87,7 +87,7 @@ pub enum Contender {
 
 impl Contender {
     /// Its name.
-    pub fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         match self {
             Self::Method(method) => method.name().to_owned(),
             Self::MonteCarlo(samples) => format!("monte-carlo {samples}"),
@@ -142,12 +142,12 @@ impl Errors {
     }
 
     /// What of that the reference itself may be off.
-    pub fn floor(&self) -> f64 {
+    pub(crate) fn floor(&self) -> f64 {
         RESOLVED * self.reference.mean.unwrap_or(0.0).hypot(self.reference.sigma.unwrap_or(0.0))
     }
 
     /// Whether the reference tells the overall error from none.
-    pub fn resolved(&self) -> bool {
+    pub(crate) fn resolved(&self) -> bool {
         self.overall().is_some_and(|overall| overall > self.floor())
     }
 }
@@ -284,12 +284,12 @@ pub enum CompareError {
 /// When the problem cannot be simulated. A method that does not fit is no error: it is named with the reason.
 ///
 /// ```
-/// use sensitol::compare::{CompareOptions, compare};
-/// use sensitol::{Closure, Dimension, Problem};
+/// use sensitol::compare::{CompareOptions, Contender, compare};
+/// use sensitol::{Closure, Dimension, Method, Problem};
 /// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::normal("b", 5.0, 0.6)?];
 /// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
 /// let found = compare(&area, &CompareOptions::default().with_reference(10_000))?;
-/// let rss = found.ran.iter().find(|ran| ran.contender.name() == "rss").expect("rss fits everything");
+/// let rss = found.ran.iter().find(|ran| ran.contender == Contender::Method(Method::Rss)).expect("rss fits everything");
 /// assert_eq!(rss.evaluations, 5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -175,13 +175,14 @@ impl Dimension {
     ///
     /// ```
     /// use sensitol::Dimension;
+    /// use sensitol::internals::reach::*;
     /// let b = Dimension::normal_between("b", 30.0, [-0.1, 0.3])?;
     /// let moved = b.moved(50.0).expect("a normal dimension moves")?;
     /// assert_eq!((moved.nominal(), moved.tolerance()), (50.0, Some([-0.1, 0.3])));
     /// assert!((moved.mean() - 50.1).abs() < 1e-12);
     /// # Ok::<(), sensitol::DimensionError>(())
     /// ```
-    pub fn moved(&self, nominal: f64) -> Option<Result<Self, DimensionError>> {
+    pub(crate) fn moved(&self, nominal: f64) -> Option<Result<Self, DimensionError>> {
         let by = nominal - self.nominal;
         let distribution = match self.distribution() {
             Some(distribution) if by != 0.0 => {
@@ -249,12 +250,12 @@ impl Dimension {
     }
 
     /// Its step in sigmas, where one was given.
-    pub fn step(&self) -> Option<f64> {
+    pub(crate) fn step(&self) -> Option<f64> {
         self.step
     }
 
     /// The circular zone that it shares with other coordinates, where there is one.
-    pub fn zone(&self) -> Option<&str> {
+    pub(crate) fn zone(&self) -> Option<&str> {
         self.zone.as_deref()
     }
 
@@ -276,7 +277,7 @@ impl Dimension {
 
     /// The least and greatest deviation from the nominal in a worst case: the tolerance band, or three sigma about
     /// the mean where there is none.
-    pub fn reach(&self) -> [f64; 2] {
+    pub(crate) fn reach(&self) -> [f64; 2] {
         let (shift, reach) = (self.mean() - self.nominal, SIGMAS_OF_AN_UNBOUNDED_DIMENSION * self.sigma());
         self.tolerance.unwrap_or([shift - reach, shift + reach])
     }

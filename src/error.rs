@@ -26,6 +26,7 @@ use crate::simulation::SimulationError;
 #[cfg(feature = "study")]
 use crate::study::{RewriteError, StudyError};
 use crate::sweep::SweepError;
+use crate::warning::Advice;
 
 /// Any error of the library.
 #[derive(Debug, thiserror::Error)]
@@ -118,4 +119,36 @@ pub enum Error {
     #[cfg(feature = "journal")]
     #[error(transparent)]
     Journal(#[from] JournalError),
+}
+
+impl Error {
+    /// What to write instead, where that can be said.
+    ///
+    /// ```
+    /// use sensitol::{Error, fits};
+    /// let error = Error::from(fits::deviations(25.0, "H77").unwrap_err());
+    /// assert!(error.help().is_some());
+    /// ```
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Formula(error) => error.fault.help(),
+            Self::Fit(error) => error.help(),
+            Self::UnknownName(error) => Some(error.help()),
+            #[cfg(feature = "study")]
+            Self::Study(error) => error.help(),
+            _ => None,
+        }
+    }
+
+    /// What to do about it, beside changing what is written; the most promising first.
+    pub fn advice(&self) -> Vec<Advice> {
+        match self {
+            Self::Method(error) => error.advice(),
+            Self::Simulation(error) => error.advice(),
+            Self::Allocate(error) => error.advice(),
+            #[cfg(feature = "study")]
+            Self::Study(error) => error.fault.advice(),
+            _ => Vec::new(),
+        }
+    }
 }

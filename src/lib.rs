@@ -21,6 +21,8 @@ mod error;
 mod evaluation;
 mod extremes;
 pub mod fits;
+#[doc(hidden)]
+pub mod internals;
 #[cfg(feature = "journal")]
 pub mod journal;
 mod law;
@@ -62,34 +64,6 @@ pub use problem::{Problem, ProblemError};
 pub use requirement::{Requirement, RequirementError};
 #[cfg(feature = "study")]
 pub use study::{Study, StudyError};
-pub use summary::{RunSummary, StopReason};
+pub use summary::{EvaluatorSummary, RunSummary, StopReason};
 pub use verdict::{Judged, Verdict};
 pub use warning::Warning;
-
-/// What the tests and the benchmarks of this repository reach inside: not part of the public interface, and no promise.
-#[doc(hidden)]
-pub mod internals {
-    pub use crate::analysis::law_at::law_at;
-    pub use crate::assembly::formula::interval::Interval;
-    pub use crate::assembly::formula::jet::Jet;
-    pub use crate::assembly::formula::parser::is_reserved;
-    pub use crate::assembly::formula::set::{FormulaSet, Meaning};
-    pub use crate::correlation::transform::Transform;
-    pub use crate::distribution::outliers::{extreme, outliers};
-    pub use crate::distribution::rule::Rule;
-    pub use crate::distribution::sample::{Resample, Sample};
-    pub use crate::law::{LawOptions, SurfaceLaw, joint_yield};
-    pub use crate::method::procedure::Procedure;
-    pub use crate::method::registry::{ALL, procedure};
-    pub use crate::moments::{Interactions, Tables, Term, contributions, of_quadratic};
-    pub use crate::plan::{Nodes, Plan, Spread, corners};
-    pub use crate::sampling::{Draws, Fine, Portion, SOBOL_DIMENSIONS, Scale, Sobol, Summary, wilson};
-    #[cfg(feature = "cli")]
-    pub use crate::study::schema::schema;
-    pub use crate::surrogate::{InputShape, Inputs, Surrogate, Univariate, shapes};
-    pub use crate::verdict::of_cpk;
-    pub use crate::verification::{
-        SampledFigures, Target, unseen, variance_shares, verify_by_checks, verify_by_sampling,
-    };
-    pub use crate::warning::aggregate::aggregated;
-}

@@ -113,7 +113,7 @@ impl UnknownName {
     }
 
     /// The name that was probably meant, or all that there are.
-    pub fn help(&self) -> String {
+    pub(crate) fn help(&self) -> String {
         match &self.nearest {
             Some(nearest) => format!("did you mean `{nearest}`?"),
             None => format!("the names are {}", self.known.join(", ")),

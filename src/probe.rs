@@ -81,7 +81,7 @@ pub enum Finding {
 
 impl Finding {
     /// What is wrong, where anything is.
-    pub fn fault(&self) -> Option<&str> {
+    pub(crate) fn fault(&self) -> Option<&str> {
         match self {
             Self::Doubtful(fault) | Self::Failed(fault) => Some(fault),
             Self::Passed | Self::NotChecked => None,
@@ -421,9 +421,9 @@ fn runs(problem: &Problem) -> Finding {
     let Some(account) = problem.function().account().filter(EvaluatorAccount::has_failures) else {
         return Finding::Passed;
     };
-    let failures = account.crashes + account.timeouts + account.garbage;
+    let failures = account.counts.failures();
     let cause = account.last.map(|error| format!("; the last cause: {error}")).unwrap_or_default();
-    Finding::Doubtful(format!("{failures} failed, and {} were started in all{cause}", account.starts))
+    Finding::Doubtful(format!("{failures} failed, and {} were started in all{cause}", account.counts.starts))
 }
 
 /// The noise in values at equal distances; None where their differences show none.

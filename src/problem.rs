@@ -106,7 +106,7 @@ impl Problem {
     /// With dimensions that vary together; without pairs, all independent.
     ///
     /// # Errors
-    /// When these dimensions cannot be correlated so: see [`Correlation::new`].
+    /// When these dimensions cannot be correlated so: see [`CorrelationError`].
     pub fn correlated(mut self, pairs: &[Pair]) -> Result<Self, CorrelationError> {
         self.correlation = match pairs {
             [] => None,
@@ -220,11 +220,11 @@ impl Problem {
 
     /// What became of the processes of an external model so far, in numbers; None where there is none.
     pub(crate) fn evaluator(&self) -> Option<EvaluatorSummary> {
-        self.function.account().map(|account| account.summary())
+        self.function.account().map(|account| account.counts)
     }
 
     /// The outputs of the assembly function that the characteristics are.
-    pub fn outputs(&self) -> &[usize] {
+    pub(crate) fn outputs(&self) -> &[usize] {
         &self.outputs
     }
 

@@ -81,7 +81,7 @@ impl Requirement {
     }
 
     /// What is required, in a word.
-    pub fn name(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Yield(_) => "yield",
             Self::Cpk(_) => "Cpk",
@@ -92,7 +92,7 @@ impl Requirement {
     }
 
     /// How much of it; None where the limits say that.
-    pub fn value(&self) -> Option<f64> {
+    pub(crate) fn value(&self) -> Option<f64> {
         match *self {
             Self::Yield(value) | Self::Cpk(value) | Self::Sigma(value) => Some(value),
             Self::Rss | Self::WorstCase => None,

@@ -24,16 +24,6 @@ pub enum StopReason {
 }
 
 impl StopReason {
-    /// Its name in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::TimeLimit => "time-limit",
-            Self::Budget => "budget",
-            Self::Interrupted => "interrupted",
-            Self::Requested => "requested",
-        }
-    }
-
     /// Whether points that were planned are open: a budget is part of the plan, all else cuts it short.
     pub(crate) fn leaves_points_open(self) -> bool {
         self != Self::Budget
@@ -109,8 +99,16 @@ pub struct EvaluatorSummary {
     pub retried: u64,
     /// Seconds from the last answer of a process that failed until another one was ready in its place.
     pub lost_s: f64,
-    /// Answers that depend on the points before them, and that no fresh process confirmed.
+    /// Answers that depend on the points before them, and that no fresh process confirmed: they have no value, or results were made of
+    /// them before that was known.
     pub unconfirmed: u64,
+}
+
+impl EvaluatorSummary {
+    /// Failures of processes, of every kind.
+    pub(crate) fn failures(&self) -> u64 {
+        self.crashes + self.timeouts + self.garbage
+    }
 }
 
 impl RunSummary {
@@ -140,12 +138,12 @@ impl RunSummary {
     }
 
     /// Whether results rest on answers that depend on the points before them, and that no fresh process confirmed.
-    pub fn unconfirmed(&self) -> bool {
+    pub(crate) fn unconfirmed(&self) -> bool {
         self.evaluator.is_some_and(|evaluator| evaluator.unconfirmed > 0)
     }
 
     /// Whether planned points were not evaluated, so that what follows from the others is no verdict.
-    pub fn unfinished(&self) -> bool {
+    pub(crate) fn unfinished(&self) -> bool {
         self.stopped.is_some_and(StopReason::leaves_points_open)
     }
 }
@@ -164,13 +162,5 @@ mod tests {
             assert_eq!((both.stopped, both.evaluations, both.unfinished()), (Some(StopReason::TimeLimit), 4, true));
         }
         assert!(!budget.and(&of(None)).unfinished() && of(None).stopped.is_none());
-    }
-
-    /// The name is the one that JSON has.
-    #[test]
-    fn a_reason_has_one_name() {
-        for reason in [StopReason::TimeLimit, StopReason::Budget, StopReason::Interrupted, StopReason::Requested] {
-            assert_eq!(serde_json::to_value(reason).unwrap(), reason.name());
-        }
     }
 }

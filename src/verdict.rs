@@ -37,7 +37,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// In reports.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Met => "met",
             Self::Missed => "missed",
@@ -58,6 +58,7 @@ impl Verdict {
     ///
     /// ```
     /// use sensitol::{Requirement, Verdict};
+    /// use sensitol::internals::reach::*;
     /// let yield_ = Requirement::Yield(0.99);
     /// assert_eq!(Verdict::of(yield_, Some([0.991, 0.999])), Verdict::Met);
     /// assert_eq!(Verdict::of(yield_, Some([0.98, 0.985])), Verdict::Missed);
@@ -66,7 +67,7 @@ impl Verdict {
     /// // At most 0.05, not at least.
     /// assert_eq!(Verdict::of(Requirement::Sigma(0.05), Some([0.03, 0.04])), Verdict::Met);
     /// ```
-    pub fn of(requirement: Requirement, interval: Option<[f64; 2]>) -> Self {
+    pub(crate) fn of(requirement: Requirement, interval: Option<[f64; 2]>) -> Self {
         let Some([low, high]) = interval.filter(|[low, high]| low <= high) else { return Self::Inconclusive };
         let slack = |room: f64| ROUNDING * room.abs();
         let [worst, best, target] = match requirement {

@@ -5,8 +5,9 @@ use std::process::ExitCode;
 
 use sensitol::assembly::formula::Formula;
 use sensitol::fits::deviations;
+use sensitol::internals::Store;
+use sensitol::internals::reach::*;
 use sensitol::internals::{FormulaSet, Jet, Meaning};
-use sensitol::journal::Store;
 use sensitol::pearson::Pearson;
 use sensitol::{Options, Study, analyze};
 

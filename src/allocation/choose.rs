@@ -45,8 +45,14 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
             let curved =
                 setting.priced.iter().zip(&offers).any(|(group, &o)| group.offers[o].min < group.offers[o].max);
             let residual = curved.then_some(solved.residual);
-            let proof =
-                Proof { residual, bound: bound.is_finite().then_some(bound), rigorous, nodes, closed_form: false };
+            let proof = Proof {
+                residual,
+                bound: bound.is_finite().then_some(bound),
+                rigorous,
+                nodes,
+                closed_form: false,
+                gap: None,
+            };
             (solved, offers, proof)
         })
     };
@@ -84,11 +90,13 @@ pub(super) fn within_bounds(priced: &[Priced], at: &[f64]) -> bool {
     priced.iter().zip(at).all(|(group, t)| (group.tightest()..=group.loosest()).contains(t))
 }
 
+/// What can be had of a constraint; its unit is known to who has the problem.
 fn unattainable(setting: &Setting<'_>, constraint: &Constraint, at: &[f64]) -> Attainable {
     let responses = setting.responses;
     let factors = responses.factors(setting.priced, at);
     Attainable {
         characteristic: constraint.characteristic,
+        unit: None,
         requirement: constraint.requirement,
         best: constraint.measured(responses, setting.priced, at),
         because: constraint.without_the_priced(responses, setting.priced, &factors),

@@ -1,7 +1,7 @@
 //! Requirements as numbers that must not exceed 1, with their slopes.
 //!
 //! ```text
-//! worst case       (reach beyond the nominal)/(U - nominal), linear in T
+//! worst case       (reach beyond the nominal)/(U - nominal), linear in T where the surface is
 //! rss              (R/s)^2 with R the rss and s the room that the middle of the linear model leaves
 //! Cpk, sigma       (R/s)^2 with R sigma and s the room that the mean leaves
 //! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield, corrected by the surface law
@@ -73,7 +73,7 @@ impl Constraint {
     /// Its value alone; infinite where it cannot be kept so, or is unknown.
     pub(super) fn value(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> f64 {
         let value = match self.requirement {
-            Requirement::WorstCase => self.worst_case(responses, priced, at).map(|(value, _)| value),
+            Requirement::WorstCase => self.worst_case(responses, priced, at).map(|found| found.value),
             _ => self.ratio(responses, priced, at).map(|ratio| ratio * ratio),
         };
         value.filter(|value| !value.is_nan()).unwrap_or(f64::INFINITY)
@@ -82,9 +82,7 @@ impl Constraint {
     /// Its value and slopes; None where they are unknown.
     pub(super) fn linearised(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
         if self.requirement == Requirement::WorstCase {
-            let (value, coefficients) = self.worst_case(responses, priced, at)?;
-            let slopes = coefficients.iter().zip(at).map(|(coefficient, t)| coefficient * t).collect();
-            return Some(Linearised { value, slopes, linear: true });
+            return self.worst_case(responses, priced, at);
         }
         let k = self.characteristic;
         let factors = responses.factors(priced, at);
@@ -127,19 +125,32 @@ impl Constraint {
         Some(by.iter().zip(priced).map(|(by, group)| of(by) - corrected(group)).collect())
     }
 
-    /// The reach beyond the nominal by the room that the limit leaves, and its coefficients by `T`.
-    fn worst_case(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<(f64, Vec<f64>)> {
-        let (constant, coefficients) = responses.worst_case(self.characteristic, priced, self.side == Side::Above)?;
+    /// The reach beyond the nominal by the room that the limit leaves.
+    fn worst_case(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
+        let above = self.side == Side::Above;
         let nominal = responses.of[self.characteristic].nominal?;
         let room = match self.side {
             Side::Above => self.limits.upper()? - nominal,
             _ => nominal - self.limits.lower()?,
         };
-        let reach = constant + coefficients.iter().zip(at).map(|(coefficient, t)| coefficient * t).sum::<f64>();
+        let (reach, slopes, linear) = match &responses.of[self.characteristic].worst {
+            Some(worst) => {
+                let (reach, by_dimension) = worst.reach(&responses.factors(priced, at), above);
+                let of = |group: &Priced| {
+                    by_dimension.iter().filter(|(d, _)| group.members.contains(d)).map(|(_, slope)| slope).sum()
+                };
+                (reach, priced.iter().map(of).collect(), false)
+            }
+            None => {
+                let (constant, coefficients) = responses.worst_case(self.characteristic, priced, above)?;
+                let slopes: Vec<f64> = coefficients.iter().zip(at).map(|(coefficient, t)| coefficient * t).collect();
+                (constant + slopes.iter().sum::<f64>(), slopes, true)
+            }
+        };
         // A nominal value beyond the limit leaves no room to divide by.
         let scale = if room > 0.0 { room } else { room.abs().max(reach.abs()).max(f64::MIN_POSITIVE) };
         let value = 1.0 + (reach - room) / scale;
-        Some((value, coefficients.into_iter().map(|coefficient| coefficient / scale).collect()))
+        Some(Linearised { value, slopes: slopes.into_iter().map(|slope| slope / scale).collect(), linear })
     }
 
     /// What varies by the room for it.
@@ -184,7 +195,7 @@ impl Constraint {
         let at: Vec<f64> = (all.iter())
             .map(|group| factors[group.members[0]] * responses.dimensions[group.members[0]].half_band())
             .collect();
-        self.worst_case(responses, &all, &at).map(|(value, _)| value)
+        self.worst_case(responses, &all, &at).map(|found| found.value)
     }
 
     /// The room that is left beside a value on this side; None where there is none.
@@ -387,7 +398,7 @@ impl Constraint {
     pub(super) fn measured(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<f64> {
         let factors = responses.factors(priced, at);
         match self.requirement {
-            Requirement::WorstCase => self.worst_case(responses, priced, at).map(|(value, _)| value),
+            Requirement::WorstCase => self.worst_case(responses, priced, at).map(|found| found.value),
             Requirement::Rss => self.ratio(responses, priced, at),
             Requirement::Sigma(_) => Some(responses.moments(self.characteristic, &factors)?.sigma()),
             Requirement::Cpk(_) => {
@@ -404,7 +415,7 @@ impl Constraint {
 
     /// The dimensions without a cost that break it by themselves, most harmful first; empty where it could be kept if the others had
     /// no tolerance at all.
-    pub(super) fn without_the_priced(&self, responses: &Responses, priced: &[Priced], factors: &[f64]) -> Vec<usize> {
+    pub(super) fn without_the_priced(&self, responses: &Responses, priced: &[Priced], factors: &[f64]) -> Vec<String> {
         let is_priced = |d: usize| priced.iter().any(|group| group.members.contains(&d));
         let alone = |only: Option<usize>| -> Vec<f64> {
             (0..factors.len())
@@ -423,7 +434,7 @@ impl Constraint {
             .filter(|(harm, _)| *harm > 0.0)
             .collect();
         harm.sort_by(|a, b| b.0.total_cmp(&a.0));
-        harm.into_iter().map(|(_, d)| d).collect()
+        harm.into_iter().map(|(_, d)| responses.dimensions[d].name().to_owned()).collect()
     }
 
     /// By how much the cost falls per unit by which the lower limit goes down, the upper one up, or a required sigma grows.

@@ -258,22 +258,16 @@ impl Priced {
         Ok(Self { parts: members.len() as f64, members, offers })
     }
 
-    /// Cost of all its parts at this half band, by the cheapest offer that holds it.
-    pub fn cost(&self, t: f64) -> Option<f64> {
-        let held = self.offers.iter().filter(|offer| (offer.min..=offer.max).contains(&t));
-        held.map(|offer| self.parts * offer.curve.cost(t)).reduce(f64::min)
-    }
-
     /// What it costs to hold this half band, which no offer need name: a process costs what it costs at any tolerance that it
     /// holds, and a curve goes on beyond its bounds.
-    pub fn cost_to_hold(&self, t: f64) -> Option<f64> {
+    pub(crate) fn cost_to_hold(&self, t: f64) -> Option<f64> {
         let holds = |offer: &&Offer| self.offers.len() == 1 && offer.min < offer.max || offer.min <= t * (1.0 + 1e-12);
         let at = |offer: &Offer| offer.curve.cost(if self.offers.len() == 1 { t } else { t.min(offer.max) });
         self.offers.iter().filter(holds).map(|offer| self.parts * at(offer)).reduce(f64::min)
     }
 
     /// The tightest half band among its members as they stand in a problem, which the process that they share has to hold.
-    pub fn tightest_member(&self, problem: &Problem) -> f64 {
+    pub(crate) fn tightest_member(&self, problem: &Problem) -> f64 {
         self.members.iter().map(|&d| problem.dimensions()[d].half_band()).fold(f64::INFINITY, f64::min)
     }
 

@@ -34,7 +34,9 @@ pub(super) fn front(
         let setting = Setting { constraints: &constraints, ..*setting };
         let choice = choose(&setting, start);
         let of_front = |(c, one): (usize, &Option<Requirement>)| match one {
-            Some(one @ (Requirement::Yield(_) | Requirement::Cpk(_))) => Some((c, *one)),
+            Some(one @ (Requirement::Yield(_) | Requirement::Cpk(_))) => {
+                Some((problem.characteristics()[c].name().to_owned(), *one))
+            }
             _ => None,
         };
         let required = wanted.iter().enumerate().filter_map(of_front).collect();

@@ -7,7 +7,7 @@
 //!      Cpk >= c        min(U - mean, mean - L) / 3 sigma
 //!      sigma <= s
 //!      mean ± rss within [L, U]
-//!      linear worst case within [L, U]
+//!      worst case within [L, U]: linear, and where the surface is curved that of the surface, corrected by the true one
 //! and  min_g <= T_g <= max_g,  or T_g one of a list of processes
 //! ```
 //!
@@ -32,6 +32,7 @@ mod recentre;
 mod response;
 mod result;
 mod run;
+mod sampled;
 mod scaling;
 mod separable;
 mod shape;
@@ -40,6 +41,7 @@ mod station;
 mod steps;
 mod task;
 mod vector;
+mod worst;
 
 pub(crate) use cost::CurveKind;
 pub use cost::{CostError, Curve, Offer, Priced};

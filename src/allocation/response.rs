@@ -10,6 +10,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::correction::{About, Correction, Follows};
 use super::cost::Priced;
+use super::sampled::SampledCorrection;
+use super::worst::WorstCase;
 use crate::analysis::{Analysis, CharacteristicAnalysis, law_over, surface_law};
 use crate::characteristic::SpecLimits;
 use crate::dimension::Dimension;
@@ -51,6 +53,10 @@ pub(super) struct Response {
     /// The law of the surface, where a yield comes from one.
     law: Option<SurfaceLaw>,
     pub(super) unknown: Unknown,
+    /// What samples of the model make of its moments, where they refute the surface.
+    pub(super) sampled: Option<SampledCorrection>,
+    /// The worst case; None where the slopes tell all of it.
+    pub(super) worst: Option<WorstCase>,
 }
 
 /// How far the bad ends of the intervals lie from the figures by which trial tolerances are judged; 0 where nothing is known of an
@@ -92,7 +98,7 @@ impl Responses {
         let dimensions = problem.dimensions().to_vec();
         let varying = outcome.plan.varying().to_vec();
         let scaling = varying.iter().map(|&d| Scaling::of(&dimensions[d])).collect();
-        let reach = dimensions.iter().map(Reach::of).collect();
+        let reach: Vec<Reach> = dimensions.iter().map(Reach::of).collect();
         let n = dimensions.len();
         let pairs = (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b)));
         let correlated = problem.correlation().map_or(Vec::new(), |correlation| {
@@ -118,6 +124,8 @@ impl Responses {
                     limits,
                     law: by_law.then(|| surface_law(problem, outcome, c)?.ok()).flatten(),
                     unknown: Unknown::of(found, by_law),
+                    sampled: None,
+                    worst: worst_case(&dimensions, &varying, &reach, fitted.surrogate.as_ref(), found),
                 }
             })
             .collect();
@@ -239,7 +247,11 @@ impl Responses {
         shifts: Option<&[f64]>,
     ) -> Option<Moments> {
         let (surrogate, inputs) = self.relocated(characteristic, factors, shifts)?;
-        Some(surrogate.contributions(&inputs)?.moments)
+        let moments = surrogate.contributions(&inputs)?.moments;
+        match &self.of[characteristic].sampled {
+            Some(sampled) => sampled.corrected(&moments, factors),
+            None => Some(moments),
+        }
     }
 
     /// Derivatives of mean, `ln sigma`, skewness and excess by `ln T` of every group.
@@ -372,16 +384,19 @@ impl Responses {
         part.map_or(reach, |part| reach.max(part.largest()))
     }
 
+    /// Whether samples of the model correct its surface.
+    pub(super) fn is_sampled(&self, characteristic: usize) -> bool {
+        self.of[characteristic].sampled.is_some()
+    }
+
     /// Whether mean and shape of the characteristic cannot change with the tolerances, so that sigma says everything: a linear
     /// surrogate of normal inputs whose bands do not move.
     pub(super) fn is_plain(&self, characteristic: usize) -> bool {
-        let Some(surrogate) = &self.of[characteristic].surrogate else { return false };
-        let straight = surrogate.parts.iter().all(|part| part.is_some_and(|part| part.is_straight(SAME)));
-        let straight = straight
-            && surrogate.interactions.pairs().iter().all(|&(j, k, product)| {
-                let slope = |at: usize| surrogate.parts[at].map_or(0.0, |part| part.slope().abs());
-                product.abs() <= SAME * slope(j).max(slope(k))
-            });
+        let Some(surrogate) = self.of[characteristic].surrogate.as_ref().filter(|_| !self.is_sampled(characteristic))
+        else {
+            return false;
+        };
+        let straight = is_straight(surrogate);
         let normal =
             self.inputs.shapes().iter().all(|shape| shape.moments == crate::distribution::StandardMoments::NORMAL);
         let still = self.scaling.iter().all(|scaling| {
@@ -406,6 +421,41 @@ impl Unknown {
             sigma: of(sigma.value, sigma.interval.map(|[_, high]| high)),
         }
     }
+}
+
+/// The worst case of a characteristic of which the slopes do not tell it: a curved surface, or a formula that interval arithmetic knows
+/// better. Circular zones stay with the slopes.
+fn worst_case(
+    dimensions: &[Dimension],
+    varying: &[usize],
+    reach: &[Reach],
+    surrogate: Option<&Surrogate>,
+    found: &CharacteristicAnalysis,
+) -> Option<WorstCase> {
+    let surrogate = surrogate?;
+    let linear = found.is_proven_linear() || varying.iter().any(|&d| dimensions[d].zone().is_some());
+    let reached = found.nominal.zip(found.proof()).map(|(nominal, proof)| {
+        let [low, high] = proof.bounds;
+        [nominal - low, high - nominal]
+    });
+    // Without a proof there is nothing to learn of a straight surface but its slopes.
+    if linear || reached.is_none() && is_straight(surrogate) {
+        return None;
+    }
+    let band = |&d: &usize| {
+        let (dimension, reach) = (&dimensions[d], reach[d]);
+        [(dimension.nominal() + reach.middle - dimension.mean()) / dimension.sigma(), reach.half / dimension.sigma()]
+    };
+    WorstCase::of(surrogate, varying, varying.iter().map(band).collect(), found.nominal?, reached)
+}
+
+/// Whether a surface has neither curvature nor products, but for rounding.
+fn is_straight(surrogate: &Surrogate) -> bool {
+    surrogate.parts.iter().all(|part| part.is_some_and(|part| part.is_straight(SAME)))
+        && surrogate.interactions.pairs().iter().all(|&(j, k, product)| {
+            let slope = |at: usize| surrogate.parts[at].map_or(0.0, |part| part.slope().abs());
+            product.abs() <= SAME * slope(j).max(slope(k))
+        })
 }
 
 fn shapes_of(dimension: &Dimension) -> Option<InputShape> {

@@ -3,7 +3,9 @@
 use serde::{Serialize, Serializer};
 
 use super::joint::JointYield;
-use super::shape::{After, Before};
+#[cfg(feature = "cli")]
+use super::shape::RequiredOf;
+use super::shape::{After, Before, required};
 use crate::analysis::Analysis;
 use crate::problem::Problem;
 use crate::requirement::{Required, Requirement};
@@ -25,17 +27,20 @@ pub enum Status {
     AlmostOptimal,
     /// No tolerances within the bounds keep every requirement.
     Infeasible,
+    /// The search ended at tolerances that miss a requirement; that no others keep it is not proven.
+    NoFeasiblePointFound,
     /// Stopped before it was known.
     OutOfTime,
 }
 
 impl Status {
     /// Its name in reports.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Optimal => "optimal",
             Self::AlmostOptimal => "almost-optimal",
             Self::Infeasible => "infeasible",
+            Self::NoFeasiblePointFound => "no-feasible-point-found",
             Self::OutOfTime => "out-of-time",
         }
     }
@@ -140,17 +145,18 @@ pub struct Attainable {
     /// Index of the characteristic in the problem; reports name it.
     #[serde(skip)]
     pub characteristic: usize,
+    /// Its unit.
+    pub unit: Option<String>,
     /// What is required.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "Required"))]
     pub requirement: Requirement,
     /// The best that the bounds of the tolerances allow, in the requirement's own measure.
     pub best: Option<f64>,
-    /// The dimensions without cost that alone break the requirement, most harmful first; empty where the others are to blame too.
-    #[serde(skip)]
-    pub because: Vec<usize>,
     /// Whether it could be kept if it were the only one.
     pub together: bool,
+    /// The dimensions without cost that alone break the requirement, most harmful first; empty where the others are to blame too.
+    pub because: Vec<String>,
 }
 
 /// What shows that nothing is cheaper.
@@ -171,6 +177,9 @@ pub struct Proof {
     pub nodes: usize,
     /// Whether Lagrange's condition had the answer in closed form.
     pub closed_form: bool,
+    /// By what part of the cost it may be above the bound; None without one.
+    #[serde(skip)]
+    pub gap: Option<f64>,
 }
 
 /// What an allocation found out. What is unknown is None.
@@ -229,10 +238,13 @@ pub struct Allocation {
 
 /// One point of the front: the cheapest tolerances for a requirement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FrontPoint {
     /// What was required of every characteristic of which a yield or a Cpk is, in the order of the problem.
-    pub required: Vec<(usize, Requirement)>,
+    #[serde(serialize_with = "required")]
+    #[cfg_attr(feature = "cli", schemars(with = "Vec<RequiredOf>"))]
+    pub required: Vec<(String, Requirement)>,
     /// What that costs; None where it cannot be kept.
     pub cost: Option<f64>,
     /// Half bands, in the order of [`Allocation::tolerances`].
@@ -248,10 +260,12 @@ pub(crate) struct ProofShape<'r> {
     own: &'r Proof,
     /// Whether the bound is exact, rather than resting on a sample of choices; null without one.
     bound_is_exact: Option<bool>,
+    /// By what part of the cost it may be above the bound.
+    gap: Option<f64>,
 }
 
 impl Serialize for Proof {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        ProofShape { own: self, bound_is_exact: self.bound.map(|_| self.rigorous) }.serialize(serializer)
+        ProofShape { own: self, bound_is_exact: self.bound.map(|_| self.rigorous), gap: self.gap }.serialize(serializer)
     }
 }

@@ -8,21 +8,24 @@ use super::joint::joint;
 use super::recentre::shifts;
 use super::response::Responses;
 use super::result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, Status};
+use super::sampled::SampledCorrection;
 use super::scaling::loosest;
 use super::solve::{Setting, Solved, tightened};
 use super::station::{Station, prices, required};
 use super::steps::Steps;
 use super::task::{AllocateError, AllocationOptions, AllocationTask};
-use crate::analysis::analyze_keeping;
+use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_keeping};
 use crate::assembly::Run;
 use crate::dimension::Dimension;
 use crate::method::{MethodError, Options};
+use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::sampling::{Draws, Sampler};
 use crate::simulation::{SimulationError, SimulationOptions, simulate_with};
 use crate::summary::{RunSummary, StopReason};
 use crate::time::Instant;
+use crate::verdict::Verdict;
 use crate::warning::Warning;
 
 /// Rounds of derivatives, at most.
@@ -36,6 +39,8 @@ const REST: f64 = 1e-3;
 const FAR: f64 = 30.0;
 /// A residual up to which tolerances are called optimal.
 const OPTIMAL: f64 = 1e-6;
+/// A surface that leaves more of the variance unexplained says nothing of an optimum.
+const TRUSTED: f64 = 0.01;
 /// A gap up to which a choice of processes is called optimal.
 const NO_GAP: f64 = 1e-9;
 
@@ -69,6 +74,11 @@ pub fn allocate(
     options: &AllocationOptions,
 ) -> Result<Allocation, AllocateError> {
     allocate_with(problem, task, options, &Run::to_the_end())
+}
+
+/// The unit of a characteristic.
+fn unit(problem: &Problem, characteristic: usize) -> Option<String> {
+    problem.characteristics()[characteristic].unit().map(str::to_owned)
 }
 
 /// [`allocate`], telling of finished points and stopping when told to.
@@ -243,7 +253,8 @@ impl Driver<'_> {
                 }
                 Choice::Infeasible(attainable, _) => {
                     allocation.status = Status::Infeasible;
-                    allocation.attainable = Some(attainable);
+                    let unit = unit(&original, attainable.characteristic);
+                    allocation.attainable = Some(Attainable { unit, ..attainable });
                     return Ok(());
                 }
                 Choice::Stopped => {
@@ -314,24 +325,38 @@ impl Driver<'_> {
         let met = values.iter().all(|&value| kept(value));
         let solved = last.as_ref().map(|(solved, ..)| solved);
         if let Some((solved, offers, proof)) = &last {
-            allocation.proof = proof.clone();
-            allocation.cost_after = Some(cost(&self.task.priced, &solved.at, offers));
+            let cost = cost(&self.task.priced, &solved.at, offers);
+            let gap = |bound: f64| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0);
+            allocation.proof = Proof { gap: proof.bound.map(gap), ..proof.clone() };
+            allocation.cost_after = Some(cost);
             allocation.tolerances = self.allocated(original, &solved.at, offers);
             let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
             if free {
                 allocation.prices = prices(&station, &self.task.priced, constraints, solved);
             }
         }
+        let missed = allocation.requirements.iter().any(|one| {
+            station.analysis.characteristics[one.characteristic].judge(one.requirement).verdict == Verdict::Missed
+        });
         let reached = ended.within_budget && !self.spent.stopped;
         allocation.confirmed = reached;
         allocation.status = match &last {
             _ if self.spent.stopped => Status::OutOfTime,
             // Nothing but nominal values was to be chosen: what they cannot do, tolerances must.
             None if !met => Status::Infeasible,
+            Some(_) if missed && ended.within_budget => Status::NoFeasiblePointFound,
             None if ended.agreed => Status::Optimal,
             None => Status::AlmostOptimal,
             Some((solved, _, proof)) => {
-                let proven = proof.residual.is_none_or(|residual| residual <= OPTIMAL)
+                // Slopes of a surface that the model refutes, and those of samples, prove nothing.
+                let trusted = constraints.iter().all(|one| {
+                    let c = one.characteristic;
+                    let left = station.analysis.characteristics[c].verification.as_ref().and_then(|of| of.left);
+                    !station.responses.is_sampled(c) && left.is_none_or(|left| left <= TRUSTED)
+                        || one.requirement == Requirement::WorstCase
+                });
+                let proven = trusted
+                    && proof.residual.is_none_or(|residual| residual <= OPTIMAL)
                     && proof.bound.is_none_or(|bound| {
                         proof.rigorous && solved.cost - bound <= NO_GAP * solved.cost.abs().max(f64::MIN_POSITIVE)
                     });
@@ -344,12 +369,18 @@ impl Driver<'_> {
                 let one = &constraints[k];
                 Attainable {
                     characteristic: one.characteristic,
+                    unit: unit(original, one.characteristic),
                     requirement: one.requirement,
                     best: station.analysis.characteristics[one.characteristic].judge(one.requirement).value,
                     because: Vec::new(),
                     together: false,
                 }
             });
+        }
+        // A budget that ended before the model was asked at these tolerances leaves nothing to say of them.
+        if let (false, Some((solved, ..))) = (ended.within_budget, &last) {
+            allocation.problem = with_tolerances(station.problem, &self.task.priced, &solved.at)?;
+            return Ok(());
         }
         for one in &mut allocation.requirements {
             one.after = Some(station.analysis.characteristics[one.characteristic].judge(one.requirement));
@@ -398,8 +429,37 @@ impl Driver<'_> {
         self.spent.run = self.spent.run.and(&analysis.run);
         self.spent.rounds += 1;
         self.spent.stopped |= analysis.run.unfinished();
-        let responses = Responses::of(&problem, &outcome, &analysis);
+        let mut responses = Responses::of(&problem, &outcome, &analysis);
+        self.correct(&problem, &analysis, &mut responses);
         Ok(Station { problem, analysis, responses })
+    }
+
+    /// Corrects by samples of the model what its own figures refute, where something is required of that and the model is cheap.
+    fn correct(&self, problem: &Problem, analysis: &Analysis, responses: &mut Responses) {
+        let of = |(c, one): (usize, &CharacteristicAnalysis)| {
+            let refuted = one.verification.as_ref().is_some_and(|of| of.replaced);
+            let moments =
+                self.task.requirements[c].is_some_and(|of| !matches!(of, Requirement::Rss | Requirement::WorstCase));
+            (refuted && moments).then_some((c, one.moments?))
+        };
+        let verified: Vec<(usize, Moments)> = analysis.characteristics.iter().enumerate().filter_map(of).collect();
+        if verified.is_empty() || problem.function().signature().costly || self.run.stopped() {
+            return;
+        }
+        let priced = &self.task.priced;
+        let at = |g: usize, factor: f64| {
+            let half = problem.dimensions()[priced[g].members[0]].half_band();
+            with_tolerances(problem.clone(), &priced[g..=g], &[factor * half]).ok()
+        };
+        let surface = |c: usize, g: usize, factor: f64| {
+            let mut factors = vec![1.0; problem.dimensions().len()];
+            priced[g].members.iter().for_each(|&d| factors[d] = factor);
+            responses.moments(c, &factors)
+        };
+        let found = SampledCorrection::of(&verified, priced, &at, &surface, self.options.seed, self.run);
+        for (c, correction) in found {
+            responses.of[c].sampled = correction;
+        }
     }
 
     /// The same further on: None where the budget does not allow it.

@@ -1,7 +1,8 @@
-//! How what there was and what there is of a requirement is written.
+//! How what is required, what there was and what there is of it are written.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
+use crate::requirement::{Required, Requirement};
 use crate::shape::{ends, finite};
 use crate::verdict::{Judged, Verdict};
 
@@ -46,4 +47,21 @@ impl From<&Option<Judged>> for After {
             verdict: of.map(|of| of.verdict),
         }
     }
+}
+
+/// What is required of a characteristic, as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(super) struct RequiredOf<'r> {
+    /// The characteristic.
+    characteristic: &'r str,
+    #[serde(flatten)]
+    required: Required,
+}
+
+/// What is required of every characteristic.
+pub(super) fn required<S: Serializer>(all: &[(String, Requirement)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(
+        all.iter().map(|(name, requirement)| RequiredOf { characteristic: name, required: requirement.into() }),
+    )
 }

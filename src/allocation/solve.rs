@@ -15,6 +15,7 @@ use super::constraint::{Constraint, Linearised, kept};
 use super::cost::Priced;
 use super::response::Responses;
 use super::separable::{Row, Separable};
+use crate::requirement::Requirement;
 
 /// What is required of which tolerances.
 #[derive(Clone, Copy)]
@@ -77,8 +78,9 @@ impl Setting<'_> {
 
     /// Whether sums of powers are exactly what is required.
     pub(super) fn is_exact(&self) -> bool {
-        self.constraints.iter().all(|one| {
-            one.requirement == crate::requirement::Requirement::WorstCase || self.responses.is_plain(one.characteristic)
+        self.constraints.iter().all(|one| match one.requirement {
+            Requirement::WorstCase => self.responses.of[one.characteristic].worst.is_none(),
+            _ => self.responses.is_plain(one.characteristic),
         })
     }
 
@@ -95,6 +97,12 @@ impl Setting<'_> {
         let mut starts = vec![self.within(start)];
         if !self.is_exact() {
             let loose: Vec<f64> = bounds.iter().map(|&[_, high]| high).collect();
+            // Where the loosest of all keep everything, nothing is cheaper: a place that no slope need lead to.
+            if kept(self.value(&loose)) {
+                let nothing = vec![0.0; self.constraints.len()];
+                let solved = self.judged(&loose, &self.linearised(&loose)?, &nothing, false);
+                return Some(Solved { converged: true, ..solved });
+            }
             starts.push(self.within(&start.iter().map(|t| 0.3 * t).collect::<Vec<_>>()));
             starts.push(self.reached(&tight, &loose, 0.5));
         }

@@ -51,8 +51,9 @@ impl Default for AllocationOptions {
 
 impl AllocationOptions {
     /// How derivatives of this problem are taken.
-    pub fn derivatives(&self, problem: &Problem) -> Options {
-        Options { extremes: false, ..chosen(problem, &self.analysis) }
+    pub(crate) fn derivatives(&self, problem: &Problem) -> Options {
+        let model_figures = self.analysis.method == Method::Auto;
+        Options { extremes: false, model_figures, ..chosen(problem, &self.analysis) }
     }
 
     /// With derivatives taken so.
@@ -181,7 +182,7 @@ pub enum AllocateError {
 
 impl AllocateError {
     /// What to do about it.
-    pub fn advice(&self) -> Vec<Advice> {
+    pub(crate) fn advice(&self) -> Vec<Advice> {
         match self {
             Self::NothingToChoose => vec![Advice::WriteCosts, Advice::NameMovableDimensions],
             Self::NoSurrogate { .. } => {

@@ -1,5 +1,7 @@
 //! What is known of one characteristic.
 
+use std::collections::HashMap;
+
 use serde::{Serialize, Serializer};
 
 use super::errors::of_yield;
@@ -82,9 +84,12 @@ pub struct CharacteristicAnalysis {
     #[serde(rename = "sampling_interval")]
     pub sampling: Option<SamplingInterval>,
     /// The interval that no assembly of a linear model leaves: around the nominal, every dimension at the end of its
-    /// band that hurts, and a point of a circular zone ([`Dimension::zone`](crate::Dimension::zone)) at its edge.
+    /// band that hurts, and a point of a circular zone ([`Dimension::within_zone`](crate::Dimension::within_zone)) at its edge.
     #[serde(skip)]
     pub worst_case: Option<[f64; 2]>,
+    /// What curvatures and interactions add to the worst case at most, by the surface; None where a curvature is missing.
+    #[serde(skip)]
+    pub(crate) curved: Option<f64>,
     /// The least and the greatest value in the box of the tolerance bands, where they were searched and found.
     #[serde(skip)]
     pub extremes: Option<Extremes>,
@@ -183,7 +188,7 @@ fn fitted<S: Serializer>(law: &Option<Result<Law, PearsonError>>, serializer: S)
 
 impl CharacteristicAnalysis {
     /// All shares of its dimension: straight line and curvature.
-    pub fn share(&self, dimension: usize) -> Option<f64> {
+    pub(crate) fn share(&self, dimension: usize) -> Option<f64> {
         let sensitivity = &self.sensitivities[dimension];
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
     }
@@ -217,8 +222,9 @@ impl CharacteristicAnalysis {
     /// How a requirement is kept, whether or not it is the characteristic's own.
     ///
     /// The interval of a yield is [`yield_interval`](Self::yield_interval); that of a Cpk and of sigma follows from the estimated
-    /// errors of mean and sigma; rss and worst case are what they are by the slopes, without an error.
-    pub fn judge(&self, requirement: Requirement) -> Judged {
+    /// errors of mean and sigma; rss is what it is by the slopes, without an error; the worst case lies between what was found and what
+    /// interval arithmetic excludes.
+    pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let limits = self.characteristic.limits();
         let error = |of: fn(&ErrorEstimate) -> Option<f64>| match self.constant {
             true => Some(0.0),
@@ -239,13 +245,43 @@ impl CharacteristicAnalysis {
             Requirement::Rss => {
                 part(self.middle.zip(self.rss).and_then(|(middle, rss)| taken(limits, middle, [rss; 2])))
             }
-            Requirement::WorstCase => part(
-                self.nominal
-                    .zip(self.worst_case)
-                    .and_then(|(nominal, [low, high])| taken(limits, nominal, [nominal - low, high - nominal])),
-            ),
+            Requirement::WorstCase => {
+                self.worst_case_taken().map_or((None, None), |(value, within)| (Some(value), within))
+            }
         };
         Judged::of(requirement, value, interval).unless(self.unfinished)
+    }
+
+    /// The part of the room that the worst case takes, and within which that is known: by the slopes where the formula is proven to be linear;
+    /// between what was found and what interval arithmetic excludes where the formula has bounds; by the surface otherwise.
+    fn worst_case_taken(&self) -> Option<(f64, Option<[f64; 2]>)> {
+        let (nominal, linear) = self.nominal.zip(self.worst_case)?;
+        let part = |[low, high]: [f64; 2], more: f64| {
+            let reach = [nominal - low, high - nominal].map(|reach| (reach + more).max(0.0));
+            taken(self.characteristic.limits(), nominal, reach)
+        };
+        let by_slopes = part(linear, 0.0)?;
+        if self.constant || self.is_proven_linear() {
+            return Some((by_slopes, Some([by_slopes; 2])));
+        }
+        let found = self.extremes.as_ref().and_then(|found| part([found.least.value, found.greatest.value], 0.0));
+        if let Some(proof) = self.proof() {
+            let most = part(proof.bounds, 0.0)?;
+            let least = if proof.proven { most } else { found.unwrap_or(0.0).min(most) };
+            return Some((if proof.proven { most } else { found.unwrap_or(by_slopes) }, Some([least, most])));
+        }
+        let around = self.curved.and_then(|curved| Some([part(linear, -curved)?, part(linear, curved)?]));
+        Some(match found {
+            // A search that proves nothing shows what is reached, and no more.
+            Some(found) => (found, around.map(|[_, most]| [found, found.max(most)])),
+            None => (by_slopes, around),
+        })
+    }
+
+    /// Whether the formula's own degree proves that the slopes tell everything.
+    pub(crate) fn is_proven_linear(&self) -> bool {
+        let kind = self.verification.as_ref().map(|of| of.kind);
+        matches!(kind, Some(VerificationKind::Exact { degree: 0 | 1 }))
     }
 
     /// How everything is kept that is required of it: its target yield, and what else there is.
@@ -259,7 +295,7 @@ impl CharacteristicAnalysis {
     }
 
     /// Whether its target yield is met; None where it has none, and where that is not known.
-    pub fn met(&self) -> Option<bool> {
+    pub(crate) fn met(&self) -> Option<bool> {
         self.verdict()?.met()
     }
 
@@ -321,6 +357,7 @@ impl CharacteristicAnalysis {
             worst_case: middle
                 .zip(linear)
                 .map(|(middle, linear)| [middle - linear.worst_case, middle + linear.worst_case]),
+            curved: curved(problem, &sensitivities, &interactions),
             middle,
             rss: linear.map(|linear| linear.rss),
             inflated_rss: linear.map(|linear| linear.inflated_rss),
@@ -344,6 +381,23 @@ impl CharacteristicAnalysis {
             without_value: outcome.evaluated.known.errors().filter(|&(_, of, _)| of == c).count(),
         }
     }
+}
+
+/// `sum of |f_jj| h_j^2/2 + sum of |f_jk| h_j h_k` over the half bands `h`: no corner of a second-order surface lies farther from the linear one.
+fn curved(problem: &Problem, sensitivities: &[Sensitivity], interactions: &[Interaction]) -> Option<f64> {
+    let half = |d: usize| problem.dimensions()[d].half_band();
+    let own = |(d, one): (usize, &Sensitivity)| match half(d) {
+        0.0 => Some(0.0),
+        half => Some(0.5 * one.second?.abs() * half * half),
+    };
+    let halves: HashMap<&str, f64> =
+        problem.dimensions().iter().enumerate().map(|(d, dimension)| (dimension.name(), half(d))).collect();
+    let both = |one: &Interaction| {
+        let [j, k] = [0, 1].map(|side| halves.get(one.dimensions[side].as_str()));
+        Some(one.mixed?.abs() * j? * k?)
+    };
+    let own = sensitivities.iter().enumerate().map(own).sum::<Option<f64>>()?;
+    Some(own + interactions.iter().map(both).sum::<Option<f64>>()?)
 }
 
 /// The greatest part of the room between a value and the limits that is taken below and above it; infinite where there is no room.

@@ -20,7 +20,7 @@ mod shapes;
 mod shares;
 mod shorten;
 mod surface;
-mod surface_law;
+pub(crate) mod surface_law;
 mod trust;
 mod verification;
 mod verified;
@@ -30,7 +30,7 @@ mod written;
 mod yield_source;
 
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
-pub use crate::law::{Branch, LawError, LawFigure, LawTail};
+pub use crate::law::{Branch, LawError, LawFigure};
 pub use crate::moments::{Contributions, Sampled};
 pub use crate::surrogate::Relocation;
 pub use crate::verification::{Crossing, FoundSwitch, Share, Verified};
@@ -41,7 +41,7 @@ pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
 pub use sampling_interval::SamplingInterval;
 pub use surface::{Fit, NoFit, Surface};
-pub use surface_law::{QUANTILES, SurfaceShares};
+pub use surface_law::SurfaceShares;
 pub(crate) use surface_law::{law_over, surface_law};
 pub use verified::{VarianceShare, Verification, VerificationKind};
 #[cfg(feature = "cli")]

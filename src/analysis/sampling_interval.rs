@@ -53,10 +53,3 @@ pub struct SamplingInterval {
 fn kept<S: Serializer>(rejected: &Option<[f64; 2]>, serializer: S) -> Result<S::Ok, S::Error> {
     rejected.map(|[low, high]| [1.0 - high, 1.0 - low]).serialize(serializer)
 }
-
-impl SamplingInterval {
-    /// Of the share within the limits.
-    pub fn yield_(&self) -> Option<[f64; 2]> {
-        self.rejected.map(|[low, high]| [1.0 - high, 1.0 - low])
-    }
-}

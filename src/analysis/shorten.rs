@@ -9,7 +9,7 @@ const MOST: usize = 10_000;
 
 impl Analysis {
     /// Without the interactions that hardly matter: what they make together stands in their place.
-    pub fn shortened(mut self) -> Self {
+    pub(crate) fn shortened(mut self) -> Self {
         self.characteristics.iter_mut().for_each(CharacteristicAnalysis::shorten);
         self
     }

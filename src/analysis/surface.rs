@@ -86,7 +86,7 @@ impl Surface {
     /// let area = Problem::new(dimensions, Closure::scalar("area", |x| x[0] * x[1]))?;
     /// let analysis = analyze(&area, &Method::Full.into())?;
     /// // Half the tolerance of the width.
-    /// let moved = [Relocation { shift: 0.0, stretch: 0.5 }, Relocation::NONE];
+    /// let moved = [Relocation { shift: 0.0, stretch: 0.5 }, Relocation { shift: 0.0, stretch: 1.0 }];
     /// let moments = analysis.surface.at(0, &moved).unwrap().moments;
     /// let exact = (2.0f64.powi(2) + 0.5f64.powi(2) + 0.005f64.powi(2)).sqrt();
     /// assert!((moments.sigma() - exact).abs() < 1e-12);

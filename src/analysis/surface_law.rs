@@ -66,8 +66,8 @@ pub struct SurfaceShares {
     pub below: Option<LawFigure>,
     /// The share above the upper limit; None without one.
     pub above: Option<LawFigure>,
-    /// At the probabilities of [`QUANTILES`]; None where one of them is unknown, and without limits where products of inputs that are
-    /// not parabolas of normal ones form a tree: those of the Pearson fit are then reported.
+    /// At the [`PROBABILITIES`](crate::capability::PROBABILITIES); None where one of them is unknown, and without limits where products
+    /// of inputs that are not parabolas of normal ones form a tree: those of the Pearson fit are then reported.
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
@@ -141,18 +141,18 @@ impl SurfaceShares {
     }
 
     /// The numerical error of the share within the limits.
-    pub fn error(&self) -> f64 {
+    pub(crate) fn error(&self) -> f64 {
         [self.below, self.above].iter().flatten().map(|figure| figure.error).fold(0.0, f64::hypot)
     }
 
     /// The share beyond the limits; None without any.
-    pub fn rejected(&self) -> Option<f64> {
+    pub(crate) fn rejected(&self) -> Option<f64> {
         let beyond = [self.below, self.above];
         beyond.iter().any(Option::is_some).then(|| beyond.iter().flatten().map(|figure| figure.value).sum::<f64>())
     }
 
     /// The share within the limits; None without any.
-    pub fn yield_(&self) -> Option<f64> {
+    pub(crate) fn yield_(&self) -> Option<f64> {
         self.rejected().map(|rejected| 1.0 - rejected)
     }
 

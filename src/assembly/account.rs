@@ -19,18 +19,6 @@ impl ModelInfo {
     pub fn of_window(window: usize) -> Self {
         Self { window, ..Self::default() }
     }
-
-    /// The same, with a name.
-    #[must_use]
-    pub fn named(self, name: impl Into<String>) -> Self {
-        Self { name: Some(name.into()), ..self }
-    }
-
-    /// The same, with a version.
-    #[must_use]
-    pub fn version(self, version: impl Into<String>) -> Self {
-        Self { version: Some(version.into()), ..self }
-    }
 }
 
 /// A model answered one point otherwise than before: the nominal point, or one that was asked again to see whether it repeats.
@@ -51,7 +39,7 @@ pub struct NonRepeatable {
 
 impl NonRepeatable {
     /// An output that varies by `spread` was `expected` and is now `found`, so that the answers at `suspects` are not trusted.
-    pub fn new(
+    pub(crate) fn new(
         output: impl Into<String>,
         [expected, found]: [Option<f64>; 2],
         spread: f64,

@@ -4,8 +4,7 @@
 ///
 /// ```
 /// use sensitol::assembly::Points;
-/// let mut points = Points::repeated(&[10.0, 30.0], 3);
-/// points.set(1, 0, 10.5);
+/// let points = Points::from_rows(&[[10.0, 30.0], [10.5, 30.0], [10.0, 30.0]]);
 /// assert_eq!(points.column(0), [10.0, 10.5, 10.0]);
 /// assert_eq!(points.row(1), [10.5, 30.0]);
 /// ```
@@ -18,7 +17,7 @@ pub struct Points {
 
 impl Points {
     /// `rows` copies of one point.
-    pub fn repeated(point: &[f64], rows: usize) -> Self {
+    pub(crate) fn repeated(point: &[f64], rows: usize) -> Self {
         let mut values = Vec::with_capacity(point.len() * rows);
         for &value in point {
             values.extend(std::iter::repeat_n(value, rows));
@@ -88,7 +87,7 @@ impl Points {
     }
 
     /// Changes one coordinate of one point.
-    pub fn set(&mut self, row: usize, dimension: usize, value: f64) {
+    pub(crate) fn set(&mut self, row: usize, dimension: usize, value: f64) {
         self.values[dimension * self.rows + row] = value;
     }
 }

@@ -19,7 +19,7 @@ use crate::summary::RunSummary;
 /// out.set(1, 0, f64::NAN); // what is not finite never leaves as a number
 /// assert_eq!(out.value(0, 0), Some(5.997));
 /// assert!(matches!(out.error(1, 0), Some(EvaluationError::NotFinite { .. })));
-/// assert!(out.is_open(2, 0));
+/// assert!(out.value(2, 0).is_none() && out.error(2, 0).is_none()); // still open
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Responses {
@@ -138,7 +138,7 @@ impl Responses {
     }
 
     /// Whether an entry has neither value nor error.
-    pub fn is_open(&self, row: usize, output: usize) -> bool {
+    pub(crate) fn is_open(&self, row: usize, output: usize) -> bool {
         self.value(row, output).is_none() && self.error(row, output).is_none()
     }
 
@@ -179,22 +179,22 @@ impl Responses {
     }
 
     /// Points of earlier batches whose answers are not trusted any more.
-    pub fn revoked(&self) -> &[Vec<f64>] {
+    pub(crate) fn revoked(&self) -> &[Vec<f64>] {
         &self.revoked
     }
 
     /// Rows whose answers were known already.
-    pub fn count_reused(&self) -> usize {
+    pub(crate) fn count_reused(&self) -> usize {
         self.reused
     }
 
     /// Evaluations beyond one for each answered row.
-    pub fn extra(&self) -> i64 {
+    pub(crate) fn extra(&self) -> i64 {
         self.extra
     }
 
     /// All values of one output, NaN where there is none.
-    pub fn column(&self, output: usize) -> &[f64] {
+    pub(crate) fn column(&self, output: usize) -> &[f64] {
         &self.values[output * self.rows..(output + 1) * self.rows]
     }
 
@@ -216,7 +216,7 @@ impl Responses {
     }
 
     /// Every error with its row and output, in order.
-    pub fn errors(&self) -> impl Iterator<Item = (usize, usize, &EvaluationError)> {
+    pub(crate) fn errors(&self) -> impl Iterator<Item = (usize, usize, &EvaluationError)> {
         self.errors.iter().map(|(&(row, output), error)| (row, output, error))
     }
 

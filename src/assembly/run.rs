@@ -55,14 +55,14 @@ impl<'a> Run<'a> {
     /// ```
     /// use sensitol::{StopReason, assembly::Run};
     /// let stop = || Some(StopReason::TimeLimit);
-    /// assert_eq!(Run::to_the_end().stopping_when(&stop).stop_reason(), Some(StopReason::TimeLimit));
+    /// assert!(Run::to_the_end().stopping_when(&stop).stopped());
     /// ```
     pub fn stopping_when(self, stop: &'a Stop<'a>) -> Self {
         Self { stop: Some(stop), ..self }
     }
 
     /// Gives up at once, with what is under way, when `abandon` says so.
-    pub fn abandoning_when(self, abandon: &'a (dyn Fn() -> bool + Sync)) -> Self {
+    pub(crate) fn abandoning_when(self, abandon: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { abandon: Some(abandon), ..self }
     }
 
@@ -72,7 +72,7 @@ impl<'a> Run<'a> {
     }
 
     /// Tells `withdrawn` of rows that were final and are not trusted any more; those that are answered again are told anew.
-    pub fn withdrawing(self, withdrawn: &'a Withdrawn<'a>) -> Self {
+    pub(crate) fn withdrawing(self, withdrawn: &'a Withdrawn<'a>) -> Self {
         Self { withdrawn: Some(withdrawn), ..self }
     }
 
@@ -99,21 +99,21 @@ impl<'a> Run<'a> {
     }
 
     /// These rows, told of as final, are not trusted any more.
-    pub fn withdraw(&self, rows: &[usize]) {
+    pub(crate) fn withdraw(&self, rows: &[usize]) {
         if let Some(withdrawn) = self.withdrawn {
             withdrawn(rows);
         }
     }
 
     /// A costly model has done with more points.
-    pub fn progressed(&self, progress: Progress) {
+    pub(crate) fn progressed(&self, progress: Progress) {
         if let Some(show) = self.progress {
             show(progress);
         }
     }
 
     /// Whether to return at once: even what is under way is not waited for.
-    pub fn abandoned(&self) -> bool {
+    pub(crate) fn abandoned(&self) -> bool {
         self.abandon.is_some_and(|abandon| abandon())
     }
 
@@ -128,7 +128,7 @@ impl<'a> Run<'a> {
     }
 
     /// Why to return now; None as long as there is no reason.
-    pub fn stop_reason(&self) -> Option<StopReason> {
+    pub(crate) fn stop_reason(&self) -> Option<StopReason> {
         self.stop.and_then(|stop| stop())
     }
 

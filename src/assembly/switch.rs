@@ -45,12 +45,13 @@ impl Switch {
     ///
     /// ```
     /// use sensitol::assembly::{Switch, SwitchKind};
+    /// use sensitol::internals::reach::*;
     /// let text = "max(a, b)".to_owned();
     /// let switch = Switch { kind: SwitchKind::Kink, text, formula: Some("reach".into()), span: 4..13 };
     /// assert_eq!(switch.name("reach"), "`max(a, b)`");
     /// assert_eq!(switch.name("gap"), "`max(a, b)` in `reach`");
     /// ```
-    pub fn name(&self, output: &str) -> String {
+    pub(crate) fn name(&self, output: &str) -> String {
         match &self.formula {
             Some(formula) if formula != output => format!("`{}` in `{formula}`", self.text),
             Some(_) => format!("`{}`", self.text),

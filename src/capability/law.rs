@@ -63,7 +63,7 @@ impl Law {
     ///
     /// # Errors
     /// When mean or sigma is not finite.
-    pub fn normal(moments: &Moments) -> Result<Self, PearsonError> {
+    pub(crate) fn normal(moments: &Moments) -> Result<Self, PearsonError> {
         Self::fit(&match moments.skewness() {
             Some(_) => Moments::new(moments.mean(), moments.sigma(), 0.0, 0.0),
             None => *moments,

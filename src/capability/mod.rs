@@ -14,7 +14,7 @@ use crate::characteristic::SpecLimits;
 use crate::pearson::Pearson;
 
 /// Half of the share that six sigma of a normal leave out: 1 - 0.9973 on both sides.
-pub const TAIL: f64 = 0.001_349_898_031_630_094_6;
+pub(crate) const TAIL: f64 = 0.001_349_898_031_630_094_6;
 
 /// How a distribution keeps limits. What does not exist, for want of a limit or because nothing varies, is None.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,7 +115,7 @@ impl Capability {
     /// assert!((capability.cp.unwrap() - 4.0 / 3.0).abs() < 1e-12);
     /// assert!((capability.cpk_percentile.unwrap() - 4.0 / 3.0).abs() < 1e-12);
     /// // 4 sigma on both sides.
-    /// assert!((1e6 * capability.rejected().unwrap() - 63.342).abs() < 1e-3);
+    /// assert!((1e6 * (capability.below.unwrap() + capability.above.unwrap()) - 63.342).abs() < 1e-3);
     /// # Ok::<(), sensitol::Error>(())
     /// ```
     pub fn of(law: &Law, mean: f64, sigma: f64, limits: SpecLimits) -> Self {
@@ -139,7 +139,7 @@ impl Capability {
     }
 
     /// Share of assemblies outside the limits; None without any limit.
-    pub fn rejected(&self) -> Option<f64> {
+    pub(crate) fn rejected(&self) -> Option<f64> {
         match (self.below, self.above) {
             (None, None) => None,
             (below, above) => Some((below.unwrap_or(0.0) + above.unwrap_or(0.0)).min(1.0)),

@@ -14,7 +14,7 @@ pub struct Quantiles<T = f64>(pub [T; 7]);
 
 impl Quantiles {
     /// Of a Pearson law; the upper ones by what lies above, for `1 - p` would lose digits.
-    pub fn of(law: &Pearson) -> Self {
+    pub(crate) fn of(law: &Pearson) -> Self {
         let [below, above] = [|law: &Pearson, p| law.quantile(p), |law: &Pearson, p| law.upper_quantile(p)];
         let all =
             [(TAIL, below), (0.01, below), (0.05, below), (0.5, below), (0.05, above), (0.01, above), (TAIL, above)];
@@ -24,7 +24,7 @@ impl Quantiles {
 
 impl<T> Quantiles<T> {
     /// Each with the name of its probability.
-    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &T)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&'static str, &T)> {
         PROBABILITIES.into_iter().zip(&self.0)
     }
 }

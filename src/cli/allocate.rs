@@ -78,7 +78,7 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         _ if incomplete && !allocation.run.unfinished() => Exit::NoResult,
         Status::Optimal | Status::AlmostOptimal if refuted => Exit::Missed,
         Status::Optimal | Status::AlmostOptimal => Exit::Done,
-        Status::Infeasible | Status::OutOfTime => Exit::NotAllocated,
+        Status::Infeasible | Status::NoFeasiblePointFound | Status::OutOfTime => Exit::NotAllocated,
     };
     Ok(confirmed(exit, &allocation.run))
 }

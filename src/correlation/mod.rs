@@ -24,11 +24,13 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use faer::Mat;
+use serde::Serialize;
 
 use crate::dimension::Dimension;
 
 /// Two dimensions and their coefficient of correlation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Pair {
     /// The dimensions.
     pub between: [String; 2],
@@ -39,15 +41,12 @@ pub struct Pair {
 /// How some of the dimensions vary together; the others are independent of them and of each other.
 ///
 /// ```
-/// use sensitol::correlation::{Correlation, Pair};
-/// use sensitol::Dimension;
+/// use sensitol::correlation::Pair;
+/// use sensitol::{Closure, Dimension, Problem};
 /// let dimensions = [Dimension::normal("a", 10.0, 0.3)?, Dimension::uniform("b", 5.0, 0.1)?];
 /// let pair = Pair { between: ["a".into(), "b".into()], value: 0.4 };
-/// let correlation = Correlation::new(&dimensions, &[pair])?;
-/// assert_eq!(correlation.of(0, 1), 0.4);
-/// // Of the normal variables behind them a little more is asked: rho sqrt(pi/3).
-/// let behind = correlation.normal()[(0, 1)];
-/// assert!((behind - 0.4 * (std::f64::consts::PI / 3.0).sqrt()).abs() < 1e-12);
+/// let gap = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?.correlated(&[pair])?;
+/// assert_eq!(gap.correlation().map(|correlation| correlation.of(0, 1)), Some(0.4));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -67,7 +66,7 @@ impl Correlation {
     /// # Errors
     /// When a pair names what is no dimension or does not vary, stands twice, or asks for what its distributions do not
     /// allow; and when no distribution has all of it together: the matrix must not have a negative eigenvalue.
-    pub fn new(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Self, CorrelationError> {
+    pub(crate) fn new(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Self, CorrelationError> {
         let pairs = resolved(dimensions, pairs)?;
         let mut members: Vec<usize> = pairs.iter().flat_map(|&(ends, _)| ends).collect();
         members.sort_unstable();
@@ -114,7 +113,7 @@ impl Correlation {
     }
 
     /// The dimensions that are correlated with some other, ascending.
-    pub fn members(&self) -> &[usize] {
+    pub(crate) fn members(&self) -> &[usize] {
         &self.members
     }
 
@@ -124,7 +123,7 @@ impl Correlation {
     }
 
     /// The correlation of the normal variables behind the members, M by M.
-    pub fn normal(&self) -> &Mat<f64> {
+    pub(crate) fn normal(&self) -> &Mat<f64> {
         &self.normal
     }
 

@@ -45,7 +45,7 @@ impl Beta {
     }
 
     /// From `middle - half` to `middle + half`.
-    pub fn about(middle: f64, half: f64, alpha: f64, beta: f64) -> Result<Self, DistributionError> {
+    pub(crate) fn about(middle: f64, half: f64, alpha: f64, beta: f64) -> Result<Self, DistributionError> {
         let (middle, half) = (finite("the middle", middle)?, positive("the half width", half)?);
         let alpha = between("alpha", alpha, RANGE, RANGE_WORDS)?;
         let beta = between("beta", beta, RANGE, RANGE_WORDS)?;

@@ -11,7 +11,7 @@ use super::{Distribution, DistributionError, Jacobi, Probability, StandardMoment
 /// ```
 /// use sensitol::distribution::{Distribution, Exponential};
 /// let film = Exponential::new(0.0, 0.5)?;
-/// assert_eq!((film.sigma(), film.standard_moments().kurtosis()), (0.5, 9.0));
+/// assert_eq!((film.sigma(), film.standard_moments().excess), (0.5, 6.0));
 /// # Ok::<(), sensitol::distribution::DistributionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -74,11 +74,6 @@ impl Mixture {
         Ok(Self { parts, mean, sigma, moments, jacobi })
     }
 
-    /// Its parts, with weights that sum to 1.
-    pub fn parts(&self) -> &[Part] {
-        &self.parts
-    }
-
     fn law(part: &Part) -> &dyn Probability {
         part.distribution.probability().expect("checked when the mixture was made")
     }

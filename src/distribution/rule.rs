@@ -60,7 +60,7 @@ impl Jacobi {
     }
 
     /// How many coefficients of each kind there are.
-    pub fn order(&self) -> usize {
+    pub(crate) fn order(&self) -> usize {
         self.alpha.len()
     }
 
@@ -82,7 +82,7 @@ impl Jacobi {
     }
 
     /// The Gauss rule with as many nodes as the order: exact for polynomials up to degree `2 order - 1`.
-    pub fn gauss(&self) -> Rule {
+    pub(crate) fn gauss(&self) -> Rule {
         Rule::of_matrix(&self.alpha, &self.beta[..self.order() - 1])
     }
 
@@ -90,7 +90,7 @@ impl Jacobi {
     ///
     /// None when no such rule exists: the Gauss rule already has a node there (as one with an odd number of atoms
     /// about its mean), or has it so nearly that the extra node would lie far out.
-    pub fn gauss_with_mean(&self) -> Option<Rule> {
+    pub(crate) fn gauss_with_mean(&self) -> Option<Rule> {
         let (mut before, mut at_mean) = (0.0, 1.0);
         for n in 0..self.order() {
             let beta = if n == 0 { 0.0 } else { self.beta[n - 1] };
@@ -160,6 +160,7 @@ impl Rule {
     ///
     /// ```
     /// use sensitol::distribution::{Distribution, Normal};
+    /// use sensitol::internals::reach::*;
     /// let rule = Normal::new(0.0, 1.0)?.jacobi(5).gauss();
     /// assert!((rule.mean(|u| u.powi(8)) - 105.0).abs() < 1e-11);
     /// # Ok::<(), sensitol::distribution::DistributionError>(())

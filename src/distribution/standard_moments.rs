@@ -35,7 +35,7 @@ pub struct StandardMoments {
 
 impl StandardMoments {
     /// The moments of the standard normal distribution.
-    pub const NORMAL: Self =
+    pub(crate) const NORMAL: Self =
         Self { skewness: 0.0, excess: 0.0, m5: 0.0, m6: 15.0, m7: 0.0, m8: 105.0, h6: 8.0, h7: 0.0, h8: 48.0 };
 
     /// From central moments `m2 ..= m8` of any scale; `m2` must be above 0.
@@ -44,11 +44,12 @@ impl StandardMoments {
     ///
     /// ```
     /// use sensitol::distribution::StandardMoments;
+    /// use sensitol::internals::reach::*;
     /// // A normal distribution with sigma 2.
     /// let m = StandardMoments::from_central(&[4.0, 0.0, 48.0, 0.0, 960.0, 0.0, 26880.0]);
     /// assert_eq!(m, StandardMoments::NORMAL);
     /// ```
-    pub fn from_central(central: &[f64; 7]) -> Self {
+    pub(crate) fn from_central(central: &[f64; 7]) -> Self {
         let sigma = central[0].sqrt();
         let standard = |order: usize| {
             let mut moment = central[order - 2];
@@ -85,11 +86,12 @@ impl StandardMoments {
     ///
     /// ```
     /// use sensitol::distribution::StandardMoments;
+    /// use sensitol::internals::reach::*;
     /// // Exponential: k_n = (n - 1)!
     /// let m = StandardMoments::from_cumulants([2.0, 6.0, 24.0, 120.0, 720.0, 5040.0]);
     /// assert_eq!((m.kurtosis(), m.m5, m.m8), (9.0, 44.0, 14833.0));
     /// ```
-    pub fn from_cumulants([k3, k4, k5, k6, k7, k8]: [f64; 6]) -> Self {
+    pub(crate) fn from_cumulants([k3, k4, k5, k6, k7, k8]: [f64; 6]) -> Self {
         Self {
             skewness: k3,
             excess: k4,
@@ -123,12 +125,12 @@ impl StandardMoments {
     }
 
     /// Fourth moment: the kurtosis, 3 for a normal.
-    pub fn kurtosis(&self) -> f64 {
+    pub(crate) fn kurtosis(&self) -> f64 {
         3.0 + self.excess
     }
 
     /// Moments `m0 ..= m8` in order: 1, 0, 1, skewness, kurtosis and so on.
-    pub fn raw(&self) -> [f64; 9] {
+    pub(crate) fn raw(&self) -> [f64; 9] {
         [1.0, 0.0, 1.0, self.skewness, self.kurtosis(), self.m5, self.m6, self.m7, self.m8]
     }
 }

@@ -33,7 +33,7 @@ impl Trapezoidal {
     }
 
     /// From `middle - half` to `middle + half`.
-    pub fn about(middle: f64, half: f64, top: f64) -> Result<Self, DistributionError> {
+    pub(crate) fn about(middle: f64, half: f64, top: f64) -> Result<Self, DistributionError> {
         let (middle, half) = (finite("the middle", middle)?, positive("the half width", half)?);
         Ok(Self { middle, half, top: between("top", top, [0.0, 1.0], "from 0 to 1")? })
     }

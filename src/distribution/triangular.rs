@@ -41,7 +41,7 @@ impl Triangular {
     }
 
     /// From `middle - half` to `middle + half` with the mode at `middle + lean half`, `lean` from -1 to 1.
-    pub fn about(middle: f64, half: f64, lean: f64) -> Result<Self, DistributionError> {
+    pub(crate) fn about(middle: f64, half: f64, lean: f64) -> Result<Self, DistributionError> {
         let (middle, half) = (finite("the middle", middle)?, positive("the half width", half)?);
         Ok(Self { middle, half, lean: between("lean", lean, [-1.0, 1.0], "from -1 to 1")? })
     }

@@ -60,7 +60,7 @@ impl TruncatedNormal {
     }
 
     /// The normal distribution with mean `middle + shift` and this sigma, cut at `middle - half` and `middle + half`.
-    pub fn about(middle: f64, half: f64, shift: f64, sigma: f64) -> Result<Self, DistributionError> {
+    pub(crate) fn about(middle: f64, half: f64, shift: f64, sigma: f64) -> Result<Self, DistributionError> {
         let (middle, half) = (finite("the middle", middle)?, positive("the half width", half)?);
         let (shift, parent) = (finite("shift", shift)?, positive("sigma", sigma)?);
         let cut = Cut::new((-half - shift) / parent, (half - shift) / parent);

@@ -32,7 +32,7 @@ impl Uniform {
     }
 
     /// From `mean - half` to `mean + half`; `half` must be above 0.
-    pub fn about(mean: f64, half: f64) -> Result<Self, DistributionError> {
+    pub(crate) fn about(mean: f64, half: f64) -> Result<Self, DistributionError> {
         Ok(Self { mean: finite("the middle", mean)?, half: positive("the half width", half)? })
     }
 }

@@ -146,18 +146,18 @@ pub struct Document {
 
 impl Line {
     /// A line of one piece.
-    pub fn toned(text: impl Into<String>, tone: Tone) -> Self {
+    pub(crate) fn toned(text: impl Into<String>, tone: Tone) -> Self {
         Self(vec![Span { text: text.into(), tone }])
     }
 
     /// The line with more after it.
-    pub fn and(mut self, more: impl Into<Line>) -> Self {
+    pub(crate) fn and(mut self, more: impl Into<Line>) -> Self {
         self.0.extend(more.into().0);
         self
     }
 
     /// The whole text.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         self.0.iter().map(|span| span.text.as_str()).collect()
     }
 
@@ -252,12 +252,12 @@ impl Section {
 
 impl Document {
     /// An empty document of this title.
-    pub fn titled(title: Option<&str>) -> Self {
+    pub(crate) fn titled(title: Option<&str>) -> Self {
         Self { title: title.map(str::to_owned), ..Self::default() }
     }
 
     /// All blocks, in order.
-    pub fn all(&self) -> impl Iterator<Item = &Element> {
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Element> {
         self.head.iter().chain(self.sections.iter().flat_map(|section| &section.blocks))
     }
 }

@@ -28,7 +28,7 @@ pub struct Style {
 
 impl Style {
     /// The width of what is written to no terminal.
-    pub const WIDTH: usize = 100;
+    pub(crate) const WIDTH: usize = 100;
 }
 
 /// Before every column.

@@ -43,12 +43,12 @@ fn processes(problem: &Problem) -> Vec<Warning> {
     if account.has_failures() {
         let last = account.last.as_ref();
         warnings.push(Warning::Restarts {
-            starts: account.starts,
-            crashes: account.crashes,
-            timeouts: account.timeouts,
-            garbage: account.garbage,
-            retried: account.retried,
-            lost_s: account.lost_s,
+            starts: account.counts.starts,
+            crashes: account.counts.crashes,
+            timeouts: account.counts.timeouts,
+            garbage: account.counts.garbage,
+            retried: account.counts.retried,
+            lost_s: account.counts.lost_s,
             cause: last.map(|error| error.fault.to_string()).unwrap_or_default(),
             stderr: last.map(|error| error.stderr.0.clone()).unwrap_or_default(),
         });
@@ -56,8 +56,8 @@ fn processes(problem: &Problem) -> Vec<Warning> {
     if let Some(OutdatedJournal { output, expected, found, answers, .. }) = account.outdated {
         warnings.push(Warning::OutdatedJournal { output, expected, found, answers });
     }
-    if account.unconfirmed > 0 {
-        warnings.push(Warning::Unconfirmed { answers: account.unconfirmed });
+    if account.counts.unconfirmed > 0 {
+        warnings.push(Warning::Unconfirmed { answers: account.counts.unconfirmed });
     }
     warnings
 }

@@ -78,7 +78,7 @@ impl FitError {
     }
 
     /// What there is instead.
-    pub fn help(&self) -> Option<String> {
+    pub(crate) fn help(&self) -> Option<String> {
         match self {
             Self::NoClass { .. } => Some("write letters and one grade: H7 for a hole, g6 for a shaft".into()),
             Self::UnknownLetter { nearest, known, .. } => {

@@ -8,9 +8,10 @@
 //! another child has answered it in its right mind. What the program says has no value is kept too; a crash or a missed deadline is not: the next run tries again.
 
 mod claims;
-mod store;
+pub(crate) mod store;
 
-pub use store::{Answer, JournalError, JournalFault, KnownModel, Store, StoredAnswer};
+pub use store::{JournalError, JournalFault};
+pub(crate) use store::{KnownModel, Store, StoredAnswer};
 
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -21,7 +22,7 @@ use std::time::{Duration, Instant};
 use sha2::{Digest, Sha256};
 
 use self::claims::{BEAT, Watch};
-use self::store::Recalled;
+use self::store::{Answer, Recalled};
 use crate::assembly::process::{EvaluatorAccount, Kept, OutdatedJournal, Process, ProcessFault, Recheck, Settings};
 use crate::assembly::{
     AssemblyFunction, EvaluationError, ModelInfo, Points, Progress, Request, Responses, Run, Signature,

@@ -116,7 +116,7 @@ impl ErrorSource {
 
 impl ErrorEstimate {
     /// What it rests on, in words.
-    pub fn basis(&self) -> String {
+    pub(crate) fn basis(&self) -> String {
         self.sources.iter().map(|source| source.words()).collect::<Vec<_>>().join("; ")
     }
 }

@@ -17,6 +17,9 @@ use crate::surrogate::{Surrogate, Univariate};
 /// What the assembly function knows of every characteristic's derivatives.
 type KnownDerivatives = Vec<Option<ExactDerivatives>>;
 
+/// Parts and mixed derivatives that come from elsewhere.
+type Elsewhere = (Option<Vec<Option<Univariate>>>, Option<Vec<Option<Mixed>>>);
+
 /// A derivative method: what it evaluates, and what it uses of that.
 pub(super) struct Ladder {
     pub(super) method: Method,
@@ -227,7 +230,7 @@ impl Ladder {
         c: usize,
         pairs: &[(usize, usize)],
         (derivatives, exact): (Option<ExactDerivatives>, bool),
-        (parts, mixed): (Option<Vec<Option<Univariate>>>, Option<Vec<Option<Mixed>>>),
+        (parts, mixed): Elsewhere,
     ) -> Fitted {
         let known = &evaluated.known;
         let dimensions = plan.centre().len();

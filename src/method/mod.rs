@@ -195,7 +195,7 @@ pub enum MethodError {
 
 impl MethodError {
     /// What to do about it.
-    pub fn advice(&self) -> Vec<Advice> {
+    pub(crate) fn advice(&self) -> Vec<Advice> {
         match self {
             Self::OverBudget { fitting, .. } => {
                 let method = fitting.map(|(method, _)| Advice::UseMethod { methods: vec![method] });
@@ -218,7 +218,7 @@ impl MethodError {
     }
 
     /// How many evaluations it would have taken, where that is why it cannot be run.
-    pub fn needed(&self) -> Option<u64> {
+    pub(crate) fn needed(&self) -> Option<u64> {
         match self {
             Self::OverBudget { needed, .. } => u64::try_from(*needed).ok(),
             Self::TooMany { needed, .. } => u64::try_from(*needed).ok(),

@@ -1,5 +1,7 @@
 //! What can be chosen about an analysis.
 
+use std::fmt;
+
 use std::str::FromStr;
 
 use super::Method;
@@ -49,6 +51,8 @@ pub struct Options {
     pub verify: Option<usize>,
     /// Whether the densities of surface laws are tabulated, for those who draw them.
     pub densities: bool,
+    /// Whether figures of a cheap model take the place of those of a surface that it refutes, as `auto` has it.
+    pub(crate) model_figures: bool,
 }
 
 /// The errors that are wanted beside that of sigma, absolute; None where nothing is.
@@ -112,11 +116,17 @@ impl DerivativeSource {
     pub(crate) const NAMES: [&str; 2] = ["exact", "difference"];
 
     /// Its name in study files and on the command line.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
             Self::Difference => "difference",
         }
+    }
+}
+
+impl fmt::Display for DerivativeSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -279,6 +289,7 @@ impl Default for Options {
             derivatives: None,
             verify: None,
             densities: false,
+            model_figures: false,
         }
     }
 }

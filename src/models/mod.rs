@@ -109,7 +109,7 @@ impl Model {
     /// use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run};
     /// let engine: &sensitol::models::Model = "engine-balance".parse().unwrap();
     /// let nominal: Vec<f64> = engine.inputs.iter().map(|input| input.nominal).collect();
-    /// let (points, mut force) = (Points::repeated(&nominal, 1), Responses::open(1, 1));
+    /// let (points, mut force) = (Points::from_rows(&[nominal]), Responses::open(1, 1));
     /// engine.function().evaluate(&Request::values(&points, &[0]), &Run::to_the_end(), &mut force);
     /// assert!((force.value(0, 0).unwrap() - 12556.9361).abs() < 1e-4);
     /// ```

@@ -66,7 +66,7 @@ impl Moments {
     }
 
     /// A characteristic that is the same in every assembly: it has no skewness and no kurtosis.
-    pub fn constant(mean: f64) -> Self {
+    pub(crate) fn constant(mean: f64) -> Self {
         Self { mean, sigma: 0.0, shape: None }
     }
 
@@ -81,7 +81,7 @@ impl Moments {
     }
 
     /// Second central moment.
-    pub fn variance(&self) -> f64 {
+    pub(crate) fn variance(&self) -> f64 {
         self.sigma * self.sigma
     }
 
@@ -97,7 +97,7 @@ impl Moments {
 
     /// Fourth standardised moment minus 3, with the digits that the kurtosis of a nearly normal distribution has lost;
     /// None where sigma is 0.
-    pub fn excess(&self) -> Option<f64> {
+    pub(crate) fn excess(&self) -> Option<f64> {
         self.shape.map(|(_, excess)| excess)
     }
 }
@@ -182,6 +182,7 @@ impl Contributions {
 ///
 /// ```
 /// use sensitol::distribution::StandardMoments;
+/// use sensitol::internals::reach::*;
 /// use sensitol::internals::{Interactions, Term, contributions};
 /// // y = u1 u2 of two normal inputs: kurtosis 9.
 /// let normal = &StandardMoments::NORMAL;
@@ -233,6 +234,7 @@ pub fn contributions(constant: f64, terms: &[Term<'_>], interactions: &Interacti
 ///
 /// ```
 /// use sensitol::distribution::StandardMoments;
+/// use sensitol::internals::reach::*;
 /// use sensitol::internals::{Interactions, of_quadratic};
 /// // u^2 - 1 of a normal input is chi-squared with one degree of freedom: skewness sqrt 8, kurtosis 15.
 /// let moments = of_quadratic(0.0, &[0.0], &[1.0], &Interactions::none(1), &[StandardMoments::NORMAL]);

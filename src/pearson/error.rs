@@ -14,11 +14,12 @@ impl TwoPoint {
     /// Values `(s ± sqrt(s^2 + 4)) / 2`: their product is -1, and the mean fixes the probabilities.
     ///
     /// ```
+    /// use sensitol::internals::reach::*;
     /// use sensitol::pearson::TwoPoint;
     /// let coin = TwoPoint::with_skewness(0.0);
     /// assert_eq!((coin.values, coin.probabilities), ([-1.0, 1.0], [0.5, 0.5]));
     /// ```
-    pub fn with_skewness(skewness: f64) -> Self {
+    pub(crate) fn with_skewness(skewness: f64) -> Self {
         let far = 0.5 * (skewness.abs() + skewness.abs().hypot(2.0));
         let rare = 1.0 / (1.0 + far * far);
         let law = Self { values: [-1.0 / far, far], probabilities: [1.0 - rare, rare] };

@@ -75,7 +75,7 @@ impl Pearson {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn with_excess(mean: f64, sigma: f64, skewness: f64, excess: f64) -> Result<Self, PearsonError> {
+    pub(crate) fn with_excess(mean: f64, sigma: f64, skewness: f64, excess: f64) -> Result<Self, PearsonError> {
         Self::build(mean, sigma, skewness, [3.0, excess])
     }
 
@@ -83,7 +83,7 @@ impl Pearson {
     ///
     /// # Errors
     /// When mean or sigma are not finite, or sigma is not positive.
-    pub fn normal(mean: f64, sigma: f64) -> Result<Self, PearsonError> {
+    pub(crate) fn normal(mean: f64, sigma: f64) -> Result<Self, PearsonError> {
         Self::new(mean, sigma, 0.0, 3.0)
     }
 
@@ -107,22 +107,22 @@ impl Pearson {
     }
 
     /// First moment.
-    pub fn mean(&self) -> f64 {
+    pub(crate) fn mean(&self) -> f64 {
         self.mean
     }
 
     /// Standard deviation.
-    pub fn sigma(&self) -> f64 {
+    pub(crate) fn sigma(&self) -> f64 {
         self.sigma
     }
 
     /// Third standardised moment.
-    pub fn skewness(&self) -> f64 {
+    pub(crate) fn skewness(&self) -> f64 {
         self.skewness
     }
 
     /// Fourth standardised moment, 3 for a normal.
-    pub fn kurtosis(&self) -> f64 {
+    pub(crate) fn kurtosis(&self) -> f64 {
         self.kurtosis[0] + self.kurtosis[1]
     }
 
@@ -162,7 +162,7 @@ impl Pearson {
     }
 
     /// Logarithm of the density.
-    pub fn log_pdf(&self, x: f64) -> f64 {
+    pub(crate) fn log_pdf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.standard.log_pdf(self.z(x)) - self.sigma.ln() }
     }
 
@@ -177,12 +177,12 @@ impl Pearson {
     }
 
     /// Logarithm of the probability below x; it goes on where that vanishes.
-    pub fn log_cdf(&self, x: f64) -> f64 {
+    pub(crate) fn log_cdf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.turned(self.standard.log_cdf_sf(self.z(x)))[0] }
     }
 
     /// Logarithm of the probability above x; it goes on where that vanishes.
-    pub fn log_sf(&self, x: f64) -> f64 {
+    pub(crate) fn log_sf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.turned(self.standard.log_cdf_sf(self.z(x)))[1] }
     }
 

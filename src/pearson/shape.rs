@@ -1,5 +1,7 @@
 //! The coefficients of Pearson's equation from skewness and kurtosis, and what their signs say.
 
+use std::fmt;
+
 use super::PearsonError;
 use crate::elementary::Double;
 
@@ -26,7 +28,7 @@ pub enum PearsonType {
 
 impl PearsonType {
     /// As in the literature: `normal`, `I` to `VII`.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Normal => "normal",
             Self::I => "I",
@@ -37,6 +39,12 @@ impl PearsonType {
             Self::VI => "VI",
             Self::VII => "VII",
         }
+    }
+}
+
+impl fmt::Display for PearsonType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 

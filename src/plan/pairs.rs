@@ -1,5 +1,7 @@
 //! Which pairs of dimensions are examined, and with which stencil.
 
+use std::fmt;
+
 use std::str::FromStr;
 
 use crate::names::UnknownName;
@@ -36,7 +38,7 @@ impl Stencil {
     pub(crate) const NAMES: [&str; 2] = ["two-point", "four-point"];
 
     /// Its name in study files and on the command line.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::TwoPoint => "two-point",
             Self::FourPoint => "four-point",
@@ -44,7 +46,7 @@ impl Stencil {
     }
 
     /// Evaluations per pair.
-    pub fn evaluations(self) -> usize {
+    pub(crate) fn evaluations(self) -> usize {
         match self {
             Self::TwoPoint => 2,
             Self::FourPoint => 4,
@@ -91,6 +93,12 @@ pub(super) fn strongest(
     let mut pairs: Vec<(usize, usize)> = ranked.into_iter().take(count).map(|(_, j, k)| (j, k)).collect();
     pairs.sort_unstable();
     pairs
+}
+
+impl fmt::Display for Stencil {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
 }
 
 impl FromStr for Stencil {

@@ -4,18 +4,18 @@ use serde::{Serialize, Serializer};
 
 use super::{Beyond, RareCharacteristic, RareEvents};
 use crate::sampling::Estimate;
+use crate::shape::{WithoutWarnings, whole};
 use crate::verdict::{Judged, Verdict};
-use crate::warning::Warning;
+
+impl WithoutWarnings for RareEvents {
+    fn own<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, serializer)
+    }
+}
 
 impl Serialize for RareEvents {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Whole<'r> {
-            #[serde(flatten, serialize_with = "RareEvents::serialize")]
-            own: &'r RareEvents,
-            warnings: &'r [Warning],
-        }
-        Whole { own: self, warnings: &self.warnings }.serialize(serializer)
+        whole(self, &self.warnings, serializer)
     }
 }
 

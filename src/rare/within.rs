@@ -74,7 +74,7 @@ impl RareCharacteristic {
 
     /// How a requirement is kept, whether or not it is the characteristic's own: a yield by its interval, where points without a
     /// value may all be rejected ones. Of what lies between the limits nothing is known, so that no other is judged.
-    pub fn judge(&self, requirement: Requirement) -> Judged {
+    pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let sides = [&self.below, &self.above].into_iter().flatten();
         let unknown: f64 = sides.map(|beyond| beyond.bounds[1] - beyond.bounds[0]).sum();
         let (value, interval) = match requirement {

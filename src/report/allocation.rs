@@ -13,7 +13,6 @@ use crate::analysis::CharacteristicShape;
 use crate::analysis::{Analysis, CharacteristicAnalysis};
 use crate::method::Method;
 use crate::problem::Problem;
-use crate::requirement::Requirement;
 use crate::simulation::SimulatedCharacteristic;
 #[cfg(feature = "cli")]
 use crate::simulation::SimulatedShape;
@@ -26,49 +25,50 @@ use crate::warning::Warning;
 pub struct AllocationReport {
     /// What every report begins with.
     #[serde(flatten)]
-    pub head: Head,
+    pub(crate) head: Head,
     /// The method by which derivatives were taken.
     #[cfg_attr(feature = "cli", schemars(with = "String"))]
-    pub method: Method,
+    pub(crate) method: Method,
     /// `optimal`, `almost-optimal`, `infeasible` or `out-of-time`.
-    pub status: Status,
+    pub(crate) status: Status,
     /// Whether the model was evaluated at the tolerances found.
-    pub confirmed: bool,
+    pub(crate) confirmed: bool,
     /// What it came to in points and time, and why it ended early.
     #[serde(flatten)]
-    pub run: RunSummary,
+    pub(crate) run: RunSummary,
     /// How often derivatives were taken.
-    pub rounds: usize,
+    pub(crate) rounds: usize,
     /// All costs before; null where no process holds some tolerance, and without costs.
-    pub cost_before: Option<f64>,
+    pub(crate) cost_before: Option<f64>,
     /// All costs after.
-    pub cost_after: Option<f64>,
+    pub(crate) cost_after: Option<f64>,
     /// Every dimension with a cost, in the study's order.
-    pub tolerances: Vec<AllocatedReport>,
+    pub(crate) tolerances: Vec<AllocatedReport>,
     /// Nominal values that have moved.
-    pub recentred: Vec<OfDimension<Moved>>,
+    pub(crate) recentred: Vec<OfDimension<Moved>>,
     /// Every requirement.
-    pub requirements: Vec<OfCharacteristic<Kept>>,
+    pub(crate) requirements: Vec<OfCharacteristic<Kept>>,
     /// What limits and required sigmas cost.
-    pub shadow_prices: Vec<OfCharacteristic<ShadowPrice>>,
+    pub(crate) shadow_prices: Vec<OfCharacteristic<ShadowPrice>>,
     /// The requirement that cannot be kept, and the best that can be had.
-    pub attainable: Option<AttainableReport>,
+    pub(crate) attainable: Option<OfCharacteristic<Attainable>>,
     /// What shows that nothing is cheaper.
-    pub proof: ProofReport,
+    #[cfg_attr(feature = "cli", schemars(with = "ProofShape"))]
+    pub(crate) proof: Proof,
     /// By which one factor all tolerances may be multiplied until some requirement is just kept.
-    pub loosest_scaling: BeforeAfter<Option<f64>>,
+    pub(crate) loosest_scaling: BeforeAfter<Option<f64>>,
     /// The share of assemblies that keep all limits at once; null with fewer than two characteristics with limits.
-    pub joint_yield: BeforeAfter<Option<JointYield>>,
+    pub(crate) joint_yield: BeforeAfter<Option<JointYield>>,
     /// Every characteristic before and after.
-    pub characteristics: Vec<AllocatedCharacteristic>,
+    pub(crate) characteristics: Vec<AllocatedCharacteristic>,
     /// Cost against what is required.
-    pub front: Vec<FrontReport>,
+    pub(crate) front: Vec<FrontPoint>,
     /// The model itself at the tolerances found, by Monte Carlo.
-    pub confirmation: Option<ConfirmationReport>,
+    pub(crate) confirmation: Option<ConfirmationReport>,
     /// The entries of dimensions that have changed, ready to paste into the study.
-    pub dimensions_table: Option<String>,
+    pub(crate) dimensions_table: Option<String>,
     /// Where an assumption fails.
-    pub warnings: Vec<WarningReport>,
+    pub(crate) warnings: Vec<WarningReport>,
 }
 
 /// The study written anew, as far as a report shows it.
@@ -83,115 +83,75 @@ pub struct WrittenAnew {
 /// Something before and after.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct BeforeAfter<T> {
+pub(crate) struct BeforeAfter<T> {
     /// Before.
-    pub before: T,
+    pub(crate) before: T,
     /// After.
-    pub after: T,
+    pub(crate) after: T,
 }
 
 /// Something of a dimension, with its name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct OfDimension<T> {
+pub(crate) struct OfDimension<T> {
     /// The dimension.
-    pub dimension: String,
+    pub(crate) dimension: String,
     /// Its unit.
-    pub unit: Option<String>,
+    pub(crate) unit: Option<String>,
     /// What there is of it.
     #[serde(flatten)]
-    pub of: T,
+    pub(crate) of: T,
 }
 
 /// Something of a characteristic, with its name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct OfCharacteristic<T> {
+pub(crate) struct OfCharacteristic<T> {
     /// The characteristic.
-    pub characteristic: String,
+    pub(crate) characteristic: String,
     /// What there is of it.
     #[serde(flatten)]
-    pub of: T,
+    pub(crate) of: T,
 }
 
 /// One dimension with a cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct AllocatedReport {
+pub(crate) struct AllocatedReport {
     /// What was found.
     #[serde(flatten)]
-    pub of: OfDimension<Allocated>,
+    pub(crate) of: OfDimension<Allocated>,
     /// Lower and upper deviation from the nominal before and after, where there is a band.
-    pub deviations: BeforeAfter<Option<[f64; 2]>>,
+    pub(crate) deviations: BeforeAfter<Option<[f64; 2]>>,
     /// Its share of each characteristic's variance.
-    pub contributions: Vec<OfCharacteristic<BeforeAfter<Option<f64>>>>,
-}
-
-/// A requirement that cannot be kept.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct AttainableReport {
-    /// The characteristic.
-    pub characteristic: String,
-    /// Its unit.
-    pub unit: Option<String>,
-    /// What can be had.
-    #[serde(flatten)]
-    pub of: Attainable,
-    /// Dimensions without cost that break it by themselves, most harmful first.
-    pub because: Vec<String>,
-}
-
-/// What shows that nothing is cheaper.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct ProofReport {
-    /// The proof.
-    #[serde(flatten)]
-    #[cfg_attr(feature = "cli", schemars(with = "ProofShape"))]
-    pub of: Proof,
-    /// By what part of the cost it may be above the bound.
-    pub gap: Option<f64>,
+    pub(crate) contributions: Vec<OfCharacteristic<BeforeAfter<Option<f64>>>>,
 }
 
 /// One characteristic before and after.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct AllocatedCharacteristic {
+pub(crate) struct AllocatedCharacteristic {
     /// Its name.
-    pub name: String,
+    pub(crate) name: String,
     /// Its unit.
-    pub unit: Option<String>,
+    pub(crate) unit: Option<String>,
     /// As `analyze` reports it, at the tolerances before.
     #[cfg_attr(feature = "cli", schemars(with = "CharacteristicShape"))]
-    pub before: CharacteristicAnalysis,
+    pub(crate) before: CharacteristicAnalysis,
     /// And at those found; null where none were.
     #[cfg_attr(feature = "cli", schemars(with = "Option<CharacteristicShape>"))]
-    pub after: Option<CharacteristicAnalysis>,
-}
-
-/// One point of the front.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct FrontReport {
-    /// What was required of each characteristic.
-    #[cfg_attr(feature = "cli", schemars(with = "Vec<OfCharacteristic<crate::requirement::Required>>"))]
-    pub required: Vec<OfCharacteristic<Requirement>>,
-    /// What that costs; null where it cannot be kept.
-    pub cost: Option<f64>,
-    /// Half bands of the dimensions with a cost, in the order of `tolerances`.
-    pub tolerances: Option<Vec<f64>>,
+    pub(crate) after: Option<CharacteristicAnalysis>,
 }
 
 /// Monte Carlo at the tolerances found.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct ConfirmationReport {
+pub(crate) struct ConfirmationReport {
     /// Points.
-    pub samples: u64,
+    pub(crate) samples: u64,
     /// Every characteristic, as `simulate` reports it.
     #[cfg_attr(feature = "cli", schemars(with = "Vec<SimulatedShape>"))]
-    pub characteristics: Vec<SimulatedCharacteristic>,
+    pub(crate) characteristics: Vec<SimulatedCharacteristic>,
 }
 
 impl AllocationReport {
@@ -207,8 +167,6 @@ impl AllocationReport {
         }
         warnings.extend(allocation.warnings.iter().map(WarningReport::of));
         let named = Names(problem);
-        let proof = &allocation.proof;
-        let gap = |(bound, cost): (f64, f64)| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0);
         Self {
             head: Head::of("allocate", &about),
             method: found.method,
@@ -222,8 +180,8 @@ impl AllocationReport {
             recentred: allocation.moved.iter().map(|one| named.dimension(one.dimension, one)).collect(),
             requirements: allocation.requirements.iter().map(|one| named.of(one.characteristic, one)).collect(),
             shadow_prices: allocation.prices.iter().map(|one| named.of(one.characteristic, one)).collect(),
-            attainable: allocation.attainable.as_ref().map(|one| named.attainable(one)),
-            proof: ProofReport { of: proof.clone(), gap: proof.bound.zip(allocation.cost_after).map(gap) },
+            attainable: allocation.attainable.as_ref().map(|one| named.of(one.characteristic, one)),
+            proof: allocation.proof.clone(),
             loosest_scaling: BeforeAfter { before: allocation.loosest_before, after: allocation.loosest_after },
             joint_yield: BeforeAfter { before: allocation.joint[0], after: allocation.joint[1] },
             characteristics: (allocation.before.characteristics.iter().enumerate())
@@ -234,7 +192,7 @@ impl AllocationReport {
                     after: allocation.after.as_ref().map(|after| after.characteristics[c].clone()),
                 })
                 .collect(),
-            front: allocation.front.iter().map(|point| named.front(point)).collect(),
+            front: allocation.front.clone(),
             confirmation: allocation.confirmation.as_ref().map(|simulation| ConfirmationReport {
                 samples: simulation.samples,
                 characteristics: simulation.characteristics.clone(),
@@ -245,7 +203,7 @@ impl AllocationReport {
     }
 
     /// Without the interactions that hardly matter, before and after: what they make together stands in their place.
-    pub fn shortened(mut self) -> Self {
+    pub(crate) fn shortened(mut self) -> Self {
         for one in &mut self.characteristics {
             one.before.shorten();
             one.after.iter_mut().for_each(CharacteristicAnalysis::shorten);
@@ -284,24 +242,6 @@ impl Names<'_> {
                 after: allocation.problem.dimensions()[d].tolerance(),
             },
             contributions: (0..self.0.characteristics().len()).map(|c| self.of(c, &shares(c))).collect(),
-        }
-    }
-
-    fn attainable(&self, one: &Attainable) -> AttainableReport {
-        let characteristic = &self.0.characteristics()[one.characteristic];
-        AttainableReport {
-            characteristic: characteristic.name().to_owned(),
-            unit: characteristic.unit().map(str::to_owned),
-            of: one.clone(),
-            because: one.because.iter().map(|&d| self.0.dimensions()[d].name().to_owned()).collect(),
-        }
-    }
-
-    fn front(&self, point: &FrontPoint) -> FrontReport {
-        FrontReport {
-            required: point.required.iter().map(|(c, requirement)| self.of(*c, requirement)).collect(),
-            cost: point.cost,
-            tolerances: point.tolerances.clone(),
         }
     }
 }

@@ -1,13 +1,12 @@
 //! The report of an allocation as a document.
 
 use super::allocation::{
-    AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, BeforeAfter, OfCharacteristic,
-    OfDimension,
+    AllocatedCharacteristic, AllocatedReport, AllocationReport, BeforeAfter, OfCharacteristic, OfDimension,
 };
 use super::figures::{Figures, Named};
 use super::head;
 use super::requirement::loud;
-use crate::allocation::{Allocated, Bound, JointYield, Kept, Moved, ShadowPrice, Status};
+use crate::allocation::{Allocated, Attainable, Bound, JointYield, Kept, Moved, ShadowPrice, Status};
 use crate::analysis::CharacteristicAnalysis;
 use crate::document::number::{beside, index, known, plain, share, short, significant, yielded};
 use crate::document::{
@@ -30,7 +29,7 @@ const NAMED: usize = 5;
 impl AllocationReport {
     /// What it says: what it came to, tolerances (table `tolerances`), requirements (table `requirements`), characteristics, the front
     /// (table `front`), and what to paste into the study.
-    pub fn document(&self) -> Document {
+    pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         self.heading(&mut document.head);
         self.attainable.iter().for_each(|one| unattainable(&mut document.head, one));
@@ -106,8 +105,8 @@ impl AllocationReport {
             head::beside(&self.run),
             if self.confirmed && self.cost_after.is_some() { ", confirmed by the model" } else { "" }
         ));
-        let proof = &self.proof.of;
-        if let Some(gap) = self.proof.gap {
+        let proof = &self.proof;
+        if let Some(gap) = proof.gap {
             let basis = if proof.rigorous { "" } else { ", as far as a sample of choices tells" };
             let than = match gap <= 1e-9 {
                 true => format!("{basis} ("),
@@ -323,7 +322,7 @@ impl AllocationReport {
     /// The front for people.
     fn front_table(&self) -> DataTable {
         type Row = (Requirement, Option<f64>);
-        let rows = self.front.iter().filter_map(|point| Some((point.required.first()?.of, point.cost)));
+        let rows = self.front.iter().filter_map(|point| Some((point.required.first()?.1, point.cost)));
         Columns::default()
             .shown("required", |(first, _): &Row| {
                 Cell::text(match first {
@@ -338,7 +337,7 @@ impl AllocationReport {
 
     /// The front for programs: a row for every dimension at every point.
     fn front_points(&self) -> DataTable {
-        type Row<'r> = (u64, &'r OfCharacteristic<Requirement>, Option<f64>, Option<(&'r str, f64)>);
+        type Row<'r> = (u64, &'r (String, Requirement), Option<f64>, Option<(&'r str, f64)>);
         let rows = self.front.iter().enumerate().flat_map(|(place, point)| {
             point.required.iter().flat_map(move |wanted| {
                 let names = self.tolerances.iter().map(|one| one.of.dimension.as_str());
@@ -350,9 +349,9 @@ impl AllocationReport {
         });
         Columns::default()
             .data("point", |row: &Row<'_>| Cell::count(row.0))
-            .data("characteristic", |row| Cell::text(&row.1.characteristic))
-            .data("requirement", |row| Cell::text(row.1.of.key()))
-            .data("required", |row| Cell::data(row.1.of.amount()))
+            .data("characteristic", |row| Cell::text(&row.1.0))
+            .data("requirement", |row| Cell::text(row.1.1.key()))
+            .data("required", |row| Cell::data(row.1.1.amount()))
             .data("cost", |row| Cell::data(row.2))
             .data("dimension", |row| Cell::optional(row.3.map(|(name, _)| name)))
             .data("tolerance", |row| Cell::data(row.3.map(|(_, tolerance)| tolerance)))
@@ -365,16 +364,16 @@ impl AllocationReport {
         let front: Vec<(f64, f64, String)> = (self.front.iter())
             .filter_map(|point| {
                 let wanted = point.required.first()?;
-                let (place, label) = placed(wanted.of, wanted.of.amount());
+                let (place, label) = placed(wanted.1, wanted.1.amount());
                 Some((place, point.cost?, label))
             })
             .collect();
         let first = self.front.first().and_then(|point| point.required.first());
-        let before = first.and_then(|first| {
-            let one = self.requirements.iter().find(|one| one.characteristic == first.characteristic)?;
+        let before = first.and_then(|(name, first)| {
+            let one = self.requirements.iter().find(|one| one.characteristic == *name)?;
             let (had, cost) = (one.of.before.value.and_then(finite)?, self.cost_before?);
-            let seen = had < 1.0 - 1e-12 || !matches!(first.of, Requirement::Yield(_));
-            seen.then(|| [placed(first.of, had).0, cost])
+            let seen = had < 1.0 - 1e-12 || !matches!(first, Requirement::Yield(_));
+            seen.then(|| [placed(*first, had).0, cost])
         });
         let circle = |at: [f64; 2], strong: bool, name: &str, tip: String| PlotPoint {
             at,
@@ -389,7 +388,7 @@ impl AllocationReport {
         let points = points.chain(before.map(|at| circle(at, false, "before", String::new()))).collect();
         let every = front.len().div_ceil(LABELS).max(1);
         let mut x = PlotAxis::new(
-            format!("{} required", first.map_or("yield", |wanted| wanted.of.key())),
+            format!("{} required", first.map_or("yield", |wanted| wanted.1.key())),
             PlotScale::Linear(0.05),
         );
         x.ticks = front.iter().step_by(every).map(|(place, _, label)| (*place, label.clone())).collect();
@@ -407,11 +406,11 @@ fn money(cost: f64) -> String {
     significant(cost, COST)
 }
 
-fn unattainable(page: &mut Vec<Element>, one: &AttainableReport) {
-    let (name, required) = (short(&one.characteristic), required(one.of.requirement));
-    let best = one.of.best.map_or("unknown".to_owned(), |best| measure(one.of.requirement, best));
+fn unattainable(page: &mut Vec<Element>, OfCharacteristic { characteristic, of: one }: &OfCharacteristic<Attainable>) {
+    let (name, required) = (short(characteristic), required(one.requirement));
+    let best = one.best.map_or("unknown".to_owned(), |best| measure(one.requirement, best));
     page.line(format!("`{name}` cannot keep {required}: the best that there is is {best}"));
-    if one.of.together {
+    if one.together {
         page.line("it could by itself: together with the other requirements it cannot");
     }
     if !one.because.is_empty() {

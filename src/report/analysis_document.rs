@@ -5,9 +5,10 @@ use super::head::{self, findings};
 use super::requirement::{judged, lines};
 use super::source::source;
 use super::stack::Stack;
-use super::{CorrelationReport, DimensionReport, Report, bars};
+use super::{DimensionReport, Report, bars};
 use crate::analysis::{CharacteristicAnalysis, Interaction, Sensitivity};
 use crate::capability::{Capability, Law, Quantiles, TAIL};
+use crate::correlation::Pair;
 use crate::document::number::{
     NEWS, UNKNOWN, beside, index, known, percent, plain, plural, shape, share, short, significant,
 };
@@ -37,7 +38,7 @@ const ROUNDINGS: f64 = 2.0;
 
 impl Report {
     /// What it says. Its tables: `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and `warnings`.
-    pub fn document(&self) -> Document {
+    pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let evaluations = plural(self.analysis.run.evaluations as usize, "evaluation", "evaluations");
         let varying = plural(self.analysis.varying, "varying dimension", "varying dimensions");
@@ -121,9 +122,8 @@ impl Report {
     fn correlations(&self, one: &CharacteristicAnalysis, section: &mut Section) {
         let matters =
             |name: &String| one.sensitivities.iter().any(|row| row.dimension == *name && row.first != Some(0.0));
-        let word = |pair: &CorrelationReport| {
-            format!("{} × {} {}", short(&pair.between[0]), short(&pair.between[1]), plain(pair.value))
-        };
+        let word =
+            |pair: &Pair| format!("{} × {} {}", short(&pair.between[0]), short(&pair.between[1]), plain(pair.value));
         let pairs = self.correlation.iter().filter(|pair| pair.between.iter().all(matters));
         let words: Vec<String> = pairs.map(word).collect();
         if !words.is_empty() {

@@ -22,59 +22,59 @@ use crate::{compare::ErrorShape, simulation::SimulatedShape};
 pub struct CompareReport {
     /// What every report begins with.
     #[serde(flatten)]
-    pub head: Head,
+    pub(crate) head: Head,
     /// What all of it came to in points and time, the reference included, and why it ended early.
     #[serde(flatten)]
-    pub run: RunSummary,
+    pub(crate) run: RunSummary,
     /// Points of the reference.
-    pub reference_samples: u64,
+    pub(crate) reference_samples: u64,
     /// How they were drawn.
-    pub reference_method: &'static str,
+    pub(crate) reference_method: &'static str,
     /// What was asked.
-    pub characteristics: Vec<ComparedReport>,
+    pub(crate) characteristics: Vec<ComparedReport>,
     /// Methods that were not run, and why.
-    pub not_run: Vec<NotRun>,
+    pub(crate) not_run: Vec<NotRun>,
 }
 
 /// One characteristic.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct ComparedReport {
+pub(crate) struct ComparedReport {
     /// Its name.
-    pub name: String,
+    pub(crate) name: String,
     /// What the methods are measured by.
     #[cfg_attr(feature = "cli", schemars(with = "SimulatedShape"))]
-    pub reference: SimulatedCharacteristic,
+    pub(crate) reference: SimulatedCharacteristic,
     /// The methods, fewest evaluations first.
-    pub methods: Vec<MethodReport>,
+    pub(crate) methods: Vec<MethodReport>,
 }
 
 /// One method on one characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct MethodReport {
+pub(crate) struct MethodReport {
     /// Its name; of samples with the number of points.
-    pub method: String,
+    pub(crate) method: String,
     /// Points that it takes.
-    pub evaluations: u64,
+    pub(crate) evaluations: u64,
     /// Those of them that were known already.
-    pub cached: u64,
+    pub(crate) cached: u64,
     /// What its run came to by itself.
-    pub run: RunSummary,
+    pub(crate) run: RunSummary,
     /// Seconds within the model.
-    pub evaluation_s: f64,
+    pub(crate) evaluation_s: f64,
     /// Seconds besides.
-    pub engine_s: f64,
+    pub(crate) engine_s: f64,
     /// What it says.
     #[serde(flatten)]
-    pub figures: Figures,
+    pub(crate) figures: Figures,
     /// How far that is off the reference.
     #[cfg_attr(feature = "cli", schemars(with = "ErrorShape"))]
-    pub error_vs_reference: Errors,
+    pub(crate) error_vs_reference: Errors,
     /// Whether no other method has a smaller error for as many evaluations or fewer.
-    pub pareto: bool,
+    pub(crate) pareto: bool,
     /// What it says of the target yield; null without one.
-    pub verdict: Option<Verdict>,
+    pub(crate) verdict: Option<Verdict>,
 }
 
 impl CompareReport {
@@ -116,7 +116,7 @@ impl MethodReport {
 
 impl CompareReport {
     /// What it says: for every characteristic a table (`comparison`), fewest evaluations first, and a chart of error over evaluations.
-    pub fn document(&self) -> Document {
+    pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let stopped = head::beside(&self.run);
         document.line(format!("reference: {} with {} points{stopped}", self.reference_method, self.reference_samples));

@@ -51,7 +51,7 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
     // What sampling, resampling, searching and fitting left is null here, and there all the same.
     complete!(json, one => CharacteristicAnalysis {
         characteristic: "/name", nominal: "/nominal", moments: "/kurtosis", sampled: "/surrogate_sampling",
-        model_sampled: "/model_sampling", surface_law: "/surface_law", density: "", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",
+        model_sampled: "/model_sampling", surface_law: "/surface_law", density: "", curved: "", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",
         error_estimate: "/error_estimate", residual: "/least_squares", law: "/distribution", capability: "/cpk",
         normal: "/normal_fit", sampling: "/sampling_interval", worst_case: "/worst_case/linear",
         extremes: "/worst_case/extremes", bounds: "/worst_case/bounds", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",

@@ -10,17 +10,17 @@ use crate::summary::RunSummary;
 /// Versions, the study, and the command.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct Head {
+pub(crate) struct Head {
     /// The version of this shape.
-    pub schema: u32,
+    pub(crate) schema: u32,
     /// The version of the program.
-    pub sensitol: &'static str,
+    pub(crate) sensitol: &'static str,
     /// The study's title.
-    pub title: Option<String>,
+    pub(crate) title: Option<String>,
     /// SHA-256 of the study file and the files of measured values that it reads.
-    pub study_sha256: String,
+    pub(crate) study_sha256: String,
     /// The command that made the report.
-    pub command: &'static str,
+    pub(crate) command: &'static str,
 }
 
 impl Head {

@@ -8,7 +8,7 @@ mod bars;
 mod compare;
 #[cfg(test)]
 mod complete;
-mod csv;
+pub(crate) mod csv;
 mod figures;
 mod head;
 #[cfg(feature = "html")]
@@ -20,31 +20,33 @@ mod simulation;
 mod source;
 mod stack;
 mod sweep;
+mod to_document;
 
 pub use crate::document::csv::csv;
 pub use crate::document::markdown::markdown;
 pub use crate::document::svg::svg;
 pub use crate::document::terminal::text;
 pub use crate::document::{Detail, Document, Style};
-pub use allocation::{
-    AllocatedCharacteristic, AllocatedReport, AllocationReport, AttainableReport, BeforeAfter, ConfirmationReport,
-    FrontReport, OfCharacteristic, OfDimension, ProofReport, WrittenAnew,
-};
+pub use allocation::{AllocationReport, WrittenAnew};
 #[cfg(feature = "cli")]
 pub(crate) use analysis_document::law_text;
-pub use compare::{CompareReport, ComparedReport, MethodReport};
-pub use csv::{CsvFile, csv_file_names, csv_files, stack_csv};
+pub use compare::CompareReport;
+pub use csv::{CsvFile, csv_files};
 #[cfg(feature = "cli")]
-pub(crate) use csv::{csv_tables, stack_csv_of_studies};
-pub use head::Head;
+pub(crate) use csv::{csv_file_names, csv_tables, stack_csv, stack_csv_of_studies};
+pub(crate) use head::Head;
 pub use rare::RareReport;
 pub use simulation::SimulationReport;
 pub use stack::{Stack, StackNote, StackRow, StackTotal, TotalKind, stack_document};
-pub use sweep::{ParameterReport, SweepReport, SweptPointReport, SweptReport};
+pub use sweep::SweepReport;
+#[cfg(feature = "cli")]
+pub(crate) use sweep::SweptReport;
+pub use to_document::ToDocument;
 
 use serde::Serialize;
 
 use crate::analysis::Analysis;
+use crate::correlation::Pair;
 use crate::dimension::Dimension;
 use crate::document::number::{UNKNOWN, band, significant};
 use crate::problem::Problem;
@@ -59,17 +61,17 @@ pub const SCHEMA: u32 = 2;
 pub struct Report {
     /// What every report begins with.
     #[serde(flatten)]
-    pub head: Head,
+    pub(crate) head: Head,
     /// What was found out.
     #[serde(flatten, serialize_with = "Analysis::serialize")]
     #[cfg_attr(feature = "cli", schemars(with = "Analysis"))]
-    pub analysis: Analysis,
+    pub(crate) analysis: Analysis,
     /// The dimensions, in the study's order.
-    pub dimensions: Vec<DimensionReport>,
+    pub(crate) dimensions: Vec<DimensionReport>,
     /// The dimensions that vary together.
-    pub correlation: Vec<CorrelationReport>,
+    pub(crate) correlation: Vec<Pair>,
     /// Where an assumption fails, in the study or in the analysis.
-    pub warnings: Vec<WarningReport>,
+    pub(crate) warnings: Vec<WarningReport>,
 }
 
 /// One dimension as the analysis took it.
@@ -94,35 +96,25 @@ pub struct DimensionReport {
     pub sigma: f64,
 }
 
-/// Two dimensions that vary together.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct CorrelationReport {
-    /// The two.
-    pub between: [String; 2],
-    /// Their coefficient of correlation.
-    pub value: f64,
-}
-
 /// A warning.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct WarningReport {
+pub(crate) struct WarningReport {
     /// What kind.
-    pub code: &'static str,
+    pub(crate) code: &'static str,
     /// The characteristic concerned.
-    pub characteristic: Option<String>,
+    pub(crate) characteristic: Option<String>,
     /// The dimension concerned.
-    pub dimension: Option<String>,
+    pub(crate) dimension: Option<String>,
     /// Cause and consequence.
-    pub message: String,
+    pub(crate) message: String,
     /// The fields of the warning.
-    pub data: serde_json::Map<String, serde_json::Value>,
+    pub(crate) data: serde_json::Map<String, serde_json::Value>,
     /// What to do, the most promising first.
-    pub advice: Vec<Advice>,
+    pub(crate) advice: Vec<Advice>,
     /// Of a sweep, the values of the parameter at which it is so.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub at: Vec<f64>,
+    pub(crate) at: Vec<f64>,
 }
 
 /// What a report says of the study beside the analysis.
@@ -149,19 +141,19 @@ impl Report {
     }
 
     /// Without the interactions that hardly matter: what they make together stands in their place.
-    pub fn shortened(self) -> Self {
+    pub(crate) fn shortened(self) -> Self {
         Self { analysis: self.analysis.shortened(), ..self }
     }
 }
 
 /// Every pair that is not 0.
-fn correlation(problem: &Problem) -> Vec<CorrelationReport> {
+fn correlation(problem: &Problem) -> Vec<Pair> {
     let Some(correlation) = problem.correlation() else { return Vec::new() };
     let name = |&d: &usize| problem.dimensions()[d].name().to_owned();
     let members = correlation.members();
     let pairs = members.iter().enumerate().flat_map(|(i, a)| members[i + 1..].iter().map(move |b| (a, b)));
     pairs
-        .map(|(a, b)| CorrelationReport { between: [name(a), name(b)], value: correlation.of(*a, *b) })
+        .map(|(a, b)| Pair { between: [name(a), name(b)], value: correlation.of(*a, *b) })
         .filter(|pair| pair.value != 0.0)
         .collect()
 }

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::figures::Named;
 use super::head::{self, seed};
 use super::requirement::{judged, lines};
-use super::{About, CorrelationReport, DimensionReport, Head, WarningReport, correlation};
+use super::{About, DimensionReport, Head, WarningReport, correlation};
+use crate::correlation::Pair;
 use crate::document::number::{known, plain, short, significant, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Value};
 use crate::problem::Problem;
@@ -18,19 +19,19 @@ use crate::sampling::Estimate;
 pub struct RareReport {
     /// What every report begins with.
     #[serde(flatten)]
-    pub head: Head,
+    pub(crate) head: Head,
     /// `importance-sampling`.
-    pub method: &'static str,
+    pub(crate) method: &'static str,
     /// What was found out.
     #[serde(flatten, serialize_with = "RareEvents::serialize")]
     #[cfg_attr(feature = "cli", schemars(with = "RareEvents"))]
-    pub found: RareEvents,
+    pub(crate) found: RareEvents,
     /// The dimensions, in the study's order.
-    pub dimensions: Vec<DimensionReport>,
+    pub(crate) dimensions: Vec<DimensionReport>,
     /// The dimensions that vary together.
-    pub correlation: Vec<CorrelationReport>,
+    pub(crate) correlation: Vec<Pair>,
     /// Where an assumption fails.
-    pub warnings: Vec<WarningReport>,
+    pub(crate) warnings: Vec<WarningReport>,
 }
 
 impl RareReport {
@@ -52,7 +53,7 @@ const SHOWN: usize = 6;
 
 impl RareReport {
     /// What it says: every probability with its interval (table `rare`), and the assembly in which it most likely comes about.
-    pub fn document(&self) -> Document {
+    pub(crate) fn document(&self) -> Document {
         let found = &self.found;
         let mut document = Document::titled(self.head.title.as_deref());
         document.line(format!(

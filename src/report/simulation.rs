@@ -5,8 +5,9 @@ use serde::Serialize;
 use super::figures::{Figures, Named, QUANTILES};
 use super::head::{self, findings, seed};
 use super::requirement::{judged, lines};
-use super::{About, CorrelationReport, DimensionReport, Head, WarningReport, correlation};
+use super::{About, DimensionReport, Head, WarningReport, correlation};
 use crate::capability::Law;
+use crate::correlation::Pair;
 use crate::document::number::{estimated, index, known, limits, plain, significant, uncertainty, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Line, Section, SpreadChart};
@@ -22,17 +23,17 @@ use crate::simulation::{SimulatedCharacteristic, Simulation, YieldEstimate};
 pub struct SimulationReport {
     /// What every report begins with.
     #[serde(flatten)]
-    pub head: Head,
+    pub(crate) head: Head,
     /// What was found out.
     #[serde(flatten, serialize_with = "Simulation::serialize")]
     #[cfg_attr(feature = "cli", schemars(with = "Simulation"))]
-    pub simulation: Simulation,
+    pub(crate) simulation: Simulation,
     /// The dimensions, in the study's order.
-    pub dimensions: Vec<DimensionReport>,
+    pub(crate) dimensions: Vec<DimensionReport>,
     /// The dimensions that vary together.
-    pub correlation: Vec<CorrelationReport>,
+    pub(crate) correlation: Vec<Pair>,
     /// Where an assumption fails.
-    pub warnings: Vec<WarningReport>,
+    pub(crate) warnings: Vec<WarningReport>,
 }
 
 impl SimulationReport {
@@ -53,7 +54,7 @@ const INTERVALS: usize = 5;
 
 impl SimulationReport {
     /// What it says: every number with its standard error (table `estimates`), and the histogram (table `histogram`).
-    pub fn document(&self) -> Document {
+    pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let Simulation { sampler, run, samples, characteristics, .. } = &self.simulation;
         let (seed, rest) = (seed(run), head::beside(run));

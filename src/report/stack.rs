@@ -190,7 +190,7 @@ impl Stack {
 
 impl StackTotal {
     /// From where to where it goes.
-    pub fn interval(&self) -> Option<[f64; 2]> {
+    pub(crate) fn interval(&self) -> Option<[f64; 2]> {
         let (middle, half) = (self.middle?, self.half_width?);
         Some([middle - half, middle + half])
     }
@@ -198,7 +198,7 @@ impl StackTotal {
 
 impl TotalKind {
     /// Its name for people.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::WorstCase => "worst case",
             Self::Rss => "rss",

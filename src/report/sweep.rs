@@ -26,88 +26,88 @@ use crate::verdict::{Judged, Verdict};
 pub struct SweepReport {
     /// What every report begins with.
     #[serde(flatten)]
-    pub head: Head,
+    pub(crate) head: Head,
     /// What is swept.
-    pub parameter: ParameterReport,
+    pub(crate) parameter: ParameterReport,
     /// The method that was run; null where nothing was done.
-    pub method: Option<&'static str>,
+    pub(crate) method: Option<&'static str>,
     /// What it came to in points and time, and why it ended early.
     #[serde(flatten)]
-    pub run: RunSummary,
+    pub(crate) run: RunSummary,
     /// What was asked.
-    pub characteristics: Vec<SweptReport>,
+    pub(crate) characteristics: Vec<SweptReport>,
     /// Where an assumption fails, each once, with the values at which it does.
-    pub warnings: Vec<WarningReport>,
+    pub(crate) warnings: Vec<WarningReport>,
 }
 
 /// The parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct ParameterReport {
+pub(crate) struct ParameterReport {
     /// Its name.
-    pub name: String,
+    pub(crate) name: String,
     /// Its unit.
-    pub unit: Option<String>,
+    pub(crate) unit: Option<String>,
     /// Its standard deviation at every value.
-    pub sigma: f64,
+    pub(crate) sigma: f64,
     /// Its nominal values.
-    pub values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
 }
 
 /// One characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct SweptReport {
+pub(crate) struct SweptReport {
     /// Its name.
-    pub name: String,
+    pub(crate) name: String,
     /// Its unit.
-    pub unit: Option<String>,
+    pub(crate) unit: Option<String>,
     /// Lower limit.
-    pub lower: Option<f64>,
+    pub(crate) lower: Option<f64>,
     /// Upper limit.
-    pub upper: Option<f64>,
+    pub(crate) upper: Option<f64>,
     /// In the order of the parameter's values.
-    pub points: Vec<SweptPointReport>,
+    pub(crate) points: Vec<SweptPointReport>,
 }
 
 /// One characteristic at one value of the parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct SweptPointReport {
+pub(crate) struct SweptPointReport {
     /// The parameter.
-    pub at: f64,
+    pub(crate) at: f64,
     /// With every dimension at its nominal value.
-    pub nominal: Option<f64>,
+    pub(crate) nominal: Option<f64>,
     /// First moment.
-    pub mean: Option<f64>,
+    pub(crate) mean: Option<f64>,
     /// Standard deviation.
-    pub sigma: Option<f64>,
+    pub(crate) sigma: Option<f64>,
     /// Third standardised moment.
-    pub skewness: Option<f64>,
+    pub(crate) skewness: Option<f64>,
     /// Fourth standardised moment.
-    pub kurtosis: Option<f64>,
+    pub(crate) kurtosis: Option<f64>,
     /// How far all that may be off, by what the method did not see; null without moments.
-    pub error_estimate: Option<ErrorEstimate>,
+    pub(crate) error_estimate: Option<ErrorEstimate>,
     /// Root of the sum of squares.
-    pub rss: Option<f64>,
+    pub(crate) rss: Option<f64>,
     /// By the law of the surface where there is one, by the Pearson fit elsewhere.
-    pub quantiles: Quantiles<Option<f64>>,
+    pub(crate) quantiles: Quantiles<Option<f64>>,
     /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
-    pub yield_: Option<f64>,
+    pub(crate) yield_: Option<f64>,
     /// What it comes from; null without limits.
-    pub yield_source: Option<YieldSource>,
+    pub(crate) yield_source: Option<YieldSource>,
     /// Rejected below the lower limit, in parts per million.
-    pub ppm_below: Option<f64>,
+    pub(crate) ppm_below: Option<f64>,
     /// Rejected above the upper limit.
-    pub ppm_above: Option<f64>,
+    pub(crate) ppm_above: Option<f64>,
     /// Whether the target yield is met; null where that is not known, and without one.
-    pub met: Option<bool>,
+    pub(crate) met: Option<bool>,
     /// The same in a word.
-    pub verdict: Option<Verdict>,
+    pub(crate) verdict: Option<Verdict>,
     /// Everything that is required of it, the target yield included.
     #[cfg_attr(feature = "cli", schemars(with = "Vec<crate::verdict::JudgedShape>"))]
-    pub requirements: Vec<Judged>,
+    pub(crate) requirements: Vec<Judged>,
 }
 
 impl SweepReport {
@@ -141,7 +141,7 @@ impl SweepReport {
 
 impl SweepReport {
     /// What it says: for every characteristic a chart, and a table (`sweep`) with a row for every value of the parameter.
-    pub fn document(&self) -> Document {
+    pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         document.line(format!(
             "{}: {} in {} for {} of {}{}",
@@ -307,7 +307,7 @@ impl SweptPointReport {
     }
 
     /// The ends of the band in which all but 0.27 % lie; None where they are unknown.
-    pub fn band(&self) -> Option<[f64; 2]> {
+    pub(crate) fn band(&self) -> Option<[f64; 2]> {
         let all = self.quantiles.0;
         Some([all[0]?, all[6]?])
     }

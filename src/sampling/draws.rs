@@ -1,5 +1,7 @@
 //! Blocks of points of the inputs' joint distribution.
 
+use std::fmt;
+
 use std::str::FromStr;
 
 use faer::Mat;
@@ -34,11 +36,17 @@ impl Sampler {
     }
 
     /// Its name on the command line.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Random => "random",
             Self::Sobol => "sobol",
         }
+    }
+}
+
+impl fmt::Display for Sampler {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 

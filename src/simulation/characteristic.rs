@@ -50,7 +50,7 @@ pub struct SimulatedCharacteristic {
     #[serde(serialize_with = "value")]
     #[cfg_attr(feature = "cli", schemars(with = "Option<f64>"))]
     pub kurtosis: Option<Estimate>,
-    /// Quantiles of the probabilities [`QUANTILES`]; None where the sample is too small for one value beyond, on average, and
+    /// Quantiles of the [`PROBABILITIES`](crate::capability::PROBABILITIES); None where the sample is too small for one value beyond, on average, and
     /// without standard error below five.
     #[serde(skip)]
     pub quantiles: [Option<Estimate>; 7],
@@ -124,7 +124,7 @@ pub struct Histogram {
 }
 
 /// The probabilities whose quantiles are estimated.
-pub const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
+const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
 
 /// Fewer values than this beyond a quantile say nothing of its standard error.
 const BEYOND: f64 = 5.0;
@@ -203,7 +203,7 @@ impl SimulatedCharacteristic {
 impl SimulatedCharacteristic {
     /// How a requirement is kept, whether or not it is the characteristic's own: by the interval of the yield, where points without
     /// a value may all be rejected ones, or by two standard errors of mean and sigma. Of rss and worst case a sample knows nothing.
-    pub fn judge(&self, requirement: Requirement) -> Judged {
+    pub(crate) fn judge(&self, requirement: Requirement) -> Judged {
         let limits = self.characteristic.limits();
         let known = |estimate: Option<Estimate>| estimate.map(|of| (of.value, of.standard_error));
         let (value, interval) = match requirement {

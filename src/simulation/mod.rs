@@ -14,7 +14,7 @@ mod written;
 pub(crate) use written::SimulatedShape;
 
 pub use crate::sampling::{Estimate, Sampler, SamplingError};
-pub use characteristic::{Histogram, QUANTILES, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
+pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 
 use std::time::Duration;
 
@@ -168,7 +168,7 @@ pub struct Pace {
 
 impl Pace {
     /// What it will take in all, at the speed so far, in seconds.
-    pub fn expected_s(&self) -> f64 {
+    pub(crate) fn expected_s(&self) -> f64 {
         self.elapsed.as_secs_f64() * self.expected / self.samples.max(1) as f64
     }
 }
@@ -243,7 +243,7 @@ pub enum SimulationError {
 
 impl SimulationError {
     /// What to do about it.
-    pub fn advice(&self) -> Vec<Advice> {
+    pub(crate) fn advice(&self) -> Vec<Advice> {
         match self {
             Self::NoSurrogate { method, .. } if !method.has_surrogate() => {
                 vec![Advice::UseMethod { methods: vec![Method::Full] }]

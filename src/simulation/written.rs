@@ -6,19 +6,18 @@ use super::shape::{ControlShape, Reduction};
 use super::{SimulatedCharacteristic, Simulation, SurrogateControl};
 use crate::capability::Quantiles;
 use crate::sampling::Estimate;
-use crate::shape::Four;
+use crate::shape::{Four, WithoutWarnings, whole};
 use crate::verdict::{Judged, Verdict};
-use crate::warning::Warning;
+
+impl WithoutWarnings for Simulation {
+    fn own<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, serializer)
+    }
+}
 
 impl Serialize for Simulation {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Whole<'r> {
-            #[serde(flatten, serialize_with = "Simulation::serialize")]
-            own: &'r Simulation,
-            warnings: &'r [Warning],
-        }
-        Whole { own: self, warnings: &self.warnings }.serialize(serializer)
+        whole(self, &self.warnings, serializer)
     }
 }
 

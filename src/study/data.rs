@@ -147,7 +147,7 @@ impl DataFault {
 
 impl DataProblem {
     /// What to write instead, where that can be said.
-    pub fn help(&self) -> Option<String> {
+    pub(crate) fn help(&self) -> Option<String> {
         let columns = |known: &[String]| {
             format!("its columns are {}", known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))
         };

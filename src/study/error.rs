@@ -36,7 +36,7 @@ pub struct StudyError {
     pub key: String,
     /// What is wrong.
     pub fault: Box<StudyFault>,
-    /// The other faults of the same study, in the order of the file: [`Study::MOST_FAULTS`](super::Study::MOST_FAULTS) in all at most.
+    /// The other faults of the same study, in the order of the file: 20 in all at most.
     pub more: Vec<StudyError>,
 }
 
@@ -73,7 +73,7 @@ impl StudyError {
     }
 
     /// What to write instead, where that can be said.
-    pub fn help(&self) -> Option<String> {
+    pub(crate) fn help(&self) -> Option<String> {
         self.fault.help()
     }
 
@@ -335,12 +335,12 @@ impl From<UnknownName> for StudyFault {
 
 impl StudyFault {
     /// What to do about it, beside changing what is written.
-    pub fn advice(&self) -> Vec<Advice> {
+    pub(crate) fn advice(&self) -> Vec<Advice> {
         if let Self::Method(error) = self { error.advice() } else { Vec::new() }
     }
 
     /// What to write instead, where that can be said.
-    pub fn help(&self) -> Option<String> {
+    pub(crate) fn help(&self) -> Option<String> {
         let meant = |name: &String| format!("did you mean `{name}`?");
         let one_of = |known: &[String]| format!("it is one of {}", known.join(", "));
         match self {

@@ -70,7 +70,8 @@ pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
 pub use externals::{Externals, JournalPlace};
 pub use files::{FileRole, NamedFile};
-pub use place::{Format, StudyText};
+pub(crate) use place::Format;
+pub use place::StudyText;
 pub use rewrite::{RewriteError, Rewritten};
 #[cfg(feature = "cli")]
 pub(crate) use schema::schema;
@@ -126,7 +127,7 @@ pub struct Study {
 
 impl Study {
     /// Faults of a study that are told at once.
-    pub const MOST_FAULTS: usize = 20;
+    pub(crate) const MOST_FAULTS: usize = 20;
 
     /// Costs and requirements of the characteristics that its problem asks for.
     pub fn allocation_task(&self) -> AllocationTask {

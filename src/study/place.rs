@@ -9,7 +9,7 @@ use super::externals::Externals;
 /// The two formats of one schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Format {
+pub(crate) enum Format {
     /// A `.toml` file.
     Toml,
     /// A `.json` file.
@@ -44,7 +44,7 @@ pub struct StudyText {
 
 impl StudyText {
     /// A text of this format; `name` stands for the file in errors.
-    pub fn new(format: Format, name: impl Into<String>, text: impl Into<String>) -> Self {
+    pub(crate) fn new(format: Format, name: impl Into<String>, text: impl Into<String>) -> Self {
         Self {
             format,
             name: name.into(),

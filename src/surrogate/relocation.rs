@@ -14,7 +14,7 @@ pub struct Relocation {
 
 impl Relocation {
     /// An input that stays as it is.
-    pub const NONE: Self = Self { shift: 0.0, stretch: 1.0 };
+    pub(crate) const NONE: Self = Self { shift: 0.0, stretch: 1.0 };
 }
 
 impl Surrogate {
@@ -27,6 +27,7 @@ impl Surrogate {
     /// Shapes: `moved` has length N. No evaluation.
     ///
     /// ```
+    /// use sensitol::internals::reach::*;
     /// use sensitol::internals::{Interactions, Surrogate, Univariate};
     /// use sensitol::analysis::Relocation;
     /// // y = u0 + u0 u1, and the mean of u1 moves by half a sigma: y = 1.5 u0 + u0 v1.

@@ -82,9 +82,10 @@ impl Verified {
     ///
     /// ```
     /// use sensitol::analysis::Verified;
+    /// use sensitol::internals::reach::*;
     /// assert_eq!(Verified { value: 1.0, error: 3.0 }.error_of(5.0), 5.0);
     /// ```
-    pub fn error_of(&self, value: f64) -> f64 {
+    pub(crate) fn error_of(&self, value: f64) -> f64 {
         (value - self.value).hypot(self.error)
     }
 }

@@ -62,7 +62,7 @@ pub struct FoundSwitch {
     /// Where it stands.
     #[serde(skip)]
     pub switch: Switch,
-    /// The part of the formula that does it, in the words of [`Switch::name`].
+    /// The part of the formula that does it, as it is written there.
     pub name: String,
     /// What the output does there.
     #[serde(rename = "kind")]

@@ -29,7 +29,7 @@ macro_rules! warnings {
 
         impl Warning {
             /// The codes of all warnings.
-            pub const CODES: &[&str] = &[$($code),*];
+            pub(crate) const CODES: &[&str] = &[$($code),*];
 
             /// The code of this kind of warning, which stays the same between versions.
             pub fn code(&self) -> &'static str {
@@ -39,7 +39,7 @@ macro_rules! warnings {
             }
 
             /// The fields by name; numbers that are not finite are null.
-            pub fn data(&self) -> impl serde::Serialize + '_ {
+            pub(crate) fn data(&self) -> impl serde::Serialize + '_ {
                 WarningData(self)
             }
 

@@ -1,6 +1,6 @@
 //! Warnings: an assumption of the method fails, or a result is not what was asked for.
 //!
-//! A warning is data: its [`code`](Warning::code) and its fields ([`data`](Warning::data)). The [`message`](Warning::message) says what happened
+//! A warning is data: its [`code`](Warning::code) and its fields, which it serialises as `data`. The [`message`](Warning::message) says what happened
 //! and what it means for the result. The [`advice`](Warning::advice) says what to do; each front end shows it in its own words.
 //!
 //! # A new warning

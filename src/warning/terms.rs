@@ -67,7 +67,7 @@ pub enum Figure {
 
 impl Figure {
     /// Its name.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Sigma => "sigma",
             Self::Skewness => "skewness",

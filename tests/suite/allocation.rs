@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use sensitol::allocation::{
     Allocation, AllocationOptions, AllocationTask, Curve, Kept, Offer, Priced, Status, allocate,
 };
+use sensitol::internals::reach::*;
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{
     Characteristic, Closure, Dimension, Method, Options, Problem, Requirement, SpecLimits, StopReason, Study, Verdict,
@@ -377,7 +378,7 @@ fn dimensions_without_a_cost_that_break_a_requirement_are_named() {
     );
     let found = allocate(&problem, &task, &options(Method::Rss)).unwrap();
     let attainable = found.attainable.unwrap();
-    assert_eq!(attainable.because, [1, 2], "0.6 and 0.2 of 0.5 by themselves, most harmful first");
+    assert_eq!(attainable.because, ["x1", "x2"], "0.6 and 0.2 of 0.5 by themselves, most harmful first");
     assert_eq!(found.run.evaluations, 14, "the present tolerances were analysed, and the tightest");
 }
 
@@ -692,6 +693,11 @@ fn a_budget_that_does_not_reach_is_said() {
     let found = allocate(&study.problem, &task, &options.clone().with_analysis(analysis)).unwrap();
     assert!(!found.confirmed && found.run.evaluations == 111 && found.cost_after.is_some());
     assert_eq!(found.status, Status::AlmostOptimal);
+    // Nobody asked the model there: no figure of the old tolerances stands in the place of those that are not known.
+    assert!(found.after.is_none() && found.loosest_after.is_none() && found.joint[1].is_none());
+    assert!(found.requirements.iter().all(|one| one.after.is_none()));
+    let group = &found.tolerances[0];
+    assert!((found.problem.dimensions()[group.dimension].half_band() - group.after).abs() < 1e-12 * group.after);
     let analysis = options.analysis.clone().with_budget(110);
     let error = allocate(&study.problem, &task, &options.with_analysis(analysis)).unwrap_err();
     assert!(error.to_string().contains("111 evaluations"), "{error}");

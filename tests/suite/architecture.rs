@@ -7,7 +7,7 @@ use super::support::repository;
 /// From the roof to the ground; what stands on one line does not import its neighbours.
 const LAYERS: &[&[&str]] = &[
     &["main"],
-    &["cli"],
+    &["cli", "internals"],
     &["error"],
     &["study", "report"],
     &["document"],

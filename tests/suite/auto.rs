@@ -5,6 +5,7 @@ use std::sync::Arc;
 use sensitol::analysis::{YieldSource, analyze_with};
 use sensitol::assembly::{EvaluationError, Run};
 use sensitol::distribution::Exponential;
+use sensitol::internals::reach::*;
 use sensitol::method::Accuracies;
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{

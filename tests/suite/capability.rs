@@ -5,7 +5,9 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::assembly::{Points, Request, Responses, Run};
-use sensitol::capability::{Capability, Law, TAIL};
+use sensitol::capability::{Capability, Law};
+use sensitol::internals::TAIL;
+use sensitol::internals::reach::*;
 use sensitol::pearson::{Pearson, PearsonError};
 use sensitol::{Closure, Dimension, Method, Moments, Problem, SpecLimits, Study, analyze};
 

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use sensitol::internals::reach::*;
 use sensitol::report::text;
-use sensitol::report::{About, Report};
+use sensitol::report::{About, Report, ToDocument};
 use sensitol::report::{Detail, Style};
 
 use super::support::repository;

@@ -2,6 +2,7 @@
 
 use sensitol::assembly::Run;
 use sensitol::correlation::Pair;
+use sensitol::internals::reach::*;
 use sensitol::method::MethodError;
 use sensitol::simulation::{
     Estimate, Sampler, Simulation, SimulationError, SimulationOptions, simulate, simulate_with,

@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use sensitol::internals::reach::*;
 use sensitol::method::Stencil;
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Method, Options, Study, Warning, analyze};

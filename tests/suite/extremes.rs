@@ -7,6 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::analysis::{Analysis, Extremes, Place};
 use sensitol::assembly::{Points, Request, Responses, Run};
+use sensitol::internals::reach::*;
 use sensitol::warning::Ended;
 use sensitol::{Closure, Dimension, Method, Options, Problem, StopReason, Study, analyze, analyze_with};
 

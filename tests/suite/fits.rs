@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use sensitol::fits::{FitError, deviations};
+use sensitol::internals::reach::*;
 
 use super::support::{data, repository};
 

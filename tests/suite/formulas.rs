@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use sensitol::assembly::formula::{FailureReason, Formula, FormulaError, FormulaFault};
+use sensitol::internals::reach::*;
 use sensitol::internals::{FormulaSet, Meaning};
 
 use super::support::close;

@@ -2,6 +2,7 @@
 
 use sensitol::assembly::process::{Greeting, Process, Settings};
 use sensitol::assembly::{AssemblyFunction, EvaluationError, ModelInfo, Request, Responses, Run, Signature};
+use sensitol::internals::reach::*;
 use sensitol::journal::Journaled;
 use sensitol::{Analysis, Dimension, Method, Options, Problem, analyze};
 

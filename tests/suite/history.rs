@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use sensitol::assembly::process::{Greeting, Process, Settings};
 use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run, Signature};
+use sensitol::internals::reach::*;
 use sensitol::journal::Journaled;
 use sensitol::probe::probe;
 use sensitol::{Dimension, Method, Options, Problem, Warning, analyze};
@@ -186,12 +187,12 @@ fn a_late_flip_looks_back() {
     let process = first_lies("first-lies-once", folder.path(), Some(1));
     let first = sums(&process, 2..60);
     assert_eq!((first.value(11, 0), first.non_repeatable().len()), (Some(13.0 + 2.0 + 7.0), 0));
-    assert_eq!(Process::account(&process).unconfirmed, 0);
+    assert_eq!(process.account().unwrap().counts.unconfirmed, 0);
     let second = sums(&process, 90..110);
     assert!((0..20).all(|row| second.value(row, 0) == Some((90 + row + 2) as f64)));
     assert!(!second.non_repeatable().is_empty());
     assert_eq!(second.revoked(), [[13.0, 2.0]]);
-    assert_eq!(Process::account(&process).unconfirmed, 1);
+    assert_eq!(process.account().unwrap().counts.unconfirmed, 1);
 }
 
 /// A study of a model that drifts: its figures are not to be relied on, and the exit code says so without `--check`.

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
 use sensitol::Study;
+use sensitol::internals::reach::*;
 
 use super::cli::sensitol;
 use super::studies::{faults, parse};

@@ -11,8 +11,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::analysis::{LawFigure, Relocation};
 use sensitol::capability::{Capability, Law};
 use sensitol::internals::law_at;
-use sensitol::report::html::{WhatIf, analyze_html, compare_html, simulate_html};
-use sensitol::report::{About, CompareReport, Report, SimulationReport};
+use sensitol::internals::reach::*;
+use sensitol::report::html::{WhatIf, analyze_html};
+use sensitol::report::{About, CompareReport, Report, SimulationReport, ToDocument};
 use sensitol::{Analysis, Method, Options, Study, analyze};
 use serde_json::{Value, json};
 
@@ -123,10 +124,10 @@ fn hostile_names_are_text() {
 
     let simulation = sensitol::simulation::simulate(&study.problem, &Default::default()).unwrap();
     let about = About { title: study.title.clone(), ..About::default() };
-    let simulated = simulate_html(&SimulationReport::of(&study.problem, &simulation, about.clone()));
+    let simulated = SimulationReport::of(&study.problem, &simulation, about.clone()).html();
     let options = sensitol::compare::CompareOptions::default().with_reference(4096).with_seed(1);
     let comparison = sensitol::compare::compare_with(&study.problem, &options, &sensitol::assembly::Run::to_the_end());
-    let compared = compare_html(&CompareReport::of(&comparison.unwrap(), about));
+    let compared = CompareReport::of(&comparison.unwrap(), about).html();
     for page in [simulated, compared] {
         is_closed(&page);
         for markup in ["<img", "<svg onload", "<b>", "<script", "<!--"] {

@@ -5,6 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::assembly::implicit::AssemblyFailure;
 use sensitol::assembly::{Derivatives, Directions, EvaluationError, Points, Request, Responses, Run};
+use sensitol::internals::reach::*;
 use sensitol::method::Basis;
 use sensitol::{DerivativeSource, Method, MethodError, Options, Problem, Study, analyze};
 

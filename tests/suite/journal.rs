@@ -8,7 +8,9 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::assembly::process::{Greeting, Process, Settings};
 use sensitol::assembly::{AssemblyFunction, Points, Request, Responses, Run, Signature};
-use sensitol::journal::{JournalFault, Journaled, Store, StoredAnswer};
+use sensitol::internals::reach::*;
+use sensitol::internals::{Store, StoredAnswer};
+use sensitol::journal::{JournalFault, Journaled};
 
 use super::support::repository;
 

@@ -2,12 +2,14 @@
 
 use std::sync::{Arc, LazyLock};
 
-use sensitol::analysis::{Branch, LawError, LawFigure, LawTail};
+use sensitol::analysis::{Branch, LawError, LawFigure};
 use sensitol::correlation::{Correlation, Pair};
 use sensitol::distribution::{
     Beta, Distribution, Exponential, Gamma, Lognormal, Measured, Mixture, Normal, Part, Trapezoidal, Triangular,
     Uniform, Weibull,
 };
+use sensitol::internals::LawTail;
+use sensitol::internals::reach::*;
 use sensitol::internals::{
     Inputs, Interactions, LawOptions, Rule, SurfaceLaw, Surrogate, Univariate, joint_yield, shapes,
 };
@@ -31,7 +33,7 @@ fn input(law: &Value) -> Law {
     let of = |key: &str| number(&law[key]);
     match law["kind"].as_str().unwrap() {
         "normal" => Arc::new(Normal::new(0.0, 1.0).unwrap()),
-        "uniform" => Arc::new(Uniform::about(0.0, 1.0).unwrap()),
+        "uniform" => Arc::new(Uniform::new(-1.0, 1.0).unwrap()),
         "exponential" => Arc::new(Exponential::new(0.0, 1.0).unwrap()),
         "triangular" => Arc::new(Triangular::new(0.0, law["mode"].as_f64().unwrap_or(0.5), 1.0).unwrap()),
         "trapezoidal" => Arc::new(Trapezoidal::new(0.0, 1.0, of("top")).unwrap()),
@@ -394,7 +396,7 @@ fn moments_of_the_law_are_those_of_the_surface() {
         assert!((law.mean() - mean).abs() < 1e-12 * sigma && (law.sigma() / sigma - 1.0).abs() < 1e-12);
         let expected = [1.0, 0.0, 1.0, moments.skewness().unwrap(), moments.kurtosis().unwrap()];
         // By parts, E u^k = k int u^(k-1) sf(u) - k int u^(k-1) (-1)^k cdf(-u), Gauss panels of a quarter sigma.
-        let gauss = Rule::of(&Uniform::about(0.0, 1.0).unwrap(), 12);
+        let gauss = Rule::of(&Uniform::new(-1.0, 1.0).unwrap(), 12);
         let mut found = [1.0, 0.0, 0.0, 0.0, 0.0];
         for panel in 0..160 {
             for (node, weight) in gauss.nodes.iter().zip(&gauss.weights) {

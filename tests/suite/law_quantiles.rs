@@ -2,9 +2,12 @@
 
 use std::sync::Arc;
 
-use sensitol::analysis::{Branch, LawTail, QUANTILES, Relocation, YieldSource};
+use sensitol::analysis::{Branch, Relocation, YieldSource};
 use sensitol::distribution::{Distribution, Measured, Normal, Triangular, Uniform};
-use sensitol::internals::{Interactions, LawOptions, Rule, SurfaceLaw, Surrogate, Univariate, law_at};
+use sensitol::internals::reach::*;
+use sensitol::internals::{
+    Interactions, LawOptions, LawTail, QUANTILES, Rule, SurfaceLaw, Surrogate, Univariate, law_at,
+};
 use sensitol::{
     Analysis, Characteristic, CharacteristicAnalysis, Closure, Dimension, Method, Options, Problem, SpecLimits, analyze,
 };
@@ -14,7 +17,7 @@ use super::support::relative;
 type Law = Arc<dyn Distribution>;
 
 fn uniform(half: f64) -> Law {
-    Arc::new(Uniform::about(0.0, half).unwrap())
+    Arc::new(Uniform::new(-half, half).unwrap())
 }
 
 fn triangular(half: f64) -> Law {
@@ -141,7 +144,7 @@ fn a_sampled_density_is_within_its_error() {
         let laws = [uniform(1.0), uniform(1.0), normal(1.0)];
         let law = SurfaceLaw::of(&surrogate, &laws, None, &LawOptions::default()).unwrap();
         assert_eq!(law.branch(), Branch::Sampled);
-        let gauss = Rule::of(&Uniform::about(0.0, 1.0).unwrap(), 64);
+        let gauss = Rule::of(&Uniform::new(-1.0, 1.0).unwrap(), 64);
         let cdf = |y: f64| -> f64 {
             let at = |u: f64, v: f64| {
                 let (line, slope) = (u + 0.8 * v + b * u * v, 0.5 + b * (u + v));

@@ -8,6 +8,7 @@ use std::time::Duration;
 use sensitol::StopReason;
 use sensitol::assembly::process::{Greeting, Process, ProcessFault, Settings};
 use sensitol::assembly::{AssemblyFunction, EvaluationError, Points, Request, Responses, Run, Signature};
+use sensitol::internals::reach::*;
 
 use super::support::{child_in_c, repository};
 
@@ -45,7 +46,7 @@ fn a_queue_is_no_delay() {
     let model = model(settings("queue", "1").with_timeout(Duration::from_millis(1500)));
     let out = at(&model, &a, &Run::to_the_end());
     assert_eq!((0..a.len()).map(|row| out.value(row, 0)).collect::<Vec<_>>(), plain("1", &a), "{:?}", out.error(0, 0));
-    assert_eq!((model.account().starts, model.account().timeouts), (1, 0));
+    assert_eq!((model.account().unwrap().counts.starts, model.account().unwrap().counts.timeouts), (1, 0));
 }
 
 /// A point that has started has its own clock, whatever its program says of being alive.
@@ -55,7 +56,7 @@ fn a_heartbeat_saves_no_point_that_hangs() {
     let out = at(&model, &[1.5], &Run::to_the_end());
     let Some(EvaluationError::Process(error)) = out.error(0, 0) else { panic!("{:?}", out.value(0, 0)) };
     assert!(matches!(error.fault, ProcessFault::TimedOut { .. }), "{error}");
-    assert_eq!(model.account().timeouts, 1);
+    assert_eq!(model.account().unwrap().counts.timeouts, 1);
 }
 
 /// A program that takes points back loses one that hangs, and nothing else.
@@ -72,7 +73,7 @@ fn a_point_that_hangs_is_taken_back() {
             assert_eq!(out.value(row, 0), expected, "row {row}");
         }
     }
-    assert_eq!((model.account().starts, model.account().timeouts), (1, 1));
+    assert_eq!((model.account().unwrap().counts.starts, model.account().unwrap().counts.timeouts), (1, 1));
 }
 
 /// After a crash of a program whose points do not share its fate, all of them go out again and none is charged; its places are
@@ -90,11 +91,15 @@ fn places_and_a_crash() {
     let out = at(&model, &a, &Run::to_the_end());
     // Coefficients follow the second argument as a number, which a path has not: 0.
     assert_eq!((0..a.len()).map(|row| out.value(row, 0)).collect::<Vec<_>>(), plain("0", &a));
-    let account = model.account();
-    assert_eq!((account.starts, account.crashes, account.timeouts, account.garbage), (2, 1, 0, 0), "{account:?}");
+    let account = model.account().unwrap();
+    assert_eq!(
+        (account.counts.starts, account.counts.crashes, account.counts.timeouts, account.counts.garbage),
+        (2, 1, 0, 0),
+        "{account:?}"
+    );
     // What was under way: the child read and answered what it had before it died.
-    assert!((1..=8).contains(&account.retried), "{account:?}");
-    assert!(account.lost_s > 0.0 && account.last.unwrap().to_string().contains("exit code 9"));
+    assert!((1..=8).contains(&account.counts.retried), "{account:?}");
+    assert!(account.counts.lost_s > 0.0 && account.last.unwrap().to_string().contains("exit code 9"));
     let places: Vec<&str> = account.places.keys().map(String::as_str).collect();
     assert_eq!(places, ["east", "west"]);
     // Each point is answered once, and at the end each place answers the nominal one, which counts as well.
@@ -120,7 +125,7 @@ fn a_stop_takes_points_back() {
     assert!((0..a.len()).all(|row| out.is_open(row, 0) || out.value(row, 0) == expected[row]));
     let out = at(&model, &a[50..], &Run::to_the_end());
     assert!((0..50).all(|row| out.value(row, 0) == expected[50 + row]));
-    assert_eq!((model.account().starts, model.account().garbage), (1, 0));
+    assert_eq!((model.account().unwrap().counts.starts, model.account().unwrap().counts.garbage), (1, 0));
 }
 
 /// One of many points under way crashes the child every time: halves find it, and the others are answered.
@@ -139,8 +144,8 @@ fn halves_find_the_culprit() {
         assert_eq!(out.value(row, 0), (row != 13).then_some(a + 2.0), "row {row}");
     }
     // 64 are six halvings; the first crash, the culprit alone and its one retry come to it.
-    let account = model.account();
-    assert!(account.crashes <= 6 + 3 && account.starts == account.crashes + 1, "{account:?}");
+    let account = model.account().unwrap();
+    assert!(account.counts.crashes <= 6 + 3 && account.counts.starts == account.counts.crashes + 1, "{account:?}");
 }
 
 /// Processes with this text in their command line.

@@ -3,6 +3,7 @@
 mod accuracy;
 mod allocation;
 mod allocation_cli;
+mod allocation_oracles;
 mod analysis;
 mod architecture;
 mod auto;

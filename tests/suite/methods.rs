@@ -5,6 +5,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use sensitol::distribution::{CentralMoments, StandardMoments};
 use sensitol::internals::ALL;
+use sensitol::internals::reach::*;
 use sensitol::method::{MethodError, Pairs, Stencil};
 use sensitol::warning::Advice;
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, analyze};

@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 use sensitol::Moments;
 use sensitol::distribution::StandardMoments;
+use sensitol::internals::reach::*;
 use sensitol::internals::{Interactions, Rule, Term, contributions, of_quadratic};
 
 use super::support::{close, data, relative};

@@ -2,6 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sensitol::internals::reach::*;
 use sensitol::pearson::{Pearson, PearsonError, PearsonType};
 
 use super::support::repository;
@@ -97,7 +98,7 @@ fn types_and_supports_are_the_oracle_s() {
     for member in members() {
         // A kurtosis on the line between two types is no double: it lies on the one side or the other.
         if member.row["b2_exact"].is_null() {
-            assert_eq!(member.law.kind().name(), member.kind, "member {}", member.id);
+            assert_eq!(member.law.kind().to_string(), member.kind, "member {}", member.id);
             for (found, expected) in member.law.support().into_iter().zip(member.ends) {
                 match expected {
                     Some(expected) => assert!(off(found, expected) < 1e-14, "member {}: {found}", member.id),

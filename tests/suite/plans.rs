@@ -1,6 +1,7 @@
 //! Plans: exact counts, every point once, realised steps, and what happens when points fail.
 
 use sensitol::distribution::{CentralMoments, Normal, Uniform};
+use sensitol::internals::reach::*;
 use sensitol::internals::{Nodes, Spread, procedure};
 use sensitol::method::{Pairs, Stencil};
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, RunSummary, StopReason, analyze};

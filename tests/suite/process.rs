@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use sensitol::assembly::process::{Exit, Greeting, Process, ProcessFault, Settings};
 use sensitol::assembly::{AssemblyFunction, EvaluationError, Points, Request, Responses, Run, Signature};
+use sensitol::internals::reach::*;
 use sensitol::rare::{RareOptions, rare};
 use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Characteristic, Dimension, Problem, SpecLimits, StopReason};
@@ -190,7 +191,7 @@ fn numbers_that_are_not_finite_cost_no_restart() {
     let out = at(&model, &POINTS);
     right_but(&POINTS, &out, &[2]);
     assert_eq!(fault(&out, 2, 0), ProcessFault::NoValue { message: "the model returned NaN or an infinity".into() });
-    assert_eq!((out.value(2, 1), out.extra(), model.account().starts), (Some(1.0), 0, 1));
+    assert_eq!((out.value(2, 1), out.extra(), model.account().unwrap().counts.starts), (Some(1.0), 0, 1));
 }
 
 /// A second answer to a point: the first one counts, the child that does so is not trusted with another.
@@ -264,7 +265,7 @@ fn children_that_never_take_a_point_are_given_up() {
     let model = model(Settings::new(["printf", lines]).with_retries(0).with_sentinels(false));
     let out = at(&model, &POINTS[..2]);
     assert!((0..2).all(|row| fault(&out, row, 0) == ProcessFault::UnknownPoint { id: 7 }), "{:?}", out.error(0, 0));
-    assert_eq!(model.account().starts, 4);
+    assert_eq!(model.account().unwrap().counts.starts, 4);
 }
 
 /// A deadline that no clock can hold is one that never comes.

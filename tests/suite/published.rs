@@ -1,6 +1,7 @@
 //! The published cases, to the digits that the design states, and the same cases against quadrature.
 
 use sensitol::assembly::{Points, Request, Responses, Run};
+use sensitol::internals::reach::*;
 use sensitol::method::Stencil;
 use sensitol::{Analysis, CharacteristicAnalysis, Method, Options, Study, analyze};
 

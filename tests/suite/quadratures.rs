@@ -7,6 +7,7 @@ use sensitol::correlation::Pair;
 use sensitol::distribution::{
     CentralMoments, Distribution, Exponential, Lognormal, Measured, Mixture, Normal, Part, Triangular, Uniform,
 };
+use sensitol::internals::reach::*;
 use sensitol::internals::{Rule, Tables, procedure};
 use sensitol::method::{Basis, MethodError, Pairs, Stencil};
 use sensitol::{

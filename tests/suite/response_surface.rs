@@ -6,6 +6,7 @@ use std::sync::Arc;
 use sensitol::correlation::Pair;
 use sensitol::distribution::Exponential;
 use sensitol::internals::corners;
+use sensitol::internals::reach::*;
 use sensitol::method::Basis;
 use sensitol::{Analysis, Closure, Dimension, Method, Options, Problem, Warning, analyze};
 

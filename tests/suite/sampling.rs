@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use sensitol::correlation::{Correlation, Pair};
+use sensitol::internals::reach::*;
 use sensitol::internals::{Draws, Fine, Portion, SOBOL_DIMENSIONS, Scale, Sobol, Summary, wilson};
 use sensitol::simulation::{Sampler, SamplingError};
 use sensitol::{Dimension, distribution::CentralMoments};

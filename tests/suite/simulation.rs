@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use sensitol::assembly::Run;
+use sensitol::internals::reach::*;
 use sensitol::simulation::{
     Estimate, Sampler, Simulation, SimulationError, SimulationOptions, simulate, simulate_with,
 };

@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::process::Command;
 
+use sensitol::internals::{csv_file_names, stack_csv};
 use sensitol::report::markdown;
-use sensitol::report::{About, Report, StackNote, TotalKind, csv_file_names, csv_files, stack_csv, stack_document};
+use sensitol::report::{About, Report, StackNote, TotalKind, csv_files, stack_document};
 use sensitol::{Method, Options, Study, analyze};
 
 use super::support::{close, relative, repository};

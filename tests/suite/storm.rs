@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use sensitol::journal::Store;
+use sensitol::internals::Store;
 
 use super::support::repository;
 

@@ -1,5 +1,6 @@
 //! Study files: both formats, every form of a dimension, and every fault with its place and its help.
 
+use sensitol::internals::reach::*;
 use sensitol::{Dimension, Method, Study, StudyError, analyze};
 
 use super::support::{INSTALLED, close, example_studies, relative};

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use sensitol::assembly::{AssemblyFunction, EvaluationError, Request, Responses, Run, Signature};
+use sensitol::internals::reach::*;
 use sensitol::sweep::{SweepError, sweep, sweep_with};
 use sensitol::{Closure, Dimension, Method, Options, Problem, StopReason, Study, analyze};
 

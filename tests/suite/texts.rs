@@ -1,6 +1,7 @@
 //! Studies in memory: text with the files that it names, as a page in a browser or a script has them.
 
-use sensitol::study::{DataProblem, Format, StudyFault, StudyText};
+use sensitol::internals::reach::*;
+use sensitol::study::{DataProblem, StudyFault, StudyText};
 use sensitol::{Method, Study, analyze};
 
 use super::support::repository;
@@ -57,7 +58,7 @@ fn a_file_that_was_not_given_is_named() {
 fn text_is_read_as_files_are() {
     let json = r#"{ "dimensions": { "a": { "nominal": 1, "tolerance": 0.1 } },
         "constants": { "k": 2 }, "characteristics": { "y": { "formula": "k*a" } } }"#;
-    let study = Study::from_text(StudyText::new(Format::Json, "a.json", json).sweeping("k")).unwrap();
+    let study = Study::from_text(StudyText::json("a.json", json).sweeping("k")).unwrap();
     let names: Vec<&str> = study.problem.dimensions().iter().map(|dimension| dimension.name()).collect();
     assert!(names.contains(&"a") && names.contains(&"k"), "{names:?}");
     let wrong = Study::from_text(StudyText::toml("wrong.toml", "[dimensions]\na = {")).unwrap_err();

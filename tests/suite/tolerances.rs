@@ -1,6 +1,7 @@
 //! Every form of a tolerance in a study: fits, parts of the nominal, one-sided bands, positions; and the totals that bands make.
 
 use proptest::prelude::*;
+use sensitol::internals::reach::*;
 use sensitol::{Closure, Dimension, Method, Problem, Study, analyze, fits};
 
 use super::studies::{dimension, faults, parse};

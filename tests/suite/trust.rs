@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use sensitol::analysis::{Crossing, VerificationKind, Verified};
 use sensitol::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
+use sensitol::internals::reach::*;
 use sensitol::internals::{SampledFigures, Target, procedure, variance_shares, verify_by_checks, verify_by_sampling};
 use sensitol::{Closure, Dimension, Method, Options, Problem, Study, analyze};
 use serde_json::{Value, json};

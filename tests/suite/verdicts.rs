@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use sensitol::assembly::Run;
+use sensitol::internals::reach::*;
 use sensitol::simulation::{SimulationOptions, simulate, simulate_with};
 use sensitol::warning::{Loss, Warning};
 use sensitol::{

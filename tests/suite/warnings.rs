@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use sensitol::internals::aggregated;
+use sensitol::internals::reach::*;
 use sensitol::warning::{Advice, Change, Counted, Ended, Figure, Loss, NameKind, Warning};
 use sensitol::{Method, StopReason, Study, analyze};
 

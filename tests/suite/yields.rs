@@ -1,6 +1,7 @@
 //! What a yield comes from, and that it is the share within the limits.
 
 use sensitol::analysis::YieldSource;
+use sensitol::internals::reach::*;
 use sensitol::{CharacteristicAnalysis, Study, analyze};
 
 use super::support::relative;

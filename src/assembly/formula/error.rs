@@ -124,7 +124,7 @@ fn path_words(path: &[String]) -> String {
 
 impl FormulaFault {
     /// What to write instead, where that can be said.
-    pub fn help(&self) -> Option<String> {
+    pub(crate) fn help(&self) -> Option<String> {
         let nearest = |nearest: &Option<String>| nearest.as_ref().map(|name| format!("did you mean `{name}`?"));
         match self {
             Self::Empty => Some("write a formula such as \"a + b - c\"".into()),

@@ -11,25 +11,12 @@ use crate::summary::EvaluatorSummary;
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct EvaluatorAccount {
-    /// Processes that were started, the first one of every worker included.
-    pub starts: u64,
-    /// Processes that ended while points were under way, or before they were ready.
-    pub crashes: u64,
-    /// Deadlines that passed.
-    pub timeouts: u64,
-    /// Lines that were no answers.
-    pub garbage: u64,
-    /// Points that were sent again.
-    pub retried: u64,
-    /// Seconds from the last answer of a process that failed until another one was ready in its place.
-    pub lost_s: f64,
+    /// Starts, failures and what they cost.
+    pub counts: EvaluatorSummary,
     /// The last failure, with the last lines of stderr.
     pub last: Option<ProcessError>,
     /// For every place that answers named: how many points, and the seconds that the program says they took.
     pub places: BTreeMap<String, (u64, f64)>,
-    /// Answers that depend on the points before them, and that no fresh process confirmed: they have no value, or results were made of
-    /// them before that was known.
-    pub unconfirmed: u64,
     /// How the model differs from the one whose answers the journal holds; None where it does not.
     pub outdated: Option<OutdatedJournal>,
     /// Why answers could not be kept, in a line; None where they could. Nothing was evaluated after that.
@@ -61,29 +48,16 @@ impl OutdatedJournal {
 impl EvaluatorAccount {
     /// Whether any process failed.
     pub(crate) fn has_failures(&self) -> bool {
-        self.crashes + self.timeouts + self.garbage > 0
-    }
-
-    /// In numbers.
-    pub(crate) fn summary(&self) -> EvaluatorSummary {
-        EvaluatorSummary {
-            starts: self.starts,
-            crashes: self.crashes,
-            timeouts: self.timeouts,
-            garbage: self.garbage,
-            retried: self.retried,
-            lost_s: self.lost_s,
-            unconfirmed: self.unconfirmed,
-        }
+        self.counts.failures() > 0
     }
 
     /// Counts a failure of a process.
     #[cfg(feature = "process")]
     pub(super) fn failed(&mut self, error: &ProcessError) {
         match error.fault {
-            ProcessFault::TimedOut { .. } | ProcessFault::SilentAtStart { .. } => self.timeouts += 1,
-            ProcessFault::Crashed { .. } | ProcessFault::EndedAtStart { .. } => self.crashes += 1,
-            _ => self.garbage += 1,
+            ProcessFault::TimedOut { .. } | ProcessFault::SilentAtStart { .. } => self.counts.timeouts += 1,
+            ProcessFault::Crashed { .. } | ProcessFault::EndedAtStart { .. } => self.counts.crashes += 1,
+            _ => self.counts.garbage += 1,
         }
         self.last = Some(error.clone());
     }

@@ -154,10 +154,10 @@ impl Pool {
         }
         let work = batch.expect("a batch");
         work.out.spent(work.sent as i64 - (rows - work.left) as i64);
-        self.account.retried += work.resent as u64;
+        self.account.counts.retried += work.resent as u64;
         if self.settings.verify == Some(0) {
             // Nothing is replayed, so that what is in doubt twice stays so.
-            self.account.unconfirmed += work.twice.len() as u64;
+            self.account.counts.unconfirmed += work.twice.len() as u64;
         }
         work.out.retried(work.resent);
         // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
@@ -277,7 +277,7 @@ impl Pool {
         let child = Child::start(argv, folder, number, &self.events.0, listener.clone())
             .map_err(|fault| ProcessError { fault, stderr: StderrTail::default() })?;
         child.send(self.hello.line());
-        self.account.starts += 1;
+        self.account.counts.starts += 1;
         self.slots[index].state = State::Starting(child, Instant::now() + self.settings.start_timeout);
         Ok(())
     }
@@ -387,7 +387,7 @@ impl Pool {
                     self.failed_starts = 0;
                     let slot = &mut self.slots[index];
                     if let Some(lost) = slot.lost.take() {
-                        self.account.lost_s += lost.elapsed().as_secs_f64();
+                        self.account.counts.lost_s += lost.elapsed().as_secs_f64();
                     }
                     let State::Starting(child, _) = std::mem::take(&mut slot.state) else { return Ok(()) };
                     slot.state = State::Ready(Box::new(Worker::new(child, &line, self.next_point)));

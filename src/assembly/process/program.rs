@@ -36,18 +36,18 @@ impl Process {
     ///
     /// # Errors
     /// When it does not start, or does not serve the study.
-    pub fn adapter(&self, outputs: &[usize]) -> Result<ModelInfo, ProcessError> {
+    pub(crate) fn adapter(&self, outputs: &[usize]) -> Result<ModelInfo, ProcessError> {
         self.with_pool(outputs, |pool| pool.prepare().cloned())
     }
 
     /// What became of its processes so far: nothing where none was started.
-    pub fn account(&self) -> EvaluatorAccount {
+    pub(crate) fn account(&self) -> EvaluatorAccount {
         let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         pool.as_ref().map(|pool| pool.account.clone()).unwrap_or_default()
     }
 
     /// How it is run.
-    pub fn settings(&self) -> &Settings {
+    pub(crate) fn settings(&self) -> &Settings {
         &self.settings
     }
 

@@ -142,7 +142,7 @@ impl Pool {
     /// that differs, or that is not reached, is unconfirmed.
     fn look_back(&mut self, batch: &[Vec<f64>], out: &mut Responses, run: &Run<'_>) {
         let (earlier, forgotten) = self.answers.unconfirmed(batch);
-        self.account.unconfirmed += forgotten as u64;
+        self.account.counts.unconfirmed += forgotten as u64;
         if earlier.is_empty() {
             return;
         }
@@ -154,7 +154,7 @@ impl Pool {
                 self.answers.confirm(point);
                 continue;
             }
-            self.account.unconfirmed += 1;
+            self.account.counts.unconfirmed += 1;
             let nothing = vec![None; values[row].len()];
             let found = found.unwrap_or(&nothing);
             for output in 0..nothing.len() {
@@ -342,7 +342,7 @@ impl Pool {
         }
         // What it is now is what two ways agree on, or nothing.
         self.answers.confirm(point);
-        self.account.unconfirmed += u64::from(unsettled);
+        self.account.counts.unconfirmed += u64::from(unsettled);
         unsettled
     }
 

@@ -8,7 +8,7 @@ mod analysis;
 mod what_if;
 
 pub use analysis::analyze_html;
-pub use what_if::{Line, WhatIf};
+pub use what_if::WhatIf;
 
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
@@ -84,27 +84,27 @@ fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
 }
 
 /// A simulation as one page of HTML: every estimate with its standard error, the histogram with the error of every bar.
-pub fn simulate_html(report: &SimulationReport) -> String {
+pub(crate) fn simulate_html(report: &SimulationReport) -> String {
     page(&report.head, &report.simulation.run, &report.document(), &report.warnings)
 }
 
 /// Rare events as one page of HTML: every probability with its interval, and the assembly in which it most likely comes about.
-pub fn rare_html(report: &RareReport) -> String {
+pub(crate) fn rare_html(report: &RareReport) -> String {
     page(&report.head, &report.found.run, &report.document(), &report.warnings)
 }
 
 /// A comparison as one page of HTML: evaluations against error, and a table for every characteristic.
-pub fn compare_html(report: &CompareReport) -> String {
+pub(crate) fn compare_html(report: &CompareReport) -> String {
     page(&report.head, &report.run, &report.document(), &[])
 }
 
 /// A sweep as one page of HTML: mean and band over the parameter, and a table for every characteristic.
-pub fn sweep_html(report: &SweepReport) -> String {
+pub(crate) fn sweep_html(report: &SweepReport) -> String {
     page(&report.head, &report.run, &report.document(), &report.warnings)
 }
 
 /// An allocation as one page of HTML: what it saves first, then tolerances, costs and requirements before and after.
-pub fn allocate_html(report: &AllocationReport) -> String {
+pub(crate) fn allocate_html(report: &AllocationReport) -> String {
     page(&report.head, &report.run, &report.document(), &report.warnings)
 }
 

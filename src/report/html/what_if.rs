@@ -11,7 +11,7 @@ use crate::problem::Problem;
 use crate::surrogate::InputShape;
 
 /// An entry of the study's `[dimensions]`: its name, and its keys with their values as TOML.
-pub type Line = (String, Vec<(String, String)>);
+type Line = (String, Vec<(String, String)>);
 
 /// Distributions whose tolerance the page can change: their shape does not follow it, and a study writes it in one key.
 const KINDS: [&str; 6] = ["normal", "truncated-normal", "uniform", "triangular", "trapezoidal", "beta"];

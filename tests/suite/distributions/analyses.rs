@@ -1,5 +1,6 @@
 //! Distributions in analyses: exact moments of quadratics, nodes within the support, long tails.
 
+use sensitol::internals::reach::*;
 use sensitol::internals::{Nodes, Spread};
 use sensitol::{Closure, Dimension, Method, Problem, Study, analyze};
 

@@ -9,6 +9,7 @@ use sensitol::distribution::{
     Beta, Distribution, DistributionError, Exponential, Gamma, Jacobi, Lognormal, Mixture, Normal, Part, Rayleigh,
     StandardMoments, Trapezoidal, Triangular, TruncatedNormal, Uniform, Weibull,
 };
+use sensitol::internals::reach::*;
 
 use super::fields;
 use crate::support::{close, data, relative};

@@ -11,6 +11,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::distribution::{
     CentralMoments, Distribution, DistributionError, Jacobi, Normal, Probability, StandardMoments, Uniform,
 };
+use sensitol::internals::reach::*;
 
 use self::densities::{Case, cases};
 use super::support::{close, relative};
