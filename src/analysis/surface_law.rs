@@ -66,7 +66,8 @@ pub struct SurfaceShares {
     pub below: Option<LawFigure>,
     /// The share above the upper limit; None without one.
     pub above: Option<LawFigure>,
-    /// At the [`PROBABILITIES`](crate::capability::PROBABILITIES); None where one of them is unknown.
+    /// At the [`PROBABILITIES`](crate::capability::PROBABILITIES); None where one of them is unknown, and without limits where products
+    /// of inputs that are not parabolas of normal ones form a tree: those of the Pearson fit are then reported.
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
@@ -114,7 +115,13 @@ impl SurfaceShares {
             }
             None => None,
         };
-        let quantiles = quantiles(full.as_ref().unwrap_or(&whole), fit);
+        let of_quantiles = full.as_ref().unwrap_or(&whole);
+        // Every point of a contour through a tree of products is a sum over tables, half a second for quartics of several inputs:
+        // without limits the Pearson fit does.
+        let quantiles = match limits.exist() || !of_quantiles.has_trees() {
+            true => quantiles(of_quantiles, fit),
+            false => None,
+        };
         Some((
             Self { branch: whole.branch(), counted: None, steps: whole.is_step_function(), below, above, quantiles },
             Some(whole),
@@ -313,7 +320,7 @@ pub(super) struct SurfaceLawShape {
     ppm_above: Option<f64>,
     /// The numerical error of the share within the limits: of the law of this surface, not of the surface.
     yield_error: Option<f64>,
-    /// Quantiles; null where one of them is unknown.
+    /// Quantiles; null where one of them is unknown, and without limits where products form a tree that has no closed form.
     quantiles: Option<Quantiles>,
 }
 

@@ -398,6 +398,11 @@ impl SurfaceLaw {
         }
     }
 
+    /// Whether products form a tree that has no closed form, so that every point of a contour is a sum over tables.
+    pub(crate) fn has_trees(&self) -> bool {
+        matches!(&self.kind, Kind::Exact(inversion) if !inversion.transform.trees.is_empty())
+    }
+
     /// Whether all inputs consist of atoms, so that probabilities jump from value to value and there is no density.
     pub fn is_step_function(&self) -> bool {
         self.step

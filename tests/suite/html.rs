@@ -392,11 +392,11 @@ fn the_page_computes_what_the_engine_computes() {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(20_261_121);
         let (given, moved): (Vec<Value>, Vec<_>) = (0..200).map(|_| settings(&study, &analysis, &mut rng)).unzip();
         let answer = by_node(&page, &Value::Array(given), name);
-        let of_law =
+        let any_by_law =
             |found: &Value| found["characteristics"].as_array().unwrap().iter().any(|one| one["by"] == "surface");
         let found = answer["found"].as_array().unwrap().iter();
         let expected: Vec<Value> =
-            moved.iter().zip(found).map(|(moved, found)| engine(&study, &analysis, moved, of_law(found))).collect();
+            moved.iter().zip(found).map(|(moved, found)| engine(&study, &analysis, moved, any_by_law(found))).collect();
         std::fs::write(cases().join(format!("{name}.expected.json")), json!(expected).to_string()).unwrap();
         for (i, (found, expected)) in answer["found"].as_array().unwrap().iter().zip(&expected).enumerate() {
             for (found, expected) in

@@ -1,4 +1,4 @@
-//! Quantiles, densities and counts of the law of a surface, as an analysis reports them: wherever there is a surface, with limits and without.
+//! Quantiles, densities and counts of the law of a surface, as an analysis reports them.
 
 use std::sync::Arc;
 
@@ -76,7 +76,7 @@ fn surfaces() -> Vec<(Branch, Problem)> {
     let cycle =
         |x: &[f64]| x[0] + 0.8 * x[1] + 0.1 * x[1] * x[1] + x[2] + 0.3 * (x[0] * x[1] - x[1] * x[2] + x[0] * x[2]);
     let mixed = || vec![uniform(1.0), triangular(1.0), normal(0.4)];
-    vec![
+    let all = vec![
         (Branch::Exact, problem(&mixed(), |x| x[0] + x[1] * x[1] + x[2])),
         (Branch::Exact, problem(&[normal(1.0), normal(0.5)], |x| x[0] + x[1] * x[0] - 0.2 * x[0] * x[0])),
         (Branch::Exact, problem(&mixed(), |x| x[0] + x[1] + 0.5 * x[0] * x[1] + x[2])),
@@ -86,7 +86,13 @@ fn surfaces() -> Vec<(Branch, Problem)> {
             Branch::Sampled,
             problem(&[uniform(1.0), triangular(1.0), uniform(0.8), normal(1.0)], move |x| cycle(x) + x[3]),
         ),
-    ]
+    ];
+    // With limits, wide ones: without them a tree has no quantiles of its own.
+    let limits = SpecLimits::new(Some(-50.0), Some(50.0)).unwrap();
+    let limited = |(branch, problem): (Branch, Problem)| {
+        (branch, problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap())
+    };
+    all.into_iter().map(limited).collect()
 }
 
 /// Quantiles that are sought together against the law's own search, which takes other contours, more panels, and a tilt for each.
