@@ -14,7 +14,7 @@ pub enum Requirement {
     Sigma(f64),
     /// The middle of the linear model plus and minus the root of the sum of squares lies within the limits.
     Rss,
-    /// The linear worst case lies within the limits.
+    /// The worst case lies within the limits: proven by interval arithmetic where the formula allows that, of the surface elsewhere.
     WorstCase,
 }
 

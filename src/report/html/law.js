@@ -214,7 +214,7 @@ const surface = (() => {
   const along = (contour, y, tail, most) => {
     const { theta, log, h, re, im, to } = contour, terms = [];
     const level = Math.exp(log - theta * y) * h / Math.PI;
-    let before = NaN;
+    let before = NaN, earlier = NaN;
     for (let count = FIRST; ; count *= 2) {
       to(count);
       for (let k = terms.length; k < Math.min(count, re.length); k++) {
@@ -230,10 +230,12 @@ const surface = (() => {
       for (let k = n - (n >> 2); k < n; k++) left = Math.max(left, Math.hypot(re[k], im[k]) / (tail ? Math.hypot(theta, h * k) : 1));
       if (left * n < ENDED * Math.abs(sum)) return { value: level * sum, error: level * (left * n + 1e-14 * n) + 1e-11 * level * Math.abs(sum) };
       const now = terms.reduce((sum, term, k) => sum + term * step(10.4 * (k / n - 0.5)), 0), off = Math.abs(now - before);
-      if (off < AGREED * Math.abs(now) || count >= most || n < count) {
-        return { value: level * now, error: level * (Number.isNaN(off) ? Math.abs(now) : 4 * off + 1e-11 * Math.abs(now)) };
+      // Sums that meet by chance once do not do so twice.
+      const apart = Math.max(off, earlier);
+      if (apart < AGREED * Math.abs(now) || count >= most || n < count) {
+        return { value: level * now, error: level * (Number.isNaN(apart) ? Math.abs(now) : 4 * apart + 1e-11 * Math.abs(now)) };
       }
-      before = now;
+      [before, earlier] = [now, off];
     }
   };
 
