@@ -79,7 +79,7 @@ impl AllocationReport {
     fn status_tone(&self) -> Tone {
         match self.status {
             Status::Optimal => Tone::Good,
-            Status::Infeasible => Tone::Bad,
+            Status::Infeasible | Status::NoFeasiblePointFound => Tone::Bad,
             _ => Tone::Doubtful,
         }
     }
@@ -103,7 +103,11 @@ impl AllocationReport {
             self.run.evaluations,
             self.rounds,
             head::beside(&self.run),
-            if self.confirmed && self.cost_after.is_some() { ", confirmed by the model" } else { "" }
+            match self.status {
+                Status::NoFeasiblePointFound => ", which end at tolerances that miss a requirement",
+                _ if self.confirmed && self.cost_after.is_some() => ", confirmed by the model",
+                _ => "",
+            }
         ));
         let proof = &self.proof;
         if let Some(gap) = proof.gap {
