@@ -104,7 +104,7 @@ pub(super) fn analyzed(
     }));
     let points = given.map(Table::missing).unwrap_or_default();
     let written =
-        written.and(files.missing.map_or(Ok(()), |missing| missing.write(&points::table(&study.problem, &points))));
+        written.and(files.missing.map_or(Ok(()), |missing| missing.write(&points::of_model(&study.problem, &points))));
     look.tell_all(&report.warnings);
     if let Some(given) = given {
         unmatched(given, asked.write_missing.as_deref(), look);

@@ -7,6 +7,7 @@ use super::correlation::correlated;
 use super::costs::{costs, requirement};
 use super::data::Data;
 use super::dimension;
+use super::drive;
 use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
@@ -17,8 +18,7 @@ use super::spanned::Spanned;
 use super::values::NominalEntry;
 use crate::allocation::Priced;
 use crate::assembly::formula::{Formula, FormulaError, FormulaFault, MixedUnits, is_plain, is_reserved};
-use crate::assembly::process::Greeting;
-use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
+use crate::assembly::{AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
 use crate::dimension::Dimension;
 use crate::method::Options;
@@ -63,11 +63,13 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> 
     let written = Written { formulas, implicit };
     let used = |name: &str| written.names().any(|used| used == name);
     known_to_model(file, model, &used)?;
+    drive::known_to_program(file, &used)?;
     let (characteristics, outputs) = characteristics(file, model, program)?;
     let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
     let mut warnings = aggregated(std::mem::take(&mut data.warnings));
     warnings.extend(outside_limits(file));
     warnings.extend(mixed_units(&composite));
+    idle_formula(program, &composite, &written)?;
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
@@ -134,7 +136,10 @@ fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Faults> {
         } else if is_reserved(text) && formulas {
             Some(StudyFault::ReservedName { name: text.clone() })
         } else {
-            taken.insert(text, by).map(|by| StudyFault::NameTaken { name: text.clone(), by })
+            taken.insert(text, by).map(|earlier| match (earlier, by) {
+                ("a dimension", "a formula") => StudyFault::DimensionAndFormula { name: text.clone() },
+                (by, _) => StudyFault::NameTaken { name: text.clone(), by },
+            })
         };
         faults.0.extend(found.map(at));
     }
@@ -162,12 +167,12 @@ fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> R
 }
 
 /// A formula of the file: of `[formulas]` or of a characteristic.
-struct Named<'f> {
-    name: String,
+pub(super) struct Named<'f> {
+    pub(super) name: String,
     /// The text with its quotes, in the file.
     text: &'f Spanned<String>,
     key: String,
-    formula: Formula,
+    pub(super) formula: Formula,
 }
 
 fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, Faults> {
@@ -186,25 +191,36 @@ fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, 
 }
 
 /// Everything that is written as a formula.
-struct Written<'f> {
-    formulas: Vec<Named<'f>>,
-    implicit: Option<Implicit>,
+pub(super) struct Written<'f> {
+    pub(super) formulas: Vec<Named<'f>>,
+    pub(super) implicit: Option<Implicit>,
 }
 
 impl Written<'_> {
     /// Every name that a formula or a condition uses.
-    fn names(&self) -> impl Iterator<Item = String> {
+    pub(super) fn names(&self) -> impl Iterator<Item = String> {
         let of_conditions = self.implicit.iter().flat_map(|implicit| implicit.conditions.formulas());
         let all =
             self.formulas.iter().map(|named| named.formula.clone()).chain(of_conditions.map(|(_, formula)| formula));
         all.flat_map(|formula| formula.names().map(|(name, _)| name.to_owned()).collect::<Vec<_>>())
     }
 
+    /// A fault of the formula at this place.
+    pub(super) fn at(&self, index: usize, found: StudyFault) -> Fault {
+        let named = &self.formulas[index];
+        fault(named.text.span(), named.key.clone(), found)
+    }
+
+    /// Where a formula of this name stands.
+    pub(super) fn place(&self, name: &str) -> Option<usize> {
+        self.formulas.iter().position(|named| named.name == name)
+    }
+
     fn is_formula(&self, name: &str) -> bool {
         self.formulas.iter().any(|named| named.name == name)
     }
 
-    fn is_unknown(&self, name: &str) -> bool {
+    pub(super) fn is_unknown(&self, name: &str) -> bool {
         self.implicit.iter().flat_map(|implicit| implicit.conditions.unknowns()).any(|unknown| unknown.name() == name)
     }
 }
@@ -312,7 +328,7 @@ fn compose(
     written: &Written<'_>,
     outputs: Outputs,
     source: &Source,
-) -> Result<Composite, Fault> {
+) -> Result<Composite, Faults> {
     let inputs: Vec<Input> = (dimensions.iter())
         .map(|dimension| Input { name: dimension.name().to_owned(), unit: dimension.unit().map(str::to_owned) })
         .collect();
@@ -321,27 +337,21 @@ fn compose(
     let nowhere = |found: StudyFault| Fault { span: None, key: String::new(), fault: Box::new(found) };
     let program = matches!(model, Some(ModelOf::Program(_)));
     if source.externals.points.is_some() && !program {
-        return Err(nowhere(StudyFault::NothingExternal));
+        return Err(nowhere(StudyFault::NothingExternal).into());
     }
-    let function = |model: &ModelOf| -> Result<(Arc<dyn AssemblyFunction>, Vec<assembly::Source>), Fault> {
-        Ok(match model {
-            ModelOf::BuiltIn(model) => (Arc::new(model.function()), sources(model, dimensions, &constants)),
-            ModelOf::Program(program) => {
-                let used = |name: &str| written.names().any(|used| used == name);
-                let names =
-                    dimensions.iter().map(Dimension::name).chain(constants.iter().map(|(name, _)| name.as_str()));
-                let greeting = Greeting {
-                    nominal: dimensions.iter().map(Dimension::nominal).collect(),
-                    constants: constants.clone(),
-                    optional: names.filter(|name| used(name)).map(str::to_owned).collect(),
-                };
-                let offered = asked_of_program(&inputs, &constants, written, &outputs);
-                let all = (0..dimensions.len()).map(assembly::Source::Dimension).collect();
-                (process(program, &inputs, greeting, offered, source).map_err(nowhere)?, all)
-            }
-        })
+    let model = match model {
+        None => None,
+        Some(ModelOf::BuiltIn(model)) => {
+            let function: Arc<dyn AssemblyFunction> = Arc::new(model.function());
+            Some((function, drive::of_built_in(model, dimensions, &constants, written)))
+        }
+        Some(ModelOf::Program(program)) => {
+            let sent = drive::of_program(file, dimensions, &constants, written, &outputs)?;
+            let offered = asked_of_program(&inputs, &constants, written, &outputs);
+            let function = process(program, &sent.inputs, sent.greeting, offered, source).map_err(nowhere)?;
+            Some((function, sent.sources))
+        }
     };
-    let model = model.map(function).transpose()?;
     let parts = Parts {
         inputs,
         constants,
@@ -350,8 +360,9 @@ fn compose(
         conditions: written.implicit.as_ref().map(|implicit| implicit.conditions.clone()),
         outputs,
     };
-    Composite::new(parts).map_err(|error| match error {
+    let failed = |error: CompositeError| match error {
         CompositeError::Conditions(error) => placed(file, error),
+        CompositeError::Driven { name, index, output } => written.at(index, StudyFault::DrivenByOutput { name, output }),
         CompositeError::Formula { index, error, .. } => {
             let (text, key) = match index.checked_sub(written.formulas.len()) {
                 None => (written.formulas[index].text.span(), written.formulas[index].key.clone()),
@@ -360,7 +371,8 @@ fn compose(
             let formula = written.formulas.get(index).map_or("", |named| named.text.get_ref());
             in_formula(source, text, key, of_several_words(file, formula, error))
         }
-    })
+    };
+    Composite::new(parts).map_err(|error| failed(error).into())
 }
 
 /// The fault of a formula, or that a name in it which reads as several needs backquotes.
@@ -376,17 +388,6 @@ fn of_several_words(file: &StudyFile, formula: &str, error: FormulaError) -> For
         Some((name, span)) => FormulaError { span, fault: FormulaFault::NeedsBackquotes { name } },
         None => error,
     }
-}
-
-/// Where the inputs of a built-in model come from: a dimension, a constant, or its own nominal value.
-fn sources(model: &Model, dimensions: &[Dimension], constants: &[(String, f64)]) -> Vec<assembly::Source> {
-    let constant = |name: &str| constants.iter().find(|(constant, _)| constant == name).map(|(_, value)| *value);
-    let input =
-        |input: &models::ModelInput| match dimensions.iter().position(|dimension| dimension.name() == input.name) {
-            Some(index) => assembly::Source::Dimension(index),
-            None => assembly::Source::Fixed(constant(input.name).unwrap_or(input.nominal)),
-        };
-    model.inputs.iter().map(input).collect()
 }
 
 /// What a program is asked for: characteristics without formula, and names in formulas that mean nothing else.
@@ -428,6 +429,19 @@ fn mixed_units(composite: &Composite) -> Option<Warning> {
     let MixedUnits { formula, part, units } = mixed.next()?;
     let others = mixed.map(|other| other.formula).collect();
     Some(Warning::MixedUnits { formula, part, units: units.map(str::to_owned), others })
+}
+
+/// Beside a program a formula that nothing needs was meant to drive it.
+fn idle_formula(program: bool, composite: &Composite, written: &Written<'_>) -> Result<(), Faults> {
+    if !program {
+        return Ok(());
+    }
+    let mut faults = Faults::default();
+    for (index, _) in composite.used().0.iter().enumerate().filter(|(_, needed)| !**needed) {
+        let name = written.formulas[index].name.clone();
+        faults.0.push(written.at(index, StudyFault::IdleFormula { name }));
+    }
+    faults.none()
 }
 
 /// Constants, formulas and unknowns that no characteristic of the file needs.

@@ -256,6 +256,34 @@ pub enum StudyFault {
         /// What bears it.
         by: &'static str,
     },
+    /// A name that stands in two sections.
+    #[error("`{name}` is a dimension and a formula")]
+    DimensionAndFormula {
+        /// The name.
+        name: String,
+    },
+    /// A formula that drives the model and needs what it answers.
+    #[error("formula `{name}` drives the model and needs its output `{output}`: a cycle")]
+    DrivenByOutput {
+        /// The formula.
+        name: String,
+        /// The output of the model.
+        output: String,
+    },
+    /// A formula beside a program that nothing needs.
+    #[error("formula `{name}` reaches neither a characteristic nor the model")]
+    IdleFormula {
+        /// The formula.
+        name: String,
+    },
+    /// A formula that drives a program has no value where the program is greeted with one.
+    #[error("formula `{name}` drives the model and has no value at the nominal dimensions: {reason}")]
+    NoNominal {
+        /// The formula.
+        name: String,
+        /// Why.
+        reason: String,
+    },
     /// A dimension or constant that the model does not have and no formula uses.
     #[error("the model `{model}` has no input `{name}`, and no formula uses it")]
     UnknownInput {
@@ -410,6 +438,9 @@ impl StudyFault {
             }
             Self::Formula(fault) => fault.help(),
             Self::ReservedName { .. } => Some("choose another name".into()),
+            Self::DimensionAndFormula { .. } => Some("leave one out".into()),
+            Self::DrivenByOutput { .. } => Some("use dimensions, constants and other formulas".into()),
+            Self::IdleFormula { .. } => Some("name it in [model] inputs, or leave it out".into()),
             Self::NameTaken { .. } => Some("one of the two needs another name".into()),
             Self::Nothing { what: "dimension" } => {
                 Some("write one a line below [dimensions], such as `a = { nominal = 10.0, tolerance = 0.3 }`".into())

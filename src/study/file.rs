@@ -32,7 +32,7 @@ pub(super) struct StudyFile {
     /// Fixed numbers for formulas and models.
     #[serde(default)]
     pub(super) constants: Entries<f64>,
-    /// Intermediate values by name, in any order, without cycles. A formula knows + - * / ^, comparisons, if(condition, x, y), abs,
+    /// Intermediate values by name, in any order, without cycles. One that bears the name of an input of the model drives it. A formula knows + - * / ^, comparisons, if(condition, x, y), abs,
     /// sign, floor, ceil, sqrt, exp, ln, log10, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, hypot, min, max, and the
     /// constants pi and deg = pi/180; angles are radians; a name with other characters than letters, digits and _ stands in backquotes.
     #[serde(default)]
@@ -253,6 +253,9 @@ pub(super) struct ModelEntry {
     pub(super) builtin: Option<Spanned<String>>,
     /// A program and its arguments, each a text of its own, run in the study's folder; it speaks the adapter protocol.
     pub(super) command: Option<Spanned<Vec<String>>>,
+    /// Names that a command is sent at every point, in this order: dimensions, constants and formulas, in place of all dimensions. A
+    /// formula in it drives the program. Two points that send the same numbers are one evaluation.
+    pub(super) inputs: Option<Spanned<Vec<Spanned<String>>>>,
     /// Processes side by side.
     #[cfg_attr(feature = "cli", schemars(extend("default" = registry::program().workers)))]
     pub(super) workers: Option<Spanned<u64>>,

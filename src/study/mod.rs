@@ -42,6 +42,7 @@ mod costs;
 mod data;
 mod de;
 mod dimension;
+mod drive;
 mod error;
 mod externals;
 mod file;
