@@ -26,7 +26,7 @@ use crate::warning::{Counted, Warning};
 /// `sensitol analyze` of one study.
 pub(super) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
-    let study = read(path, asked, given.clone(), look)?;
+    let study = read(path, asked.how.configuration.as_deref(), asked, given.clone(), look)?;
     let mut files = Files::of(path, &study, asked.work.journal.as_deref());
     asked.points.iter().for_each(|points| files.reads(points, "read by --points"));
     let destination = files.output(&asked.output)?;
@@ -37,8 +37,14 @@ pub(super) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, 
 }
 
 /// The study as it is to be analysed.
-pub(super) fn read(path: &Path, asked: &AnalyzeArgs, given: Option<Arc<Table>>, look: Look) -> Result<Study, Failure> {
-    let externals = externals(asked.work.journal.as_deref(), look, given);
+pub(super) fn read(
+    path: &Path,
+    configuration: Option<&str>,
+    asked: &AnalyzeArgs,
+    given: Option<Arc<Table>>,
+    look: Look,
+) -> Result<Study, Failure> {
+    let externals = study::configured(externals(asked.work.journal.as_deref(), look, given), configuration);
     let mut study = study::read_file(path, &asked.how, externals)?;
     study.options.seed = asked.seed.or(study.options.seed);
     // A file of answers has those that the plan asks for.

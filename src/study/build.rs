@@ -41,13 +41,12 @@ pub(super) struct Built {
     pub(super) files: Vec<NamedFile>,
 }
 
-pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> {
+pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Result<Built, Faults> {
     let evaluated = file.model.as_ref().map(|entry| model(entry, source)).transpose()?;
     let program = matches!(evaluated, Some(ModelOf::Program(_)));
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     let mut faults = Faults::default();
     faults.take(names(file, model));
-    let mut data = Data::of(&source.place);
     let dimensions = faults.take(dimensions(file, model, &mut data)).unwrap_or_default();
     let formulas = faults.take(formulas(file, source)).unwrap_or_default();
     faults.take(characteristics(file, model, program));
@@ -362,7 +361,9 @@ fn compose(
     };
     let failed = |error: CompositeError| match error {
         CompositeError::Conditions(error) => placed(file, error),
-        CompositeError::Driven { name, index, output } => written.at(index, StudyFault::DrivenByOutput { name, output }),
+        CompositeError::Driven { name, index, output } => {
+            written.at(index, StudyFault::DrivenByOutput { name, output })
+        }
         CompositeError::Formula { index, error, .. } => {
             let (text, key) = match index.checked_sub(written.formulas.len()) {
                 None => (written.formulas[index].text.span(), written.formulas[index].key.clone()),

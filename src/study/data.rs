@@ -199,6 +199,14 @@ pub(super) struct Column {
     pub(super) missing: Vec<u64>,
 }
 
+/// A table with a name in the first column of every row.
+pub(super) struct Cells {
+    /// Of the other columns.
+    pub(super) names: Vec<String>,
+    /// The name of a row, and its numbers; None where a cell is empty.
+    pub(super) rows: Vec<(String, Vec<Option<f64>>)>,
+}
+
 impl<'s> Data<'s> {
     pub(super) fn of(place: &'s Place) -> Self {
         Self { place, files: Vec::new(), warnings: Vec::new() }
@@ -216,18 +224,43 @@ impl<'s> Data<'s> {
 
     /// A column of a file; without a name the only one, or the only one that holds nothing but numbers.
     pub(super) fn column(&mut self, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
+        let table = self.table(file)?;
+        let fault = |line, problem| DataFault { file: file.to_owned(), line, column: None, problem: Box::new(problem) };
+        let index = table.index(name).map_err(|problem| fault(None, problem))?;
+        table.numbers(index).map_err(|(line, problem)| {
+            let column = Some(table.names[index].clone());
+            DataFault { column, ..fault(Some(line), problem) }
+        })
+    }
+
+    /// All cells of a file whose first column is a name.
+    pub(super) fn cells(&mut self, file: &str) -> Result<Cells, DataFault> {
+        let table = self.table(file)?;
+        let mut rows: Vec<(String, Vec<Option<f64>>)> =
+            table.rows.iter().map(|(_, row)| (row.get(0).unwrap_or("").to_owned(), Vec::new())).collect();
+        for index in 1..table.names.len() {
+            let column = table.numbers(index).map_err(|(line, problem)| DataFault {
+                file: file.to_owned(),
+                line: Some(line),
+                column: Some(table.names[index].clone()),
+                problem: Box::new(problem),
+            })?;
+            for ((line, _), (_, cells)) in table.rows.iter().zip(&mut rows) {
+                let found = column.lines.iter().position(|known| known == line);
+                cells.push(found.map(|place| column.values[place]));
+            }
+        }
+        Ok(Cells { names: table.names[1..].to_vec(), rows })
+    }
+
+    fn table(&mut self, file: &str) -> Result<Table, DataFault> {
         let bytes = self.read(file)?;
         let fault = |line, problem| DataFault { file: file.to_owned(), line, column: None, problem: Box::new(problem) };
         let text = std::str::from_utf8(&bytes).map_err(|error| {
             let line = bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
             fault(Some(line), DataProblem::NotUtf8)
         })?;
-        let table = Table::parse(text).map_err(|(line, problem)| fault(line, problem))?;
-        let index = table.index(name).map_err(|problem| fault(None, problem))?;
-        table.numbers(index).map_err(|(line, problem)| {
-            let column = Some(table.names[index].clone());
-            DataFault { column, ..fault(Some(line), problem) }
-        })
+        Table::parse(text).map_err(|(line, problem)| fault(line, problem))
     }
 
     fn read(&mut self, file: &str) -> Result<Arc<[u8]>, DataFault> {

@@ -262,6 +262,38 @@ pub enum StudyFault {
         /// The name.
         name: String,
     },
+    /// Dimensions that are measured from each other.
+    #[error("`{}` is measured from itself{}", path[0], way(path))]
+    FromCircle {
+        /// The dimensions, each measured from the next, and the last from the first.
+        path: Vec<String>,
+    },
+    /// A configuration of something else.
+    #[error("configuration `{configuration}` sets `{name}`, which is no dimension or constant")]
+    UnknownConfigured {
+        /// The configuration.
+        configuration: String,
+        /// The name.
+        name: String,
+        /// The most similar dimension or constant.
+        nearest: Option<String>,
+        /// The dimensions and constants that there are.
+        known: Vec<String>,
+    },
+    /// A configuration of a dimension whose limits do not move with its nominal value.
+    #[error("configuration `{configuration}` sets `{name}`, whose limits are absolute")]
+    ConfiguredLimits {
+        /// The configuration.
+        configuration: String,
+        /// The dimension.
+        name: String,
+    },
+    /// A configuration that bears the word for all of them.
+    #[error("the name `all` stands for every configuration")]
+    ReservedConfiguration,
+    /// A configuration is asked for, and there is none.
+    #[error("the study has no [configurations]")]
+    NoConfigurations,
     /// A formula that drives the model and needs what it answers.
     #[error("formula `{name}` drives the model and needs its output `{output}`: a cycle")]
     DrivenByOutput {
@@ -354,6 +386,11 @@ pub enum StudyFault {
     Problem(#[from] ProblemError),
 }
 
+/// The way back to the first of these names.
+fn way(path: &[String]) -> String {
+    if path.len() < 2 { String::new() } else { format!(": {} -> {}", path.join(" -> "), path[0]) }
+}
+
 impl From<UnknownName> for StudyFault {
     fn from(UnknownName { what, name, nearest, known }: UnknownName) -> Self {
         let known = known.into_iter().map(str::to_owned).collect();
@@ -438,6 +475,11 @@ impl StudyFault {
             }
             Self::Formula(fault) => fault.help(),
             Self::ReservedName { .. } => Some("choose another name".into()),
+            Self::UnknownConfigured { nearest: Some(name), .. } => Some(format!("nearest: `{name}`")),
+            Self::UnknownConfigured { known, .. } => Some(one_of(known)),
+            Self::ConfiguredLimits { .. } => Some("write tolerance or fit in place of limits".into()),
+            Self::FromCircle { .. } => Some("measure one of them from a datum: leave out its `from`".into()),
+            Self::ReservedConfiguration => Some("choose another name".into()),
             Self::DimensionAndFormula { .. } => Some("leave one out".into()),
             Self::DrivenByOutput { .. } => Some("use dimensions, constants and other formulas".into()),
             Self::IdleFormula { .. } => Some("name it in [model] inputs, or leave it out".into()),

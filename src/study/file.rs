@@ -8,7 +8,7 @@ use super::price::{CostEntry, RequireEntry};
 use super::registry;
 use super::spanned::Spanned;
 use super::words::CORRELATIONS;
-use serde::de::{MapAccess, SeqAccess, Visitor, value};
+use serde::de::{IgnoredAny, MapAccess, SeqAccess, Visitor, value};
 use serde::{Deserialize, Deserializer};
 
 use super::values::{NominalEntry, ToleranceEntry};
@@ -56,6 +56,11 @@ pub(super) struct StudyFile {
     /// Pairs of dimensions that vary together.
     #[serde(default)]
     pub(super) correlation: Correlations,
+    /// Sizes of one assembly by name: nominal values and constants that take the place of those of the study, such as
+    /// small = { L = 40, D = 8 }; or file = "sizes.csv", whose first column is the name.
+    #[serde(rename = "configurations")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::configurations"))]
+    pub(super) _configurations: Option<IgnoredAny>,
     /// What is evaluated beside formulas: a built-in model or an external program.
     pub(super) model: Option<Spanned<ModelEntry>>,
     /// How the study is analysed; flags of the command line win.
@@ -81,6 +86,11 @@ pub(super) struct DimensionEntry {
     pub(super) limits: Option<Spanned<[f64; 2]>>,
     /// A tolerance class of ISO 286, H7 or g6, in place of a tolerance; the unit must be mm.
     pub(super) fit: Option<Spanned<String>>,
+    /// What it is measured from: a dimension or formula, or several that are added; of a position another position. Its nominal is
+    /// then the distance.
+    #[serde(rename = "from")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::names"))]
+    pub(super) _from: Option<IgnoredAny>,
     /// Diameter of the circular zone of a position, in place of a tolerance: two dimensions, NAME_x and NAME_y.
     pub(super) position: Option<Spanned<f64>>,
     /// The unit, which is shown and never converted.
