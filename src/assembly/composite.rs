@@ -8,9 +8,9 @@ mod switches;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
-#[cfg(feature = "study")]
-use super::formula::MixedUnits;
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
+#[cfg(feature = "study")]
+use super::formula::{Role, UnitFinding};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
 use super::process::EvaluatorAccount;
 use super::responses::all_finite;
@@ -18,6 +18,8 @@ use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Request,
     Responses, Run, Signature, Switches, in_blocks,
 };
+#[cfg(feature = "study")]
+use crate::unit::Unit;
 use crate::warning::Warning;
 
 /// Parts of formulas that are looked at to explain the failures of one block of rows: all failures of short formulas, and the first few
@@ -84,6 +86,8 @@ pub struct Composite {
 struct Inner {
     function: Arc<dyn AssemblyFunction>,
     inputs: Vec<Source>,
+    /// What each of its inputs is multiplied by; empty where none is.
+    factors: Vec<f64>,
     /// Where a costly model that formulas drive was sent for which point, by the bits of what it was sent.
     sent: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
 }
@@ -134,7 +138,8 @@ impl Composite {
         let named = formulas.len();
         formulas.extend(conditions.iter().flat_map(Conditions::formulas));
         let names: Vec<String> = formulas.iter().map(|(name, _)| name.clone()).collect();
-        let model = model.map(|(function, inputs)| Inner { function, inputs, sent: Mutex::default() });
+        let model =
+            model.map(|(function, inputs)| Inner { function, inputs, factors: Vec::new(), sent: Mutex::default() });
         let offers = model.as_ref().map_or(&[][..], |model| &model.function.signature().outputs);
         let given = inputs.len() + offers.len();
         let unknowns = conditions.as_ref().map_or(&[][..], Conditions::unknowns);
@@ -181,13 +186,22 @@ impl Composite {
         Ok(composite)
     }
 
-    /// The formulas and conditions that add or compare different units.
+    /// Where units of formulas and conditions do not go together, as `FormulaSet::units` finds it.
     #[cfg(feature = "study")]
-    pub(crate) fn mixed_units(&self) -> Vec<MixedUnits> {
-        let inputs = self.signature.inputs.iter().map(|input| input.unit.as_deref());
-        let answers = self.model.iter().flat_map(|model| &model.function.signature().outputs);
-        let units: Vec<Option<&str>> = inputs.chain(answers.map(|output| output.unit.as_deref())).collect();
-        self.formulas.mixed_units(|variable| units.get(variable).copied().flatten())
+    pub(crate) fn units(
+        &self,
+        unit: &dyn Fn(&str) -> Option<Unit>,
+        role: &dyn Fn(usize) -> Role,
+        convert: bool,
+    ) -> Vec<UnitFinding> {
+        self.formulas.units(unit, role, convert)
+    }
+
+    /// With every input of the model multiplied by a factor; none where there are no factors.
+    #[cfg(feature = "study")]
+    pub(crate) fn with_factors(mut self, factors: Vec<f64>) -> Self {
+        self.model.iter_mut().for_each(|model| model.factors.clone_from(&factors));
+        self
     }
 
     /// Which formulas the outputs need, as a flag per formula, and whether they need the unknowns.

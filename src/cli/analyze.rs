@@ -52,7 +52,8 @@ pub(super) fn read(
     study.options.verify = asked.verify.or(study.options.verify).or(answers);
     study.options.extremes |= asked.extremes;
     study.options.densities |= asked.html.is_some();
-    if asked.check && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
+    let joint = study.options.target_joint_yield.is_some();
+    if asked.check && !joint && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
         return Err(Failure::NothingToCheck);
     }
     Ok(study)
@@ -126,6 +127,7 @@ pub(super) fn analyzed(
     }
     let unfinished = analysis.characteristics.iter().any(|one| one.unfinished);
     let judged = analysis.characteristics.iter().flat_map(CharacteristicAnalysis::requirements);
+    let judged = judged.chain(analysis.joint_requirement);
     let exit = if asked.check { checked(unfinished, judged) } else { Exit::Done };
     Ok(confirmed(exit, &analysis.run))
 }

@@ -1,6 +1,7 @@
 //! From the file's types to a problem: names, model, formulas, characteristics.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::correlation::correlated;
@@ -12,12 +13,14 @@ use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
 use super::implicit::{Implicit, implicit, placed};
+use super::joint;
 use super::model::{ModelOf, model, process};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
+use super::units;
 use super::values::NominalEntry;
 use crate::allocation::Priced;
-use crate::assembly::formula::{Formula, FormulaError, FormulaFault, MixedUnits, is_plain, is_reserved};
+use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
 use crate::assembly::{AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
 use crate::dimension::Dimension;
@@ -47,6 +50,7 @@ pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Re
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     let mut faults = Faults::default();
     faults.take(names(file, model));
+    let blocks = faults.take(joint::blocks(file, &mut data)).unwrap_or_default();
     let dimensions = faults.take(dimensions(file, model, &mut data)).unwrap_or_default();
     let formulas = faults.take(formulas(file, source)).unwrap_or_default();
     faults.take(characteristics(file, model, program));
@@ -64,16 +68,25 @@ pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Re
     known_to_model(file, model, &used)?;
     drive::known_to_program(file, &used)?;
     let (characteristics, outputs) = characteristics(file, model, program)?;
-    let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
+    let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs.clone(), source)?;
+    let held = units::Units::of(file, model, &dimensions, &written, source)?;
+    let of_units = held.check(&composite)?;
+    let composite = match held.converted(&written) {
+        None => composite,
+        Some(converted) => {
+            let again = compose(file, evaluated.as_ref(), &dimensions, &converted, outputs, source)?;
+            again.with_factors(held.factors())
+        }
+    };
     let mut warnings = aggregated(std::mem::take(&mut data.warnings));
     warnings.extend(outside_limits(file));
-    warnings.extend(mixed_units(&composite));
+    warnings.extend(of_units);
     idle_formula(program, &composite, &written)?;
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
-    let problem = correlated(problem, &file.correlation.0)?;
+    let problem = correlated(problem, &file.correlation.0, &blocks)?;
     let options = super::options::options(&file.analysis, &problem)?;
     let costs = costs(file, &problem)?;
     let requirements = requirements(file, &problem)?;
@@ -166,26 +179,47 @@ fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> R
 }
 
 /// A formula of the file: of `[formulas]` or of a characteristic.
+#[derive(Clone)]
 pub(super) struct Named<'f> {
     pub(super) name: String,
-    /// The text with its quotes, in the file.
-    text: &'f Spanned<String>,
-    key: String,
+    /// Its text, and where that stands with its quotes in the file.
+    pub(super) text: &'f str,
+    pub(super) span: Range<usize>,
+    pub(super) key: String,
     pub(super) formula: Formula,
+    /// The unit that it is said to have.
+    pub(super) unit: Option<&'f str>,
+    /// Whether it is that of a characteristic.
+    pub(super) result: bool,
 }
 
 fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, Faults> {
     let mut faults = Faults::default();
-    let own = file.formulas.0.iter().map(|(name, text)| (name, text, format!("formulas.{}", name.get_ref())));
-    let of_characteristics = file.characteristics.0.iter().filter_map(|(name, entry)| {
-        Some((name, entry.get_ref().formula.as_ref()?, format!("characteristics.{}.formula", name.get_ref())))
+    let own = file.formulas.0.iter().map(|(name, entry)| {
+        let (span, text) = entry.get_ref().text(entry.span());
+        let unit = entry.get_ref().unit.as_deref();
+        (name, span, text, format!("formulas.{}", name.get_ref()), unit, false)
     });
-    let parsed =
-        |(name, text, key): (&Spanned<String>, &'f Spanned<String>, String)| match Formula::parse(text.get_ref()) {
-            Ok(formula) => Ok(Named { name: name.get_ref().clone(), text, key, formula }),
-            Err(error) => Err(in_formula(source, text.span(), key, of_several_words(file, text.get_ref(), error))),
-        };
-    let parsed: Vec<Named<'f>> = own.chain(of_characteristics).filter_map(|one| faults.take(parsed(one))).collect();
+    let of_characteristics = file.characteristics.0.iter().filter_map(|(name, entry)| {
+        let text = entry.get_ref().formula.as_ref()?;
+        let key = format!("characteristics.{}.formula", name.get_ref());
+        Some((name, text.span(), text.get_ref().as_str(), key, entry.get_ref().unit.as_deref(), true))
+    });
+    let mut parsed: Vec<Named<'f>> = Vec::new();
+    for (name, span, text, key, unit, result) in own.chain(of_characteristics) {
+        let formula = Formula::parse(text)
+            .map_err(|error| in_formula(source, span.clone(), key.clone(), of_several_words(file, text, error)));
+        let formula = faults.take(formula);
+        parsed.extend(formula.map(|formula| Named {
+            name: name.get_ref().clone(),
+            text,
+            span,
+            key,
+            formula,
+            unit,
+            result,
+        }));
+    }
     faults.none().map(|()| parsed)
 }
 
@@ -207,7 +241,7 @@ impl Written<'_> {
     /// A fault of the formula at this place.
     pub(super) fn at(&self, index: usize, found: StudyFault) -> Fault {
         let named = &self.formulas[index];
-        fault(named.text.span(), named.key.clone(), found)
+        fault(named.span.clone(), named.key.clone(), found)
     }
 
     /// Where a formula of this name stands.
@@ -332,7 +366,7 @@ fn compose(
         .map(|dimension| Input { name: dimension.name().to_owned(), unit: dimension.unit().map(str::to_owned) })
         .collect();
     let constants: Vec<(String, f64)> =
-        file.constants.0.iter().map(|(name, value)| (name.get_ref().clone(), *value.get_ref())).collect();
+        file.constants.0.iter().map(|(name, value)| (name.get_ref().clone(), value.get_ref().value)).collect();
     let nowhere = |found: StudyFault| Fault { span: None, key: String::new(), fault: Box::new(found) };
     let program = matches!(model, Some(ModelOf::Program(_)));
     if source.externals.points.is_some() && !program {
@@ -366,10 +400,10 @@ fn compose(
         }
         CompositeError::Formula { index, error, .. } => {
             let (text, key) = match index.checked_sub(written.formulas.len()) {
-                None => (written.formulas[index].text.span(), written.formulas[index].key.clone()),
+                None => (written.formulas[index].span.clone(), written.formulas[index].key.clone()),
                 Some(index) => written.implicit.as_ref().expect("the formula came from here").places[index].clone(),
             };
-            let formula = written.formulas.get(index).map_or("", |named| named.text.get_ref());
+            let formula = written.formulas.get(index).map_or("", |named| named.text);
             in_formula(source, text, key, of_several_words(file, formula, error))
         }
     };
@@ -422,14 +456,6 @@ fn outside_limits(file: &StudyFile) -> Option<Warning> {
     });
     let dimensions: Vec<String> = outside.collect();
     (!dimensions.is_empty()).then_some(Warning::NominalOutsideLimits { dimensions })
-}
-
-/// Formulas that add or compare different units, in one warning.
-fn mixed_units(composite: &Composite) -> Option<Warning> {
-    let mut mixed = composite.mixed_units().into_iter();
-    let MixedUnits { formula, part, units } = mixed.next()?;
-    let others = mixed.map(|other| other.formula).collect();
-    Some(Warning::MixedUnits { formula, part, units: units.map(str::to_owned), others })
 }
 
 /// Beside a program a formula that nothing needs was meant to drive it.

@@ -1,5 +1,6 @@
 //! Tables of measured values: CSV files beside a study.
 
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::files::{FileRole, NamedFile};
@@ -121,6 +122,14 @@ pub enum DataProblem {
         /// How many there must be.
         least: usize,
     },
+    /// A number of a part that stands twice.
+    #[error("`{text}` stands in line {other} already: it joins rows of several files")]
+    SerialTwice {
+        /// The number.
+        text: String,
+        /// The first line with it.
+        other: u64,
+    },
     /// All values are the same.
     #[error("all {count} values are {value}: nothing varies")]
     Constant {
@@ -176,6 +185,9 @@ impl DataProblem {
                 Some("measure more parts, or write nominal and tolerance instead of measured".into())
             }
             Self::NotFinite { .. } => Some("leave a cell empty, or write NA, where nothing was measured".into()),
+            Self::SerialTwice { .. } => {
+                Some("every part has a number of its own: leave one of the two rows out".into())
+            }
             Self::ColumnTwice { .. } => Some("one of the two needs another name".into()),
         }
     }
@@ -187,6 +199,8 @@ pub(super) struct Data<'s> {
     /// Every file once, in the order of the dimensions.
     files: Vec<(NamedFile, Arc<[u8]>)>,
     pub(super) warnings: Vec<Warning>,
+    /// Of a dimension whose rows belong together with others: the lines that all have, and whether a number of the part joins them.
+    kept: HashMap<String, (HashSet<u64>, bool)>,
 }
 
 /// One column of measured values.
@@ -209,7 +223,7 @@ pub(super) struct Cells {
 
 impl<'s> Data<'s> {
     pub(super) fn of(place: &'s Place) -> Self {
-        Self { place, files: Vec::new(), warnings: Vec::new() }
+        Self { place, files: Vec::new(), warnings: Vec::new(), kept: HashMap::new() }
     }
 
     /// The bytes of every file that was read.
@@ -231,6 +245,40 @@ impl<'s> Data<'s> {
             let column = Some(table.names[index].clone());
             DataFault { column, ..fault(Some(line), problem) }
         })
+    }
+
+    /// Keeps these lines of a dimension's column only.
+    pub(super) fn keep(&mut self, dimension: &str, lines: HashSet<u64>, matched: bool) {
+        self.kept.insert(dimension.to_owned(), (lines, matched));
+    }
+
+    /// A column of a file for this dimension, without the rows that lack a value of another dimension of the same parts.
+    pub(super) fn column_of(&mut self, dimension: &str, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
+        let mut column = self.column(file, name)?;
+        if let Some((lines, matched)) = self.kept.get(dimension) {
+            let all: Vec<(f64, u64)> = column.values.iter().copied().zip(column.lines.iter().copied()).collect();
+            let (kept, left): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, line)| lines.contains(line));
+            (column.values, column.lines) = kept.into_iter().unzip();
+            if !matched {
+                column.missing.extend(left.into_iter().map(|(_, line)| line));
+                column.missing.sort_unstable();
+            }
+        }
+        Ok(column)
+    }
+
+    /// The names of a file's columns, and the lines with the text of one of them; None where there is no such column.
+    #[allow(clippy::type_complexity)]
+    pub(super) fn texts(
+        &mut self,
+        file: &str,
+        name: &str,
+    ) -> Result<(Vec<String>, Option<Vec<(u64, String)>>), DataFault> {
+        let table = self.table(file)?;
+        let texts = table.names.iter().position(|known| known == name).map(|index| {
+            table.rows.iter().map(|(line, row)| (*line, row.get(index).unwrap_or("").to_owned())).collect()
+        });
+        Ok((table.names, texts))
     }
 
     /// All cells of a file whose first column is a name.

@@ -294,6 +294,32 @@ pub enum StudyFault {
     /// A configuration is asked for, and there is none.
     #[error("the study has no [configurations]")]
     NoConfigurations,
+    /// A correlation of two columns of one measured file.
+    #[error("the correlation between `{}` and `{}` is that of their rows, {value:.3}", between[0], between[1])]
+    CorrelationOfRows {
+        /// The dimensions.
+        between: [String; 2],
+        /// The correlation of the rows.
+        value: f64,
+    },
+    /// A correlation of a measured dimension that varies with others of its file, and one beside them.
+    #[error(
+        "`{inside}` varies with {others} as the rows of their file say, so that nothing else is correlated with it"
+    )]
+    CorrelationBesideRows {
+        /// The dimension.
+        inside: String,
+        /// The others of the same rows.
+        others: String,
+    },
+    /// Units that do not go together.
+    #[error("{what}")]
+    Units {
+        /// What is wrong.
+        what: String,
+        /// What to write instead.
+        remedy: String,
+    },
     /// A formula that drives the model and needs what it answers.
     #[error("formula `{name}` drives the model and needs its output `{output}`: a cycle")]
     DrivenByOutput {
@@ -422,6 +448,7 @@ impl StudyFault {
             }
             Self::UnknownKey { valid, .. } if valid.is_empty() => None,
             Self::UnknownKey { valid, .. } => Some(format!("keys are {}", valid.join(", "))),
+            Self::UnknownWord { known, .. } if known.is_empty() => None,
             Self::UnknownWord { known, .. } => Some(one_of(known)),
             Self::UnknownInput { nearest, known, .. } => {
                 let nearest = nearest.as_ref().map(|name| format!("did you mean `{name}`? ")).unwrap_or_default();
@@ -479,6 +506,11 @@ impl StudyFault {
             Self::UnknownConfigured { known, .. } => Some(one_of(known)),
             Self::ConfiguredLimits { .. } => Some("write tolerance or fit in place of limits".into()),
             Self::FromCircle { .. } => Some("measure one of them from a datum: leave out its `from`".into()),
+            Self::CorrelationOfRows { .. } => Some("leave it out, or write joint = false at one of the two".into()),
+            Self::CorrelationBesideRows { inside, .. } => {
+                Some(format!("leave the pair out, or write joint = false at `{inside}`"))
+            }
+            Self::Units { remedy, .. } => Some(remedy.clone()),
             Self::ReservedConfiguration => Some("choose another name".into()),
             Self::DimensionAndFormula { .. } => Some("leave one out".into()),
             Self::DrivenByOutput { .. } => Some("use dimensions, constants and other formulas".into()),

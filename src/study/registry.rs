@@ -20,6 +20,11 @@ pub(super) fn built_in_models() -> Vec<&'static str> {
     models::ALL.iter().map(|model| model.name).collect()
 }
 
+/// How units are held.
+pub(super) fn unit_modes() -> Vec<&'static str> {
+    words::UNIT_MODES.to_vec()
+}
+
 /// The names of all stencils.
 pub(super) fn stencils() -> Vec<&'static str> {
     Stencil::NAMES.to_vec()

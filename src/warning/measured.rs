@@ -10,6 +10,13 @@ pub(super) fn missing_values(dimension: &str, file: &str, missing: &usize, rows:
         .advise(Advice::FindMissingValues)
 }
 
+pub(super) fn unmatched_rows(dimension: &str, file: &str, unmatched: &usize, rows: &usize, first: &[u64]) -> Text {
+    let (have, are) = if *unmatched == 1 { ("has", "It is") } else { ("have", "They are") };
+    let of = format!("{unmatched} of {rows} rows of `{dimension}`");
+    say(format!("{of} in {file} {have} no partner in the other files ({}). {are} left out.", lines(first, *unmatched)))
+        .advise(Advice::FindMissingValues)
+}
+
 pub(super) fn outliers(dimension: &str, file: &str, count: &usize, values: &usize, first: &[(f64, u64)]) -> Text {
     let (lie, which) = if *count == 1 { ("lies", "It is") } else { ("lie", "They are") };
     let first = values_and_lines(first, *count);

@@ -49,16 +49,27 @@ warnings! {
         /// The dimensions.
         dimensions: Vec<String>,
     };
-    /// Formulas add or compare values of different units.
-    MixedUnits = "mixed-units" by study::mixed_units {
-        /// The first of these formulas.
+    /// The units in a formula do not go together.
+    UnitMismatch = "unit-mismatch" by study::unit_mismatch {
+        /// The key of the first such formula.
         formula: String,
-        /// The sum or comparison in it, as written.
+        /// The column in its text, from 1.
+        column: usize,
+        /// The part of it, as written.
         part: String,
-        /// The units on its two sides.
-        units: [String; 2],
-        /// Further formulas that do so.
+        /// What does not go together.
+        what: String,
+        /// What to write instead.
+        instead: String,
+        /// Further formulas whose units do not go together.
         others: Vec<String>,
+    };
+    /// Units of which nothing is known: they are labels.
+    UnknownUnit = "unknown-unit" by study::unknown_unit {
+        /// The units, each once.
+        units: Vec<String>,
+        /// The first name with such a unit.
+        name: String,
     };
     /// No characteristic of the study uses these constants, formulas or unknowns.
     UnusedName = "unused-name" by study::unused_name {
@@ -86,6 +97,19 @@ warnings! {
         /// All cells.
         rows: usize,
         /// The first lines without a value.
+        lines: Vec<u64>,
+    };
+    /// Rows of a measured file whose number stands in no other file.
+    UnmatchedRows = "unmatched-rows" by measured::unmatched_rows {
+        /// The dimension.
+        dimension: String,
+        /// The file.
+        file: String,
+        /// Rows without a partner.
+        unmatched: usize,
+        /// All rows.
+        rows: usize,
+        /// The first lines without a partner.
         lines: Vec<u64>,
     };
     /// Measured values that lie too far from the others.

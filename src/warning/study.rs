@@ -34,12 +34,31 @@ pub(super) fn nominal_outside_limits(dimensions: &[String]) -> Text {
     .advise(Advice::CheckLimits)
 }
 
-pub(super) fn mixed_units(formula: &str, part: &str, [one, other]: &[String; 2], others: &[String]) -> Text {
+pub(super) fn unit_mismatch(
+    formula: &str,
+    column: &usize,
+    part: &str,
+    what: &str,
+    instead: &str,
+    others: &[String],
+) -> Text {
     let part = shortened_to(part, PART);
     say(format!(
-        "The formula `{formula}` adds or compares different units, {one} and {other}. It does so in `{part}`. Units are never converted: the \
-         numbers are used as they are.{}",
+        "The units of {formula} do not go together: column {column}, `{part}`, is {what}. The numbers are used as they are. To correct it, {instead}.{}",
         likewise(others)
+    ))
+    .advise(Advice::CheckUnits)
+}
+
+pub(super) fn unknown_unit(units: &[String], name: &str) -> Text {
+    let (which, are, they) = match units {
+        [_] => ("The unit", "is", "It is a label"),
+        _ => ("The units", "are", "They are labels"),
+    };
+    say(format!(
+        "{which} {} {are} unknown, first that of `{name}`. {they}, and no formula with {} is checked.",
+        names(units),
+        if units.len() == 1 { "it" } else { "them" }
     ))
     .advise(Advice::CheckUnits)
 }

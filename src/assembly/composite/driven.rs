@@ -72,7 +72,11 @@ impl Composite {
                 }
             }
         }
-        Sent { columns: Points::of_values(rows, model.inputs.len(), columns), errors }
+        let mut columns = Points::of_values(rows, model.inputs.len(), columns);
+        for (input, factor) in model.factors.iter().enumerate().filter(|(_, factor)| **factor != 1.0) {
+            columns.column_mut(input).iter_mut().for_each(|value| *value *= factor);
+        }
+        Sent { columns, errors }
     }
 
     /// The formulas that drive the model, a column each; `errors` says why a row has no value.
@@ -200,7 +204,8 @@ impl Composite {
                 let Some(gradient) = answers.gradient(row, answer).filter(|_| !by_unknowns) else { continue };
                 let slopes = self.slopes_of(&driving, points, row);
                 let mut passed = vec![0.0; self.signature.inputs.len()];
-                for (source, slope) in model.inputs.iter().zip(gradient) {
+                for (input, (source, slope)) in model.inputs.iter().zip(gradient).enumerate() {
+                    let slope = slope * model.factors.get(input).unwrap_or(&1.0);
                     match *source {
                         Source::Dimension(dimension) => passed[dimension] += slope,
                         Source::Fixed(_) => {}
