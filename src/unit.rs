@@ -173,7 +173,7 @@ impl Unit {
             unit = if inverse { unit.over(&factor) } else { unit.times(&factor) };
             (inverse, wants, rest) = (false, false, &rest[end..]);
         }
-        (!wants).then_some(unit)
+        (!wants && unit.scale.is_finite() && unit.scale > 0.0).then_some(unit)
     }
 
     /// A symbol with an exponent, such as `mm2`, `m^-1` or `s²`.

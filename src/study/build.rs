@@ -1,7 +1,6 @@
 //! From the file's types to a problem: names, model, formulas, characteristics.
 
 use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::correlation::correlated;
@@ -12,13 +11,14 @@ use super::drive;
 use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
-use super::implicit::{Implicit, implicit, placed};
+use super::implicit::{implicit, placed};
 use super::joint;
 use super::model::{ModelOf, model, process};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use super::units;
 use super::values::NominalEntry;
+use super::written::{Named, Written};
 use crate::allocation::Priced;
 use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
 use crate::assembly::{AssemblyFunction, Composite, CompositeError, Input, Parts};
@@ -86,7 +86,8 @@ pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Re
     let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
-    let problem = correlated(problem, &file.correlation.0, &blocks)?;
+    let (problem, of_rows) = correlated(problem, &file.correlation.0, &blocks)?;
+    warnings.extend(of_rows);
     let options = super::options::options(&file.analysis, &problem)?;
     let costs = costs(file, &problem)?;
     let requirements = requirements(file, &problem)?;
@@ -178,21 +179,6 @@ fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> R
     faults.none().map(|()| dimensions)
 }
 
-/// A formula of the file: of `[formulas]` or of a characteristic.
-#[derive(Clone)]
-pub(super) struct Named<'f> {
-    pub(super) name: String,
-    /// Its text, and where that stands with its quotes in the file.
-    pub(super) text: &'f str,
-    pub(super) span: Range<usize>,
-    pub(super) key: String,
-    pub(super) formula: Formula,
-    /// The unit that it is said to have.
-    pub(super) unit: Option<&'f str>,
-    /// Whether it is that of a characteristic.
-    pub(super) result: bool,
-}
-
 fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, Faults> {
     let mut faults = Faults::default();
     let own = file.formulas.0.iter().map(|(name, entry)| {
@@ -221,41 +207,6 @@ fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, 
         }));
     }
     faults.none().map(|()| parsed)
-}
-
-/// Everything that is written as a formula.
-pub(super) struct Written<'f> {
-    pub(super) formulas: Vec<Named<'f>>,
-    pub(super) implicit: Option<Implicit>,
-}
-
-impl Written<'_> {
-    /// Every name that a formula or a condition uses.
-    pub(super) fn names(&self) -> impl Iterator<Item = String> {
-        let of_conditions = self.implicit.iter().flat_map(|implicit| implicit.conditions.formulas());
-        let all =
-            self.formulas.iter().map(|named| named.formula.clone()).chain(of_conditions.map(|(_, formula)| formula));
-        all.flat_map(|formula| formula.names().map(|(name, _)| name.to_owned()).collect::<Vec<_>>())
-    }
-
-    /// A fault of the formula at this place.
-    pub(super) fn at(&self, index: usize, found: StudyFault) -> Fault {
-        let named = &self.formulas[index];
-        fault(named.span.clone(), named.key.clone(), found)
-    }
-
-    /// Where a formula of this name stands.
-    pub(super) fn place(&self, name: &str) -> Option<usize> {
-        self.formulas.iter().position(|named| named.name == name)
-    }
-
-    fn is_formula(&self, name: &str) -> bool {
-        self.formulas.iter().any(|named| named.name == name)
-    }
-
-    pub(super) fn is_unknown(&self, name: &str) -> bool {
-        self.implicit.iter().flat_map(|implicit| implicit.conditions.unknowns()).any(|unknown| unknown.name() == name)
-    }
 }
 
 /// Dimensions and constants are inputs of the model, or else a formula uses them.

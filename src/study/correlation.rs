@@ -6,9 +6,12 @@ use super::joint::Block;
 use super::spanned::Spanned;
 use crate::correlation::{CorrelationError, Pair, Refusal};
 use crate::problem::Problem;
+use crate::warning::Warning;
 
 /// Rounds in which correlations of rows are brought to what their distributions allow.
 const ROUNDS: usize = 8;
+/// A correlation that is off by less is the same in print.
+const TRIFLE: f64 = 0.001;
 /// What is nearest to impossible is possible only beside it.
 const INSIDE: f64 = 1.0 - 1e-9;
 
@@ -17,7 +20,7 @@ pub(super) fn correlated(
     problem: Problem,
     entries: &[Spanned<CorrelationEntry>],
     blocks: &[Block],
-) -> Result<Problem, Fault> {
+) -> Result<(Problem, Option<Warning>), Fault> {
     let pair = |entry: &Spanned<CorrelationEntry>| {
         let entry = entry.get_ref();
         let (a, b) = entry.between.get_ref().clone();
@@ -45,7 +48,7 @@ pub(super) fn correlated(
     };
     for _ in 0..ROUNDS {
         match problem.clone().correlated(&pairs) {
-            Ok(problem) => return Ok(problem),
+            Ok(problem) => return Ok((problem, moved(&pairs[entries.len()..], blocks))),
             Err(error) => {
                 if !nearer(&mut pairs, entries.len(), &error) {
                     return Err(at(error));
@@ -53,7 +56,17 @@ pub(super) fn correlated(
             }
         }
     }
-    problem.correlated(&pairs).map_err(at)
+    let problem = problem.correlated(&pairs).map_err(at)?;
+    Ok((problem, moved(&pairs[entries.len()..], blocks)))
+}
+
+/// The correlation of rows that is farthest off what is taken, where that is more than a trifle.
+fn moved(taken: &[Pair], blocks: &[Block]) -> Option<Warning> {
+    let rows = blocks.iter().flat_map(|block| &block.pairs);
+    let off = |(taken, rows): &(&Pair, &Pair)| (taken.value - rows.value).abs();
+    let (taken, rows) = taken.iter().zip(rows).max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let correlation = [rows.value, taken.value];
+    (off(&(taken, rows)) > TRIFLE).then(|| Warning::RowsByCopula { dimensions: rows.between.clone(), correlation })
 }
 
 /// Brings correlations of rows to the nearest that distributions by a copula have; false where that is not what is wrong.

@@ -199,8 +199,8 @@ pub(super) struct Data<'s> {
     /// Every file once, in the order of the dimensions.
     files: Vec<(NamedFile, Arc<[u8]>)>,
     pub(super) warnings: Vec<Warning>,
-    /// Of a dimension whose rows belong together with others: the lines that all have, and whether a number of the part joins them.
-    kept: HashMap<String, (HashSet<u64>, bool)>,
+    /// Of a dimension whose rows belong together with others: the lines that all have.
+    kept: HashMap<String, HashSet<u64>>,
 }
 
 /// One column of measured values.
@@ -248,21 +248,17 @@ impl<'s> Data<'s> {
     }
 
     /// Keeps these lines of a dimension's column only.
-    pub(super) fn keep(&mut self, dimension: &str, lines: HashSet<u64>, matched: bool) {
-        self.kept.insert(dimension.to_owned(), (lines, matched));
+    pub(super) fn keep(&mut self, dimension: &str, lines: HashSet<u64>) {
+        self.kept.insert(dimension.to_owned(), lines);
     }
 
     /// A column of a file for this dimension, without the rows that lack a value of another dimension of the same parts.
     pub(super) fn column_of(&mut self, dimension: &str, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
         let mut column = self.column(file, name)?;
-        if let Some((lines, matched)) = self.kept.get(dimension) {
+        if let Some(lines) = self.kept.get(dimension) {
             let all: Vec<(f64, u64)> = column.values.iter().copied().zip(column.lines.iter().copied()).collect();
-            let (kept, left): (Vec<_>, Vec<_>) = all.into_iter().partition(|(_, line)| lines.contains(line));
-            (column.values, column.lines) = kept.into_iter().unzip();
-            if !matched {
-                column.missing.extend(left.into_iter().map(|(_, line)| line));
-                column.missing.sort_unstable();
-            }
+            // The dimension that lacks the value is the one that is warned of.
+            (column.values, column.lines) = all.into_iter().filter(|(_, line)| lines.contains(line)).unzip();
         }
         Ok(column)
     }

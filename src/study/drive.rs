@@ -1,10 +1,10 @@
 //! What drives the model: its inputs by name, for a program those of `[model] inputs`.
 
-use super::build::Written;
 use super::dimension;
 use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{ModelEntry, StudyFile};
 use super::spanned::Spanned;
+use super::written::Written;
 use crate::assembly::process::Greeting;
 use crate::assembly::{
     self, AssemblyFunction, Composite, CompositeError, Input, Parts, Points, Request, Responses, Run,

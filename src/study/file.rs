@@ -63,7 +63,7 @@ pub(super) struct StudyFile {
     pub(super) correlation: Correlations,
     /// Sizes of one assembly by name: nominal values and constants that take the place of those of the study, such as
     /// small = { L = 40, D = 8 }; or file = "sizes.csv", whose first column is the name.
-    #[serde(rename = "configurations")]
+    #[serde(default, rename = "configurations")]
     #[cfg_attr(feature = "cli", schemars(schema_with = "registry::configurations"))]
     pub(super) _configurations: Option<IgnoredAny>,
     /// What is evaluated beside formulas: a built-in model or an external program.
@@ -93,7 +93,7 @@ pub(super) struct DimensionEntry {
     pub(super) fit: Option<Spanned<String>>,
     /// What it is measured from: a dimension or formula, or several that are added; of a position another position. Its nominal is
     /// then the distance.
-    #[serde(rename = "from")]
+    #[serde(default, rename = "from")]
     #[cfg_attr(feature = "cli", schemars(schema_with = "registry::names"))]
     pub(super) _from: Option<IgnoredAny>,
     /// Diameter of the circular zone of a position, in place of a tolerance: two dimensions, NAME_x and NAME_y.

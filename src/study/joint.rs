@@ -104,12 +104,12 @@ fn block(group: &[Member<'_>], data: &mut Data<'_>) -> Result<Option<Block>, Fau
             let mut lines: Vec<u64> =
                 column.values().map(|(_, line)| *line).filter(|line| !kept.contains(line)).collect();
             lines.sort_unstable();
-            let (unmatched, rows) = (lines.len(), column.len());
+            let unmatched = lines.len();
             lines.truncate(NAMED);
             let (dimension, file) = (member.name.get_ref().clone(), member.file.get_ref().clone());
-            data.warnings.push(Warning::UnmatchedRows { dimension, file, unmatched, rows, lines });
+            data.warnings.push(Warning::UnmatchedRows { dimension, file, unmatched, lines });
         }
-        data.keep(member.name.get_ref(), kept, member.serial.is_some());
+        data.keep(member.name.get_ref(), kept);
     }
     if common.len() < LEAST {
         // The column itself says that there are too few.

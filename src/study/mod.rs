@@ -69,6 +69,7 @@ mod units;
 mod values;
 mod words;
 pub(crate) mod write;
+mod written;
 
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};

@@ -77,7 +77,7 @@ pub(super) fn configurations(_: &mut SchemaGenerator) -> Schema {
     json_schema!({
         "type": "object",
         "properties": {
-            "file": { "anyOf": [{ "description": "A CSV file with a configuration a row.", "type": "string" }, values] },
+            "file": { "description": "A CSV file with a configuration a row, or a configuration of this name.", "anyOf": [{ "description": "A CSV file with a configuration a row.", "type": "string" }, values] },
         },
         "additionalProperties": values,
     })

@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use super::build::{Named, Written};
 use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::StudyFile;
 use super::implicit::Implicit;
 use super::source::Source;
 use super::words::UNIT_MODES;
+use super::written::{Named, Written};
 use crate::assembly::Composite;
 use crate::assembly::formula::{Role, UnitFinding};
 use crate::dimension::Dimension;
@@ -237,11 +237,11 @@ fn mode(file: &StudyFile) -> Result<Mode, Fault> {
 }
 
 fn unknown_unit(mode: Mode, unknown: &[(&str, &str)]) -> Option<Warning> {
-    let (name, _) = unknown.first().filter(|_| mode != Mode::Labels)?;
+    unknown.first().filter(|_| mode != Mode::Labels)?;
     let mut units: Vec<String> = unknown.iter().map(|(_, unit)| (*unit).to_owned()).collect();
     units.sort();
     units.dedup();
-    Some(Warning::UnknownUnit { units, name: (*name).to_owned() })
+    Some(Warning::UnknownUnit { units })
 }
 
 /// What every formula is for.

@@ -44,23 +44,19 @@ pub(super) fn unit_mismatch(
 ) -> Text {
     let part = shortened_to(part, PART);
     say(format!(
-        "The units of {formula} do not go together: column {column}, `{part}`, is {what}. The numbers are used as they are. To correct it, {instead}.{}",
+        "The units of {formula} do not go together. Column {column}, `{part}`, is {what}. The numbers are used as they are. To correct it, {instead}.{}",
         likewise(others)
     ))
     .advise(Advice::CheckUnits)
 }
 
-pub(super) fn unknown_unit(units: &[String], name: &str) -> Text {
-    let (which, are, they) = match units {
-        [_] => ("The unit", "is", "It is a label"),
-        _ => ("The units", "are", "They are labels"),
+pub(super) fn unknown_unit(units: &[String]) -> Text {
+    let (which, they) = match units {
+        [_] => ("unit", "It is a label"),
+        _ => ("units", "They are labels"),
     };
-    say(format!(
-        "{which} {} {are} unknown, first that of `{name}`. {they}, and no formula with {} is checked.",
-        names(units),
-        if units.len() == 1 { "it" } else { "them" }
-    ))
-    .advise(Advice::CheckUnits)
+    say(format!("Nothing is known of the {which} {}. {they}, and what is made of it is of any unit.", names(units)))
+        .advise(Advice::CheckUnits)
 }
 
 pub(super) fn unused_name(kind: &NameKind, unused: &[String]) -> Text {

@@ -169,7 +169,8 @@ fn a_program_is_sent_what_its_inputs_name_and_each_point_once() {
     // gap of 0 or of 2 steps; pairs of a or b with c are both up or both down: 2 + 2.
     assert!(sent < 12, "{sent} points sent");
     let evaluations = report["evaluations"].as_u64().unwrap();
-    assert_eq!(evaluations, sent + 1, "what is sent is what is counted");
+    // The nominal point, and again at the end of the batch.
+    assert_eq!(evaluations, sent + 2, "what is sent is what is counted");
     run();
     assert_eq!(counted(), sent, "what was sent once is known");
 }

@@ -226,7 +226,7 @@ fn expand_and_configurations_on_the_command_line() {
         "second-order",
     ]))
     .unwrap();
-    let mean = |index: usize| all[index]["characteristics"][0]["moments"]["mean"].as_f64();
+    let mean = |index: usize| all[index]["characteristics"][0]["mean"].as_f64();
     let names: Vec<&str> = all.as_array().unwrap().iter().map(|one| one["study"].as_str().unwrap()).collect();
     assert_eq!(names, ["study.toml (small)", "study.toml (large)"]);
     let one: serde_json::Value = serde_json::from_str(&run(&[
@@ -239,6 +239,6 @@ fn expand_and_configurations_on_the_command_line() {
         "second-order",
     ]))
     .unwrap();
-    assert_eq!(mean(0), one["characteristics"][0]["moments"]["mean"].as_f64());
+    assert_eq!(mean(0), one["characteristics"][0]["mean"].as_f64());
     assert_ne!(mean(0), mean(1));
 }

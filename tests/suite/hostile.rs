@@ -246,7 +246,7 @@ fn sums_of_different_units_warn() {
     assert_eq!(
         messages,
         [
-            "[unit-mismatch] The units of formulas.both do not go together: column 1, `a + phi`, is a sum of mm and deg. The numbers are used as they \
+            "[unit-mismatch] The units of formulas.both do not go together. Column 1, `a + phi`, is a sum of mm and deg. The numbers are used as they \
              are. To correct it, correct the unit of one of them, or the formula. The same is true of `z`."
         ]
     );

@@ -138,7 +138,7 @@ fn units_that_do_not_go_together_warn() {
     assert_eq!(
         warnings(MIXED),
         [
-            "[unit-mismatch] The units of characteristics.h.formula do not go together: column 9, `tilt`, is sine of degrees. The numbers are used as \
+            "[unit-mismatch] The units of characteristics.h.formula do not go together. Column 9, `tilt`, is sine of degrees. The numbers are used as \
              they are. To correct it, write tilt*deg."
         ]
     );
@@ -153,7 +153,7 @@ fn units_that_do_not_go_together_warn() {
     );
     let unknown = warnings(&MIXED.replace("\"deg\"", "\"turns\""));
     assert_eq!(unknown.len(), 2);
-    assert!(unknown[1].starts_with("[unknown-unit] The unit `turns` is unknown, first that of `tilt`."), "{unknown:?}");
+    assert!(unknown[1].starts_with("[unknown-unit] Nothing is known of the unit `turns`."), "{unknown:?}");
 }
 
 /// `2[mm]` is a number everywhere.

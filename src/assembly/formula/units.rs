@@ -412,7 +412,9 @@ impl Pass<'_> {
         if a.literal || b.literal {
             let (known, bare, place) = if a.literal { (b, a, 0) } else { (a, b, 1) };
             let zero = bare.factors.contains(&0.0);
-            if self.convert && !known.literal && !zero && !known.unit.to_string().eq("1") {
+            // A number beside an angle is in radians, as `pi` is.
+            let plain = known.unit.is_plain() && (known.unit.radians > 0.0 || known.unit.to_string() == "1");
+            if self.convert && !known.literal && !zero && !plain {
                 let number = nodes.map_or_else(|| "2".to_owned(), |nodes| self.text(nodes[place]));
                 let text = format!("{what} of {} and a bare number", known.unit);
                 self.fail(node, text, format!("write {number}[{}]", known.unit), false);
