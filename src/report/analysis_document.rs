@@ -56,7 +56,9 @@ impl Report {
             let text = Rejects::all(1.0 - joint.value, Some(joint.error)).yield_text().unwrap_or_default();
             let target = self.analysis.joint_requirement.map_or_else(String::new, |judged| {
                 let Requirement::Yield(target) = judged.requirement else { return String::new() };
-                format!("; target {} %: {}", significant(100.0 * target, 6), judged.verdict.name())
+                // Without the digits that a product by 100 adds.
+                let percent = (1e11 * target).round() / 1e9;
+                format!("; target {percent} %: {}", judged.verdict.name())
             });
             document.note(format!("all limits at once: yield {text}, ± {error} %{target}"));
         }

@@ -121,8 +121,7 @@ pub(super) struct DimensionEntry {
     /// The column of the measured file, by the name in its first line; its only one where it is left out.
     pub(super) column: Option<Spanned<String>>,
     /// Whether rows of the measured file are the same parts as those of other columns of it, which then vary together; false for values
-    /// of other parts.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = true)))]
+    /// of other parts; true unless given.
     pub(super) joint: Option<Spanned<bool>>,
     /// The column with the number of the part: rows of several files with the same one belong together.
     #[serde(rename = "match")]

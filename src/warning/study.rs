@@ -52,10 +52,10 @@ pub(super) fn unit_mismatch(
 
 pub(super) fn unknown_unit(units: &[String]) -> Text {
     let (which, they) = match units {
-        [_] => ("unit", "It is a label"),
-        _ => ("units", "They are labels"),
+        [_] => ("unit", "It is a label that goes"),
+        _ => ("units", "They are labels that go"),
     };
-    say(format!("Nothing is known of the {which} {}. {they}, and what is made of it is of any unit.", names(units)))
+    say(format!("Nothing is known of the {which} {}. {they} with every other unit.", names(units)))
         .advise(Advice::CheckUnits)
 }
 

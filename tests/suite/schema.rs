@@ -196,7 +196,7 @@ fn defaults_are_what_is_left_out() {
     let of_dimension = defaults("DimensionEntry");
     assert_eq!(
         of_dimension.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>(),
-        ["distribution", "joint", "model", "shift", "sigmas"]
+        ["distribution", "model", "shift", "sigmas"]
     );
     for (key, value) in of_dimension.iter().filter(|(key, _)| key != "model") {
         let (with, without) =

@@ -125,7 +125,8 @@ impl Composite {
 
     /// Names of what the model is sent, and this at some points; None where it is sent the points themselves.
     pub(super) fn model_points(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
-        let model = self.model.as_ref()?;
+        // A built-in model is sent nothing outside.
+        let model = self.model.as_ref().filter(|_| self.signature.costly)?;
         let same = |(index, source): (usize, &Source)| *source == Source::Dimension(index);
         if model.inputs.len() == points.dimensions() && model.inputs.iter().enumerate().all(same) {
             return None;
