@@ -39,7 +39,8 @@ pub(super) fn mixed(
     pairs: &[(usize, usize)],
 ) -> Vec<Option<Mixed>> {
     // For every position the gradients at its nodes, with their places.
-    let ends: Vec<Vec<(f64, Option<&Vec<f64>>)>> = (plan.varying().iter())
+    type Node<'e> = (f64, Option<&'e Vec<f64>>);
+    let ends: Vec<Vec<Node<'_>>> = (plan.varying().iter())
         .map(|&d| nodes(plan, d).into_iter().map(|(point, u)| (u, evaluated.gradients.get(&(point, c)))).collect())
         .collect();
     // The slope by the dimension at position k, in sigmas, over the nodes of the one at position j.
