@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::correlation::correlated;
-use super::costs::{costs, requirement};
+use super::costs::{costs, holding, requirement};
 use super::data::Data;
 use super::dimension;
 use super::drive;
@@ -83,7 +83,7 @@ pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Re
     warnings.extend(of_units);
     idle_formula(program, &composite, &written)?;
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
-    let problem = Problem::new(dimensions, composite)
+    let problem = Problem::new(holding(file, dimensions)?, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
     let (problem, of_rows) = correlated(problem, &file.correlation.0, &blocks)?;
