@@ -11,7 +11,7 @@ use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
 use super::implicit::{Implicit, implicit, placed};
-use super::model::{ModelOf, model, process};
+use super::model::{ModelOf, model, process, signature};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use super::values::NominalEntry;
@@ -42,8 +42,8 @@ pub(super) struct Built {
 }
 
 pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> {
-    let evaluated = file.model.as_ref().map(|entry| model(entry, source)).transpose()?;
-    let program = matches!(evaluated, Some(ModelOf::Program(_)));
+    let evaluated = model(file.model.as_ref(), source)?;
+    let program = evaluated.as_ref().is_some_and(ModelOf::is_external);
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     let mut faults = Faults::default();
     faults.take(names(file, model));
@@ -326,7 +326,7 @@ fn compose(
     let function = |model: &ModelOf| -> Result<(Arc<dyn AssemblyFunction>, Vec<assembly::Source>), Fault> {
         Ok(match model {
             ModelOf::BuiltIn(model) => (Arc::new(model.function()), sources(model, dimensions, &constants)),
-            ModelOf::Program(program) => {
+            ModelOf::Program(_) | ModelOf::Host(_) => {
                 let used = |name: &str| written.names().any(|used| used == name);
                 let names =
                     dimensions.iter().map(Dimension::name).chain(constants.iter().map(|(name, _)| name.as_str()));
@@ -337,7 +337,13 @@ fn compose(
                 };
                 let offered = asked_of_program(&inputs, &constants, written, &outputs);
                 let all = (0..dimensions.len()).map(assembly::Source::Dimension).collect();
-                (process(program, &inputs, greeting, offered, source).map_err(nowhere)?, all)
+                let signature = signature(&inputs, offered);
+                let function = match model {
+                    ModelOf::Program(program) => process(program, signature, greeting, source).map_err(nowhere)?,
+                    ModelOf::Host(host) => host.function(signature, greeting),
+                    ModelOf::BuiltIn(_) => unreachable!("it has an arm of its own"),
+                };
+                (function, all)
             }
         })
     };
@@ -446,7 +452,7 @@ fn unused(
         None => false,
         Some(ModelOf::BuiltIn(model)) => model.inputs.iter().any(|input| input.name == name),
         // A program says itself what it does not know.
-        Some(ModelOf::Program(_)) => true,
+        Some(ModelOf::Program(_) | ModelOf::Host(_)) => true,
     };
     let idle_constants = (file.constants.names().into_iter())
         .filter(|name| !used(name.get_ref()) && !is_input(name.get_ref()))
