@@ -39,7 +39,7 @@ class Study:
         asked: str,
         analysis: str,
         characteristics: list[str],
-        make_model: Callable[[str], Callable[[bytes, int, list[int]], tuple[bytes, list[tuple[int, str]]]]] | None,
+        make_model: Callable[[str], Callable[[bytes, int, list[int]], tuple[bytes, list[tuple[int, str]], int]]] | None,
         progress: Callable[[int, int], Any] | None,
         threads: int,
         seconds: float | None,

@@ -12,9 +12,6 @@ from ._model import Model, _listed
 if TYPE_CHECKING:
     import numpy as np
 
-#: The coordinates of a block, the number of points, the indices of the outputs; values and failed points.
-Answers = "tuple[bytes, list[tuple[int, str]]]"
-
 #: How far a vectorized function may be off its answer to a point alone, relative.
 ALONE = 1e-9
 
@@ -153,7 +150,7 @@ class Scalar:
         columns = [values[start : start + rows] for start in range(0, len(values), rows)]
         return list(zip(*columns)) if columns else [()] * rows
 
-    def __call__(self, points: bytes, rows: int, outputs: list[int]) -> tuple[bytes, list[tuple[int, str]]]:
+    def __call__(self, points: bytes, rows: int, outputs: list[int]) -> tuple[bytes, list[tuple[int, str]], int]:
         answers = array.array("d", bytes(8 * rows * len(outputs)))
         failed: list[tuple[int, str]] = []
         call, numbers = self.call, self.answer.numbers
@@ -167,7 +164,7 @@ class Scalar:
                 found = [math.nan] * len(outputs)
             for column, value in enumerate(found):
                 answers[column * rows + row] = value
-        return answers.tobytes(), failed
+        return answers.tobytes(), failed, 0
 
 
 class Vectorized:
@@ -198,7 +195,7 @@ class Vectorized:
             found[column] = values
         return found
 
-    def __call__(self, points: bytes, rows: int, outputs: list[int]) -> tuple[bytes, list[tuple[int, str]]]:
+    def __call__(self, points: bytes, rows: int, outputs: list[int]) -> tuple[bytes, list[tuple[int, str]], int]:
         # The bytes are nobody else's: a function may keep its arrays, and cannot write into them.
         columns = self.numpy.frombuffer(points).reshape(-1, rows)
         failed: list[tuple[int, str]] = []
@@ -212,7 +209,7 @@ class Vectorized:
             if not self.checked and rows > 1:
                 self.checked = True
                 self.check(columns, rows, outputs, found)
-        return found.tobytes(), failed
+        return found.tobytes(), failed, 0
 
     def one_by_one(self, columns: Any, rows: int, outputs: list[int]) -> Any:
         """A block in which some point fails."""

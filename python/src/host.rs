@@ -22,6 +22,8 @@ pub(crate) struct Answer {
     pub(crate) values: Vec<f64>,
     /// Points without a value, and why.
     pub(crate) failed: Vec<(usize, String)>,
+    /// How many points were known from an earlier run.
+    pub(crate) reused: usize,
 }
 
 /// What the threads of a run tell the thread that started it.
@@ -62,7 +64,7 @@ impl<T: Send> AssemblyFunction for Host<T> {
         if self.events.send(Event::Call(call)).is_err() {
             return;
         }
-        let Ok(Some(Answer { values, failed })) = answer.recv() else { return };
+        let Ok(Some(Answer { values, failed, reused })) = answer.recv() else { return };
         for (column, values) in values.chunks_exact(points.rows().max(1)).enumerate() {
             values.iter().enumerate().for_each(|(row, &value)| out.set(row, column, value));
         }
@@ -70,6 +72,9 @@ impl<T: Send> AssemblyFunction for Host<T> {
             for column in 0..request.outputs.len() {
                 out.fail(row, column, EvaluationError::Refused { message: message.clone() });
             }
+        }
+        if reused > 0 {
+            out.reused(reused);
         }
         let all: Vec<usize> = (0..points.rows()).collect();
         run.finished(&all, out);

@@ -149,11 +149,11 @@ fn evaluated(py: Python<'_>, caller: &Caller<'_>, call: &Call) -> PyResult<Answe
         Ok(())
     })?;
     let answer = model.call1((points, call.rows, PyList::new(py, &call.outputs)?))?;
-    let (values, failed): (Bound<'_, PyBytes>, Vec<(usize, String)>) = answer.extract()?;
+    let (values, failed, reused): (Bound<'_, PyBytes>, Vec<(usize, String)>, usize) = answer.extract()?;
     let number = |bytes: &[u8]| f64::from_ne_bytes(bytes.try_into().expect("chunks of eight bytes"));
     let values: Vec<f64> = values.as_bytes().chunks_exact(size_of::<f64>()).map(number).collect();
     if values.len() != call.rows * call.outputs.len() {
         return Err(PyRuntimeError::new_err("the package answered another number of values than asked for"));
     }
-    Ok(Answer { values, failed })
+    Ok(Answer { values, failed, reused })
 }
