@@ -35,9 +35,11 @@ class Record:
         if key not in data:
             if name in _fields(type(self)):
                 return None
-            known = ", ".join(dir(self)[:0] or [_attribute(key) for key in data])
+            known = ", ".join(_attribute(key) for key in data)
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}; there are {known}")
-        value = _wrapped(data[key], type(self)._inner.get(name, Record))
+        # A table of names and numbers stays a dict; what no class describes is a record.
+        cls = type(self)._inner.get(name, None if name in _fields(type(self)) else Record)
+        value = data[key] if cls is None else _wrapped(data[key], cls)
         self.__dict__[name] = value
         return value
 

@@ -132,21 +132,30 @@ class Distributed:
         done: queue.SimpleQueue[tuple[int, Any]] = queue.SimpleQueue()
         futures: list[Any] = []
         took = 0.0
+        left = len(tasks)
+
+        def take(wait: float) -> bool:
+            nonlocal took, left
+            try:
+                place, future = done.get(timeout=wait) if wait else done.get_nowait()
+            except queue.Empty:
+                return False
+            found, elapsed = future.result()
+            took = max(took, elapsed)
+            keep(place, found)
+            left -= 1
+            return True
+
         try:
             for place, points in enumerate(tasks):
                 future = self.executor.submit(task, self.call, self.answer, points, outputs, **self.options)
                 futures.append(future)
                 future.add_done_callback(lambda future, place=place: done.put((place, future)))
-            left = len(futures)
+                # An exception ends the run before all is sent.
+                while take(0.0):
+                    pass
             while left:
-                try:
-                    place, future = done.get(timeout=TICK)
-                except queue.Empty:
-                    continue
-                found, elapsed = future.result()
-                took = max(took, elapsed)
-                keep(place, found)
-                left -= 1
+                take(TICK)
         except BaseException:
             for future in futures:
                 future.cancel()

@@ -52,7 +52,7 @@ def keys(law: Any, nominal: float | None) -> dict[str, Any]:
         found["distribution"] = {"kind": "trapezoidal", "top": shapes[1] - shapes[0]}
     elif family == "truncnorm" and lower > -1e308 and upper < 1e308:
         found["distribution"] = "truncated-normal"
-        found["sigma"] = scale
+        found["sigmas"] = (upper - lower) / 2 / scale
         middle = (lower + upper) / 2
         if location != middle:
             found["shift"] = location - middle
