@@ -45,7 +45,7 @@ def _plain(state: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _entry(cls: type, state: Mapping[str, Any]) -> Any:
-    entry = object.__new__(cls)
+    entry: Any = object.__new__(cls)
     entry.__dict__.update(state)
     return entry
 

@@ -27,8 +27,7 @@ class Model:
         errors: Errors = "raise",
         version: str = "",
     ) -> None:
-        if isinstance(function, Model):
-            function = function.function
+        function = getattr(function, "function", function) if isinstance(function, Model) else function
         if not callable(function):
             raise TypeError(f"a model is a function, got {type(function).__name__}")
         if pass_ not in ("names", "dict"):
@@ -37,7 +36,7 @@ class Model:
             raise ValueError(f'errors must be "raise" or "point", got {errors!r}')
         if isinstance(outputs, str):
             raise TypeError(f"outputs must be a list of names: outputs=[{outputs!r}]")
-        self.function = function
+        self.function: Callable[..., Any] = function
         self.vectorized = bool(vectorized)
         self.pass_ = pass_
         self.outputs = None if outputs is None else tuple(outputs)

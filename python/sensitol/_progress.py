@@ -18,7 +18,7 @@ class Shown:
         self.line = False
         if progress is True:
             try:
-                from tqdm.auto import tqdm
+                from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
             except ImportError:
                 self.told = self.write
             else:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Iterator, Mapping
 if TYPE_CHECKING:
     import os
 
-    import pandas
+    import pandas  # type: ignore[import-untyped,unused-ignore]
 
     from ._study import Study
 
@@ -101,13 +101,13 @@ class Rendered:
         self._tables = outcome.tables()
 
     def text(self, width: int = 100, full: bool = False) -> str:
-        return self._text[full]
+        return str(self._text[full])
 
     def html(self) -> str:
-        return self._html  # type: ignore[no-any-return]
+        return str(self._html)
 
     def svg(self, title: str) -> str:
-        return self._svg  # type: ignore[no-any-return]
+        return str(self._svg)
 
     def tables(self) -> Any:
         return self._tables

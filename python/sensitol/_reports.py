@@ -76,13 +76,13 @@ class AllocatedTolerance(Record):
     """The bound that it has met."""
     before: float
     """Half band before."""
-    contributions: List[JointYieldChange]
+    contributions: List[AllocatedToleranceContributions]
     """Its share of each characteristic's variance."""
     cost_after: Optional[float]
     """What it costs."""
     cost_before: Optional[float]
     """What it cost; None where no process holds that tolerance."""
-    deviations: BeforeAfter
+    deviations: AllocatedToleranceDeviations
     """Lower and upper deviation from the nominal before and after, where there is a band."""
     dimension: str
     """The dimension."""
@@ -92,10 +92,30 @@ class AllocatedTolerance(Record):
     """Its unit."""
 
 
+class AllocatedToleranceContributions(Record):
+    """Something of a characteristic, with its name."""
+
+    after: Optional[float]
+    """After."""
+    before: Optional[float]
+    """Before."""
+    characteristic: str
+    """The characteristic."""
+
+
+class AllocatedToleranceDeviations(Record):
+    """Something before and after."""
+
+    after: Optional[List[float]]
+    """After."""
+    before: Optional[List[float]]
+    """Before."""
+
+
 class AllocationResult(Result):
     """What an allocation found out. What is unknown is null, never 0."""
 
-    attainable: Optional[Attainable]
+    attainable: Optional[AllocationResultAttainable]
     """The requirement that cannot be kept, and the best that can be had."""
     cached: int
     """Points whose answers were known from an earlier run."""
@@ -119,21 +139,21 @@ class AllocationResult(Result):
     """What became of the processes of an external model; None where no such model ran."""
     failed: int
     """Points that lost at least one characteristic."""
-    front: List[Front]
+    front: List[FrontPoint]
     """Cost against what is required."""
     in_model_s: float
     """Time within the model, of all threads together."""
-    joint_yield: BeforeAfter3
+    joint_yield: AllocationResultJointYield
     """The share of assemblies that keep all limits at once; null with fewer than two characteristics with limits."""
-    loosest_scaling: BeforeAfter2
+    loosest_scaling: AllocationResultLoosestScaling
     """By which one factor all tolerances may be multiplied until some requirement is just kept."""
     method: str
     """The method by which derivatives were taken."""
     proof: Proof
     """What shows that nothing is cheaper."""
-    recentred: List[Recentred]
+    recentred: List[AllocationResultRecentred]
     """Nominal values that have moved."""
-    requirements: List[KeptRequirement]
+    requirements: List[AllocationResultRequirements]
     """Every requirement."""
     retried: int
     """Points sent again: because an answer was a failure, or was not trusted."""
@@ -145,11 +165,11 @@ class AllocationResult(Result):
     """The seed, where random numbers were drawn."""
     sensitol: str
     """The version of the program."""
-    shadow_prices: List[ShadowPrice]
+    shadow_prices: List[AllocationResultShadowPrices]
     """What limits and required sigmas cost."""
     stages: int
     """Batches in which points were sent."""
-    status: Literal['optimal', 'almost-optimal', 'infeasible', 'out-of-time']
+    status: Literal['optimal', 'almost-optimal', 'infeasible', 'no-feasible-point-found', 'out-of-time']
     """`optimal`, `almost-optimal`, `infeasible` or `out-of-time`."""
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
     """Why it ended early; None where it did not."""
@@ -170,6 +190,98 @@ class AllocationResult(Result):
         return found
 
 
+class AllocationResultAttainable(Record):
+    """Something of a characteristic, with its name."""
+
+    because: List[str]
+    """The dimensions without cost that alone break the requirement, most harmful first; empty where the others are
+    to blame too.
+    """
+    best: Optional[float]
+    """The best that the bounds of the tolerances allow, in the requirement's own measure."""
+    characteristic: str
+    """The characteristic."""
+    required: float
+    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
+    requirement: str
+    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    together: bool
+    """Whether it could be kept if it were the only one."""
+    unit: Optional[str]
+    """Its unit."""
+
+
+class AllocationResultJointYield(Record):
+    """Something before and after."""
+
+    after: Optional[JointYield]
+    """After."""
+    before: Optional[JointYield]
+    """Before."""
+
+
+class AllocationResultLoosestScaling(Record):
+    """Something before and after."""
+
+    after: Optional[float]
+    """After."""
+    before: Optional[float]
+    """Before."""
+
+
+class AllocationResultRecentred(Record):
+    """Something of a dimension, with its name."""
+
+    after: float
+    """The nominal value after."""
+    before: float
+    """The nominal value before."""
+    dimension: str
+    """The dimension."""
+    unit: Optional[str]
+    """Its unit."""
+
+
+class AllocationResultRequirements(Record):
+    """Something of a characteristic, with its name."""
+
+    after: Optional[float]
+    """What there is."""
+    before: Optional[float]
+    """What there was."""
+    characteristic: str
+    """The characteristic."""
+    interval: Optional[List[Optional[float]]]
+    """Within which that is known, an end null where there is none; null where it is not known at all."""
+    met: Optional[bool]
+    """Whether it is kept; null where that is not known, and where nothing was found."""
+    met_before: Optional[bool]
+    """Whether it was kept; null where that is not known."""
+    required: float
+    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
+    requirement: str
+    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    verdict: Optional[Literal['met', 'missed', 'inconclusive']]
+    """The same in a word; null where nothing was found."""
+    verdict_before: Literal['met', 'missed', 'inconclusive']
+    """The same in a word."""
+
+
+class AllocationResultShadowPrices(Record):
+    """Something of a characteristic, with its name."""
+
+    both: Optional[float]
+    """Per unit by which both limits go outwards, or the only one."""
+    characteristic: str
+    """The characteristic."""
+    lower: Optional[float]
+    """Per unit by which its lower limit goes down."""
+    sigma: Optional[float]
+    """Per unit of a required sigma."""
+    upper: Optional[float]
+    """Per unit by which its upper limit goes up."""
+
+
 class AnalysisResult(Result):
     """The report of an analysis, as `--json` prints it. What is unknown is null, never 0."""
 
@@ -185,7 +297,7 @@ class AnalysisResult(Result):
     """What is known of every characteristic, in the problem's order."""
     command: str
     """The command that made the report."""
-    correlation: List[Correlation]
+    correlation: List[Pair]
     """The dimensions that vary together."""
     derivatives: Optional[str]
     """Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on
@@ -234,52 +346,6 @@ class AnalysisResult(Result):
         """The characteristic of this name."""
         found: CharacteristicResult = self._named(name)
         return found
-
-
-class Attainable(Record):
-    """A requirement that cannot be kept."""
-
-    because: List[str]
-    """Dimensions without cost that break it by themselves, most harmful first."""
-    best: Optional[float]
-    """The best that the bounds of the tolerances allow, in the requirement's own measure."""
-    characteristic: str
-    """The characteristic."""
-    required: float
-    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
-    requirement: str
-    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
-    together: bool
-    """Whether it could be kept if it were the only one."""
-    unit: Optional[str]
-    """Its unit."""
-
-
-class BeforeAfter(Record):
-    """Something before and after."""
-
-    after: Optional[List[float]]
-    """After."""
-    before: Optional[List[float]]
-    """Before."""
-
-
-class BeforeAfter2(Record):
-    """Something before and after."""
-
-    after: Optional[float]
-    """After."""
-    before: Optional[float]
-    """Before."""
-
-
-class BeforeAfter3(Record):
-    """Something before and after."""
-
-    after: Optional[JointYield]
-    """After."""
-    before: Optional[JointYield]
-    """Before."""
 
 
 class Beyond(Record):
@@ -549,15 +615,6 @@ class Control(Record):
     """By how much standard errors have shrunk."""
 
 
-class Correlation(Record):
-    """Two dimensions that vary together."""
-
-    between: List[str]
-    """The two."""
-    value: float
-    """Their coefficient of correlation."""
-
-
 class DesignPoint(Record):
     """The most likely assembly at a limit."""
 
@@ -665,7 +722,9 @@ class EvaluatorSummary(Record):
     timeouts: int
     """Deadlines that passed."""
     unconfirmed: int
-    """Answers that depend on the points before them, and that no fresh process confirmed."""
+    """Answers that depend on the points before them, and that no fresh process confirmed: they have no value, or
+    results were made of them before that was known.
+    """
 
 
 class ExtremesAt(Record):
@@ -698,20 +757,20 @@ class FoundSwitch(Record):
     kind: Literal['kink', 'jump', 'edge', 'pole']
     """What the output does there."""
     name: str
-    """The part of the formula that does it, in the words of [`Switch::name`]."""
+    """The part of the formula that does it, as it is written there."""
     probability: float
     """The probability of its smaller side."""
 
 
-class Front(Record):
-    """One point of the front."""
+class FrontPoint(Record):
+    """One point of the front: the cheapest tolerances for a requirement."""
 
     cost: Optional[float]
-    """What that costs; null where it cannot be kept."""
-    required: List[RequiredTogether]
-    """What was required of each characteristic."""
+    """What that costs; None where it cannot be kept."""
+    required: List[RequiredOf]
+    """What was required of every characteristic of which a yield or a Cpk is, in the order of the problem."""
     tolerances: Optional[List[float]]
-    """Half bands of the dimensions with a cost, in the order of `tolerances`."""
+    """Half bands, in the order of [`Allocation::tolerances`]."""
 
 
 class Histogram(Record):
@@ -755,17 +814,6 @@ class JointYield(Record):
     """The share of assemblies within all limits."""
 
 
-class JointYieldChange(Record):
-    """Something of a characteristic, with its name."""
-
-    after: Optional[float]
-    """After."""
-    before: Optional[float]
-    """Before."""
-    characteristic: str
-    """The characteristic."""
-
-
 class Judged(Record):
     """What is judged as it is written."""
 
@@ -780,31 +828,6 @@ class Judged(Record):
     value: Optional[float]
     """What there is."""
     verdict: Literal['met', 'missed', 'inconclusive']
-    """The same in a word."""
-
-
-class KeptRequirement(Record):
-    """Something of a characteristic, with its name."""
-
-    after: Optional[float]
-    """What there is."""
-    before: Optional[float]
-    """What there was."""
-    characteristic: str
-    """The characteristic."""
-    interval: Optional[List[Optional[float]]]
-    """Within which that is known, an end null where there is none; null where it is not known at all."""
-    met: Optional[bool]
-    """Whether it is kept; null where that is not known, and where nothing was found."""
-    met_before: Optional[bool]
-    """Whether it was kept; null where that is not known."""
-    required: float
-    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
-    requirement: str
-    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
-    verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """The same in a word; null where nothing was found."""
-    verdict_before: Literal['met', 'missed', 'inconclusive']
     """The same in a word."""
 
 
@@ -854,6 +877,15 @@ class OutputCorrelation(Record):
     """Their coefficient of correlation; null where one of them does not vary, or is not known."""
 
 
+class Pair(Record):
+    """Two dimensions and their coefficient of correlation."""
+
+    between: List[str]
+    """The dimensions."""
+    value: float
+    """Pearson's coefficient, from -1 to 1."""
+
+
 class Parameter(Record):
     """The parameter."""
 
@@ -868,7 +900,7 @@ class Parameter(Record):
 
 
 class Proof(Record):
-    """What shows that nothing is cheaper."""
+    """A proof with the kind of its bound, as it is written."""
 
     bound: Optional[float]
     """No choice of processes costs less; None without lists, or where no bound is known."""
@@ -930,7 +962,7 @@ class RareResult(Result):
     """What is known of every characteristic, in the problem's order."""
     command: str
     """The command that made the report."""
-    correlation: List[Correlation]
+    correlation: List[Pair]
     """The dimensions that vary together."""
     dimensions: List[DimensionResult]
     """The dimensions, in the study's order."""
@@ -979,19 +1011,6 @@ class RareResult(Result):
         return found
 
 
-class Recentred(Record):
-    """Something of a dimension, with its name."""
-
-    after: float
-    """The nominal value after."""
-    before: float
-    """The nominal value before."""
-    dimension: str
-    """The dimension."""
-    unit: Optional[str]
-    """Its unit."""
-
-
 class Reduction(Record):
     """The standard error without the surrogate by that with it; null where that is unknown or 0."""
 
@@ -1031,8 +1050,8 @@ class ReportedWarning(Record):
     """Cause and consequence."""
 
 
-class RequiredTogether(Record):
-    """Something of a characteristic, with its name."""
+class RequiredOf(Record):
+    """What is required of a characteristic, as it is written."""
 
     characteristic: str
     """The characteristic."""
@@ -1187,21 +1206,6 @@ class Sensitivity(Record):
     """
 
 
-class ShadowPrice(Record):
-    """Something of a characteristic, with its name."""
-
-    both: Optional[float]
-    """Per unit by which both limits go outwards, or the only one."""
-    characteristic: str
-    """The characteristic."""
-    lower: Optional[float]
-    """Per unit by which its lower limit goes down."""
-    sigma: Optional[float]
-    """Per unit of a required sigma."""
-    upper: Optional[float]
-    """Per unit by which its upper limit goes up."""
-
-
 class SimulatedCharacteristic(Record):
     """A characteristic with the standard errors beside the values, as it is written."""
 
@@ -1270,7 +1274,7 @@ class SimulationResult(Result):
     """What is known of every characteristic, in the problem's order."""
     command: str
     """The command that made the report."""
-    correlation: List[Correlation]
+    correlation: List[Pair]
     """The dimensions that vary together."""
     dimensions: List[DimensionResult]
     """The dimensions, in the study's order."""
@@ -1341,12 +1345,18 @@ class SurfaceLaw(Record):
 
     branch: str
     """`exact`, `single` or `sampled`: how it is computed."""
+    counted_points: Optional[int]
+    """Points of the surface at which the law was counted, where it could not be computed; null where it was."""
     ppm_above: Optional[float]
     """Assemblies above the upper limit, per million."""
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
     quantiles: Optional[Dict[str, float]]
-    """Quantiles; null where the law could only be counted at points."""
+    """Quantiles; null where one of them is unknown, and without limits where products form a tree that has no closed
+    form.
+    """
+    step_function: bool
+    """Whether the law is a step function, because every input that counts has measured values only."""
     yield_: Optional[float]
     """The share within the limits; null without any."""
     yield_error: Optional[float]
@@ -1436,7 +1446,7 @@ class SweptPoint(Record):
     ppm_below: Optional[float]
     """Rejected below the lower limit, in parts per million."""
     quantiles: Dict[str, Optional[float]]
-    """Of the distribution with these moments."""
+    """By the law of the surface where there is one, by the Pearson fit elsewhere."""
     requirements: List[Judged]
     """Everything that is required of it, the target yield included."""
     rss: Optional[float]
@@ -1449,6 +1459,8 @@ class SweptPoint(Record):
     """The same in a word."""
     yield_: Optional[float]
     """Share of assemblies within the limits."""
+    yield_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
+    """What it comes from; null without limits."""
 
 
 class VarianceShare(Record):
@@ -1545,10 +1557,10 @@ class WorstCase(Record):
 #: The classes of the objects within each.
 _INNER: Dict[str, Dict[str, type]] = {
     "AllocatedCharacteristic": {"after": CharacteristicResult, "before": CharacteristicResult},
-    "AllocatedTolerance": {"contributions": JointYieldChange, "deviations": BeforeAfter},
-    "AllocationResult": {"attainable": Attainable, "characteristics": AllocatedCharacteristic, "confirmation": Confirmation, "evaluator": EvaluatorSummary, "front": Front, "joint_yield": BeforeAfter3, "loosest_scaling": BeforeAfter2, "proof": Proof, "recentred": Recentred, "requirements": KeptRequirement, "shadow_prices": ShadowPrice, "tolerances": AllocatedTolerance, "warnings": ReportedWarning},
-    "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Correlation, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_yield": Verified, "warnings": ReportedWarning},
-    "BeforeAfter3": {"after": JointYield, "before": JointYield},
+    "AllocatedTolerance": {"contributions": AllocatedToleranceContributions, "deviations": AllocatedToleranceDeviations},
+    "AllocationResult": {"attainable": AllocationResultAttainable, "characteristics": AllocatedCharacteristic, "confirmation": Confirmation, "evaluator": EvaluatorSummary, "front": FrontPoint, "joint_yield": AllocationResultJointYield, "loosest_scaling": AllocationResultLoosestScaling, "proof": Proof, "recentred": AllocationResultRecentred, "requirements": AllocationResultRequirements, "shadow_prices": AllocationResultShadowPrices, "tolerances": AllocatedTolerance, "warnings": ReportedWarning},
+    "AllocationResultJointYield": {"after": JointYield, "before": JointYield},
+    "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_yield": Verified, "warnings": ReportedWarning},
     "Beyond": {"design_point": DesignPoint},
     "CharacteristicResult": {"distribution": Law, "error_estimate": ErrorEstimate, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
     "ComparedCharacteristic": {"methods": ComparedMethod, "reference": SimulatedCharacteristic},
@@ -1558,15 +1570,15 @@ _INNER: Dict[str, Dict[str, type]] = {
     "Control": {"reduction": Reduction},
     "ErrorEstimate": {"sources": ErrorSource},
     "ErrorVsReference": {"reference_standard_error": Figures},
-    "Front": {"required": RequiredTogether},
+    "FrontPoint": {"required": RequiredOf},
     "NotRun": {"reason": NotRunReason},
     "RareCharacteristic": {"above": Beyond, "below": Beyond, "requirements": Judged},
-    "RareResult": {"characteristics": RareCharacteristic, "correlation": Correlation, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "warnings": ReportedWarning},
+    "RareResult": {"characteristics": RareCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "warnings": ReportedWarning},
     "ReportedWarning": {"advice": Advice},
     "RunSummary": {"evaluator": EvaluatorSummary},
     "SampledModel": {"histogram": Histogram},
     "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "requirements": Judged, "standard_error": StandardErrors},
-    "SimulationResult": {"characteristics": SimulatedCharacteristic, "correlation": Correlation, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "warnings": ReportedWarning},
+    "SimulationResult": {"characteristics": SimulatedCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "warnings": ReportedWarning},
     "SweepResult": {"characteristics": SweptCharacteristic, "evaluator": EvaluatorSummary, "parameter": Parameter, "warnings": ReportedWarning},
     "SweptCharacteristic": {"points": SweptPoint},
     "SweptPoint": {"error_estimate": ErrorEstimate, "requirements": Judged},

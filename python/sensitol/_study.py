@@ -553,7 +553,7 @@ def _study(
     return Study._of(text, toml, name, folder, files, made, model)
 
 
-def _entries(entries: Any, section: str, cls: type, files: dict[str, bytes]) -> dict[str, Any]:
+def _entries(entries: Any, section: str, cls: Any, files: dict[str, bytes]) -> dict[str, Any]:
     if not isinstance(entries, Mapping):
         raise TypeError(f"{section} must be a mapping of names, got {type(entries).__name__}")
     found: dict[str, Any] = {}
@@ -562,7 +562,7 @@ def _entries(entries: Any, section: str, cls: type, files: dict[str, bytes]) -> 
             raise TypeError(
                 f"{section}[{name!r}] must be a {cls.__name__}, got {type(entry).__name__}: write {cls.__name__}({entry!r})"
             )
-        keys = entry.to_dict() if isinstance(entry, cls) else dict(entry)  # type: ignore[attr-defined]
+        keys: dict[str, Any] = entry.to_dict() if isinstance(entry, (Dimension, Characteristic)) else dict(entry)
         values = entry._values() if isinstance(entry, Dimension) else None
         if values is not None:
             file = f"{name}.csv"

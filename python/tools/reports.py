@@ -34,11 +34,6 @@ NAMES = {
     "WarningReport": "ReportedWarning",
     "FiguresShape": "VerifiedFigures",
     "ErrorShape": "ErrorVsReference",
-    "OfCharacteristic4": "RequiredTogether",
-    "OfDimension": "Recentred",
-    "OfCharacteristic": "JointYieldChange",
-    "OfCharacteristic2": "KeptRequirement",
-    "OfCharacteristic3": "ShadowPrice",
 }
 HEAD = '''"""The types of results, one class for each object of a report. Made from the schema of reports by tools/reports.py."""
 
@@ -66,7 +61,9 @@ class Writer:
         """The annotation of a value, and the class of the objects within."""
         if "$ref" in schema:
             definition = schema["$ref"].rsplit("/", 1)[1]
-            return self.type(self.definitions[definition], name_of(definition))
+            # The engine's generic types have a number or none, whichever came first: they are named by their place.
+            generic = re.fullmatch(r"Of(Characteristic|Dimension)\d*|\w+\d", definition) or definition == "BeforeAfter"
+            return self.type(self.definitions[definition], hint if generic else name_of(definition))
         options = schema.get("anyOf") or schema.get("oneOf")
         if options:
             return self.union(schema, options, hint)
