@@ -89,7 +89,7 @@ class Cached:
             got = numpy.frombuffer(answers).reshape(len(outputs), len(some))
             values[:, some] = got
             failed += [(some[row], why) for row, why in lost]
-            finite = [bool(one) for one in numpy.isfinite(got).all(axis=0)]
+            finite: Any = numpy.isfinite(got).all(axis=0)
             self.store.executemany(
                 f"INSERT OR REPLACE INTO {TABLE} VALUES (?, ?, ?, ?)",
                 [

@@ -80,3 +80,8 @@ class SensitolWarning(UserWarning):
         super().__init__(message)
         self.code = code
         self.characteristic = characteristic
+
+
+# Tracebacks show them under the name that users write.
+for _class in (StudyError, AnalysisError, ModelError, NoValue, SensitolWarning):
+    _class.__module__ = "sensitol"

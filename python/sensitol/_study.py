@@ -634,3 +634,7 @@ def read(path: Path, *, model: ModelLike = None) -> Study:
     found = _core.Study.read(path, _hosted(host))
     folder = os.path.dirname(path) or "."
     return Study._of(found.text, path.endswith(".toml"), path, folder, {}, False, host)
+
+
+for _class in (Study, Dimension, Characteristic):
+    _class.__module__ = "sensitol"

@@ -89,8 +89,7 @@ impl Counter {
 /// Does what is asked of a study.
 pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counter) -> Result<Found, Error> {
     let problem = &study.problem;
-    let about =
-        || About { title: study.title.clone(), sha256: study.sha256.clone(), warnings: study.warnings.clone() };
+    let about = || About { title: study.title.clone(), sha256: study.sha256.clone(), warnings: study.warnings.clone() };
     let seed = study.seed.or(study.options.seed).unwrap_or(Options::SEED);
     let pace = |pace: Pace| counter.pace(pace);
     if let Asked::Analyze {} | Asked::Sweep { .. } | Asked::Allocate { .. } = asked {
@@ -150,10 +149,9 @@ pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counte
                 Some(Err(error)) => (None, Some(error.to_string())),
                 None => (None, None),
             };
-            let written = anew.as_ref().map(|anew| WrittenAnew {
-                entries: anew.entries.clone(),
-                replaced_fits: anew.replaced_fits.clone(),
-            });
+            let written = anew
+                .as_ref()
+                .map(|anew| WrittenAnew { entries: anew.entries.clone(), replaced_fits: anew.replaced_fits.clone() });
             let report = AllocationReport::of(problem, &found, written.as_ref(), about());
             let study = anew.map(|anew| anew.text);
             Found { study, not_written, ..Found::of(Shown::Allocation(report)) }

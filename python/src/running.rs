@@ -62,7 +62,8 @@ pub(crate) fn run(
     ended: std::sync::mpsc::Sender<Event<Ended>>,
 ) -> PyResult<Result<Found, Error>> {
     let pool = Pool::of(threads).map_err(|error| PyRuntimeError::new_err(format!("no threads: {error}")))?;
-    let deadline = seconds.and_then(|s| Duration::try_from_secs_f64(s).ok()).and_then(|s| Instant::now().checked_add(s));
+    let deadline =
+        seconds.and_then(|s| Duration::try_from_secs_f64(s).ok()).and_then(|s| Instant::now().checked_add(s));
     let stop = Arc::new(Stop { asked: AtomicBool::new(false), deadline });
     let counter = Arc::new(Counter::default());
     let (stopped, counted) = (Arc::clone(&stop), Arc::clone(&counter));

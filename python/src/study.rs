@@ -115,8 +115,7 @@ impl Study {
         made_in_python: bool,
         hosted: Option<bool>,
     ) -> PyResult<Self> {
-        let study =
-            Self { text, toml, name, folder, files, made_in_python, hosted, described: String::new() };
+        let study = Self { text, toml, name, folder, files, made_in_python, hosted, described: String::new() };
         let (parsed, hello) =
             study.parsed(None, JournalPlace::Nowhere, None).map_err(|error| of_study(py, &error, made_in_python))?;
         Ok(Self { described: described(&parsed, &hello), ..study })
@@ -128,9 +127,8 @@ impl Study {
         // The file is read once, and its text parsed again with the model: what it says is in the message either way.
         let mut externals = Externals::default();
         if let Some(cheap) = hosted {
-            externals = externals.with_host(move |signature, _| {
-                Arc::new(Host::new(signature, cheap, channel::<Event<Ended>>().0))
-            });
+            externals = externals
+                .with_host(move |signature, _| Arc::new(Host::new(signature, cheap, channel::<Event<Ended>>().0)));
         }
         let read = sensitol::Study::read_with(&path, externals).map_err(|error| of_study(py, &error, false))?;
         let toml = path.extension().is_some_and(|extension| extension == "toml");

@@ -82,8 +82,12 @@ struct Session {
 
 pub(super) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
     // The engine that asks keeps the answers, and sends the nominal point as often as it wants to.
-    let externals =
-        Externals { journal: JournalPlace::Nowhere, listener: listener(look), sentinels: false, ..Externals::default() };
+    let externals = Externals {
+        journal: JournalPlace::Nowhere,
+        listener: listener(look),
+        sentinels: false,
+        ..Externals::default()
+    };
     let study = Study::read_with(&asked.study, externals)?;
     look.warn_all(&study.warnings);
     interrupt::listen();

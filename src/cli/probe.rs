@@ -69,8 +69,12 @@ struct StepReport {
 
 pub(super) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
     // Answers from a journal would prove nothing, and sentinels would hide what is looked for.
-    let externals =
-        Externals { journal: JournalPlace::Nowhere, listener: listener(look), sentinels: false, ..Externals::default() };
+    let externals = Externals {
+        journal: JournalPlace::Nowhere,
+        listener: listener(look),
+        sentinels: false,
+        ..Externals::default()
+    };
     let study = study::read(&asked.study, externals)?;
     let mut files = Files::of(&asked.study.study, &study, None);
     let destination = files.output(&asked.output)?;

@@ -54,7 +54,8 @@ pub(super) fn model(entry: Option<&Spanned<ModelEntry>>, source: &Source) -> Res
     match entry {
         Some(entry) if host.is_some() && entry.get_ref().builtin.is_some() => {
             let to = "a study whose model is a function of the calling program".to_owned();
-            let does_not = StudyFault::DoesNotApply { key: "builtin", to, instead: "leave out [model], or the function" };
+            let does_not =
+                StudyFault::DoesNotApply { key: "builtin", to, instead: "leave out [model], or the function" };
             Err(fault(entry.span(), "model.builtin", does_not))
         }
         _ if host.is_some() => Ok(host),

@@ -24,6 +24,7 @@ mod formulas;
 mod gradients;
 mod help;
 mod history;
+mod hosted;
 mod hostile;
 mod html;
 mod implicit;
