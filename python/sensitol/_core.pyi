@@ -1,10 +1,13 @@
 import os
-from typing import Any, Callable
+from typing import Any, Callable, final
+
+__all__ = ["Outcome", "Study", "__version__", "run_cli"]
 
 __version__: str
 
 def run_cli(arguments: list[str]) -> int: ...
 
+@final
 class Outcome:
     @property
     def study(self) -> str | None: ...
@@ -16,6 +19,7 @@ class Outcome:
     def svg(self, title: str) -> str: ...
     def tables(self) -> list[tuple[str, str]]: ...
 
+@final
 class Study:
     @staticmethod
     def from_text(

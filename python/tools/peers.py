@@ -164,7 +164,7 @@ def main() -> None:
         if run.returncode:
             lost.append(f"- {shown} fails: {run.stderr.strip().splitlines()[-1]}")
             continue
-        found = eval(run.stdout.strip().splitlines()[-1], {"nan": math.nan})
+        found = eval(run.stdout.strip().splitlines()[-1], {"nan": math.nan, "np": numpy})
         start = seconds(python, f"import {module}" + ("; import sensitol as st; st.Study" if package is None else "")) - seconds(python, "pass")
 
         def cell(key: str, digits: int) -> str:
