@@ -87,7 +87,7 @@ impl Counter {
 }
 
 /// Does what is asked of a study.
-pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counter) -> Result<Found, Error> {
+pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counter) -> Result<Found, Box<Error>> {
     let problem = &study.problem;
     let about = || About { title: study.title.clone(), sha256: study.sha256.clone(), warnings: study.warnings.clone() };
     let seed = study.seed.or(study.options.seed).unwrap_or(Options::SEED);
@@ -99,7 +99,7 @@ pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counte
         Asked::Analyze {} => {
             let mut options = study.options.clone();
             options.densities = true;
-            let found = analyze_with(problem, &options, run)?;
+            let found = analyze_with(problem, &options, run).map_err(boxed)?;
             let what_if = WhatIf::of(problem, &found, &study.lines, &study.costs);
             Found::of(Shown::Analysis(Box::new((Report::of(problem, &found, about()), what_if))))
         }
@@ -113,7 +113,7 @@ pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counte
             };
             (options.until, options.until_yield) = (*until, *until_yield);
             options.control = control_variate.then(|| study.options.clone());
-            let found = simulate_with(problem, &options, run, &pace)?;
+            let found = simulate_with(problem, &options, run, &pace).map_err(boxed)?;
             Found::of(Shown::Simulation(SimulationReport::of(problem, &found, about())))
         }
         Asked::Rare { samples, until } => {
@@ -123,24 +123,24 @@ pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counte
                 .with_seed(seed)
                 .with_surrogate(study.options.clone());
             let options = until.map_or(options.clone(), |until| options.with_until(until));
-            let found = rare_with(problem, &options, run, &pace)?;
+            let found = rare_with(problem, &options, run, &pace).map_err(boxed)?;
             Found::of(Shown::Rare(RareReport::of(problem, &found, about())))
         }
         Asked::Compare { samples } => {
             let mut options = CompareOptions::default().with_seed(seed);
             (options.budget, options.reference) = (study.options.budget, *samples);
-            let found = compare_with(problem, &options, run)?;
+            let found = compare_with(problem, &options, run).map_err(boxed)?;
             Found::of(Shown::Comparison(CompareReport::of(&found, about())))
         }
         Asked::Sweep { over, values } => {
-            let found = sweep_with(problem, over, values, &study.options, run)?;
+            let found = sweep_with(problem, over, values, &study.options, run).map_err(boxed)?;
             Found::of(Shown::Sweep(SweepReport::of(problem, &found, about())))
         }
         Asked::Allocate { recentre, front, confirm } => {
             let mut options = AllocationOptions::default().with_analysis(study.options.clone()).with_seed(seed);
             options.recentre.clone_from(recentre);
             (options.front, options.confirm) = (*front, *confirm);
-            let found = allocate_with(problem, &study.allocation_task(), &options, run)?;
+            let found = allocate_with(problem, &study.allocation_task(), &options, run).map_err(boxed)?;
             // What was stopped before the model had its say is no study yet.
             let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
             let anew = confirmed.then(|| study.rewritten(&found.problem));
@@ -154,9 +154,13 @@ pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counte
                 .map(|anew| WrittenAnew { entries: anew.entries.clone(), replaced_fits: anew.replaced_fits.clone() });
             let report = AllocationReport::of(problem, &found, written.as_ref(), about());
             let study = anew.map(|anew| anew.text);
-            Found { study, not_written, ..Found::of(Shown::Allocation(report)) }
+            Found { study, not_written, ..Found::of(Shown::Allocation(Box::new(report))) }
         }
     })
+}
+
+fn boxed(error: impl Into<Error>) -> Box<Error> {
+    Box::new(error.into())
 }
 
 /// How many points of a costly model are planned, at the least.

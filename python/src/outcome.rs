@@ -15,7 +15,7 @@ pub(crate) enum Shown {
     Rare(RareReport),
     Comparison(CompareReport),
     Sweep(SweepReport),
-    Allocation(AllocationReport),
+    Allocation(Box<AllocationReport>),
 }
 
 /// A report, and what else there is.
@@ -54,7 +54,7 @@ impl Shown {
             Self::Rare(report) => report,
             Self::Comparison(report) => report,
             Self::Sweep(report) => report,
-            Self::Allocation(report) => report,
+            Self::Allocation(report) => &**report,
         }
     }
 

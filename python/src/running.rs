@@ -21,7 +21,7 @@ use crate::pools::Pool;
 const TICK: Duration = Duration::from_millis(50);
 
 /// How a run ended; none where the engine panicked.
-pub(crate) type Ended = Option<Result<Found, Error>>;
+pub(crate) type Ended = Option<Result<Found, Box<Error>>>;
 
 /// Why a run is to end.
 #[derive(Default)]
@@ -60,7 +60,7 @@ pub(crate) fn run(
     caller: &Caller<'_>,
     events: Receiver<Event<Ended>>,
     ended: std::sync::mpsc::Sender<Event<Ended>>,
-) -> PyResult<Result<Found, Error>> {
+) -> PyResult<Result<Found, Box<Error>>> {
     let pool = Pool::of(threads).map_err(|error| PyRuntimeError::new_err(format!("no threads: {error}")))?;
     let deadline =
         seconds.and_then(|s| Duration::try_from_secs_f64(s).ok()).and_then(|s| Instant::now().checked_add(s));
@@ -68,7 +68,7 @@ pub(crate) fn run(
     let counter = Arc::new(Counter::default());
     let (stopped, counted) = (Arc::clone(&stop), Arc::clone(&counter));
     pool.spawn(move || {
-        let work = || {
+        let work = || -> Result<Found, Box<Error>> {
             let reason = || stopped.reason();
             let abandoned = || stopped.asked.load(Ordering::Relaxed);
             let run = Run::to_the_end().stopping_when(&reason).abandoning_when(&abandoned);

@@ -105,6 +105,7 @@ impl Study {
     /// From text. `hosted` says that a function of Python is the model: None without one, and otherwise whether it is cheap.
     #[staticmethod]
     #[pyo3(signature = (text, toml, name, folder, files, made_in_python, hosted))]
+    #[allow(clippy::too_many_arguments, reason = "the package alone calls it, by position")]
     fn from_text(
         py: Python<'_>,
         text: String,
@@ -190,7 +191,8 @@ impl Study {
             _ => None,
         };
         let caller = Caller { model, progress, partial };
-        let found = run(py, (study, asked), (threads, seconds), &caller, heard, events)?.map_err(failed)?;
+        let found =
+            run(py, (study, asked), (threads, seconds), &caller, heard, events)?.map_err(|error| failed(*error))?;
         if let Some(reason) = &found.not_kept {
             return Err(PyRuntimeError::new_err(format!("{reason}. What is in the journal stays")));
         }

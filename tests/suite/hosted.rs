@@ -15,17 +15,11 @@ const GAP: &str = r#"
     [characteristics]
     gap = { lower = 0 }
     microns = { formula = "k*gap" }
-    [costs]
-    bore = { reciprocal = [1.0, 0.01], min = 0.001, max = 0.1 }
 "#;
 
 fn hosted(text: &str) -> Result<Study, sensitol::StudyError> {
     let externals = Externals::default().with_host(|_, _| Arc::new(Closure::scalar("gap", |x| x[0] - x[1])));
     Study::from_text(StudyText::toml("gap.toml", text).with_externals(externals))
-}
-
-fn without_costs() -> String {
-    GAP.split("[costs]").next().unwrap().to_owned()
 }
 
 #[test]
@@ -36,7 +30,7 @@ fn a_function_answers_what_no_formula_says() {
         *heard.lock().unwrap() = Some((signature, greeting));
         Arc::new(Closure::scalar("gap", |x| x[0] - x[1]))
     });
-    let study = Study::from_text(StudyText::toml("gap.toml", without_costs()).with_externals(externals)).unwrap();
+    let study = Study::from_text(StudyText::toml("gap.toml", GAP).with_externals(externals)).unwrap();
     let told = told.lock().unwrap().take().unwrap();
     let names = |names: Vec<String>| names.join(" ");
     assert_eq!(names(told.0.inputs.iter().map(|one| one.name.clone()).collect()), "bore shaft");
@@ -53,16 +47,16 @@ fn a_function_answers_what_no_formula_says() {
 /// Without the function the characteristic has neither formula nor model.
 #[test]
 fn the_same_study_without_a_function_is_wrong() {
-    let error = Study::from_toml(&without_costs(), "gap.toml").unwrap_err();
-    assert_eq!(error.key, "characteristics.gap.formula");
+    let error = Study::from_toml(GAP, "gap.toml").unwrap_err();
+    assert_eq!(error.key, "characteristics.gap");
 }
 
 #[test]
 fn a_function_stands_in_place_of_a_program_and_not_of_a_built_in_model() {
-    let program = without_costs() + "[model]\ncommand = [\"no-such-program\"]\n";
+    let program = GAP.to_owned() + "[model]\ncommand = [\"no-such-program\"]\n";
     let study = hosted(&program).unwrap();
     assert!(analyze(&study.problem, &study.options).unwrap().characteristics[0].moments.is_some());
-    let built_in = without_costs() + "[model]\nbuiltin = \"engine-balance\"\n";
+    let built_in = GAP.to_owned() + "[model]\nbuiltin = \"engine-balance\"\n";
     let error = hosted(&built_in).unwrap_err();
     assert_eq!(error.key, "model.builtin");
     assert!(error.to_string().contains("leave out [model], or the function"), "{error}");
@@ -71,7 +65,7 @@ fn a_function_stands_in_place_of_a_program_and_not_of_a_built_in_model() {
 /// What an allocation writes is read again, with the function.
 #[test]
 fn a_study_with_a_function_is_written_anew() {
-    let study = hosted(&without_costs()).unwrap();
+    let study = hosted(GAP).unwrap();
     let dimensions = study.problem.dimensions();
     let half = dimensions[0].scaled(0.5).unwrap().unwrap();
     let wanted = study.problem.clone().with_dimensions(vec![half, dimensions[1].clone()]).unwrap();
@@ -81,7 +75,7 @@ fn a_study_with_a_function_is_written_anew() {
 
 #[test]
 fn keys_of_the_analysis_win_and_what_belongs_to_another_method_goes() {
-    let own = without_costs()
+    let own = GAP.to_owned()
         + "[analysis]\nmethod = \"six-n\"\npairs = [[\"bore\", \"shaft\"]]\nstep = 1.5\naccuracy = 0.02\nseed = 3\n";
     let study = hosted(&own).unwrap();
     let same = study.with_analysis("{}").unwrap();
@@ -95,7 +89,7 @@ fn keys_of_the_analysis_win_and_what_belongs_to_another_method_goes() {
 
 #[test]
 fn keys_of_the_analysis_that_are_wrong_have_their_name_and_no_place() {
-    let study = hosted(&without_costs()).unwrap();
+    let study = hosted(GAP).unwrap();
     let wrong = [
         (r#"{"method": "fool"}"#, "analysis.method"),
         (r#"{"accuracy": -1}"#, "analysis.accuracy"),
