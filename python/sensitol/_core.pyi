@@ -49,4 +49,5 @@ class Study:
         seconds: float | None,
         journal: str | os.PathLike[str] | None,
         partial: bool,
+        whole: bool,
     ) -> Outcome: ...

@@ -108,6 +108,7 @@ class Study:
         kept.setdefault("dimensions", {})
         kept.setdefault("characteristics", {})
         text = json.dumps(plain(kept, ""), ensure_ascii=False)
+        _on_disk(kept, ".", files)
         self._set(text, False, "study", ".", files, True, host)
 
     def _set(
@@ -242,6 +243,7 @@ class Study:
                 known = ", ".join(f"`{one}`" for one in [*data.get("dimensions", {}), *data.get("characteristics", {})])
                 raise StudyError(f"there is no dimension and no characteristic `{key}`; there are {known}", key=key)
         text = json.dumps(plain({key: value for key, value in data.items() if value is not None}, ""), ensure_ascii=False)
+        _on_disk(data, folder, files)
         return type(self)._of(text, False, name, folder, files, True, model)
 
     def check(self) -> list[ReportedWarning]:
@@ -469,6 +471,7 @@ class Study:
                     how.time,
                     self._journal(how.cache),
                     how.partial,
+                    self._model is None or self._model.vectorized or how.executor is not None,
                 )
             finally:
                 for one in evaluators:
@@ -493,6 +496,16 @@ class Study:
             _, _, name, _, _, made = self._state
             return None if made or name == "<text>" else os.path.splitext(name)[0] + ".journal.sqlite"
         return cache
+
+
+def _on_disk(data: Mapping[str, Any], folder: Path, files: dict[str, bytes]) -> None:
+    """Beside files in memory the engine looks for none in the folder: those that the study names there are read."""
+    for entry in data.get("dimensions", {}).values() if files else ():
+        name = entry.get("measured") if isinstance(entry, Mapping) else None
+        path = os.path.join(folder, name) if isinstance(name, str) else ""
+        if name not in files and os.path.isfile(path):
+            with open(path, "rb") as file:
+                files[name] = file.read()
 
 
 class _Run:

@@ -43,6 +43,7 @@ impl Study {
         parameter: Option<&str>,
         journal: JournalPlace,
         events: Option<Sender<Event<Ended>>>,
+        whole: bool,
     ) -> Result<(sensitol::Study, Hello), StudyError> {
         let hello: Hello = Hello::default();
         let mut externals = Externals::default().with_journal(journal);
@@ -52,7 +53,7 @@ impl Study {
                 *heard.lock().unwrap_or_else(PoisonError::into_inner) = Some((signature.clone(), greeting));
                 // Without a run nobody answers.
                 let events = events.clone().unwrap_or_else(|| channel().0);
-                Arc::new(Host::new(signature, cheap, events))
+                Arc::new(Host::new(signature, (cheap, whole), events))
             });
         }
         let text = match self.toml {
@@ -117,8 +118,9 @@ impl Study {
         hosted: Option<bool>,
     ) -> PyResult<Self> {
         let study = Self { text, toml, name, folder, files, made_in_python, hosted, described: String::new() };
-        let (parsed, hello) =
-            study.parsed(None, JournalPlace::Nowhere, None).map_err(|error| of_study(py, &error, made_in_python))?;
+        let (parsed, hello) = study
+            .parsed(None, JournalPlace::Nowhere, None, true)
+            .map_err(|error| of_study(py, &error, made_in_python))?;
         Ok(Self { described: described(&parsed, &hello), ..study })
     }
 
@@ -128,8 +130,9 @@ impl Study {
         // The file is read once, and its text parsed again with the model: what it says is in the message either way.
         let mut externals = Externals::default();
         if let Some(cheap) = hosted {
-            externals = externals
-                .with_host(move |signature, _| Arc::new(Host::new(signature, cheap, channel::<Event<Ended>>().0)));
+            externals = externals.with_host(move |signature, _| {
+                Arc::new(Host::new(signature, (cheap, true), channel::<Event<Ended>>().0))
+            });
         }
         let read = sensitol::Study::read_with(&path, externals).map_err(|error| of_study(py, &error, false))?;
         let toml = path.extension().is_some_and(|extension| extension == "toml");
@@ -152,13 +155,13 @@ impl Study {
     /// The study as JSON, whatever it was written in.
     fn as_json(&self, py: Python<'_>) -> PyResult<String> {
         let (parsed, _) = self
-            .parsed(None, JournalPlace::Nowhere, None)
+            .parsed(None, JournalPlace::Nowhere, None, true)
             .map_err(|error| of_study(py, &error, self.made_in_python))?;
         Ok(parsed.as_json())
     }
 
     /// Does what `asked` says. `make_model` gets the names of inputs and outputs as JSON, and makes what evaluates blocks of points.
-    #[pyo3(signature = (asked, analysis, characteristics, make_model, progress, threads, seconds, journal, partial))]
+    #[pyo3(signature = (asked, analysis, characteristics, make_model, progress, threads, seconds, journal, partial, whole))]
     #[allow(clippy::too_many_arguments, reason = "the package alone calls it, by position")]
     fn run<'py>(
         &self,
@@ -172,13 +175,14 @@ impl Study {
         seconds: Option<f64>,
         journal: Option<PathBuf>,
         partial: bool,
+        whole: bool,
     ) -> PyResult<Outcome> {
         let asked: Asked = serde_json::from_str(asked).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let (events, heard) = channel();
         let failed = |error: Error| of_engine(py, &error, self.made_in_python);
         let place = journal.map_or(JournalPlace::Nowhere, JournalPlace::At);
         let (study, hello) =
-            self.parsed(asked.swept(), place, Some(events.clone())).map_err(|error| failed(error.into()))?;
+            self.parsed(asked.swept(), place, Some(events.clone()), whole).map_err(|error| failed(error.into()))?;
         let mut study = study.with_analysis(analysis).map_err(|error| of_study(py, &error, true))?;
         if !characteristics.is_empty() {
             study.problem = study.problem.only(&characteristics).map_err(|error| failed(error.into()))?;

@@ -75,6 +75,13 @@ def test_a_time_limit_ends_a_run():
     assert 0 < found.samples < DAYS
 
 
+def test_a_time_limit_ends_a_run_of_a_slow_function_within_a_block():
+    # A block of 4096 points would take 41 s.
+    found = shaft_and_bore(models.slow).simulate(4096, time=1.0)
+    assert found.stopped == "time-limit"
+    assert 0 < found.samples < 1000
+
+
 def test_progress_is_told():
     told = []
     shaft_and_bore(models.slow).analyze("full", progress=lambda points, expected: told.append((points, expected)))

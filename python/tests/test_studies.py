@@ -91,6 +91,13 @@ def test_measured_values_are_an_array():
     assert study.analyze("full")["gap"].sigma == pytest.approx(sigma, rel=2e-3)  # n or n - 1: 0.13 % at 400
 
 
+def test_an_array_beside_a_file_of_measured_values():
+    study = st.read(os.path.join(REPOSITORY, "examples/measured-pin/study.toml"))
+    changed = study.replace(hole=st.Dimension(distribution=np.linspace(10.0, 10.1, 50)))
+    assert changed.dimensions["pin"] == study.dimensions["pin"]
+    assert changed.dimensions["hole"].mean == pytest.approx(10.05, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     "values, message",
     [
