@@ -493,8 +493,9 @@ class Study:
         if self._model is not None or cache is False:
             return None
         if cache is None or cache is True:
-            _, _, name, _, _, made = self._state
-            return None if made or name == "<text>" else os.path.splitext(name)[0] + ".journal.sqlite"
+            _, _, name, folder, _, made = self._state
+            stem = os.path.splitext(os.path.basename(name))[0]
+            return None if made or name == "<text>" else os.path.join(folder, stem + ".journal.sqlite")
         return cache
 
 
@@ -645,7 +646,8 @@ def read(path: Path, *, model: ModelLike = None) -> Study:
     host = None if model is None else _host(model)
     path = os.fspath(path)
     found = _core.Study.read(path, _hosted(host))
-    folder = os.path.dirname(path) or "."
+    # The working folder may change before the study is asked.
+    folder = os.path.dirname(os.path.abspath(path))
     return Study._of(found.text, path.endswith(".toml"), path, folder, {}, False, host)
 
 

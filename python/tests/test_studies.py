@@ -91,6 +91,13 @@ def test_measured_values_are_an_array():
     assert study.analyze("full")["gap"].sigma == pytest.approx(sigma, rel=2e-3)  # n or n - 1: 0.13 % at 400
 
 
+def test_a_study_that_was_read_stays_where_it_was(tmp_path, monkeypatch):
+    monkeypatch.chdir(os.path.join(REPOSITORY, "examples/measured-pin"))
+    study = st.read("study.toml")
+    monkeypatch.chdir(tmp_path)
+    assert study.analyze("full")["clearance"].sigma > 0
+
+
 def test_an_array_beside_a_file_of_measured_values():
     study = st.read(os.path.join(REPOSITORY, "examples/measured-pin/study.toml"))
     changed = study.replace(hole=st.Dimension(distribution=np.linspace(10.0, 10.1, 50)))
