@@ -170,7 +170,7 @@ class AllocationResult(Result):
     stages: int
     """Batches in which points were sent."""
     status: Literal['optimal', 'almost-optimal', 'infeasible', 'no-feasible-point-found', 'out-of-time']
-    """`optimal`, `almost-optimal`, `infeasible` or `out-of-time`."""
+    """`optimal`, `almost-optimal`, `infeasible`, `no-feasible-point-found` or `out-of-time`."""
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
     """Why it ended early; None where it did not."""
     study_sha256: str

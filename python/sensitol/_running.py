@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import pickle
 import queue
+import threading
 import time
 from typing import TYPE_CHECKING, Any, Sequence
 
@@ -131,32 +132,38 @@ class Distributed:
     def run(self, tasks: list[Any], outputs: list[int], keep: Any) -> float:
         done: queue.SimpleQueue[tuple[int, Any]] = queue.SimpleQueue()
         futures: list[Any] = []
-        took = 0.0
-        left = len(tasks)
+        stop = threading.Event()
 
-        def take(wait: float) -> bool:
-            nonlocal took, left
+        def send() -> None:
+            # Not on the calling thread: Ctrl-C in the middle of submit would leave locks of the executor held for ever.
             try:
-                place, future = done.get(timeout=wait) if wait else done.get_nowait()
-            except queue.Empty:
-                return False
-            found, elapsed = future.result()
-            took = max(took, elapsed)
-            keep(place, found)
-            left -= 1
-            return True
+                for place, points in enumerate(tasks):
+                    if stop.is_set():
+                        return
+                    future = self.executor.submit(task, self.call, self.answer, points, outputs, **self.options)
+                    futures.append(future)
+                    future.add_done_callback(lambda future, place=place: done.put((place, future)))
+            except BaseException as error:
+                done.put((-1, error))
 
+        sender = threading.Thread(target=send, name="sensitol-sender", daemon=True)
+        took, left = 0.0, len(tasks)
         try:
-            for place, points in enumerate(tasks):
-                future = self.executor.submit(task, self.call, self.answer, points, outputs, **self.options)
-                futures.append(future)
-                future.add_done_callback(lambda future, place=place: done.put((place, future)))
-                # An exception ends the run before all is sent.
-                while take(0.0):
-                    pass
+            sender.start()
             while left:
-                take(TICK)
+                try:
+                    place, future = done.get(timeout=TICK)
+                except queue.Empty:
+                    continue
+                if place < 0:
+                    raise future
+                found, elapsed = future.result()
+                took = max(took, elapsed)
+                keep(place, found)
+                left -= 1
         except BaseException:
+            stop.set()
+            sender.join()
             for future in futures:
                 future.cancel()
             raise

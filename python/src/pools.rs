@@ -3,7 +3,7 @@
 //! Runs share no pool. A model may analyse another study, and the outer run holds a thread while it waits for that. Pools belong to a
 //! process: threads do not survive a fork, so a forked child leaves the pools that it inherited alone and makes its own.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
@@ -59,9 +59,11 @@ impl Drop for Pool {
             std::mem::forget(pool);
             return;
         }
-        let mut idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner);
-        if idle.process == self.process && idle.pools.len() < KEPT {
-            idle.pools.push((self.threads, pool));
+        match IDLE.try_lock() {
+            Ok(mut idle) if idle.process == self.process && idle.pools.len() < KEPT => {
+                idle.pools.push((self.threads, pool));
+            }
+            _ => drop(pool),
         }
     }
 }

@@ -33,7 +33,7 @@ def timeless(report):
     return {key: value for key, value in report.items() if key not in ("wall_s", "in_model_s")}
 
 
-@pytest.mark.parametrize("name", studies())
+@pytest.mark.parametrize("name", list(studies()))
 def test_an_analysis_is_that_of_the_command_line(name):
     path = os.path.join(EXAMPLES, name, "study.toml")
     run = subprocess.run([*COMMAND, "analyze", path, "--json", "-v"], capture_output=True, text=True, timeout=300)
