@@ -21,7 +21,7 @@ DAYS = 2**40
 
 
 @contextlib.contextmanager
-def ctrl_c(after=0.3):
+def ctrl_c(after=0.5):
     """Ctrl-C after so many seconds."""
     timer = threading.Timer(after, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
@@ -63,8 +63,9 @@ def test_ctrl_c_in_a_model_has_the_model_s_frames():
 
 
 def test_what_is_known_at_ctrl_c():
-    with ctrl_c():
-        found = shaft_and_bore().simulate(DAYS, on_interrupt="partial")
+    study = shaft_and_bore()
+    with ctrl_c(1.0):
+        found = study.simulate(DAYS, on_interrupt="partial")
     assert found.stopped == "interrupted"
     assert found["clearance"].met is None
 
