@@ -503,9 +503,8 @@ def _on_disk(data: Mapping[str, Any], folder: Path, files: dict[str, bytes]) -> 
     """Beside files in memory the engine looks for none in the folder: those that the study names there are read."""
     for entry in data.get("dimensions", {}).values() if files else ():
         name = entry.get("measured") if isinstance(entry, Mapping) else None
-        path = os.path.join(folder, name) if isinstance(name, str) else ""
-        if name not in files and os.path.isfile(path):
-            with open(path, "rb") as file:
+        if isinstance(name, str) and name not in files and os.path.isfile(os.path.join(folder, name)):
+            with open(os.path.join(folder, name), "rb") as file:
                 files[name] = file.read()
 
 
