@@ -12,7 +12,7 @@ use super::circles::{Sources, code, paths, uses};
 /// As many as there are. A change that takes some away lowers it; one that adds some says why.
 ///
 /// `Externals::with_host`, `Study::with_analysis` and `StudyText::in_folder` are the last that came: what a calling program needs.
-const MOST: usize = 517;
+const MOST: usize = 525;
 
 const KINDS: &[&str] = &["fn", "const fn", "struct", "enum", "trait", "const", "static", "type"];
 
