@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     Interrupt = Literal["raise", "partial"]
     Sampler = Literal["random", "sobol"]
+    CostBasis = Literal["tolerance-unit", "constant-precision", "equal-shares"]
 
 __all__ = ["Characteristic", "Dimension", "Study", "read"]
 
@@ -172,6 +173,9 @@ class Study:
     def dimensions(self) -> dict[str, Record]:
         """What the engine made of each dimension: nominal, tolerance, mean, sigma, distribution, unit."""
         return {one["name"]: Record(one) for one in self._about["dimensions"]}
+
+    def _about_dimensions(self) -> list[str]:
+        return [str(one["name"]) for one in self._about["dimensions"]]
 
     @property
     def characteristics(self) -> list[str]:
@@ -424,7 +428,8 @@ class Study:
     def allocate(
         self,
         *,
-        recentre: Iterable[str] = (),
+        recentre: Iterable[str] | Mapping[str, tuple[float, float] | None] = (),
+        cost: CostBasis | None = None,
         front: int | None = None,
         confirm: int | None = None,
         method: str | None = None,
@@ -439,8 +444,19 @@ class Study:
         progress: Progress = None,
         on_interrupt: Interrupt = "raise",
     ) -> AllocationResult:
-        """The cheapest tolerances that keep what is required; `r.study` is the study with them."""
-        asked = {"command": "allocate", "recentre": _names(recentre), "front": front, "confirm": confirm}
+        """The cheapest tolerances that keep what is required; `r.study` is the study with them.
+
+        `recentre` names dimensions whose nominal values may move, as a mapping with least and greatest values. `cost` takes relative
+        costs in place of the study's own.
+        """
+        asked: dict[str, Any] = {"command": "allocate", "recentre": _names(recentre), "front": front, "confirm": confirm}
+        asked["cost"] = cost
+        if isinstance(recentre, Mapping):
+            asked["nominal_bounds"] = [[name, list(ends)] for name, ends in recentre.items() if ends is not None]
+        for name in _names(recentre):
+            if name not in self._about_dimensions():
+                known = ", ".join(f"`{one}`" for one in self._about_dimensions())
+                raise StudyError(f"there is no dimension `{name}` to recentre; there are {known}", key="recentre")
         run = _Run(characteristics, threads, time, executor, chunksize, cache, progress, on_interrupt)
         return self._run(AllocationResult, asked, {"method": method, "budget": budget, "seed": seed}, run)
 

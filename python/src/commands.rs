@@ -2,10 +2,10 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use sensitol::allocation::{AllocationOptions, Status, allocate_with};
+use sensitol::allocation::{AllocationOptions, CostBasis, Status, allocate_with};
 use sensitol::assembly::Run;
 use sensitol::compare::{CompareOptions, compare_with};
-use sensitol::internals::{WhatIf, procedure};
+use sensitol::internals::{Draws, WhatIf, procedure};
 use sensitol::rare::{RareOptions, rare_with};
 use sensitol::report::{
     About, AllocationReport, CompareReport, RareReport, Report, SimulationReport, SweepReport, WrittenAnew,
@@ -49,9 +49,21 @@ pub(crate) enum Asked {
     Allocate {
         #[serde(default)]
         recentre: Vec<String>,
+        #[serde(default)]
+        nominal_bounds: Vec<(String, [f64; 2])>,
         front: Option<usize>,
         confirm: Option<u64>,
+        cost: Option<CostName>,
     },
+}
+
+/// Relative costs in place of the study's own.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum CostName {
+    ToleranceUnit,
+    ConstantPrecision,
+    EqualShares,
 }
 
 /// How points are drawn.
@@ -136,11 +148,21 @@ pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counte
             let found = sweep_with(problem, over, values, &study.options, run).map_err(boxed)?;
             Found::of(Shown::Sweep(SweepReport::of(problem, &found, about())))
         }
-        Asked::Allocate { recentre, front, confirm } => {
+        Asked::Allocate { recentre, nominal_bounds, front, confirm, cost } => {
             let mut options = AllocationOptions::default().with_analysis(study.options.clone()).with_seed(seed);
             options.recentre.clone_from(recentre);
-            (options.front, options.confirm) = (*front, *confirm);
-            let found = allocate_with(problem, &study.allocation_task(), &options, run).map_err(boxed)?;
+            options.nominal_bounds.clone_from(nominal_bounds);
+            (options.front, options.confirm) = (*front, confirmed_by(study, *confirm));
+            let task = study.allocation_task();
+            // As on the command line: relative costs where there are none, unless nominal values alone are to move.
+            let basis = match cost {
+                Some(CostName::ToleranceUnit) => CostBasis::ToleranceUnit,
+                Some(CostName::ConstantPrecision) => CostBasis::ConstantPrecision,
+                Some(CostName::EqualShares) => CostBasis::EqualShares,
+                None if task.priced.is_empty() && recentre.is_empty() => CostBasis::ToleranceUnit,
+                None => CostBasis::Given,
+            };
+            let found = allocate_with(problem, &task.relative(problem, basis), &options, run).map_err(boxed)?;
             // What was stopped before the model had its say is no study yet.
             let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
             let anew = confirmed.then(|| study.rewritten(&found.problem));
@@ -157,6 +179,14 @@ pub(crate) fn done(study: &Study, asked: &Asked, run: &Run<'_>, counter: &Counte
             Found { study, not_written, ..Found::of(Shown::Allocation(Box::new(report))) }
         }
     })
+}
+
+/// Points of the model that confirm an allocation: as asked, or some of a cheap model, as far as a budget leaves them.
+fn confirmed_by(study: &Study, asked: Option<u64>) -> Option<u64> {
+    let problem = &study.problem;
+    let drawn = || Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, Options::SEED).is_ok();
+    let cheap = !problem.function().signature().costly && study.options.budget.is_none() && drawn();
+    asked.or(cheap.then_some(SAMPLES)).filter(|&points| points > 0)
 }
 
 fn boxed(error: impl Into<Error>) -> Box<Error> {

@@ -41,6 +41,22 @@ def test_an_analysis_is_that_of_the_command_line(name):
     assert timeless(st.read(path).analyze().to_dict()) == timeless(json.loads(run.stdout))
 
 
+@pytest.mark.parametrize("name", ["shaft-and-housing", "shaft-and-bore"])
+def test_an_allocation_is_that_of_the_command_line(name):
+    path = os.path.join(EXAMPLES, name, "study.toml")
+    run = subprocess.run([*COMMAND, "allocate", path, "--json", "-v"], capture_output=True, text=True, timeout=300)
+    assert run.returncode in (0, 4), run.stderr
+    assert timeless(st.read(path).allocate().to_dict()) == timeless(json.loads(run.stdout))
+
+
+def test_nominal_values_move_within_their_bounds():
+    study = st.read(os.path.join(EXAMPLES, "shaft-and-housing/study.toml"))
+    found = study.allocate(recentre={"B": (7.99, 8.01)})
+    assert 7.99 <= found.study.dimensions["B"].nominal <= 8.01
+    with pytest.raises(st.StudyError, match="there is no dimension `X` to recentre; there are `B`|there is no dimension `X`"):
+        study.allocate(recentre=["X"])
+
+
 def test_the_types_of_results_are_those_of_the_schema():
     schema = subprocess.run([*COMMAND, "schema", "--report"], capture_output=True, text=True, check=True).stdout
     tool = os.path.join(REPOSITORY, "python/tools/reports.py")
