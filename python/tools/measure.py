@@ -111,6 +111,7 @@ def main() -> None:
     python = sys.executable
     command = os.path.join(os.path.dirname(python), "sensitol")
     rows: list[tuple[str, str]] = []
+    load = os.getloadavg()[0]
 
     def row(what: str, value: str) -> None:
         rows.append((what, value))
@@ -171,7 +172,7 @@ def main() -> None:
         "",
         f"`python/tools/measure.py` writes this page: {os.cpu_count()} cores, Python {platform.python_version()}, NumPy {np.__version__}, "
         f"sensitol {st.__version__} as `pip install ./python` builds it.",
-        "Times are the shortest of several runs.",
+        f"Times are the shortest of several runs, beside other work: the load average was {load:.1f} at the start.",
         "",
         "| what | value |",
         "|---|--:|",
