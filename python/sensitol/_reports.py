@@ -129,6 +129,8 @@ class AllocationResult(Result):
     """Whether the model was evaluated at the tolerances found."""
     cost_after: Optional[float]
     """All costs after."""
+    cost_basis: Literal['given', 'tolerance-unit', 'constant-precision', 'equal-shares']
+    """Where the costs come from: given, or relative to the tolerance unit of ISO 286."""
     cost_before: Optional[float]
     """All costs before; null where no process holds some tolerance, and without costs."""
     dimensions_table: Optional[str]
@@ -141,6 +143,8 @@ class AllocationResult(Result):
     """Points that lost at least one characteristic."""
     front: List[FrontPoint]
     """Cost against what is required."""
+    goal: Goal
+    """What was sought, and what may be spent on it."""
     in_model_s: float
     """Time within the model, of all threads together."""
     joint_yield: AllocationResultJointYield
@@ -169,8 +173,8 @@ class AllocationResult(Result):
     """What limits and required sigmas cost."""
     stages: int
     """Batches in which points were sent."""
-    status: Literal['optimal', 'almost-optimal', 'infeasible', 'no-feasible-point-found', 'out-of-time']
-    """`optimal`, `almost-optimal`, `infeasible`, `no-feasible-point-found` or `out-of-time`."""
+    status: Literal['optimal', 'local-optimum', 'almost-optimal', 'infeasible', 'no-feasible-point-found', 'out-of-time']
+    """`optimal`, `local-optimum`, `almost-optimal`, `infeasible`, `no-feasible-point-found` or `out-of-time`."""
     stopped: Optional[Literal['time-limit', 'budget', 'interrupted', 'requested']]
     """Why it ended early; None where it did not."""
     study_sha256: str
@@ -261,25 +265,44 @@ class AllocationResultRequirements(Record):
     """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
     requirement: str
     """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    sampled: Optional[AllocationResultRequirementsSampled]
+    """What a sample of the model says of it there; None without one, and of rss and worst case, of which samples
+    know nothing.
+    """
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
     """The same in a word; null where nothing was found."""
     verdict_before: Literal['met', 'missed', 'inconclusive']
     """The same in a word."""
 
 
+class AllocationResultRequirementsSampled(Record):
+    """What a sample says of a requirement, as it is written."""
+
+    interval: Optional[List[Optional[float]]]
+    """Within which that is known, three errors on either side; null where it is not known at all."""
+    value: Optional[float]
+    """What the sample has."""
+    verdict: Literal['met', 'missed', 'inconclusive']
+    """What that says of the requirement."""
+
+
 class AllocationResultShadowPrices(Record):
     """Something of a characteristic, with its name."""
 
     both: Optional[float]
-    """Per unit by which both limits go outwards, or the only one."""
+    """Per unit by which both limits go outwards, or the only one; None where that is not what they cost inwards."""
     characteristic: str
     """The characteristic."""
     lower: Optional[float]
     """Per unit by which its lower limit goes down."""
+    narrow: Optional[float]
+    """What it costs per unit by which they go inwards."""
     sigma: Optional[float]
     """Per unit of a required sigma."""
     upper: Optional[float]
     """Per unit by which its upper limit goes up."""
+    widen: Optional[float]
+    """What it saves per unit by which the limits go outwards, or a required sigma grows, and all else stays."""
 
 
 class AnalysisResult(Result):
@@ -773,6 +796,14 @@ class FrontPoint(Record):
     """Half bands, in the order of [`Allocation::tolerances`]."""
 
 
+class Goal(Record):
+    """What is sought."""
+
+    kind: Literal['least-cost', 'most-cpk', 'fewest-rejects']
+    cost_limit: Optional[float]
+    """What may be spent."""
+
+
 class Histogram(Record):
     """How many values lie in which interval."""
 
@@ -916,6 +947,12 @@ class Proof(Record):
     """
     nodes: int
     """Nodes of the branch and bound."""
+    other_optimum: Optional[float]
+    """The cost of the next cheapest optimum that one of them ended at; None where there was no other."""
+    reached: Optional[int]
+    """How many of them ended at the tolerances found."""
+    starts: Optional[int]
+    """Searches from different tolerances, where there may be several optima; None where one search is enough."""
 
 
 class RareCharacteristic(Record):
@@ -1558,8 +1595,9 @@ class WorstCase(Record):
 _INNER: Dict[str, Dict[str, type]] = {
     "AllocatedCharacteristic": {"after": CharacteristicResult, "before": CharacteristicResult},
     "AllocatedTolerance": {"contributions": AllocatedToleranceContributions, "deviations": AllocatedToleranceDeviations},
-    "AllocationResult": {"attainable": AllocationResultAttainable, "characteristics": AllocatedCharacteristic, "confirmation": Confirmation, "evaluator": EvaluatorSummary, "front": FrontPoint, "joint_yield": AllocationResultJointYield, "loosest_scaling": AllocationResultLoosestScaling, "proof": Proof, "recentred": AllocationResultRecentred, "requirements": AllocationResultRequirements, "shadow_prices": AllocationResultShadowPrices, "tolerances": AllocatedTolerance, "warnings": ReportedWarning},
+    "AllocationResult": {"attainable": AllocationResultAttainable, "characteristics": AllocatedCharacteristic, "confirmation": Confirmation, "evaluator": EvaluatorSummary, "front": FrontPoint, "goal": Goal, "joint_yield": AllocationResultJointYield, "loosest_scaling": AllocationResultLoosestScaling, "proof": Proof, "recentred": AllocationResultRecentred, "requirements": AllocationResultRequirements, "shadow_prices": AllocationResultShadowPrices, "tolerances": AllocatedTolerance, "warnings": ReportedWarning},
     "AllocationResultJointYield": {"after": JointYield, "before": JointYield},
+    "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
     "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_yield": Verified, "warnings": ReportedWarning},
     "Beyond": {"design_point": DesignPoint},
     "CharacteristicResult": {"distribution": Law, "error_estimate": ErrorEstimate, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
