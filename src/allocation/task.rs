@@ -35,7 +35,7 @@ pub enum Goal {
     /// The least cost that keeps every requirement.
     #[default]
     LeastCost,
-    /// The greatest of the least Cpk of all characteristics with limits of which nothing else is required, for this cost.
+    /// The greatest of the least Cpk of all characteristics with limits of which neither worst case nor sigma is required, for this cost.
     MostCpk {
         /// What may be spent.
         cost_limit: f64,
@@ -53,7 +53,7 @@ impl AllocationTask {
         Self { priced, requirements, basis: CostBasis::Given, goal: Goal::LeastCost }
     }
 
-    /// With something else sought than the least cost: yields and Cpk that are required of characteristics give way to it.
+    /// With something else sought than the least cost: yields, Cpk and rss that are required of characteristics give way to it.
     ///
     /// ```
     /// use sensitol::allocation::{AllocationOptions, AllocationTask, Curve, Goal, Offer, Priced, allocate};
@@ -72,8 +72,8 @@ impl AllocationTask {
     #[must_use]
     pub fn towards(mut self, goal: Goal) -> Self {
         if goal != Goal::LeastCost {
-            let gives_way = |one: &Requirement| !matches!(one, Requirement::Yield(_) | Requirement::Cpk(_));
-            self.requirements.iter_mut().for_each(|one| *one = one.filter(gives_way));
+            let stays = |one: &Requirement| matches!(one, Requirement::Sigma(_) | Requirement::WorstCase);
+            self.requirements.iter_mut().for_each(|one| *one = one.filter(stays));
         }
         self.goal = goal;
         self
@@ -240,7 +240,7 @@ pub enum AllocateError {
     NoLimits,
     /// Nothing to be the best of.
     #[error(
-        "{what} for a cost need costs and {of} with limits of which no rss, worst case or sigma is required, not {count}"
+        "to seek {what} for a cost takes costs and {of} with limits of which neither worst case nor sigma is required; there are {count}"
     )]
     NoGoal {
         /// What is sought.

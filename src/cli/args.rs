@@ -415,7 +415,7 @@ pub(super) struct AllocateArgs {
     pub(super) maximise: Option<MaximiseArg>,
 
     /// What all tolerances together may cost, with --minimise or --maximise
-    #[arg(long, value_name = "COST", value_parser = positive)]
+    #[arg(long, value_name = "COST", value_parser = positive, allow_negative_numbers = true)]
     pub(super) cost_limit: Option<f64>,
 
     /// The front of cost against yield (or Cpk), in N points
