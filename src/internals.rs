@@ -18,7 +18,9 @@ pub use crate::method::registry::{ALL, procedure};
 pub use crate::moments::{Interactions, Tables, Term, contributions, of_quadratic};
 pub use crate::plan::{Nodes, Plan, Spread, corners};
 #[cfg(feature = "report")]
-pub use crate::report::csv::{csv_file_names, stack_csv};
+pub use crate::report::csv::{csv_file_names, csv_tables, stack_csv};
+#[cfg(feature = "html")]
+pub use crate::report::html::{WhatIf, analyze_html};
 pub use crate::sampling::{Draws, Fine, Portion, SOBOL_DIMENSIONS, Scale, Sobol, Summary, wilson};
 #[cfg(feature = "cli")]
 pub use crate::study::schema::schema;

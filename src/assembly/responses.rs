@@ -148,7 +148,8 @@ impl Responses {
     }
 
     /// Notes rows whose answers were known already: they cost no evaluation.
-    pub(crate) fn reused(&mut self, rows: usize) {
+    #[doc(hidden)]
+    pub fn reused(&mut self, rows: usize) {
         self.reused += rows;
         self.extra -= rows as i64;
     }

@@ -62,7 +62,8 @@ impl<'a> Run<'a> {
     }
 
     /// Gives up at once, with what is under way, when `abandon` says so.
-    pub(crate) fn abandoning_when(self, abandon: &'a (dyn Fn() -> bool + Sync)) -> Self {
+    #[doc(hidden)]
+    pub fn abandoning_when(self, abandon: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { abandon: Some(abandon), ..self }
     }
 

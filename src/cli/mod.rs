@@ -81,9 +81,14 @@ fn with_suggestion(mut error: clap::Error) -> clap::Error {
 
 /// Runs the command with these arguments, the program's name first, and says how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    run_code(arguments).into()
+}
+
+/// [`run`], with the exit code as a number: for who ends the process by other means than an [`ExitCode`].
+pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => return told(with_suggestion(error)).into(),
+        Err(error) => return told(with_suggestion(error)) as u8,
     };
     output::set_color(arguments.color);
     let style =
@@ -116,5 +121,5 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
         Failure::exit(&failure)
     });
-    exit.into()
+    exit as u8
 }

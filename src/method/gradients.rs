@@ -26,6 +26,9 @@ const NEAR: f64 = 3e-3;
 /// How far off the means, in sigmas, the point is that checks the slopes there.
 const STEP: f64 = 0.1;
 
+/// A node in sigmas, and the derivatives there; None where the model sent none.
+type Place<'e> = (f64, Option<&'e Vec<f64>>);
+
 /// Whether what a model sends serves what was asked for.
 pub(super) fn serve(options: &Options) -> bool {
     options.derivatives.is_none() && options.step.is_none() && !options.all_sensitivities
@@ -39,8 +42,7 @@ pub(super) fn mixed(
     pairs: &[(usize, usize)],
 ) -> Vec<Option<Mixed>> {
     // For every position the gradients at its nodes, with their places.
-    type Node<'e> = (f64, Option<&'e Vec<f64>>);
-    let ends: Vec<Vec<Node<'_>>> = (plan.varying().iter())
+    let ends: Vec<Vec<Place<'_>>> = (plan.varying().iter())
         .map(|&d| nodes(plan, d).into_iter().map(|(point, u)| (u, evaluated.gradients.get(&(point, c)))).collect())
         .collect();
     // The slope by the dimension at position k, in sigmas, over the nodes of the one at position j.

@@ -13,7 +13,7 @@ use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
 use super::implicit::{implicit, placed};
 use super::joint;
-use super::model::{ModelOf, model, process};
+use super::model::{ModelOf, model, process, signature};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use super::units;
@@ -21,7 +21,8 @@ use super::values::NominalEntry;
 use super::written::{Named, Written};
 use crate::allocation::Priced;
 use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
-use crate::assembly::{AssemblyFunction, Composite, CompositeError, Input, Parts};
+use crate::assembly::process::Greeting;
+use crate::assembly::{AssemblyFunction, Composite, CompositeError, Input, Parts, Signature};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
 use crate::dimension::Dimension;
 use crate::method::Options;
@@ -45,8 +46,8 @@ pub(super) struct Built {
 }
 
 pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Result<Built, Faults> {
-    let evaluated = file.model.as_ref().map(|entry| model(entry, source)).transpose()?;
-    let program = matches!(evaluated, Some(ModelOf::Program(_)));
+    let evaluated = model(file.model.as_ref(), source)?;
+    let program = evaluated.as_ref().is_some_and(ModelOf::is_external);
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     let mut faults = Faults::default();
     faults.take(names(file, model));
@@ -323,6 +324,12 @@ fn compose(
     if source.externals.points.is_some() && !program {
         return Err(nowhere(StudyFault::NothingExternal).into());
     }
+    type Made = Result<Arc<dyn AssemblyFunction>, Fault>;
+    let sent_to = |make: &dyn Fn(Signature, Greeting) -> Made| -> Result<_, Faults> {
+        let sent = drive::of_program(file, dimensions, &constants, written, &outputs)?;
+        let offered = asked_of_program(&inputs, &constants, written, &outputs);
+        Ok((make(signature(&sent.inputs, offered), sent.greeting)?, sent.sources))
+    };
     let model = match model {
         None => None,
         Some(ModelOf::BuiltIn(model)) => {
@@ -330,11 +337,9 @@ fn compose(
             Some((function, drive::of_built_in(model, dimensions, &constants, written)))
         }
         Some(ModelOf::Program(program)) => {
-            let sent = drive::of_program(file, dimensions, &constants, written, &outputs)?;
-            let offered = asked_of_program(&inputs, &constants, written, &outputs);
-            let function = process(program, &sent.inputs, sent.greeting, offered, source).map_err(nowhere)?;
-            Some((function, sent.sources))
+            Some(sent_to(&|signature, greeting| process(program, signature, greeting, source).map_err(nowhere))?)
         }
+        Some(ModelOf::Host(host)) => Some(sent_to(&|signature, greeting| Ok(host.function(signature, greeting)))?),
     };
     let parts = Parts {
         inputs,
@@ -438,7 +443,7 @@ fn unused(
         None => false,
         Some(ModelOf::BuiltIn(model)) => model.inputs.iter().any(|input| input.name == name),
         // A program says itself what it does not know.
-        Some(ModelOf::Program(_)) => true,
+        Some(ModelOf::Program(_) | ModelOf::Host(_)) => true,
     };
     let idle_constants = (file.constants.names().into_iter())
         .filter(|name| !used(name.get_ref()) && !is_input(name.get_ref()))

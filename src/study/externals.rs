@@ -1,10 +1,27 @@
 //! What a study file does not say: where the answers of external programs are kept, who hears them, and which configuration is meant.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::assembly::Table;
-use crate::assembly::process::Listener;
+use crate::assembly::process::{Greeting, Listener};
+use crate::assembly::{AssemblyFunction, Signature, Table};
+
+/// Makes the function that answers a study's model from the names and units of its inputs and outputs, nominal values and constants.
+#[derive(Clone)]
+pub(crate) struct Host(Arc<dyn Fn(Signature, Greeting) -> Arc<dyn AssemblyFunction> + Send + Sync>);
+
+impl Host {
+    pub(super) fn function(&self, signature: Signature, greeting: Greeting) -> Arc<dyn AssemblyFunction> {
+        self.0(signature, greeting)
+    }
+}
+
+impl fmt::Debug for Host {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Host")
+    }
+}
 
 /// How the external programs of a study are treated.
 #[derive(Clone)]
@@ -20,11 +37,20 @@ pub struct Externals {
     pub sentinels: bool,
     /// Which of the study's configurations is meant; the study as written where it is None.
     pub configuration: Option<String>,
+    /// Who answers in place of a program.
+    pub(crate) host: Option<Host>,
 }
 
 impl Default for Externals {
     fn default() -> Self {
-        Self { journal: JournalPlace::Nowhere, listener: None, points: None, sentinels: true, configuration: None }
+        Self {
+            journal: JournalPlace::Nowhere,
+            listener: None,
+            points: None,
+            sentinels: true,
+            configuration: None,
+            host: None,
+        }
     }
 }
 
@@ -54,6 +80,39 @@ impl Externals {
     #[must_use]
     pub fn with_configuration(mut self, name: impl Into<String>) -> Self {
         self.configuration = Some(name.into());
+        self
+    }
+
+    /// With a function of the calling program as the study's model: in place of the program that its `[model]` names, and where it
+    /// has no `[model]`. `host` gets names and units of inputs and outputs, nominal values and constants. Formulas may use its outputs.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use sensitol::study::{Externals, Study, StudyText};
+    /// use sensitol::{Closure, analyze};
+    /// let text = r#"
+    ///     [dimensions]
+    ///     bore = { nominal = 25.02, tolerance = 0.01 }
+    ///     shaft = { nominal = 24.98, tolerance = 0.01 }
+    ///     [characteristics]
+    ///     gap = { unit = "mm" }
+    ///     microns = { formula = "1000*gap" }
+    /// "#;
+    /// let externals = Externals::default().with_host(|signature, greeting| {
+    ///     assert_eq!((signature.outputs[0].name.as_str(), greeting.nominal[1]), ("gap", 24.98));
+    ///     Arc::new(Closure::scalar("gap", |x| x[0] - x[1]))
+    /// });
+    /// let study = Study::from_text(StudyText::toml("gap.toml", text).with_externals(externals))?;
+    /// let found = analyze(&study.problem, &study.options)?;
+    /// assert!((found.characteristics[1].moments.unwrap().mean() - 40.0).abs() < 1e-9);
+    /// # Ok::<(), sensitol::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_host(
+        mut self,
+        host: impl Fn(Signature, Greeting) -> Arc<dyn AssemblyFunction> + Send + Sync + 'static,
+    ) -> Self {
+        self.host = Some(Host(Arc::new(host)));
         self
     }
 

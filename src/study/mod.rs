@@ -37,6 +37,7 @@
 //! ```
 
 mod build;
+mod changed;
 mod correlation;
 mod costs;
 mod data;
@@ -73,6 +74,7 @@ mod written;
 
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
+use externals::Host;
 pub use externals::{Externals, JournalPlace};
 pub use files::{FileRole, NamedFile};
 pub(crate) use place::Format;
@@ -133,6 +135,8 @@ pub struct Study {
     format: Format,
     name: String,
     place: Place,
+    /// Who answers in place of a program.
+    host: Option<Host>,
 }
 
 impl Study {
@@ -244,8 +248,8 @@ impl Study {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn from_text(study: StudyText) -> Result<Self, StudyError> {
-        let StudyText { format, name, text, files, externals, parameter } = study;
-        Self::parse(&text, format, &name, Place::memory(files), externals, parameter.as_deref())
+        let StudyText { format, name, text, files, externals, parameter, folder } = study;
+        Self::parse(&text, format, &name, Place::memory(files, folder), externals, parameter.as_deref())
     }
 
     fn parse(
@@ -289,6 +293,7 @@ impl Study {
             format,
             name: source.name,
             place: source.place,
+            host: source.externals.host,
             text: source.text,
             sha256: hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
         })

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::error::{Fault, StudyFault, fault};
+use super::externals::Host;
 use super::file::ModelEntry;
 use super::source::Source;
 use super::spanned::Spanned;
@@ -22,6 +23,8 @@ const WORKERS: u64 = 1024;
 pub(super) enum ModelOf {
     BuiltIn(&'static Model),
     Program(Program),
+    /// A function of the calling program.
+    Host(Host),
 }
 
 /// An external program.
@@ -35,12 +38,32 @@ impl ModelOf {
     pub(super) fn built_in(&self) -> Option<&'static Model> {
         match self {
             Self::BuiltIn(model) => Some(model),
-            Self::Program(_) => None,
+            Self::Program(_) | Self::Host(_) => None,
         }
+    }
+
+    /// Whether it is asked for whatever the study does not write as a formula.
+    pub(super) fn is_external(&self) -> bool {
+        self.built_in().is_none()
     }
 }
 
-pub(super) fn model(entry: &Spanned<ModelEntry>, source: &Source) -> Result<ModelOf, Fault> {
+/// The model of a study: the calling program's where there is one, and otherwise what `[model]` says.
+pub(super) fn model(entry: Option<&Spanned<ModelEntry>>, source: &Source) -> Result<Option<ModelOf>, Fault> {
+    let host = source.externals.host.clone().map(ModelOf::Host);
+    match entry {
+        Some(entry) if host.is_some() && entry.get_ref().builtin.is_some() => {
+            let to = "a study whose model is a function of the calling program".to_owned();
+            let does_not =
+                StudyFault::DoesNotApply { key: "builtin", to, instead: "leave out [model], or the function" };
+            Err(fault(entry.span(), "model.builtin", does_not))
+        }
+        _ if host.is_some() => Ok(host),
+        entry => entry.map(|entry| written(entry, source)).transpose(),
+    }
+}
+
+fn written(entry: &Spanned<ModelEntry>, source: &Source) -> Result<ModelOf, Fault> {
     let (line, entry) = (entry.span(), entry.get_ref());
     match (&entry.builtin, &entry.command) {
         (None, None) => {
@@ -126,17 +149,19 @@ fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) 
     Ok(Program { settings, files })
 }
 
-/// The program as assembly function: of what it is sent, with `outputs` by name and unit; its answers kept where the study is
-/// read to be evaluated.
+/// A function of all dimensions, with `outputs` by name and unit.
+pub(super) fn signature(inputs: &[Input], outputs: Vec<(String, Option<String>)>) -> Signature {
+    let outputs = outputs.into_iter().map(|(name, unit)| Output { name, unit, depends_on: None }).collect();
+    Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() }
+}
+
+/// The program as assembly function of this signature; its answers kept where the study is read to be evaluated.
 pub(super) fn process(
     program: &Program,
-    inputs: &[Input],
+    signature: Signature,
     greeting: Greeting,
-    outputs: Vec<(String, Option<String>)>,
     source: &Source,
 ) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
-    let outputs = outputs.into_iter().map(|(name, unit)| Output { name, unit, depends_on: None }).collect();
-    let signature = Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() };
     if let Some(table) = &source.externals.points {
         let given = GivenAnswers::new(signature, Arc::clone(table));
         return Ok(Arc::new(given.map_err(StudyFault::MissingColumn)?));

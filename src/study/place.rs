@@ -40,6 +40,7 @@ pub struct StudyText {
     pub(super) files: BTreeMap<String, Arc<[u8]>>,
     pub(super) externals: Externals,
     pub(super) parameter: Option<String>,
+    pub(super) folder: PathBuf,
 }
 
 impl StudyText {
@@ -52,6 +53,7 @@ impl StudyText {
             files: BTreeMap::new(),
             externals: Externals::default(),
             parameter: None,
+            folder: PathBuf::from("."),
         }
     }
 
@@ -70,6 +72,12 @@ impl StudyText {
     pub fn with_file(mut self, name: impl Into<String>, content: impl AsRef<[u8]>) -> Self {
         self.files.insert(name.into(), Arc::from(content.as_ref()));
         self
+    }
+
+    /// In this folder, from which relative paths start; otherwise that is the current folder.
+    #[must_use]
+    pub fn in_folder(self, folder: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into(), ..self }
     }
 
     /// With external programs treated like this.
@@ -99,9 +107,9 @@ impl Place {
         Self { folder: folder.to_owned(), memory: None }
     }
 
-    /// Files in memory, or of the current folder where there are none.
-    pub(super) fn memory(files: BTreeMap<String, Arc<[u8]>>) -> Self {
-        Self { folder: PathBuf::from("."), memory: (!files.is_empty()).then(|| Arc::new(files)) }
+    /// Files in memory, or of this folder where there are none.
+    pub(super) fn memory(files: BTreeMap<String, Arc<[u8]>>, folder: PathBuf) -> Self {
+        Self { folder, memory: (!files.is_empty()).then(|| Arc::new(files)) }
     }
 
     /// The folder that relative paths start from.

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::Study;
 use super::error::StudyError;
-use super::externals::{Externals, JournalPlace};
+use super::externals::Externals;
 use super::place::Format;
 use super::tree::{Key, Tree, Value};
 use super::write;
@@ -122,7 +122,8 @@ impl Study {
         Ok(Rewritten { text, entries, replaced_fits })
     }
 
-    fn tree(&self) -> Option<Tree> {
+    /// What it was read from.
+    pub(super) fn tree(&self) -> Option<Tree> {
         match self.format {
             Format::Toml => Tree::of_toml(&self.text).ok(),
             Format::Json => Tree::of_json(&self.text).ok(),
@@ -130,7 +131,7 @@ impl Study {
     }
 
     fn read_again(&self, text: &str) -> Result<Self, RewriteError> {
-        let externals = Externals { journal: JournalPlace::Nowhere, ..Externals::default() };
+        let externals = Externals { host: self.host.clone(), ..Externals::default() };
         Self::parse(text, self.format, &self.name, self.place.clone(), externals, None)
             .map_err(|error| RewriteError::Unreadable(Box::new(error)))
     }

@@ -26,6 +26,7 @@ mod formulas;
 mod gradients;
 mod help;
 mod history;
+mod hosted;
 mod hostile;
 mod html;
 mod implicit;

@@ -12,7 +12,8 @@ use super::circles::{Sources, code, paths, uses};
 /// As many as there are. A change that takes some away lowers it; one that adds some says why.
 ///
 /// `Externals::with_configuration` is the last that came: a library reads the sizes of a study too.
-const MOST: usize = 523;
+/// `Externals::with_host`, `Study::with_analysis` and `StudyText::in_folder` came too: what a calling program needs.
+const MOST: usize = 526;
 
 const KINDS: &[&str] = &["fn", "const fn", "struct", "enum", "trait", "const", "static", "type"];
 

@@ -1,0 +1,53 @@
+import os
+from typing import Any, Callable, final
+
+__all__ = ["Outcome", "Study", "__version__", "run_cli"]
+
+__version__: str
+
+def run_cli(arguments: list[str]) -> int: ...
+
+@final
+class Outcome:
+    @property
+    def study(self) -> str | None: ...
+    @property
+    def not_written(self) -> str | None: ...
+    def json(self) -> str: ...
+    def text(self, width: int = 100, full: bool = False) -> str: ...
+    def html(self) -> str: ...
+    def svg(self, title: str) -> str: ...
+    def tables(self) -> list[tuple[str, str]]: ...
+
+@final
+class Study:
+    @staticmethod
+    def from_text(
+        text: str,
+        toml: bool,
+        name: str,
+        folder: str | os.PathLike[str],
+        files: dict[str, bytes],
+        made_in_python: bool,
+        hosted: bool | None,
+    ) -> Study: ...
+    @staticmethod
+    def read(path: str | os.PathLike[str], hosted: bool | None) -> Study: ...
+    @property
+    def described(self) -> str: ...
+    @property
+    def text(self) -> str: ...
+    def as_json(self) -> str: ...
+    def run(
+        self,
+        asked: str,
+        analysis: str,
+        characteristics: list[str],
+        make_model: Callable[[str], Callable[[bytes, int, list[int]], tuple[bytes, list[tuple[int, str]], int]]] | None,
+        progress: Callable[[int, int], Any] | None,
+        threads: int,
+        seconds: float | None,
+        journal: str | os.PathLike[str] | None,
+        partial: bool,
+        whole: bool,
+    ) -> Outcome: ...

@@ -1,0 +1,31 @@
+//! The engine as a Python module: `sensitol._core`, which the package `sensitol` wraps.
+//!
+//! Python runs on the thread that called, and nowhere else: the engine works on threads of its own, and passes every block of
+//! points to the caller, who evaluates it, looks for signals and shows progress.
+
+mod commands;
+mod errors;
+mod host;
+mod outcome;
+mod pools;
+mod running;
+mod study;
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+
+/// The command line, with the program's name first; the exit code. It listens to signals: for a process of its own.
+#[pyfunction]
+fn run_cli(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| sensitol::cli::run_code(arguments))
+}
+
+/// What the package `sensitol` wraps.
+#[pymodule(gil_used = false)]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_function(wrap_pyfunction!(run_cli, module)?)?;
+    module.add_class::<study::Study>()?;
+    module.add_class::<outcome::Outcome>()
+}

@@ -1,0 +1,160 @@
+//! A run: the engine works on a pool, and the thread that called evaluates points, looks for signals and shows progress.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyList};
+use sensitol::assembly::Run;
+use sensitol::{Error, StopReason, Study};
+
+use crate::commands::{Asked, Counter, done};
+use crate::host::{Answer, Call, Event};
+use crate::outcome::Found;
+use crate::pools::Pool;
+
+/// How long the calling thread waits before it looks for signals.
+const TICK: Duration = Duration::from_millis(50);
+
+/// How a run ended; none where the engine panicked.
+pub(crate) type Ended = Option<Result<Found, Box<Error>>>;
+
+/// Why a run is to end.
+#[derive(Default)]
+struct Stop {
+    /// Ctrl-C, or an exception of the model.
+    asked: AtomicBool,
+    deadline: Option<Instant>,
+}
+
+impl Stop {
+    fn reason(&self) -> Option<StopReason> {
+        if self.asked.load(Ordering::Relaxed) {
+            return Some(StopReason::Interrupted);
+        }
+        self.deadline.filter(|deadline| Instant::now() >= *deadline).map(|_| StopReason::TimeLimit)
+    }
+}
+
+/// What the calling thread does beside waiting.
+pub(crate) struct Caller<'py> {
+    /// Evaluates blocks of points.
+    pub(crate) model: Option<Bound<'py, PyAny>>,
+    /// Is told of points answered and expected.
+    pub(crate) progress: Option<Bound<'py, PyAny>>,
+    /// Whether an interrupted run has a result all the same.
+    pub(crate) partial: bool,
+}
+
+/// Does what is asked of a study. `events` hears the model of the study, and the end of the run from `ended`.
+///
+/// An exception of the model or of a signal ends the run and is raised as it is.
+pub(crate) fn run(
+    py: Python<'_>,
+    (study, asked): (Study, Asked),
+    (threads, seconds): (usize, Option<f64>),
+    caller: &Caller<'_>,
+    events: Receiver<Event<Ended>>,
+    ended: std::sync::mpsc::Sender<Event<Ended>>,
+) -> PyResult<Result<Found, Box<Error>>> {
+    let pool = Pool::of(threads).map_err(|error| PyRuntimeError::new_err(format!("no threads: {error}")))?;
+    let deadline =
+        seconds.and_then(|s| Duration::try_from_secs_f64(s).ok()).and_then(|s| Instant::now().checked_add(s));
+    let stop = Arc::new(Stop { asked: AtomicBool::new(false), deadline });
+    let counter = Arc::new(Counter::default());
+    let (stopped, counted) = (Arc::clone(&stop), Arc::clone(&counter));
+    pool.spawn(move || {
+        let work = || -> Result<Found, Box<Error>> {
+            let reason = || stopped.reason();
+            let abandoned = || stopped.asked.load(Ordering::Relaxed);
+            let run = Run::to_the_end().stopping_when(&reason).abandoning_when(&abandoned);
+            let mut found = done(&study, &asked, &run, &counted)?;
+            found.not_kept = study.problem.function().account().and_then(|account| account.not_kept);
+            Ok(found)
+        };
+        let result = catch_unwind(AssertUnwindSafe(work)).ok();
+        // Children of an external model end with the study, before the caller goes on.
+        drop(study);
+        let _ = ended.send(Event::Done(result));
+    });
+    let events = Mutex::new(events);
+    let mut raised: Option<PyErr> = None;
+    let mut shown = Instant::now();
+    let result = loop {
+        let wait = || events.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(TICK);
+        match py.detach(wait) {
+            Ok(Event::Done(result)) => break result,
+            Ok(Event::Call(call)) => {
+                let answered = if raised.is_some() { Ok(None) } else { evaluated(py, caller, &call).map(Some) };
+                let answer = answered.unwrap_or_else(|error| {
+                    stop.asked.store(true, Ordering::Relaxed);
+                    raised = Some(error);
+                    None
+                });
+                if answer.is_some() {
+                    counter.points.fetch_add(call.rows as u64, Ordering::Relaxed);
+                }
+                // Who asked may have been stopped meanwhile.
+                let _ = call.reply.send(answer);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break None,
+        }
+        if raised.is_some() {
+            continue;
+        }
+        let looked = py.check_signals().and_then(|()| match &caller.progress {
+            Some(progress) if shown.elapsed() >= TICK => {
+                shown = Instant::now();
+                let count = |value: &std::sync::atomic::AtomicU64| value.load(Ordering::Relaxed);
+                progress.call1((count(&counter.points), count(&counter.expected))).map(drop)
+            }
+            _ => Ok(()),
+        });
+        if let Err(error) = looked {
+            stop.asked.store(true, Ordering::Relaxed);
+            raised = Some(error);
+        }
+    };
+    match (raised, result) {
+        (Some(error), Some(Ok(found))) if caller.partial && error.is_instance_of::<PyKeyboardInterrupt>(py) => {
+            Ok(Ok(found))
+        }
+        (Some(error), _) => Err(error),
+        (None, Some(result)) => {
+            if let Some(progress) = &caller.progress {
+                let points = counter.points.load(Ordering::Relaxed);
+                progress.call1((points, points))?;
+            }
+            Ok(result)
+        }
+        (None, None) => Err(PyRuntimeError::new_err(
+            "the engine failed; please report it with the study and the model, at the address of the package",
+        )),
+    }
+}
+
+/// The model's answers to a block of points.
+fn evaluated(py: Python<'_>, caller: &Caller<'_>, call: &Call) -> PyResult<Answer> {
+    let Some(model) = &caller.model else {
+        return Err(PyRuntimeError::new_err("a study without a model of Python asked for one"));
+    };
+    let points = PyBytes::new_with(py, call.values.len() * size_of::<f64>(), |bytes| {
+        for (place, value) in bytes.chunks_exact_mut(size_of::<f64>()).zip(&call.values) {
+            place.copy_from_slice(&value.to_ne_bytes());
+        }
+        Ok(())
+    })?;
+    let answer = model.call1((points, call.rows, PyList::new(py, &call.outputs)?))?;
+    let (values, failed, reused): (Bound<'_, PyBytes>, Vec<(usize, String)>, usize) = answer.extract()?;
+    let number = |bytes: &[u8]| f64::from_ne_bytes(bytes.try_into().expect("chunks of eight bytes"));
+    let values: Vec<f64> = values.as_bytes().chunks_exact(size_of::<f64>()).map(number).collect();
+    if values.len() != call.rows * call.outputs.len() {
+        return Err(PyRuntimeError::new_err("the package answered another number of values than asked for"));
+    }
+    Ok(Answer { values, failed, reused })
+}

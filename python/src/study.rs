@@ -1,0 +1,205 @@
+//! A study as Python holds it: the text that it was read from, and what was found in it.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use sensitol::assembly::Signature;
+use sensitol::assembly::process::Greeting;
+use sensitol::study::{Externals, JournalPlace, StudyText};
+use sensitol::{Error, StudyError};
+use serde_json::json;
+
+use crate::commands::Asked;
+use crate::errors::{of_engine, of_study};
+use crate::host::{Event, Host};
+use crate::outcome::Outcome;
+use crate::running::{Caller, Ended, run};
+
+/// What a model is told first.
+type Hello = Arc<Mutex<Option<(Signature, Greeting)>>>;
+
+/// The text of a study, with the files that it names.
+#[pyclass(frozen, module = "sensitol._core")]
+pub(crate) struct Study {
+    text: String,
+    toml: bool,
+    name: String,
+    folder: PathBuf,
+    files: BTreeMap<String, Vec<u8>>,
+    /// Whether the study was made of Python objects: its text is nobody's.
+    made_in_python: bool,
+    /// Whether a function of Python is the model, and whether that is cheap.
+    hosted: Option<bool>,
+    described: String,
+}
+
+impl Study {
+    fn parsed(
+        &self,
+        parameter: Option<&str>,
+        journal: JournalPlace,
+        events: Option<Sender<Event<Ended>>>,
+        whole: bool,
+    ) -> Result<(sensitol::Study, Hello), StudyError> {
+        let hello: Hello = Hello::default();
+        let mut externals = Externals::default().with_journal(journal);
+        if let Some(cheap) = self.hosted {
+            let heard = Arc::clone(&hello);
+            externals = externals.with_host(move |signature, greeting| {
+                *heard.lock().unwrap_or_else(PoisonError::into_inner) = Some((signature.clone(), greeting));
+                // Without a run nobody answers.
+                let events = events.clone().unwrap_or_else(|| channel().0);
+                Arc::new(Host::new(signature, (cheap, whole), events))
+            });
+        }
+        let text = match self.toml {
+            true => StudyText::toml(&self.name, &self.text),
+            false => StudyText::json(&self.name, &self.text),
+        };
+        let text = text.in_folder(&self.folder).with_externals(externals);
+        let text = self.files.iter().fold(text, |text, (name, bytes)| text.with_file(name, bytes));
+        let text = parameter.map_or(text.clone(), |parameter| text.sweeping(parameter));
+        Ok((sensitol::Study::from_text(text)?, hello))
+    }
+}
+
+/// What Python wants to know of a study, as JSON.
+fn described(study: &sensitol::Study, hello: &Hello) -> String {
+    let dimension = |one: &sensitol::Dimension| {
+        json!({
+            "name": one.name(), "unit": one.unit(), "nominal": one.nominal(), "tolerance": one.tolerance(),
+            "mean": one.mean(), "sigma": one.sigma(),
+            "distribution": one.distribution().map(|distribution| distribution.name()),
+        })
+    };
+    let warning = |one: &sensitol::Warning| json!({ "code": one.code(), "message": one.message() });
+    let hello = hello.lock().unwrap_or_else(PoisonError::into_inner);
+    let model = hello.as_ref().map(|(signature, greeting)| spoken(signature, greeting));
+    json!({
+        "title": study.title,
+        "dimensions": study.problem.dimensions().iter().map(dimension).collect::<Vec<_>>(),
+        "characteristics": study.problem.characteristics().iter().map(|one| one.name()).collect::<Vec<_>>(),
+        "warnings": study.warnings.iter().map(warning).collect::<Vec<_>>(),
+        "sha256": study.sha256,
+        "model": model,
+    })
+    .to_string()
+}
+
+/// What a model is told first, as JSON.
+fn spoken(signature: &Signature, greeting: &Greeting) -> serde_json::Value {
+    json!({
+        "inputs": signature.inputs.iter().map(|input| &input.name).collect::<Vec<_>>(),
+        "outputs": signature.outputs.iter().map(|output| &output.name).collect::<Vec<_>>(),
+        "nominal": greeting.nominal,
+        "constants": greeting.constants,
+        "optional": greeting.optional,
+    })
+}
+
+#[pymethods]
+impl Study {
+    /// From text. `hosted` says that a function of Python is the model: None without one, and otherwise whether it is cheap.
+    #[staticmethod]
+    #[pyo3(signature = (text, toml, name, folder, files, made_in_python, hosted))]
+    #[allow(clippy::too_many_arguments, reason = "the package alone calls it, by position")]
+    fn from_text(
+        py: Python<'_>,
+        text: String,
+        toml: bool,
+        name: String,
+        folder: PathBuf,
+        files: BTreeMap<String, Vec<u8>>,
+        made_in_python: bool,
+        hosted: Option<bool>,
+    ) -> PyResult<Self> {
+        let study = Self { text, toml, name, folder, files, made_in_python, hosted, described: String::new() };
+        let (parsed, hello) = study
+            .parsed(None, JournalPlace::Nowhere, None, true)
+            .map_err(|error| of_study(py, &error, made_in_python))?;
+        Ok(Self { described: described(&parsed, &hello), ..study })
+    }
+
+    /// From a file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf, hosted: Option<bool>) -> PyResult<Self> {
+        // The file is read once, and its text parsed again with the model: what it says is in the message either way.
+        let mut externals = Externals::default();
+        if let Some(cheap) = hosted {
+            externals = externals.with_host(move |signature, _| {
+                Arc::new(Host::new(signature, (cheap, true), channel::<Event<Ended>>().0))
+            });
+        }
+        let read = sensitol::Study::read_with(&path, externals).map_err(|error| of_study(py, &error, false))?;
+        let toml = path.extension().is_some_and(|extension| extension == "toml");
+        let (name, folder) = (path.display().to_string(), read.folder().to_owned());
+        Self::from_text(py, read.text().to_owned(), toml, name, folder, BTreeMap::new(), false, hosted)
+    }
+
+    /// What is known of the study, as JSON.
+    #[getter]
+    fn described(&self) -> &str {
+        &self.described
+    }
+
+    /// What it was read from.
+    #[getter]
+    fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The study as JSON, whatever it was written in.
+    fn as_json(&self, py: Python<'_>) -> PyResult<String> {
+        let (parsed, _) = self
+            .parsed(None, JournalPlace::Nowhere, None, true)
+            .map_err(|error| of_study(py, &error, self.made_in_python))?;
+        Ok(parsed.as_json())
+    }
+
+    /// Does what `asked` says. `make_model` gets the names of inputs and outputs as JSON, and makes what evaluates blocks of points.
+    #[pyo3(signature = (asked, analysis, characteristics, make_model, progress, threads, seconds, journal, partial, whole))]
+    #[allow(clippy::too_many_arguments, reason = "the package alone calls it, by position")]
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        asked: &str,
+        analysis: &str,
+        characteristics: Vec<String>,
+        make_model: Option<Bound<'py, PyAny>>,
+        progress: Option<Bound<'py, PyAny>>,
+        threads: usize,
+        seconds: Option<f64>,
+        journal: Option<PathBuf>,
+        partial: bool,
+        whole: bool,
+    ) -> PyResult<Outcome> {
+        let asked: Asked = serde_json::from_str(asked).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let (events, heard) = channel();
+        let failed = |error: Error| of_engine(py, &error, self.made_in_python);
+        let place = journal.map_or(JournalPlace::Nowhere, JournalPlace::At);
+        let (study, hello) =
+            self.parsed(asked.swept(), place, Some(events.clone()), whole).map_err(|error| failed(error.into()))?;
+        let mut study = study.with_analysis(analysis).map_err(|error| of_study(py, &error, true))?;
+        if !characteristics.is_empty() {
+            study.problem = study.problem.only(&characteristics).map_err(|error| failed(error.into()))?;
+        }
+        let hello = hello.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let model = match (hello, make_model) {
+            (Some((signature, greeting)), Some(make)) => {
+                Some(make.call1((spoken(&signature, &greeting).to_string(),))?)
+            }
+            _ => None,
+        };
+        let caller = Caller { model, progress, partial };
+        let found =
+            run(py, (study, asked), (threads, seconds), &caller, heard, events)?.map_err(|error| failed(*error))?;
+        if let Some(reason) = &found.not_kept {
+            return Err(PyRuntimeError::new_err(format!("{reason}. What is in the journal stays")));
+        }
+        Ok(Outcome(found))
+    }
+}

@@ -1,0 +1,173 @@
+"""Results: what the command line's JSON has, typed, shown, tabled."""
+
+import contextlib
+import io
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import REPOSITORY, shaft_and_bore
+
+import sensitol as st
+
+COMMAND = [sys.executable, "-m", "sensitol._cli"]
+EXAMPLES = os.path.join(REPOSITORY, "examples")
+#: Measured values need minutes, or programs that may not be there.
+LEFT_OUT = {"dual-mass-flywheel", "connecting-rod"}
+
+
+def studies():
+    for name in sorted(os.listdir(EXAMPLES)):
+        path = os.path.join(EXAMPLES, name, "study.toml")
+        if os.path.exists(path) and name not in LEFT_OUT:
+            with open(path) as file:
+                if "command =" not in file.read():
+                    yield name
+
+
+def timeless(report):
+    """Without what differs from run to run."""
+    return {key: value for key, value in report.items() if key not in ("wall_s", "in_model_s")}
+
+
+@pytest.mark.parametrize("name", list(studies()))
+def test_an_analysis_is_that_of_the_command_line(name):
+    path = os.path.join(EXAMPLES, name, "study.toml")
+    run = subprocess.run([*COMMAND, "analyze", path, "--json", "-v"], capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
+    assert timeless(st.read(path).analyze().to_dict()) == timeless(json.loads(run.stdout))
+
+
+@pytest.mark.parametrize("costs", [True, False])
+def test_an_allocation_is_that_of_the_command_line(costs, tmp_path):
+    path = os.path.join(EXAMPLES, "shaft-and-housing", "study.toml")
+    if not costs:
+        # Its tolerances have relative costs then.
+        path = str(tmp_path / "study.toml")
+        shaft_and_bore().write(path)
+    run = subprocess.run([*COMMAND, "allocate", path, "--json", "-v"], capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
+    assert timeless(st.read(path).allocate().to_dict()) == timeless(json.loads(run.stdout))
+
+
+def test_nominal_values_move_within_their_bounds():
+    study = st.read(os.path.join(EXAMPLES, "shaft-and-housing/study.toml"))
+    found = study.allocate(recentre={"B": (7.99, 8.01)})
+    assert 7.99 <= found.study.dimensions["B"].nominal <= 8.01
+    with pytest.raises(st.StudyError, match="there is no dimension `X` to recentre; there are `B`|there is no dimension `X`"):
+        study.allocate(recentre=["X"])
+
+
+def test_the_types_of_results_are_those_of_the_schema():
+    schema = subprocess.run([*COMMAND, "schema", "--report"], capture_output=True, text=True, check=True).stdout
+    tool = os.path.join(REPOSITORY, "python/tools/reports.py")
+    made = subprocess.run([sys.executable, tool], input=schema, capture_output=True, text=True, check=True).stdout
+    with open(os.path.join(os.path.dirname(st.__file__), "_reports.py"), encoding="utf-8") as file:
+        assert file.read() == made, "write it anew: sensitol schema --report | python tools/reports.py > sensitol/_reports.py"
+
+
+def walk(record):
+    """Reads every attribute of a result, and of what is in it."""
+    for name in dir(record):
+        if name.startswith("_") or callable(getattr(type(record), name, None)):
+            continue
+        value = getattr(record, name)
+        for one in value if isinstance(value, list) else [value]:
+            if isinstance(one, st.Record):
+                assert type(one) is not st.Record, f"{type(record).__name__}.{name} has no type"
+                walk(one)
+
+
+@pytest.mark.parametrize("run", ["analyze", "worst_case", "simulate", "rare", "compare", "sweep", "allocate"])
+def test_every_part_of_a_result_has_its_type(run):
+    study = shaft_and_bore()
+    if run == "allocate":
+        study = st.read(os.path.join(EXAMPLES, "shaft-and-housing/study.toml"))
+    found = getattr(study, run)(*(("tilt", [0.0, 1.0]) if run == "sweep" else ()))
+    walk(found)
+    assert found.characteristics
+    for table in found.tables():
+        columns = found.table(table)
+        assert len({len(column) for column in columns.values()}) <= 1
+
+
+def test_a_table_has_the_numbers_of_the_report(study):
+    found = study.analyze("full")
+    table = found.table("sensitivities")
+    assert table["dimension"] == [one.dimension for one in found["clearance"].sensitivities]
+    assert table["linear_share"] == [one.linear_share for one in found["clearance"].sensitivities]
+    with pytest.raises(KeyError, match="there is no table `senses`; there are `dimensions`, `characteristics`"):
+        found.table("senses")
+    pandas = pytest.importorskip("pandas", reason="skipped: pandas is not installed; install with: pip install pandas")
+    assert list(found.to_frame("sensitivities")["dimension"]) == table["dimension"]
+    assert isinstance(found.to_frame("dimensions"), pandas.DataFrame)
+
+
+def test_names_that_are_none(study):
+    found = study.analyze("full")
+    with pytest.raises(KeyError, match="there is no characteristic `clearence`; there are `clearance`"):
+        found["clearence"]
+    with pytest.raises(AttributeError, match="CharacteristicResult has no attribute 'sigmas'; there are name, unit"):
+        found["clearance"].sigmas
+
+
+def test_a_result_shows_itself(study, tmp_path):
+    found = study.analyze("full")
+    assert "0.0436467" in str(found)
+    assert repr(found) == "<AnalysisResult of clearance: 14 evaluations>"
+    assert found.to_html(tmp_path / "page.html") == (tmp_path / "page.html").read_text(encoding="utf-8")
+    bundle = found._repr_mimebundle_()
+    assert bundle["text/html"].startswith("<iframe srcdoc=")
+    assert 'sandbox="allow-scripts allow-downloads"' in bundle["text/html"]
+    # A quote in the page would end the attribute.
+    inner = bundle["text/html"].split('srcdoc="', 1)[1].split('" sandbox=', 1)[0]
+    assert '"' not in inner and "<" not in inner
+    assert found.to_svg().startswith("<svg")
+    assert json.loads(found.to_json()) == found.to_dict()
+
+
+def test_plots_show_the_whole_contribution(study):
+    matplotlib = pytest.importorskip(
+        "matplotlib", reason="skipped: matplotlib is not installed; install with: pip install matplotlib"
+    )
+    matplotlib.use("Agg")
+    ax = study.analyze("full").plot("clearance")
+    widths = {}
+    for container in ax.containers:
+        for label, bar in zip([text.get_text() for text in ax.get_yticklabels()], container):
+            widths[label] = widths.get(label, 0) + bar.get_width()
+    # The tilt contributes by curvature alone: the README's table.
+    assert widths["tilt"] == pytest.approx(29.18, abs=0.005)
+    assert sum(widths.values()) == pytest.approx(100, abs=1e-6)
+    study.simulate(2000).plot()
+    ax = study.sweep("tilt", np.linspace(-2, 2, 5)).plot()
+    assert ax.get_xlabel() == "tilt [deg]"
+    with pytest.raises(TypeError, match="an RareResult has no plot"):
+        study.rare(1000).plot()
+
+
+@pytest.mark.parametrize(
+    "module, call, message",
+    [
+        ("pandas", lambda found: found.to_frame("dimensions"), r'to_frame needs pandas: pip install "sensitol\[frames\]"'),
+        ("matplotlib", lambda found: found.plot(), r'plot needs matplotlib: pip install "sensitol\[plot\]"'),
+    ],
+)
+def test_without_an_extra_it_says_which(study, monkeypatch, module, call, message):
+    for name in [one for one in sys.modules if one.split(".")[0] == module]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(ImportError, match=message):
+        call(study.analyze("rss"))
+
+
+def test_progress_without_tqdm_is_a_line(study, monkeypatch):
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    told = io.StringIO()
+    with contextlib.redirect_stderr(told):
+        shaft_and_bore(lambda bore, shaft, tilt: bore - shaft).analyze("full", progress=True)
+    assert told.getvalue().rstrip().endswith("points")

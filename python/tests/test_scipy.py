@@ -1,0 +1,77 @@
+"""Frozen distributions of scipy: the engine's own kinds have their moments."""
+
+import math
+
+import numpy as np
+import pytest
+
+import sensitol as st
+
+ss = pytest.importorskip("scipy.stats", reason="skipped: scipy is not installed; install with: pip install scipy")
+
+LAWS = {
+    "norm": lambda: ss.norm(3, 0.2),
+    "uniform": lambda: ss.uniform(2, 0.5),
+    "triang": lambda: ss.triang(0.3, 1, 2),
+    "trapezoid": lambda: ss.trapezoid(0.25, 0.75, 1, 2),
+    "beta": lambda: ss.beta(2, 5, 1, 2),
+    "truncnorm": lambda: ss.truncnorm(-1.5, 2.5, 3, 0.2),
+    "lognorm": lambda: ss.lognorm(0.4, loc=0.001, scale=0.002),
+    "gamma": lambda: ss.gamma(3.5, loc=1, scale=0.2),
+    "weibull_min": lambda: ss.weibull_min(1.7, loc=1, scale=0.3),
+    "expon": lambda: ss.expon(1, 0.2),
+    "rayleigh": lambda: ss.rayleigh(loc=1, scale=0.2),
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("own_nominal", [False, True])
+def test_moments_are_scipy_s(name, own_nominal):
+    law = LAWS[name]()
+    nominal = float(law.mean()) + 0.01 * float(law.std()) if own_nominal else None
+    study = st.Study(
+        dimensions={"x": st.Dimension(nominal, distribution=law)}, characteristics={"y": st.Characteristic("x")}
+    )
+    if own_nominal:
+        assert study.dimensions["x"].nominal == pytest.approx(nominal, rel=1e-15)
+    found = study.analyze("full")["y"]
+    mean, variance, skewness, excess = (float(one) for one in law.stats("mvsk"))
+    # scipy's own series for the moments of truncnorm has nine digits of kurtosis.
+    loose = 1e-6 if name == "truncnorm" else 1e-9
+    assert found.mean == pytest.approx(mean, rel=1e-12)
+    assert found.sigma == pytest.approx(math.sqrt(variance), rel=max(1e-12, loose * 1e-3))
+    assert found.skewness == pytest.approx(skewness, rel=loose, abs=loose)
+    assert found.kurtosis == pytest.approx(excess + 3, rel=loose)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_draws_are_scipy_s(name):
+    law = LAWS[name]()
+    study = st.Study(dimensions={"x": st.Dimension(distribution=law)}, characteristics={"y": st.Characteristic("x")})
+    found = study.simulate(2**16, sampler="sobol", seed=1)["y"].distribution.quantiles
+    for share, value in found.items():
+        if value is None or not 0.01 <= float(share) <= 0.99:
+            continue
+        # 65 536 points of Sobol' leave an error of shares of some 1e-4.
+        assert float(law.cdf(value)) == pytest.approx(float(share), abs=1e-3)
+
+
+def test_laws_that_are_none():
+    with pytest.raises(st.StudyError) as error:
+        st.Dimension(distribution=ss.cauchy(0, 1))
+    assert str(error.value) == "scipy's `cauchy` is no distribution of studies"
+    assert "values drawn from it" in error.value.help
+    with pytest.raises(st.StudyError, match="scipy's `poisson` is discrete, and a dimension is continuous"):
+        st.Dimension(distribution=ss.poisson(3))
+    with pytest.raises(st.StudyError, match="scipy's `trapezoid` is not symmetric"):
+        st.Dimension(distribution=ss.trapezoid(0.1, 0.5, 0, 1))
+    with pytest.raises(st.StudyError, match="scipy's `truncnorm` has no end on one side"):
+        st.Dimension(distribution=ss.truncnorm(-1, np.inf))
+    with pytest.raises(st.StudyError, match="`sigma` follows from the distribution of scipy: leave it out"):
+        st.Dimension(sigma=3, distribution=ss.norm(0, 1))
+    with pytest.raises(st.StudyError, match="`tolerance` follows from the distribution of scipy: leave it out"):
+        st.Dimension(0, 3, distribution=ss.uniform(0, 1))
+    with pytest.raises(TypeError, match="distribution must be a name, a dict, a frozen distribution"):
+        st.Dimension(distribution=ss.norm)
+    with pytest.raises(TypeError, match="distribution must be a name, a dict, a frozen distribution"):
+        st.Dimension(distribution=object())
