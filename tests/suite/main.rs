@@ -12,6 +12,7 @@ mod circles;
 mod cli;
 mod control;
 mod correlation;
+mod coverage;
 mod derivatives;
 mod distributions;
 mod docs;

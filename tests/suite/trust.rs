@@ -20,15 +20,15 @@ const FELT: [f64; 6] = [1e-4, 1e-4, 1e-3, 0.01, 2e-6, 1e-4];
 const FIGURES: [&str; 6] = ["mean", "sigma", "skewness", "kurtosis", "yield", "mid"];
 
 /// A function with what is known of it.
-struct Truth {
-    name: String,
-    study: Study,
+pub(super) struct Truth {
+    pub(super) name: String,
+    pub(super) study: Study,
     /// Value and uncertainty of each of [`FIGURES`].
-    figures: [(f64, f64); 6],
+    pub(super) figures: [(f64, f64); 6],
     valid: f64,
 }
 
-fn truths() -> Vec<Truth> {
+pub(super) fn truths() -> Vec<Truth> {
     let text = std::fs::read_to_string(repository("tests/data/trust.jsonl")).unwrap();
     text.lines().map(|line| truth(&serde_json::from_str(line).unwrap())).collect()
 }
@@ -56,10 +56,14 @@ fn truth(entry: &Value) -> Truth {
 
 impl Truth {
     /// How many times the estimate allows the error, for every figure: at most 1 where it is covered.
-    fn excess(&self, figure: usize, found: Verified) -> f64 {
-        let (value, uncertainty) = self.figures[figure];
+    pub(super) fn excess(&self, figure: usize, found: Verified) -> f64 {
         let felt = FELT[figure] * if figure < 2 { self.figures[1].0 } else { 1.0 };
-        ((found.value - value).abs() - felt).max(0.0) / (3.0 * found.error + 3.0 * uncertainty)
+        (self.off(figure, found.value) - felt).max(0.0) / (3.0 * found.error + 3.0 * self.figures[figure].1)
+    }
+
+    /// How far a figure is off.
+    pub(super) fn off(&self, figure: usize, value: f64) -> f64 {
+        (value - self.figures[figure].0).abs()
     }
 }
 
@@ -302,7 +306,7 @@ impl AssemblyFunction for Costly {
     }
 }
 
-fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
+pub(super) fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
     let asked = Arc::new(AtomicUsize::new(0));
     let signature = Signature { costly: true, cheap: false, ..problem.function().signature().clone() };
     let function = Costly { signature, inner: problem.clone(), asked: Arc::clone(&asked) };
@@ -310,7 +314,7 @@ fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
     (again.asking(problem.characteristics().to_vec()).unwrap(), asked)
 }
 
-fn verified(method: Method, points: usize) -> Options {
+pub(super) fn verified(method: Method, points: usize) -> Options {
     Options::from(method).with_verify(points)
 }
 
