@@ -9,8 +9,9 @@ use crate::method::{Climbed, ErrorEstimate, ErrorSource, Outcome};
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
-use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
+use crate::simulation::{REPLICATES, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
 use crate::summary::RunSummary;
+use crate::verification::{carried_by, student};
 use crate::warning::Figure;
 
 /// Points of a cheap model, at most;
@@ -62,6 +63,7 @@ pub(super) fn fall_back(
         climbed.accuracies.wanted().into_iter().filter_map(|(_, wanted)| wanted).fold(climbed.accuracy, f64::min);
     let few = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count() <= SOBOL_DIMENSIONS;
     let sampler = if costly || !few { Sampler::Random } else { Sampler::Sobol };
+    let few_scramblings = if sampler == Sampler::Sobol { student(REPLICATES as usize) } else { 1.0 };
     let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
     while spent.run.evaluations + samples <= most {
         // Sobol's points come in powers of two: not more of them than may be.
@@ -76,7 +78,7 @@ pub(super) fn fall_back(
         let last = enough || spent.run.evaluations + MORE * samples > most;
         if last {
             for &c in &short {
-                replace(&mut characteristics[c], climbed, c, &found.characteristics[c]);
+                replace(&mut characteristics[c], climbed, c, (&found.characteristics[c], few_scramblings));
             }
             return spent;
         }
@@ -114,7 +116,12 @@ fn known(found: &SimulatedCharacteristic, climbed: &Climbed) -> bool {
     within(sigma, climbed.accuracy) && climbed.accuracies.wanted().into_iter().all(each)
 }
 
-fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found: &SimulatedCharacteristic) {
+fn replace(
+    one: &mut CharacteristicAnalysis,
+    climbed: &Climbed,
+    c: usize,
+    (found, few): (&SimulatedCharacteristic, f64),
+) {
     let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return };
     let (Some(skewness), Some(kurtosis)) = (found.skewness, found.kurtosis) else { return };
     let before = one.moments.map_or(0.0, |moments| moments.variance());
@@ -124,8 +131,11 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
     let law = Law::fit(&moments);
     one.capability = law.as_ref().ok().map(capability);
     one.normal = Law::normal(&moments).ok().map(|law| capability(&law));
-    let error = |estimate: Estimate| estimate.standard_error;
-    let standard_errors = [error(mean), error(sigma), error(skewness), error(kurtosis)];
+    // As the errors of a verification: few randomisations, and few points that carry a power, know little of their own scatter.
+    let widths = found.carried.map_or([1.0; 4], |points| points.map(|points| few * carried_by(points)));
+    let each = [mean, sigma, skewness, kurtosis].into_iter().zip(widths);
+    let errors: Vec<Option<f64>> = each.map(|(of, width)| of.standard_error.map(|error| width * error)).collect();
+    let standard_errors = [errors[0], errors[1], errors[2], errors[3]];
     let sources = vec![ErrorSource::Sampled { points: found.samples }];
     let [mean, sigma, skewness, kurtosis] = standard_errors;
     let estimate = ErrorEstimate { mean, sigma, skewness, kurtosis, yield_: None, sources };

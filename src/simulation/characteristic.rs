@@ -4,7 +4,7 @@ use serde::{Serialize, Serializer};
 
 use super::control::Twin;
 use super::count::{Count, Replicate};
-use super::difference::{Controlled, Difference, Shares, moments as controlled, shares};
+use super::difference::{Controlled, Difference, Shares, carried, moments as controlled, shares};
 use super::replicate::of_replicates;
 use super::shape::value;
 use crate::assembly::EvaluationError;
@@ -79,6 +79,9 @@ pub struct SimulatedCharacteristic {
     /// The surrogate that stood beside the model; None where none was asked for, or it does not vary.
     #[cfg_attr(feature = "cli", schemars(with = "Option<super::shape::ControlShape>"))]
     pub control: Option<SurrogateControl>,
+    /// How many points carry mean, sigma, skewness and kurtosis; None where no surrogate stood beside the model.
+    #[serde(skip)]
+    pub(crate) carried: Option<[f64; 4]>,
 }
 
 /// What a surrogate as control variate has done.
@@ -190,6 +193,7 @@ impl SimulatedCharacteristic {
             }),
             range,
             quantiles,
+            carried: evidence.carried(),
             control: evidence.beside.as_ref().map(|(twin, _)| SurrogateControl {
                 method: twin.method,
                 evaluations: twin.evaluations,
@@ -283,6 +287,12 @@ impl<'a> Evidence<'a> {
             }
             None => moments(&self.all, &self.count.replicates),
         }
+    }
+
+    /// How many points carry each moment: of the sums with the surrogate and without it the fewer.
+    fn carried(&self) -> Option<[f64; 4]> {
+        let [plain, controlled] = carried(&self.beside.as_ref()?.1);
+        Some(std::array::from_fn(|moment| plain[moment].min(controlled[moment])))
     }
 
     /// Those outside the limits, where a surrogate and limits are.

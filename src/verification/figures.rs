@@ -81,9 +81,18 @@ pub(super) fn effective(terms: impl Iterator<Item = f64>) -> f64 {
     if fourths > 0.0 { (squares * squares / fourths).max(1.0) } else { 1.0 }
 }
 
+/// Standard errors grow by `1 + FEW/sqrt(n)`. Without it and with random tails the kurtosis of `exp(0.8 a + 0.3 b)` was off by more
+/// than three of them in 4 of 20 runs; with it in none.
+const FEW: f64 = 5.0;
+
+/// By how much the standard error of a sum grows that so many points carry.
+pub(crate) fn carried_by(points: f64) -> f64 {
+    1.0 + FEW / points.sqrt()
+}
+
 /// By how much a standard error from so many randomisations grows, so that three of it are as rare as three of a normal law:
 /// the quantile of Student's distribution by that of the normal one, 1.2 for 16 randomisations.
-pub(super) fn student(replicates: usize) -> f64 {
+pub(crate) fn student(replicates: usize) -> f64 {
     let freedom = (replicates.max(2) - 1) as f64;
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| law.inverse_cdf(THREE_SIGMAS) / 3.0)
 }

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use sensitol::analysis::{Crossing, VerificationKind, Verified};
 use sensitol::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
+use sensitol::correlation::Pair;
 use sensitol::internals::reach::*;
 use sensitol::internals::{SampledFigures, Target, procedure, variance_shares, verify_by_checks, verify_by_sampling};
 use sensitol::{Closure, Dimension, Method, Options, Problem, Study, analyze};
@@ -310,7 +311,15 @@ pub(super) fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
     let asked = Arc::new(AtomicUsize::new(0));
     let signature = Signature { costly: true, cheap: false, ..problem.function().signature().clone() };
     let function = Costly { signature, inner: problem.clone(), asked: Arc::clone(&asked) };
-    let again = Problem::new(problem.dimensions().to_vec(), function).unwrap();
+    let mut again = Problem::new(problem.dimensions().to_vec(), function).unwrap();
+    if let Some(correlation) = problem.correlation() {
+        let dimensions = problem.dimensions();
+        let all = (0..dimensions.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let name = |d: usize| dimensions[d].name().to_owned();
+        let pair = |(a, b)| Pair { between: [name(a), name(b)], value: correlation.of(a, b) };
+        let pairs: Vec<Pair> = all.map(pair).filter(|pair| pair.value != 0.0).collect();
+        again = again.correlated(&pairs).unwrap();
+    }
     (again.asking(problem.characteristics().to_vec()).unwrap(), asked)
 }
 
