@@ -16,30 +16,26 @@ where
     T::from(value).serialize(serializer)
 }
 
-/// A result whose own fields are written without its warnings, by the function that serde derives.
-pub(crate) trait WithoutWarnings {
-    /// Writes the fields of the result, but for the warnings.
-    fn own<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error>;
+/// Writes a result by the function that serde derives for its own fields, and its warnings last.
+macro_rules! warnings_last {
+    ($result:ty) => {
+        impl serde::Serialize for $result {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                #[derive(serde::Serialize)]
+                struct Whole<'r, W> {
+                    #[serde(flatten, serialize_with = "own")]
+                    own: &'r $result,
+                    warnings: &'r [W],
+                }
+                fn own<S: serde::Serializer>(result: &&$result, serializer: S) -> Result<S::Ok, S::Error> {
+                    <$result>::serialize(result, serializer)
+                }
+                serde::Serialize::serialize(&Whole { own: self, warnings: &self.warnings }, serializer)
+            }
+        }
+    };
 }
-
-/// Writes a result, and its warnings last.
-pub(crate) fn whole<T: WithoutWarnings, W: Serialize, S: Serializer>(
-    result: &T,
-    warnings: &[W],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    #[serde(bound = "T: WithoutWarnings, W: Serialize")]
-    struct Whole<'r, T, W> {
-        #[serde(flatten, serialize_with = "own")]
-        own: &'r T,
-        warnings: &'r [W],
-    }
-    fn own<T: WithoutWarnings, S: Serializer>(result: &&T, serializer: S) -> Result<S::Ok, S::Error> {
-        result.own(serializer)
-    }
-    Whole { own: result, warnings }.serialize(serializer)
-}
+pub(crate) use warnings_last;
 
 /// One of each of the four moments.
 #[derive(Serialize)]

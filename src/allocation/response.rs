@@ -55,7 +55,7 @@ pub(super) struct Response {
     pub(super) unknown: Unknown,
     /// What samples of the model make of its moments, where they refute the surface.
     pub(super) sampled: Option<SampledCorrection>,
-    /// The worst case; None where the slopes tell all of it.
+    /// The worst case, where it is required; None where the slopes tell all of it.
     pub(super) worst: Option<WorstCase>,
 }
 
@@ -93,8 +93,13 @@ const SAME: f64 = 1e-12;
 const STEP: f64 = 3e-5;
 
 impl Responses {
-    /// Of what a method found out.
-    pub(super) fn of(problem: &Problem, outcome: &Outcome, analysis: &Analysis) -> Self {
+    /// Of what a method found out; `requirements` for every characteristic.
+    pub(super) fn of(
+        problem: &Problem,
+        outcome: &Outcome,
+        analysis: &Analysis,
+        requirements: &[Option<Requirement>],
+    ) -> Self {
         let dimensions = problem.dimensions().to_vec();
         let varying = outcome.plan.varying().to_vec();
         let scaling = varying.iter().map(|&d| Scaling::of(&dimensions[d])).collect();
@@ -125,7 +130,9 @@ impl Responses {
                     law: by_law.then(|| surface_law(problem, outcome, c)?.ok()).flatten(),
                     unknown: Unknown::of(found, by_law),
                     sampled: None,
-                    worst: worst_case(&dimensions, &varying, &reach, fitted.surrogate.as_ref(), found),
+                    worst: (requirements[c] == Some(Requirement::WorstCase))
+                        .then(|| worst_case(&dimensions, &varying, &reach, fitted.surrogate.as_ref(), found))
+                        .flatten(),
                 }
             })
             .collect();

@@ -14,7 +14,7 @@ use super::solve::{Setting, Solved, tightened};
 use super::station::{Station, prices, required};
 use super::steps::Steps;
 use super::task::{AllocateError, AllocationOptions, AllocationTask};
-use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_keeping};
+use crate::analysis::{Analysis, CharacteristicAnalysis, TRUSTED, analyze_keeping};
 use crate::assembly::Run;
 use crate::dimension::Dimension;
 use crate::method::{MethodError, Options};
@@ -25,7 +25,7 @@ use crate::sampling::{Draws, Sampler};
 use crate::simulation::{SimulationError, SimulationOptions, simulate_with};
 use crate::summary::{RunSummary, StopReason};
 use crate::time::Instant;
-use crate::verdict::Verdict;
+use crate::verdict::{Judged, Verdict};
 use crate::warning::Warning;
 
 /// Rounds of derivatives, at most.
@@ -39,8 +39,6 @@ const REST: f64 = 1e-3;
 const FAR: f64 = 30.0;
 /// A residual up to which tolerances are called optimal.
 const OPTIMAL: f64 = 1e-6;
-/// A surface that leaves more of the variance unexplained says nothing of an optimum.
-const TRUSTED: f64 = 0.01;
 /// A gap up to which a choice of processes is called optimal.
 const NO_GAP: f64 = 1e-9;
 
@@ -335,9 +333,9 @@ impl Driver<'_> {
                 allocation.prices = prices(&station, &self.task.priced, constraints, solved);
             }
         }
-        let missed = allocation.requirements.iter().any(|one| {
-            station.analysis.characteristics[one.characteristic].judge(one.requirement).verdict == Verdict::Missed
-        });
+        let judged = |one: &Kept| station.analysis.characteristics[one.characteristic].judge(one.requirement);
+        let judged: Vec<Judged> = allocation.requirements.iter().map(judged).collect();
+        let missed = judged.iter().any(|judged| judged.verdict == Verdict::Missed);
         let reached = ended.within_budget && !self.spent.stopped;
         allocation.confirmed = reached;
         allocation.status = match &last {
@@ -382,9 +380,7 @@ impl Driver<'_> {
             allocation.problem = with_tolerances(station.problem, &self.task.priced, &solved.at)?;
             return Ok(());
         }
-        for one in &mut allocation.requirements {
-            one.after = Some(station.analysis.characteristics[one.characteristic].judge(one.requirement));
-        }
+        allocation.requirements.iter_mut().zip(judged).for_each(|(one, judged)| one.after = Some(judged));
         allocation.loosest_after = loosest(&station.responses, constraints);
         allocation.joint[1] = joint(&station.problem, &station.responses, self.options.seed);
         if let (Some(points), Some(solved), false) = (self.options.front, solved, self.spent.stopped) {
@@ -429,7 +425,7 @@ impl Driver<'_> {
         self.spent.run = self.spent.run.and(&analysis.run);
         self.spent.rounds += 1;
         self.spent.stopped |= analysis.run.unfinished();
-        let mut responses = Responses::of(&problem, &outcome, &analysis);
+        let mut responses = Responses::of(&problem, &outcome, &analysis, &self.task.requirements);
         self.correct(&problem, &analysis, &mut responses);
         Ok(Station { problem, analysis, responses })
     }
@@ -443,10 +439,11 @@ impl Driver<'_> {
             (refuted && moments).then_some((c, one.moments?))
         };
         let verified: Vec<(usize, Moments)> = analysis.characteristics.iter().enumerate().filter_map(of).collect();
-        if verified.is_empty() || problem.function().signature().costly || self.run.stopped() {
+        let priced = &self.task.priced;
+        let many = priced.len() > SampledCorrection::MOST_GROUPS;
+        if verified.is_empty() || many || problem.function().signature().costly || self.run.stopped() {
             return;
         }
-        let priced = &self.task.priced;
         let at = |g: usize, factor: f64| {
             let half = problem.dimensions()[priced[g].members[0]].half_band();
             with_tolerances(problem.clone(), &priced[g..=g], &[factor * half]).ok()

@@ -8,7 +8,7 @@
 //! model with the same random numbers, every tolerance of a group a little wider and a little tighter. Where the search comes to rest values
 //! and slopes are those of the model. Source: N. M. Alexandrov, R. M. Lewis, Optimization and Engineering 2 (2001).
 //!
-//! Cost: two samples of 16 384 points for every group, of models that are cheap; accuracy of the slopes some 1e-3.
+//! Cost: two samples of 16 384 points for every group, of models that are cheap, and of 128 groups at most.
 
 use super::cost::Priced;
 use crate::assembly::Run;
@@ -19,7 +19,7 @@ use crate::simulation::{SimulationOptions, simulate_with};
 
 /// Points of a sample.
 const POINTS: u64 = 1 << 14;
-/// Half a difference in `ln T`: a slope's truncation is some 1e-3 of it, and its noise a tenth of that.
+/// Half a difference in `ln T`: its truncation is of the order of `STEP^2/6`, 4e-4.
 const STEP: f64 = 0.05;
 /// Farther from the station, in `ln T`, a slope is not followed.
 const FAR: f64 = 0.7;
@@ -44,6 +44,9 @@ fn difference(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
 }
 
 impl SampledCorrection {
+    /// More groups would take more than four million points for every round: their surfaces stay as they are, and no optimum is claimed.
+    pub(super) const MOST_GROUPS: usize = 128;
+
     /// For every listed characteristic, with its verified moments; None where a sample has no moments.
     ///
     /// `at` is the problem with a group's tolerances at a factor, and `surface` the moments of a characteristic's surface there.

@@ -22,6 +22,7 @@ mod shorten;
 mod surface;
 pub(crate) mod surface_law;
 mod trust;
+mod unverified;
 mod verification;
 mod verified;
 mod wanted;
@@ -43,6 +44,7 @@ pub use sampling_interval::SamplingInterval;
 pub use surface::{Fit, NoFit, Surface};
 pub use surface_law::SurfaceShares;
 pub(crate) use surface_law::{law_over, surface_law};
+pub(crate) use verified::TRUSTED;
 pub use verified::{VarianceShare, Verification, VerificationKind};
 #[cfg(feature = "cli")]
 pub(crate) use written::CharacteristicShape;

@@ -52,10 +52,7 @@ pub(super) fn correlations(
         |one: &CharacteristicAnalysis| one.verification.as_ref().is_some_and(|of| of.kind == VerificationKind::Sample);
     let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
     let by_model = match characteristics.iter().any(sampled) {
-        true => {
-            let seed = options.seed.unwrap_or(Options::SEED);
-            output_correlations(problem, &(0..count).collect::<Vec<_>>(), seed)
-        }
+        true => output_correlations(problem, options.seed.unwrap_or(Options::SEED)),
         false => Vec::new(),
     };
     let known = |index: usize, (a, b): (usize, usize)| -> Option<(f64, Option<f64>)> {

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | proof | nothing varies; the extremes are proven to keep the limits; or the formula's degree proves that the surface is the function, and the law of the surface is exact | that of the law |
 //! | samples | points of the model itself, with the law of a surface as control where there is one | the sample's |
-//! | surface law | a surface, verified at check points or not at all | law and checks as the root of the sum of squares |
+//! | surface law | a surface, verified at check points or not at all | law and checks as the root of the sum of squares; without checks, what the errors of the moments move the tails |
 //! | Pearson fit | moments are all that is known | what the errors of the moments move it |
 //!
 //! With the law of a surface as control a share is `P = P_law + mean(1_model - 1_surface)` over the sample: what model and surface
@@ -12,7 +12,8 @@
 
 use super::CharacteristicAnalysis;
 use super::surface_law::{SurfaceShares, density};
-use super::verified::{Verification, VerificationKind};
+use super::unverified::error_of_shares;
+use super::verified::{TRUSTED, Verification, VerificationKind};
 use super::yield_source::YieldSource;
 use crate::capability::{Capability, Law, percentiles};
 use crate::characteristic::SpecLimits;
@@ -51,7 +52,7 @@ pub(super) fn settle(
             let quantiles = one.surface_law.as_ref().and_then(|law| law.quantiles.as_ref());
             one.density = laws[c].as_ref().filter(|_| densities).and_then(|law| density(law, quantiles));
         }
-        let Some(found) = rejected(problem, outcome, c, one) else { continue };
+        let Some(found) = rejected(problem, outcome, c, one, laws[c].as_ref()) else { continue };
         one.yield_source = one.characteristic.limits().exist().then_some(found.source);
         one.capability = capability(one, found.beyond);
         if let Some(estimate) = one.error_estimate.take() {
@@ -84,10 +85,7 @@ fn joint(characteristics: &[CharacteristicAnalysis], laws: &[Option<SurfaceLaw>]
     Some(Verified { value: value.clamp(0.0, 1.0), error: square.sqrt() })
 }
 
-/// Of the variance: a surface whose figures the model's have replaced still has the law of the model where it leaves no more out.
-const TRUSTED: f64 = 0.01;
-
-/// Whether the moments are those of a surface.
+/// Whether the moments are those of a surface, or the model's in place of those of a surface that is trusted all the same.
 fn follows_from_a_surface(one: &CharacteristicAnalysis) -> bool {
     let replaced = |of: &Verification| of.replaced && of.left.is_none_or(|left| left > TRUSTED);
     one.model_sampled.is_none() && !one.verification.as_ref().is_some_and(replaced)
@@ -102,8 +100,14 @@ fn fit(one: &CharacteristicAnalysis) -> Option<&Law> {
 }
 
 /// The rule. None where nothing is known.
-fn rejected(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Option<Rejected> {
-    proof(problem, outcome, c, one).or_else(|| samples(one)).or_else(|| surface(one)).or_else(|| pearson(one))
+fn rejected(
+    problem: &Problem,
+    outcome: &Outcome,
+    c: usize,
+    one: &CharacteristicAnalysis,
+    law: Option<&SurfaceLaw>,
+) -> Option<Rejected> {
+    proof(problem, outcome, c, one).or_else(|| samples(one)).or_else(|| surface(one, law)).or_else(|| pearson(one))
 }
 
 fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> Option<Rejected> {
@@ -129,10 +133,7 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
 /// Whether the proven extremes lie within the limits, and no input leaves the box in which they were searched.
 fn kept_by_extremes(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAnalysis) -> bool {
     let limits = one.characteristic.limits();
-    let searched = one.extremes.as_ref().and_then(|found| found.proof.as_ref());
-    let Some(proof) = searched.or(one.bounds.as_ref()).filter(|_| limits.exist()) else {
-        return false;
-    };
+    let Some(proof) = one.proof().filter(|_| limits.exist()) else { return false };
     let bounded = |&d: &usize| {
         let dimension = &problem.dimensions()[d];
         let [lower, upper] = dimension.reach().map(|deviation| dimension.nominal() + deviation);
@@ -174,13 +175,17 @@ fn value(of: Option<Verified>) -> Option<f64> {
     of.map(|of| of.value)
 }
 
-fn surface(one: &CharacteristicAnalysis) -> Option<Rejected> {
+fn surface(one: &CharacteristicAnalysis, whole: Option<&SurfaceLaw>) -> Option<Rejected> {
     let law = one.surface_law.as_ref().filter(|_| one.characteristic.limits().exist())?;
     let beyond = [law.below, law.above].map(|of| of.map(|of| of.value));
     let checked = one.verification.as_ref().filter(|of| of.kind == VerificationKind::Checks);
     let surface = match checked {
         Some(of) => of.yield_.map(|of| of.error),
-        None => one.error_estimate.as_ref().and_then(|of| of.yield_),
+        None => {
+            let of_fit = one.error_estimate.as_ref().and_then(|of| of.yield_);
+            let of_tails = whole.and_then(|whole| error_of_shares(one, whole));
+            of_fit.map(|of_fit| of_fit.max(of_tails.unwrap_or(0.0)))
+        }
     };
     Some(Rejected { source: YieldSource::SurfaceLaw, beyond, error: surface.map(|error| error.hypot(law.error())) })
 }

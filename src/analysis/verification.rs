@@ -6,7 +6,7 @@
 
 use super::CharacteristicAnalysis;
 use super::errors::of_yield;
-use super::verified::{VarianceShare, Verification, VerificationKind};
+use super::verified::{TRUSTED, VarianceShare, Verification, VerificationKind};
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::capability::{Capability, Law};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome};
@@ -32,8 +32,6 @@ const OFF: f64 = 3.0;
 const MATTERS: f64 = 0.01;
 /// Beyond so many standard errors `auto` takes the model's figure.
 const AGREES: f64 = 2.0;
-/// A surface that leaves more of the variance unexplained than this gives way to the model where tolerances are chosen.
-const REFUTED: f64 = 0.01;
 /// A surface that leaves more of the variance unexplained has no shares to show.
 const UNTRUSTED: f64 = 0.05;
 /// An error of sigma above this part of it says that the surface is no surface.
@@ -156,7 +154,7 @@ fn sample(
     let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
     let share = |(d, [first, total]): (usize, [Verified; 2])| VarianceShare { dimension: dimension(d), first, total };
     let shares = shares.map(|shares| shares.into_iter().map(share).collect());
-    let refuted = options.model_figures && left.is_none_or(|left| left > REFUTED);
+    let refuted = options.model_figures && left.is_none_or(|left| left > TRUSTED);
     let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
     let Some(moments) = one.moments else { return };
     let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));

@@ -20,6 +20,9 @@ pub enum VerificationKind {
     },
 }
 
+/// Of the variance: a surface that leaves more unexplained says nothing of the tails, nor of an optimum.
+pub(crate) const TRUSTED: f64 = 0.01;
+
 /// What the model itself says of a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]

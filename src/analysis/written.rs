@@ -4,20 +4,10 @@ use serde::{Serialize, Serializer};
 
 use super::{Analysis, CharacteristicAnalysis};
 use crate::extremes::{Coordinate, Extremes};
-use crate::shape::{WithoutWarnings, whole};
+use crate::shape::warnings_last;
 use crate::verdict::{Judged, Verdict};
 
-impl WithoutWarnings for Analysis {
-    fn own<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Self::serialize(self, serializer)
-    }
-}
-
-impl Serialize for Analysis {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        whole(self, &self.warnings, serializer)
-    }
-}
+warnings_last!(Analysis);
 
 /// A characteristic with its verdicts and intervals, as it is written.
 #[derive(Serialize)]

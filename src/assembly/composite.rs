@@ -262,7 +262,6 @@ impl Composite {
         outputs.iter().map(|&output| self.outputs[output]).collect()
     }
 
-    /// Asks the model for these of its outputs.
     /// Passes the derivatives of the model's own outputs on, by the dimensions that its inputs are.
     fn pass_gradients(&self, origins: &[Origin], needed: &[usize], answers: &Responses, out: &mut Responses) {
         let Some(model) = &self.model else { return };
@@ -282,6 +281,7 @@ impl Composite {
         }
     }
 
+    /// Asks the model for these of its outputs.
     fn ask_model(&self, points: &Points, run: &Run<'_>, needed: &[usize]) -> Responses {
         let rows = points.rows();
         let mut answers = Responses::open(rows, needed.len());

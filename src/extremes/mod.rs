@@ -32,6 +32,7 @@ mod task;
 
 pub use crate::warning::Ended;
 pub use answers::Spent;
+pub(crate) use model::{Model, Region};
 
 use answers::Answers;
 use climb::Climb;

@@ -2,20 +2,20 @@
 
 /// The box of one characteristic's dimensions.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Region {
-    pub(super) lower: Vec<f64>,
-    pub(super) upper: Vec<f64>,
+pub(crate) struct Region {
+    pub(crate) lower: Vec<f64>,
+    pub(crate) upper: Vec<f64>,
 }
 
 /// `y(x) - y(base) ~ sum_j g_j(u_j) + sum_{j<k} A_jk u_j u_k` with `u_j = (x_j - base_j)/scale_j` and quartics `g_j`.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Model {
-    pub(super) base: Vec<f64>,
-    pub(super) scale: Vec<f64>,
+pub(crate) struct Model {
+    pub(crate) base: Vec<f64>,
+    pub(crate) scale: Vec<f64>,
     /// Coefficients of `u` to `u^4`.
-    pub(super) parts: Vec<[f64; 4]>,
+    pub(crate) parts: Vec<[f64; 4]>,
     /// For every dimension its products, `(k, A_jk)`.
-    pub(super) products: Vec<Vec<(usize, f64)>>,
+    pub(crate) products: Vec<Vec<(usize, f64)>>,
 }
 
 /// Sweeps over all coordinates until the descent ends wherever it is.
@@ -54,15 +54,22 @@ impl Region {
 
 impl Model {
     /// How far `y` lies above its value at the base.
-    pub(super) fn rise(&self, x: &[f64]) -> f64 {
+    pub(crate) fn rise(&self, x: &[f64]) -> f64 {
         let u = |d: usize| (x[d] - self.base[d]) / self.scale[d];
         let own: f64 = (0..x.len()).map(|d| quartic(&self.parts[d], u(d))).sum();
         let joint = |j: usize| self.products[j].iter().filter(move |(k, _)| j < *k).map(move |&(k, a)| a * u(j) * u(k));
         own + (0..x.len()).flat_map(joint).sum::<f64>()
     }
 
+    /// How it rises along one coordinate, per unit of it.
+    pub(crate) fn slope(&self, x: &[f64], d: usize) -> f64 {
+        let u = |d: usize| (x[d] - self.base[d]) / self.scale[d];
+        let tilt: f64 = self.products[d].iter().map(|&(k, a)| a * u(k)).sum();
+        (steepness(&self.parts[d], u(d)) + tilt) / self.scale[d]
+    }
+
     /// The same, upside down.
-    pub(super) fn negated(&self) -> Self {
+    pub(crate) fn negated(&self) -> Self {
         let mut negated = self.clone();
         negated.parts.iter_mut().flatten().for_each(|coefficient| *coefficient = -*coefficient);
         negated.products.iter_mut().flatten().for_each(|(_, value)| *value = -*value);
@@ -124,10 +131,14 @@ fn quartic(coefficients: &[f64; 4], u: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |value, coefficient| (value + coefficient) * u)
 }
 
+fn steepness([c1, c2, c3, c4]: &[f64; 4], u: f64) -> f64 {
+    c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * 4.0 * c4))
+}
+
 /// Where the quartic may be least between `from` and `to`: every zero of its derivative, and some other places.
 fn stationary(coefficients: &[f64; 4], from: f64, to: f64) -> Vec<f64> {
-    let [c1, c2, c3, c4] = *coefficients;
-    let slope = |u: f64| c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * 4.0 * c4));
+    let [_, c2, c3, c4] = *coefficients;
+    let slope = |u: f64| steepness(coefficients, u);
     // Between the zeros of its own derivative the slope is monotonic and has one zero at most.
     let mut ends = vec![from, to];
     ends.extend(quadratic_roots(2.0 * c2, 6.0 * c3, 12.0 * c4).into_iter().filter(|u| from < *u && *u < to));

@@ -33,6 +33,13 @@ impl Starts {
     }
 }
 
+impl Model {
+    /// Where it is least in a box, as far as descents from several starts tell.
+    pub(crate) fn least_in(&self, region: &Region) -> Vec<f64> {
+        least_of(self, region).swap_remove(0)
+    }
+}
+
 /// Descents from the base, from the vertex of the slopes and the one opposite to it, and from two corners of the box.
 fn least_of(surrogate: &Model, region: &Region) -> Vec<Vec<f64>> {
     let n = region.len();

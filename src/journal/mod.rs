@@ -523,6 +523,20 @@ fn worth_keeping(points: &Points, answers: &Responses, row: usize, names: &[&str
 mod tests {
     use super::*;
 
+    /// Derivatives that outlive an answer would be taken for those of the next one at that point.
+    #[test]
+    fn derivatives_go_with_their_answer() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut store = Store::open(&folder.path().join("a.sqlite")).unwrap();
+        let model = store.model("{}", &["a".to_owned()]).unwrap();
+        let kept = StoredAnswer { point: vec![1.0], output: "y".to_owned(), answer: Ok(2.0) };
+        store.keep(model, &[kept]).unwrap();
+        store.keep_gradient(model, &[1.0], "y", &[3.0]).unwrap();
+        assert_eq!(store.gradient(model, &[1.0], "y").unwrap(), Some(vec![3.0]));
+        store.withdraw(model, &[vec![1.0]]).unwrap();
+        assert_eq!(store.gradient(model, &[1.0], "y").unwrap(), None);
+    }
+
     /// Eight processes that take 0.2 s each give forty answers a second: an evaluation is slow all the same.
     #[test]
     fn what_is_slow_is_an_evaluation() {

@@ -54,6 +54,9 @@ const LATER: &str = "
         slopes BLOB NOT NULL,
         PRIMARY KEY (model, point, output)
     ) WITHOUT ROWID;
+    CREATE TRIGGER IF NOT EXISTS forget_gradient AFTER DELETE ON answer BEGIN
+        DELETE FROM gradient WHERE model = OLD.model AND point = OLD.point AND output = OLD.output;
+    END;
 ";
 
 /// What is wrong with a journal.
@@ -221,16 +224,17 @@ impl Store {
     fn complete(&self) -> rusqlite::Result<()> {
         let is_complete = |connection: &Connection| -> rusqlite::Result<bool> {
             let column = "SELECT count(*) FROM pragma_table_info('answer') WHERE name = 'stage'";
-            let tables = "SELECT count(*) FROM sqlite_schema WHERE name IN ('stage', 'claim', 'gradient')";
+            let tables =
+                "SELECT count(*) FROM sqlite_schema WHERE name IN ('stage', 'claim', 'gradient', 'forget_gradient')";
             let count = |sql: &str| connection.query_row(sql, [], |row| row.get::<_, i64>(0));
-            Ok(count(column)? == 1 && count(tables)? == 3)
+            Ok(count(column)? == 1 && count(tables)? == 4)
         };
         if is_complete(&self.connection)? {
             return Ok(());
         }
         let making = Transaction::new_unchecked(&self.connection, TransactionBehavior::Immediate)?;
         making.execute_batch(LATER)?;
-        // Another run may have done it meanwhile.
+        // Another run may have done it meanwhile, or an earlier version.
         if !is_complete(&making)? {
             making.execute_batch("ALTER TABLE answer ADD COLUMN stage INTEGER")?;
         }

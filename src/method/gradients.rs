@@ -38,13 +38,15 @@ pub(super) fn mixed(
     c: usize,
     pairs: &[(usize, usize)],
 ) -> Vec<Option<Mixed>> {
+    // For every position the gradients at its nodes, with their places.
+    let ends: Vec<Vec<(f64, Option<&Vec<f64>>)>> = (plan.varying().iter())
+        .map(|&d| nodes(plan, d).into_iter().map(|(point, u)| (u, evaluated.gradients.get(&(point, c)))).collect())
+        .collect();
     // The slope by the dimension at position k, in sigmas, over the nodes of the one at position j.
     let half = |j: usize, k: usize| {
-        let (d, of) = (plan.varying()[j], plan.varying()[k]);
-        let slope = |(point, u): (Point, f64)| Some((u, *evaluated.gradients.get(&(point, c))?.get(of)?));
-        let both: Vec<(f64, f64)> = nodes(plan, d).into_iter().map(slope).collect::<Option<_>>()?;
-        let [(below, left), (above, right)] = both[..] else { return None };
-        Some(plan.axis(of).scale * (right - left) / (above - below))
+        let of = plan.varying()[k];
+        let [(below, left), (above, right)] = ends[j][..] else { return None };
+        Some(plan.axis(of).scale * (right?.get(of)? - left?.get(of)?) / (above - below))
     };
     let both = |&(j, k): &(usize, usize)| {
         if !plan.joint(c, j, k) {

@@ -257,7 +257,7 @@ impl Options {
         self
     }
 
-    /// With a table of the density of every surface law that is not sampled, or without one.
+    /// With a table of the density of every surface law, or without one.
     #[must_use]
     pub fn with_densities(mut self, tabulated: bool) -> Self {
         self.densities = tabulated;

@@ -4,20 +4,10 @@ use serde::{Serialize, Serializer};
 
 use super::{Beyond, RareCharacteristic, RareEvents};
 use crate::sampling::Estimate;
-use crate::shape::{WithoutWarnings, whole};
+use crate::shape::warnings_last;
 use crate::verdict::{Judged, Verdict};
 
-impl WithoutWarnings for RareEvents {
-    fn own<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Self::serialize(self, serializer)
-    }
-}
-
-impl Serialize for RareEvents {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        whole(self, &self.warnings, serializer)
-    }
-}
+warnings_last!(RareEvents);
 
 /// A characteristic with its verdicts, as it is written.
 #[derive(Serialize)]

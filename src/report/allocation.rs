@@ -29,7 +29,7 @@ pub struct AllocationReport {
     /// The method by which derivatives were taken.
     #[cfg_attr(feature = "cli", schemars(with = "String"))]
     pub(crate) method: Method,
-    /// `optimal`, `almost-optimal`, `infeasible` or `out-of-time`.
+    /// `optimal`, `almost-optimal`, `infeasible`, `no-feasible-point-found` or `out-of-time`.
     pub(crate) status: Status,
     /// Whether the model was evaluated at the tolerances found.
     pub(crate) confirmed: bool,

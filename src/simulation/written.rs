@@ -6,20 +6,10 @@ use super::shape::{ControlShape, Reduction};
 use super::{SimulatedCharacteristic, Simulation, SurrogateControl};
 use crate::capability::Quantiles;
 use crate::sampling::Estimate;
-use crate::shape::{Four, WithoutWarnings, whole};
+use crate::shape::{Four, warnings_last};
 use crate::verdict::{Judged, Verdict};
 
-impl WithoutWarnings for Simulation {
-    fn own<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Self::serialize(self, serializer)
-    }
-}
-
-impl Serialize for Simulation {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        whole(self, &self.warnings, serializer)
-    }
-}
+warnings_last!(Simulation);
 
 /// A characteristic with the standard errors beside the values, as it is written.
 #[derive(Serialize)]

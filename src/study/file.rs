@@ -220,7 +220,7 @@ pub(super) struct CharacteristicEntry {
     pub(super) upper: Option<Spanned<f64>>,
     /// The share of assemblies that must keep the limits, between 0 and 1; what --check looks at, and what allocate keeps.
     pub(super) target_yield: Option<Spanned<f64>>,
-    /// What it must keep, for allocate in place of its target_yield, for --check beside it: linear worst case, rss, or a number.
+    /// What it must keep, for allocate in place of its target_yield, for --check beside it: worst case, rss, or a number.
     pub(super) require: Option<Spanned<RequireEntry>>,
 }
 

@@ -44,9 +44,11 @@ impl Surrogate {
         if let Some(correlation) = inputs.correlation() {
             return correlated::correlated(self, inputs, correlation);
         }
-        let terms: Option<Vec<Term<'_>>> =
-            self.parts.iter().zip(inputs.shapes()).map(|(part, shape)| Some(part.as_ref()?.term(shape))).collect();
-        Some(contributions(self.centre, &terms?, &self.interactions))
+        Some(contributions(self.centre, &self.terms(inputs)?, &self.interactions))
+    }
+
+    fn terms<'a>(&self, inputs: &'a Inputs) -> Option<Vec<Term<'a>>> {
+        self.parts.iter().zip(inputs.shapes()).map(|(part, shape)| Some(part.as_ref()?.term(shape))).collect()
     }
 
     /// The variance and its standard error, 0 where it is exact; None when a part is unknown.
@@ -58,12 +60,8 @@ impl Surrogate {
             let (sigma, error) = (of.moments.sigma(), of.sampled.map_or(0.0, |sampled| sampled.sigma));
             return Some((sigma * sigma, 2.0 * sigma * error));
         }
-        let parts: Option<Vec<f64>> = self
-            .parts
-            .iter()
-            .zip(inputs.shapes())
-            .map(|(part, shape)| Some(part.as_ref()?.term(shape).variance(1.0)))
-            .collect();
-        Some((exact(parts?.into_iter().chain([self.interactions.variance(1.0)])), 0.0))
+        let terms = self.terms(inputs)?;
+        let parts = terms.iter().map(|term| term.variance(1.0));
+        Some((exact(parts.chain([self.interactions.variance(1.0)])), 0.0))
     }
 }

@@ -14,15 +14,16 @@ const ROWS: usize = 1 << 10;
 /// Sums of a pair: points, first, second, their squares, their product.
 const SUMS: usize = 6;
 
-/// The coefficient of correlation of every pair of these characteristics, over the points at which both have a value, in the order
+/// The coefficient of correlation of every pair of characteristics, over the points at which both have a value, in the order
 /// `(0, 1), (0, 2), ..., (1, 2), ...`; None where one of them does not vary.
 ///
 /// 16 randomisations of 1024 Sobol' points of all dimensions that vary, errors by the jackknife and Student's quantile. Pure in
 /// problem and seed. Accuracy: errors of some 1e-3 where the characteristics are smooth.
-pub(crate) fn output_correlations(problem: &Problem, characteristics: &[usize], seed: u64) -> Vec<Option<Verified>> {
+pub(crate) fn output_correlations(problem: &Problem, seed: u64) -> Vec<Option<Verified>> {
     let varying: Vec<usize> =
         (0..problem.dimensions().len()).filter(|&d| problem.dimensions()[d].sigma() > 0.0).collect();
-    let models: Vec<Model<'_>> = characteristics.iter().map(|&c| Model::over(problem, c, &varying)).collect();
+    let characteristics = 0..problem.characteristics().len();
+    let models: Vec<Model<'_>> = characteristics.map(|c| Model::over(problem, c, &varying)).collect();
     let normals = Normals::new(varying.len(), seed);
     let pairs: Vec<(usize, usize)> =
         (0..models.len()).flat_map(|a| (a + 1..models.len()).map(move |b| (a, b))).collect();

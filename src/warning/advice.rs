@@ -158,7 +158,7 @@ impl fmt::Display for Advice {
             Self::MorePoints => "Draw more points.",
             Self::SmallerStep { dimension: None } => "Use a smaller step.",
             Self::UseDifferences => "Take derivatives from differences.",
-            Self::IncludeFixedDimensions => "Request for the sensitivities of all dimensions.",
+            Self::IncludeFixedDimensions => "Ask for the sensitivities of all dimensions.",
             Self::LeaveOutCorrelation => "Leave `[[correlation]]` out to see the interval.",
             Self::UseFormula => "Replace the model by a formula.",
             Self::CheckNames => "Look for a wrong name in the formulas, or leave the unused ones out.",
