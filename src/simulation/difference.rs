@@ -64,7 +64,8 @@ impl Carried {
 
     /// How many points carry each sum, at least 1.
     fn points(&self) -> [f64; CONTROLS] {
-        let points = |[squares, fourths]: [f64; 2]| if fourths > 0.0 { (squares * squares / fourths).max(1.0) } else { 1.0 };
+        let points =
+            |[squares, fourths]: [f64; 2]| if fourths > 0.0 { (squares * squares / fourths).max(1.0) } else { 1.0 };
         self.0.map(points)
     }
 }

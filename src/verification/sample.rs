@@ -80,7 +80,8 @@ impl Sample {
         let rows = |stratum: usize| (if stratum + 1 < strata { TAIL } else { core } / REPLICATES).min(most);
         let part = |index: usize| -> Part {
             let (replicate, stratum) = (index / strata, index % strata);
-            let rows = rows(stratum);
+            // Who stopped the run does not wait for the rest of the points.
+            let rows = if model.stopped() { 0 } else { rows(stratum) };
             let mut z = normals.columns((replicate * 64 + stratum) as u64, rows);
             let weights = match spaces.get(stratum) {
                 Some(space) => space.enter(&mut z),

@@ -116,13 +116,14 @@ fn every_method_is_covered_at_check_points() {
     }
 }
 
-/// A cheap model is sampled: every figure of every method is covered, 65 functions by turns.
+/// A cheap model is sampled: every figure of every method is covered, 65 functions by turns, and `auto` on every second one.
 #[test]
 fn every_method_is_covered_by_a_sample() {
     let truths = truths();
     let of = |(index, truth): (usize, &Truth)| -> Vec<Case> {
-        let methods = [Method::Auto, Method::ALL[index % Method::ALL.len()]];
-        let each = methods.into_iter().flat_map(|method| {
+        let own = [Method::ALL[index % Method::ALL.len()]];
+        let auto = (index % 2 == 0).then_some(Method::Auto);
+        let each = own.into_iter().chain(auto).flat_map(|method| {
             let first = truth.study.problem.characteristics()[0].clone();
             let problem = truth.study.problem.clone().asking([first]).unwrap();
             let found = analyze(&problem, &verified(method, 18)).ok();
@@ -132,16 +133,17 @@ fn every_method_is_covered_by_a_sample() {
     };
     let cases: Vec<Case> = truths.par_iter().enumerate().flat_map_iter(of).collect();
     let (_, all, _) = covered(cases.iter());
-    assert!(all >= 500 && missed(cases.iter()).is_empty(), "of {all}: {:#?}", missed(cases.iter()));
+    assert!(all >= 300 && missed(cases.iter()).is_empty(), "of {all}: {:#?}", missed(cases.iter()));
 }
 
-/// `auto` without any verification: where it samples the model by itself, errors reach the truth in each figure, for several seeds.
+/// `auto` without any verification: where it samples the model by itself, errors reach the truth in each figure, by two seeds in turn.
 #[test]
 fn the_samples_of_auto_cover_every_figure() {
     let truths = truths();
     // A coarse accuracy ends after few points, where errors are hardest to know.
     let runs = [(1, 0.02), (2, 0.05)];
-    let each: Vec<(&Truth, (u64, f64))> = truths.iter().flat_map(|truth| runs.map(|run| (truth, run))).collect();
+    let each: Vec<(&Truth, (u64, f64))> =
+        truths.iter().enumerate().map(|(index, truth)| (truth, runs[index % runs.len()])).collect();
     let of = |(truth, (seed, accuracy)): &(&Truth, (u64, f64))| -> Vec<Case> {
         let options = Options::from(Method::Auto).with_verify(0).with_seed(*seed).with_accuracy(*accuracy);
         let first = truth.study.problem.characteristics()[0].clone();
@@ -156,6 +158,6 @@ fn the_samples_of_auto_cover_every_figure() {
     for (figure, name) in COLUMNS.iter().enumerate() {
         let of = || cases.iter().filter(move |case| case.figure == figure);
         let (held, all, _) = covered(of());
-        assert!(100 * held >= 95 * all && all > 50, "{name}: {held} of {all}: {:#?}", missed(of()));
+        assert!(100 * held >= 95 * all && all >= 30, "{name}: {held} of {all}: {:#?}", missed(of()));
     }
 }

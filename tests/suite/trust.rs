@@ -10,7 +10,10 @@ use sensitol::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
 use sensitol::correlation::Pair;
 use sensitol::internals::reach::*;
 use sensitol::internals::{SampledFigures, Target, procedure, variance_shares, verify_by_checks, verify_by_sampling};
-use sensitol::{Closure, Dimension, Method, Options, Problem, Study, analyze};
+use sensitol::{
+    Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, Study, Verdict, analyze,
+    analyze_with,
+};
 use serde_json::{Value, json};
 
 use super::support::repository;
@@ -454,4 +457,40 @@ fn an_exact_formula_does_not_scatter() {
         let codes: Vec<_> = found.warnings.iter().map(|warning| warning.code()).collect();
         assert!(!codes.contains(&"scatter"), "{formula}: {codes:?}");
     }
+}
+
+/// A sample ends with the time that a run has: the method's figures stay, without a verification and without a verdict.
+#[test]
+fn a_sample_ends_with_the_time() {
+    let asked = Arc::new(AtomicUsize::new(0));
+    let counted = Arc::clone(&asked);
+    let dimensions = [Dimension::normal("a", 1.0, 0.3).unwrap(), Dimension::normal("b", 0.0, 0.6).unwrap()];
+    let function = Closure::scalar("y", move |x| {
+        counted.fetch_add(1, Ordering::Relaxed);
+        x[0] * x[1].exp()
+    });
+    let wanted = Characteristic::new("y")
+        .with_limits(SpecLimits::new(Some(0.0), Some(9.0)).unwrap())
+        .with_target_yield(0.5)
+        .unwrap();
+    let problem = Problem::new(dimensions, function).unwrap().asking([wanted]).unwrap();
+    // One thread: it is at one part of 2048 points when the time is over, and a whole sample has 42 000.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let analyzed = |most: usize| {
+        asked.store(0, Ordering::Relaxed);
+        let stop = || (asked.load(Ordering::Relaxed) > most).then_some(StopReason::TimeLimit);
+        let run = Run::to_the_end().stopping_when(&stop);
+        pool.install(|| analyze_with(&problem, &Method::SecondOrder.into(), &run)).unwrap()
+    };
+    for most in [10, 3000, 20_000] {
+        let found = analyzed(most);
+        let one = &found.characteristics[0];
+        assert_eq!(found.run.stopped, Some(StopReason::TimeLimit), "{most}");
+        assert!(one.moments.is_some() && one.verification.is_none(), "{most}");
+        assert!(one.requirements().iter().all(|judged| judged.verdict != Verdict::Met), "{most}");
+        assert!(asked.load(Ordering::Relaxed) <= most + 4096, "{most}: {}", asked.load(Ordering::Relaxed));
+    }
+    let found = analyzed(usize::MAX);
+    assert!(found.run.stopped.is_none() && found.characteristics[0].verification.is_some());
+    assert!(found.characteristics[0].requirements().iter().all(|judged| judged.verdict == Verdict::Met));
 }
