@@ -95,7 +95,7 @@ fn a_linear_worst_case_is_named_as_linear() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("study.toml").display().to_string();
     let cases = [
-        ("max(u, v - 1)", "", [true, true]),
+        ("max(u, 2*v - 1)", "", [true, true]),
         ("u^2 + v", "", [true, true]),
         ("u + 2*v", "", [false, false]),
         ("u + 2*v", "--verify=0", [true, false]),

@@ -480,7 +480,7 @@ fn a_sample_ends_with_the_time() {
         asked.store(0, Ordering::Relaxed);
         let stop = || (asked.load(Ordering::Relaxed) > most).then_some(StopReason::TimeLimit);
         let run = Run::to_the_end().stopping_when(&stop);
-        pool.install(|| analyze_with(&problem, &Method::SecondOrder.into(), &run)).unwrap()
+        pool.install(|| analyze_with(&problem, &verified(Method::SecondOrder, 18), &run)).unwrap()
     };
     for most in [10, 3000, 20_000] {
         let found = analyzed(most);
