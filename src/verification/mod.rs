@@ -21,7 +21,7 @@ mod space;
 mod strata;
 
 pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
-pub(crate) use figures::{carried_by, student};
+pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub(crate) use outputs::output_correlations;
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};

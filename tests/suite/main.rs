@@ -7,6 +7,7 @@ mod allocation_oracles;
 mod analysis;
 mod architecture;
 mod auto;
+mod auto_cost;
 mod capability;
 mod circles;
 mod cli;
