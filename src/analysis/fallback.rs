@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::errors::of_yield;
 use super::remembered::Remembered;
-use super::strides::{Beside, Found, Strides};
+use super::strides::{Beside, StridedFigures, Strides};
 use super::wanted::excess;
 use super::{CharacteristicAnalysis, SampledModel};
 use crate::assembly::{NonRepeatable, Run};
@@ -72,7 +72,7 @@ pub(super) fn fall_back(
         Strided::Enough => return spent,
         Strided::Known(answers) => {
             // The sample begins with these points, and they are not evaluated again.
-            remembered = problem.replacing(0, problem.dimensions()[0].clone(), Arc::new(answers));
+            remembered = problem.replacing(0, problem.dimensions()[0].clone(), Arc::new(*answers));
             &remembered
         }
         Strided::Nothing => problem,
@@ -113,7 +113,7 @@ enum Strided {
     /// Everything is known as well as it was wanted, or the run was stopped.
     Enough,
     /// They are not enough, and these are their answers.
-    Known(Remembered),
+    Known(Box<Remembered>),
     Nothing,
 }
 
@@ -135,7 +135,7 @@ fn stride(
         if enough {
             break;
         }
-        let found: Option<Vec<Found>> = (short.iter().zip(&mut beside))
+        let found: Option<Vec<StridedFigures>> = (short.iter().zip(&mut beside))
             .map(|(&c, beside)| strides.found(c, beside, left(&characteristics[c], climbed, c)))
             .collect();
         if let Some(found) = found.filter(|found| found.iter().all(|found| found.is_known(climbed))) {
@@ -145,10 +145,10 @@ fn stride(
     }
     spent.run = spent.run.and(&strides.run);
     spent.non_repeatable.extend(strides.non_repeatable.iter().cloned());
-    if enough { Strided::Enough } else { Strided::Known(strides.answers) }
+    if enough { Strided::Enough } else { Strided::Known(Box::new(strides.answers)) }
 }
 
-impl Found {
+impl StridedFigures {
     /// Whether two errors are within what is wanted, of sigma and of whatever else.
     fn is_known(&self, climbed: &Climbed) -> bool {
         let within = |error: Option<f64>, wanted: f64| error.is_some_and(|error| error <= PART * wanted);
@@ -209,7 +209,8 @@ fn replace(
     let (Some(skewness), Some(kurtosis)) = (found.skewness, found.kurtosis) else { return };
     let moments = [mean, sigma, skewness, kurtosis];
     // As the errors of a verification: few randomisations, and few points that carry a power, know little of their own scatter.
-    let widths = found.carried.map_or([1.0; 4], |points| points.map(|points| few * carried_by(points)));
+    let carried = found.control.map(|control| control.carried);
+    let widths = carried.map_or([1.0; 4], |points| points.map(|points| few * carried_by(points)));
     let standard_errors = std::array::from_fn(|i| moments[i].standard_error.map(|error| widths[i] * error));
     let sampled = SampledModel {
         samples: found.samples,
@@ -221,7 +222,7 @@ fn replace(
         beyond: [found.below, found.above],
         histogram: found.histogram.clone(),
     };
-    take(one, Found { moments, sampled });
+    take(one, StridedFigures { moments, sampled });
 }
 
 /// The share of the variance that the surface leaves, by the check.
@@ -232,7 +233,7 @@ fn left(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> f64 {
 }
 
 /// Takes the model's figures in place of the surface's.
-fn take(one: &mut CharacteristicAnalysis, Found { moments, sampled }: Found) {
+fn take(one: &mut CharacteristicAnalysis, StridedFigures { moments, sampled }: StridedFigures) {
     let [mean, sigma, skewness, kurtosis] = moments.map(|of| of.value);
     let moments = Moments::new(mean, sigma, skewness, kurtosis - 3.0);
     let limits = one.characteristic.limits();

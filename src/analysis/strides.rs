@@ -79,7 +79,7 @@ pub(super) struct Strides<'p> {
 
 /// What stands beside the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum Basis {
     /// The known surface as it is.
     Surface,
     Products,
@@ -89,7 +89,7 @@ enum Kind {
 
 /// The regressions of one characteristic, one for every part, and its known surface with mean and sigma.
 pub(super) struct Beside<'p> {
-    kind: Kind,
+    kind: Basis,
     chaos: Chaos,
     surface: Option<(&'p Surrogate, Moments)>,
     /// Whether the moments of the surface are exact.
@@ -108,7 +108,7 @@ struct Figures {
 }
 
 /// What the points say of one characteristic.
-pub(super) struct Found {
+pub(super) struct StridedFigures {
     /// Mean, sigma, skewness, kurtosis.
     pub(super) moments: [Estimate; MOMENTS],
     pub(super) sampled: SampledModel,
@@ -185,11 +185,11 @@ impl<'p> Strides<'p> {
 
     /// Nothing yet, of one characteristic: its surface as it is, a regression on products, and one with powers of the surface too.
     pub(super) fn beside(&self, c: usize) -> Vec<Beside<'p>> {
-        let kinds = [Kind::Surface, Kind::Products, Kind::Powers].map(|kind| self.kind(c, kind));
-        kinds.into_iter().filter(|beside| beside.kind == Kind::Products || beside.surface.is_some()).collect()
+        let kinds = [Basis::Surface, Basis::Products, Basis::Powers].map(|kind| self.kind(c, kind));
+        kinds.into_iter().filter(|beside| beside.kind == Basis::Products || beside.surface.is_some()).collect()
     }
 
-    fn kind(&self, c: usize, kind: Kind) -> Beside<'p> {
+    fn kind(&self, c: usize, kind: Basis) -> Beside<'p> {
         let plan = &self.outcome.plan;
         let fitted = self.outcome.fitted[c].surrogate.as_ref();
         let surface = fitted.and_then(|surrogate| {
@@ -201,12 +201,12 @@ impl<'p> Strides<'p> {
         order.sort_by(|&a, &b| share(b).total_cmp(&share(a)).then(a.cmp(&b)));
         let exact = surface.as_ref().is_some_and(|(_, found)| found.sampled.is_none());
         let surface = surface.map(|(surrogate, found)| (surrogate, found.moments));
-        let chaos = Chaos::new(plan.inputs().shapes(), &order, surface.as_ref().map(|_| kind == Kind::Powers));
+        let chaos = Chaos::new(plan.inputs().shapes(), &order, surface.as_ref().map(|_| kind == Basis::Powers));
         Beside { kind, chaos, surface, exact, parts: Vec::new(), rows: 0, far: 0.0 }
     }
 
     /// What the points say, the regressions fitted anew while they are few.
-    pub(super) fn found(&self, c: usize, beside: &mut Vec<Beside<'_>>, left: f64) -> Option<Found> {
+    pub(super) fn found(&self, c: usize, beside: &mut Vec<Beside<'_>>, left: f64) -> Option<StridedFigures> {
         for beside in beside.iter_mut().filter(|beside| beside.rows < self.rows()) {
             if REPLICATES * self.rows() <= FITTED {
                 self.fit(c, beside);
@@ -238,7 +238,7 @@ impl<'p> Strides<'p> {
         let share = |i: usize| best.values[i].clamp(0.0, 1.0);
         let around = |i: usize| [-2.0, 2.0].map(|times| (best.values[i] + times * best.errors[i]).clamp(0.0, 1.0));
         let (failed, error) = &self.failed[c];
-        Some(Found {
+        Some(StridedFigures {
             moments: [0, 1, 2, 3].map(estimate),
             sampled: SampledModel {
                 samples: valid.len() as u64,
@@ -277,7 +277,7 @@ impl<'p> Strides<'p> {
             .collect();
         beside.parts = (0..PARTS)
             .map(|part| {
-                if let Some((_, moments)) = beside.surface.as_ref().filter(|_| beside.kind == Kind::Surface) {
+                if let Some((_, moments)) = beside.surface.as_ref().filter(|_| beside.kind == Basis::Surface) {
                     return Sparse::surface(moments.mean(), moments.sigma());
                 }
                 let mut u: Vec<Vec<f64>> = (0..n).map(|j| paid.iter().map(|(u, _)| u[j]).collect()).collect();

@@ -39,8 +39,14 @@ pub(super) fn mixed(
     pairs: &[(usize, usize)],
 ) -> Vec<Option<Mixed>> {
     // For every position the gradients at its nodes, with their places.
-    let ends: Vec<Vec<(f64, Option<&Vec<f64>>)>> = (plan.varying().iter())
-        .map(|&d| nodes(plan, d).into_iter().map(|(point, u)| (u, evaluated.gradients.get(&(point, c)))).collect())
+    type Ends<'a> = Vec<(f64, Option<&'a [f64]>)>;
+    let ends: Vec<Ends<'_>> = (plan.varying().iter())
+        .map(|&d| {
+            nodes(plan, d)
+                .into_iter()
+                .map(|(point, u)| (u, evaluated.gradients.get(&(point, c)).map(Vec::as_slice)))
+                .collect()
+        })
         .collect();
     // The slope by the dimension at position k, in sigmas, over the nodes of the one at position j.
     let half = |j: usize, k: usize| {

@@ -79,9 +79,6 @@ pub struct SimulatedCharacteristic {
     /// The surrogate that stood beside the model; None where none was asked for, or it does not vary.
     #[cfg_attr(feature = "cli", schemars(with = "Option<super::shape::ControlShape>"))]
     pub control: Option<SurrogateControl>,
-    /// How many points carry mean, sigma, skewness and kurtosis; None where no surrogate stood beside the model.
-    #[serde(skip)]
-    pub(crate) carried: Option<[f64; 4]>,
 }
 
 /// What a surrogate as control variate has done.
@@ -96,6 +93,8 @@ pub struct SurrogateControl {
     pub mean: Option<f64>,
     /// The same of sigma.
     pub sigma: Option<f64>,
+    /// How many points carry mean, sigma, skewness and kurtosis.
+    pub(crate) carried: [f64; 4],
 }
 
 /// The share of assemblies that keep the limits.
@@ -193,12 +192,12 @@ impl SimulatedCharacteristic {
             }),
             range,
             quantiles,
-            carried: evidence.carried(),
-            control: evidence.beside.as_ref().map(|(twin, _)| SurrogateControl {
+            control: evidence.beside.as_ref().map(|(twin, differences)| SurrogateControl {
                 method: twin.method,
                 evaluations: twin.evaluations,
                 mean: reduction(plain[0], mean),
                 sigma: reduction(plain[1], sigma),
+                carried: fewer(carried(differences)),
             }),
         }
     }
@@ -289,12 +288,6 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// How many points carry each moment: of the sums with the surrogate and without it the fewer.
-    fn carried(&self) -> Option<[f64; 4]> {
-        let [plain, controlled] = carried(&self.beside.as_ref()?.1);
-        Some(std::array::from_fn(|moment| plain[moment].min(controlled[moment])))
-    }
-
     /// Those outside the limits, where a surrogate and limits are.
     fn shares(&self) -> Option<Shares> {
         let (twin, differences) = self.beside.as_ref()?;
@@ -343,6 +336,11 @@ fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Optio
     let Some(own) = own else { return Some(estimate) };
     let best = if without.is_some_and(|without| without < own) { plain? } else { estimate };
     Some(Estimate { standard_error: best.standard_error.map(|error| CHOICE * error), ..best })
+}
+
+/// How many points carry each moment: of the sums with the surrogate and without it the fewer.
+fn fewer([plain, controlled]: [[f64; 4]; 2]) -> [f64; 4] {
+    std::array::from_fn(|moment| plain[moment].min(controlled[moment]))
 }
 
 /// By how much the standard error has shrunk.
