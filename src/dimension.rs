@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::distribution::{Distribution, DistributionError, Normal, Uniform, finite, positive};
+use crate::fits::HeldEnd;
 
 /// Without a tolerance band, three sigma on either side take its place in RSS and worst case.
 const SIGMAS_OF_AN_UNBOUNDED_DIMENSION: f64 = 3.0;
@@ -27,6 +28,7 @@ pub struct Dimension {
     distribution: Option<Arc<dyn Distribution>>,
     step: Option<f64>,
     zone: Option<Arc<str>>,
+    held: Option<HeldEnd>,
 }
 
 /// Why a dimension cannot be.
@@ -118,7 +120,9 @@ impl Dimension {
         distribution: Result<Option<Arc<dyn Distribution>>, DimensionFault>,
     ) -> Result<Self, DimensionError> {
         match check(nominal, tolerance, distribution) {
-            Ok(distribution) => Ok(Self { name, unit: None, nominal, tolerance, distribution, step: None, zone: None }),
+            Ok(distribution) => {
+                Ok(Self { name, unit: None, nominal, tolerance, distribution, step: None, zone: None, held: None })
+            }
             Err(fault) => Err(DimensionError { name, fault }),
         }
     }
@@ -142,7 +146,8 @@ impl Dimension {
     /// scale with the tolerance ([`Distribution::scaled`] says which do and how).
     ///
     /// The band opens and closes about its middle, which stays where it is: a one-sided 0 to 0.2 halved is 0.05 to 0.15, and no
-    /// mean moves because a tolerance does.
+    /// mean moves because a tolerance does. Where one end of the band is held, as studies say of fits and by `fixed_side`, that end stays, and
+    /// the mean moves with the middle.
     ///
     /// # Errors
     /// When the factor is not a number above 0, or the distribution cannot have such a sigma.
@@ -158,13 +163,36 @@ impl Dimension {
     pub fn scaled(&self, factor: f64) -> Option<Result<Self, DimensionError>> {
         let distribution = self.distribution()?;
         // One that does not scale does not at any factor.
-        let scaled = distribution.scaled(factor, 0.0)?;
+        let way = self.lean() * self.half_band() * (factor - 1.0);
+        let scaled = distribution.scaled(factor, way)?;
         let scaled = positive("factor", factor).and(scaled).map_err(DimensionFault::from);
-        let tolerance = self.tolerance.map(|band| about_middle(band, factor));
+        let tolerance = self.tolerance.map(|band| self.opened(band, factor));
         Some(match scaled.and_then(|scaled| check(self.nominal, tolerance, Ok(Some(scaled)))) {
             Ok(distribution) => Ok(Self { tolerance, distribution, ..self.clone() }),
             Err(fault) => Err(DimensionError { name: self.name.clone(), fault }),
         })
+    }
+
+    /// A band of the dimension with `factor` times its width: about its middle, or from the end that is held.
+    pub(crate) fn opened(&self, band: [f64; 2], factor: f64) -> [f64; 2] {
+        let [lower, upper] = band;
+        match self.held {
+            Some(HeldEnd::Lower) => [lower, lower + factor * (upper - lower)],
+            Some(HeldEnd::Upper) => [upper - factor * (upper - lower), upper],
+            None => about_middle(band, factor),
+        }
+    }
+
+    /// With one end of its band held; without a band nothing is.
+    #[cfg_attr(not(feature = "study"), allow(dead_code))]
+    pub(crate) fn holding(mut self, end: HeldEnd) -> Self {
+        self.held = self.tolerance.map(|_| end);
+        self
+    }
+
+    /// Where the middle of the band goes when its half width grows, by as much: 1 up, -1 down, 0 nowhere.
+    pub(crate) fn lean(&self) -> f64 {
+        self.held.map_or(0.0, HeldEnd::lean)
     }
 
     /// The same dimension about another nominal value, its tolerance kept; None where its distribution does not move with the
@@ -318,7 +346,7 @@ fn check(
 }
 
 /// A band `factor` times as wide about the same middle.
-pub(crate) fn about_middle([lower, upper]: [f64; 2], factor: f64) -> [f64; 2] {
+fn about_middle([lower, upper]: [f64; 2], factor: f64) -> [f64; 2] {
     if factor == 1.0 {
         return [lower, upper];
     }

@@ -1,82 +1,162 @@
-//! A separable problem by the augmented Lagrangian: from any start near to its multipliers.
+//! The augmented Lagrangian: a smooth objective under smooth rows and bounds, by descents of L-BFGS.
 //!
 //! ```text
-//! min over x = ln T of  cost(x) + sum_i (max(0, lambda_i + rho c_i(x))^2 - lambda_i^2)/(2 rho),   lambda_i <- max(0, lambda_i + rho c_i)
+//! min over x of  f(x) + sum_i (max(0, lambda_i + rho c_i(x))^2 - lambda_i^2)/(2 rho),   lambda_i <- max(0, lambda_i + rho c_i)
 //! ```
 //!
-//! over the constraints and the bounds alike. Source: M. R. Hestenes, "Multiplier and gradient methods", J. Optimization Theory and
+//! over the rows `c_i <= 0` and the bounds alike. Source: M. R. Hestenes, "Multiplier and gradient methods", J. Optimization Theory and
 //! Applications 4 (1969); R. T. Rockafellar, same journal 12 (1973), for inequalities.
 
 use super::minimise::minimised;
 use super::separable::Separable;
 
-/// Updates of the multipliers; what is left after that Newton steps on the dual do.
-const UPDATES: usize = 12;
 /// Descents of one update.
 const DESCENT: u64 = 60;
-/// Near enough for Newton's method.
-const NEAR: f64 = 1e-5;
+/// A violation that does not fall to this part of the last one needs a greater weight.
+const FALLS: f64 = 0.25;
+const WEIGHT: f64 = 10.0;
 
-/// Tolerances and multipliers of the constraints. Every group must have one offer.
+/// A value and its derivatives.
+pub(super) type Slope = (f64, Vec<f64>);
+
+/// What is minimised, and under what.
+pub(super) struct Smooth<'a> {
+    /// The objective, near 1.
+    pub(super) objective: &'a dyn Fn(&[f64]) -> Slope,
+    /// The rows, each kept where it is at most 0; None where one is not defined.
+    pub(super) rows: &'a dyn Fn(&[f64]) -> Option<Vec<Slope>>,
+    pub(super) bounds: &'a [[f64; 2]],
+}
+
+/// When a search ends.
+#[derive(Clone, Copy)]
+pub(super) struct Near {
+    /// What rows and bounds may be off by.
+    pub(super) by: f64,
+    /// Updates of the multipliers.
+    pub(super) updates: usize,
+}
+
+/// Where a search ended.
+pub(super) struct Ended {
+    /// Within the bounds.
+    pub(super) x: Vec<f64>,
+    /// Of the rows.
+    pub(super) multipliers: Vec<f64>,
+    /// The largest violation of the conditions of Karush, Kuhn and Tucker; stationarity relative to the largest slope of the objective.
+    pub(super) residual: f64,
+}
+
+impl Smooth<'_> {
+    /// The end of a search from a start; None where the rows are not defined there.
+    pub(super) fn minimised(&self, start: &[f64], near: Near) -> Option<Ended> {
+        let mut x = start.to_vec();
+        let rows = (self.rows)(&x)?.len();
+        let mut multipliers = vec![0.0; rows + 2 * x.len()];
+        let mut weight = WEIGHT;
+        let mut last = f64::INFINITY;
+        for _ in 0..near.updates {
+            x = minimised(&|x| self.lagrangian(x, &multipliers, weight), &x, 0.1 * near.by, DESCENT);
+            let over = self.over(&x)?;
+            let mut error: f64 = 0.0;
+            for (multiplier, over) in multipliers.iter_mut().zip(&over) {
+                error = error.max(if *multiplier > 0.0 { over.abs() } else { over.max(0.0) });
+                *multiplier = (*multiplier + weight * over).max(0.0);
+            }
+            if error <= near.by {
+                break;
+            }
+            if error > FALLS * last {
+                weight *= WEIGHT;
+            }
+            last = error;
+        }
+        let residual = self.residual(&x, &multipliers)?;
+        x.iter_mut().zip(self.bounds).for_each(|(x, &[low, high])| *x = x.clamp(low, high));
+        multipliers.truncate(rows);
+        Some(Ended { x, multipliers, residual })
+    }
+
+    /// By how much every row, and the lower and the upper bound of every unknown, is exceeded.
+    fn over(&self, x: &[f64]) -> Option<Vec<f64>> {
+        let mut over: Vec<f64> = (self.rows)(x)?.into_iter().map(|(value, _)| value).collect();
+        over.extend(self.bounds.iter().zip(x).flat_map(|(&[low, high], &x)| [low - x, x - high]));
+        Some(over)
+    }
+
+    fn lagrangian(&self, x: &[f64], multipliers: &[f64], weight: f64) -> Option<Slope> {
+        let (mut value, mut slopes) = (self.objective)(x);
+        let rows = (self.rows)(x)?;
+        let (of_rows, of_bounds) = multipliers.split_at(rows.len());
+        let mut pulled = |over: f64, multiplier: f64| {
+            let pull = (multiplier + weight * over).max(0.0);
+            value += (pull * pull - multiplier * multiplier) / (2.0 * weight);
+            pull
+        };
+        for ((over, by), &multiplier) in rows.iter().zip(of_rows) {
+            let pull = pulled(*over, multiplier);
+            if pull > 0.0 {
+                slopes.iter_mut().zip(by).for_each(|(slope, by)| *slope += pull * by);
+            }
+        }
+        for (g, &[low, high]) in self.bounds.iter().enumerate() {
+            slopes[g] += pulled(x[g] - high, of_bounds[2 * g + 1]) - pulled(low - x[g], of_bounds[2 * g]);
+        }
+        Some((value, slopes))
+    }
+
+    fn residual(&self, x: &[f64], multipliers: &[f64]) -> Option<f64> {
+        let (_, own) = (self.objective)(x);
+        let scale = own.iter().fold(f64::MIN_POSITIVE, |scale, slope| scale.max(slope.abs()));
+        let rows = (self.rows)(x)?;
+        let (of_rows, of_bounds) = multipliers.split_at(rows.len());
+        let mut slopes = own;
+        for ((_, by), multiplier) in rows.iter().zip(of_rows) {
+            slopes.iter_mut().zip(by).for_each(|(slope, by)| *slope += multiplier * by);
+        }
+        let bounds = slopes.iter_mut().zip(of_bounds.chunks(2));
+        bounds.for_each(|(slope, sides)| *slope += sides[1] - sides[0]);
+        let stationary = slopes.iter().fold(0.0f64, |most, slope| most.max(slope.abs() / scale));
+        let over = self.over(x)?;
+        let kept = over.iter().zip(multipliers).fold(0.0f64, |most, (&over, &multiplier)| {
+            most.max(over).max((multiplier / scale * over).abs().min(over.abs()))
+        });
+        Some(stationary.max(kept))
+    }
+}
+
+/// A separable problem from any start near to its multipliers, what is left after that Newton steps on the dual do: tolerances and
+/// multipliers of the rows. Every group must have one offer.
 pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    const NEAR: Near = Near { by: 1e-5, updates: 12 };
     let bounds: Vec<[f64; 2]> =
         problem.priced.iter().map(|group| [group.offers[0].min.ln(), group.offers[0].max.ln()]).collect();
     let scale = cost(problem, start).0.abs().max(f64::MIN_POSITIVE);
-    let mut x: Vec<f64> = start.iter().map(|t| t.ln()).collect();
-    let rows = problem.rows.len();
-    let mut multipliers = vec![0.0; rows + 2 * x.len()];
-    let mut weight = 10.0;
-    let mut last = f64::INFINITY;
-    for _ in 0..UPDATES {
-        let lagrangian = |x: &[f64]| {
-            let t: Vec<f64> = x.iter().map(|x| x.exp()).collect();
-            let (value, mut slopes) = cost(problem, &t);
-            let mut value = value / scale;
-            slopes.iter_mut().for_each(|slope| *slope /= scale);
-            for (row, &multiplier) in problem.rows.iter().zip(&multipliers) {
-                let pull = (multiplier + weight * (row.value(&t) - 1.0)).max(0.0);
-                value += (pull * pull - multiplier * multiplier) / (2.0 * weight);
-                if pull > 0.0 {
-                    let terms = row.terms.iter().zip(&t);
-                    slopes
-                        .iter_mut()
-                        .zip(terms)
-                        .for_each(|(slope, (term, &t))| *slope += pull * term.power * term.value(t));
-                }
-            }
-            for (g, &[low, high]) in bounds.iter().enumerate() {
-                for (side, over) in [low - x[g], x[g] - high].into_iter().enumerate() {
-                    let multiplier = multipliers[rows + 2 * g + side];
-                    let pull = (multiplier + weight * over).max(0.0);
-                    value += (pull * pull - multiplier * multiplier) / (2.0 * weight);
-                    slopes[g] += if side == 0 { -pull } else { pull };
-                }
-            }
-            Some((value, slopes))
+    let tolerances = |x: &[f64]| x.iter().map(|x| x.exp()).collect::<Vec<f64>>();
+    let objective = |x: &[f64]| {
+        let (value, slopes) = cost(problem, &tolerances(x));
+        (value / scale, slopes.into_iter().map(|slope| slope / scale).collect())
+    };
+    let rows = |x: &[f64]| {
+        let t = tolerances(x);
+        let of = |row: &super::separable::Row| {
+            let slopes = row.terms.iter().zip(&t).map(|(term, &t)| term.power * term.value(t)).collect();
+            (row.value(&t) - 1.0, slopes)
         };
-        x = minimised(&lagrangian, &x, 0.1 * NEAR, DESCENT);
-        let t: Vec<f64> = x.iter().map(|x| x.exp()).collect();
-        let mut over: Vec<f64> = problem.rows.iter().map(|row| row.value(&t) - 1.0).collect();
-        over.extend(bounds.iter().zip(&x).flat_map(|(&[low, high], &x)| [low - x, x - high]));
-        let mut error: f64 = 0.0;
-        for (multiplier, over) in multipliers.iter_mut().zip(&over) {
-            error = error.max(if *multiplier > 0.0 { over.abs() } else { over.max(0.0) });
-            *multiplier = (*multiplier + weight * over).max(0.0);
+        Some(problem.rows.iter().map(of).collect())
+    };
+    let smooth = Smooth { objective: &objective, rows: &rows, bounds: &bounds };
+    let x: Vec<f64> = start.iter().map(|t| t.ln()).collect();
+    match smooth.minimised(&x, NEAR) {
+        Some(Ended { x, multipliers, .. }) => {
+            (tolerances(&x), multipliers.into_iter().map(|multiplier| multiplier * scale).collect())
         }
-        if error <= NEAR {
-            break;
-        }
-        if error > 0.25 * last {
-            weight *= 10.0;
-        }
-        last = error;
+        None => (start.to_vec(), vec![0.0; problem.rows.len()]),
     }
-    let t = x.iter().zip(&bounds).map(|(x, &[low, high])| x.clamp(low, high).exp()).collect();
-    (t, multipliers[..rows].iter().map(|multiplier| multiplier * scale).collect())
 }
 
 /// Cost of all groups and its derivatives by `ln T`.
-fn cost(problem: &Separable<'_>, at: &[f64]) -> (f64, Vec<f64>) {
+fn cost(problem: &Separable<'_>, at: &[f64]) -> Slope {
     let of = problem.priced.iter().zip(at).map(|(group, &t)| {
         let curve = &group.offers[0].curve;
         (group.parts * curve.cost(t), group.parts * curve.log_derivatives(t)[0])

@@ -20,7 +20,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::constraint::{KEPT, kept};
 use super::cost::Priced;
 use super::separable::{Best, Row, Separable};
-use super::solve::{Setting, Solved};
+use super::solve::{Setting, Solved, Starts};
 
 /// The cheapest choice found.
 #[derive(Debug, Clone, PartialEq)]
@@ -259,7 +259,9 @@ impl Search<'_> {
             let value = setting.value(&tight);
             let cost = setting.cost(&tight);
             let multipliers = vec![0.0; setting.constraints.len()];
-            let solved = Solved { at: tight, cost, multipliers, residual: 0.0, value, closed: false, converged: true };
+            let starts = Starts::default();
+            let solved =
+                Solved { at: tight, cost, multipliers, residual: 0.0, value, closed: false, converged: true, starts };
             return Some((solved, value));
         }
         match setting.solve(&tight) {

@@ -4,7 +4,7 @@ use super::branch::{Chosen, branch};
 use super::constraint::{Constraint, kept};
 use super::cost::Priced;
 use super::result::{Attainable, Proof};
-use super::solve::{Setting, Solved};
+use super::solve::{Setting, Solved, Starts};
 
 /// What came of one search at fixed derivatives.
 pub(super) enum Choice {
@@ -36,8 +36,16 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
         setting.solve(start).map(|solved| {
             let fixed = setting.priced.iter().all(|group| group.tightest() == group.loosest());
             let residual = if solved.converged { solved.residual } else { solved.residual.max(f64::MIN_POSITIVE) };
-            let proof =
-                Proof { residual: (!fixed).then_some(residual), closed_form: solved.closed, ..Proof::default() };
+            let Starts { begun, reached, other } = solved.starts;
+            let several = (begun > 1).then_some((begun, reached));
+            let proof = Proof {
+                residual: (!fixed).then_some(residual),
+                closed_form: solved.closed,
+                starts: several.map(|(begun, _)| begun),
+                reached: several.map(|(_, reached)| reached),
+                other_optimum: other,
+                ..Proof::default()
+            };
             (solved, vec![0; setting.priced.len()], proof)
         })
     } else {
@@ -45,14 +53,8 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
             let curved =
                 setting.priced.iter().zip(&offers).any(|(group, &o)| group.offers[o].min < group.offers[o].max);
             let residual = curved.then_some(solved.residual);
-            let proof = Proof {
-                residual,
-                bound: bound.is_finite().then_some(bound),
-                rigorous,
-                nodes,
-                closed_form: false,
-                gap: None,
-            };
+            let proof =
+                Proof { residual, bound: bound.is_finite().then_some(bound), rigorous, nodes, ..Proof::default() };
             (solved, offers, proof)
         })
     };
@@ -69,6 +71,7 @@ pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
                 value: setting.value(start),
                 closed: false,
                 converged: false,
+                starts: Starts::default(),
             },
             offers: vec![0; setting.priced.len()],
             proof: Proof { residual: Some(f64::INFINITY), ..Proof::default() },

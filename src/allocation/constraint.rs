@@ -97,8 +97,10 @@ impl Constraint {
         let slopes = match self.requirement {
             Requirement::Rss => {
                 let (square, slopes) = responses.rss_squared(k, priced, &factors)?;
-                // The middle of the linear model stays where it is.
-                slopes.iter().map(|slope| 0.5 * slope / square).collect()
+                let room = self.room_about(responses.middle(k, &factors, None)?)?;
+                let sign = if self.side == Side::Above { -1.0 } else { 1.0 };
+                let moved = responses.middle_slopes(k, priced, &factors)?;
+                slopes.iter().zip(moved).map(|(slope, moved)| 0.5 * slope / square - sign * moved / room).collect()
             }
             _ if plain => {
                 // Sigma squared is the sum of the groups' squares.
@@ -171,7 +173,7 @@ impl Constraint {
         let (own, room) = match self.requirement {
             Requirement::Rss => {
                 let rss = responses.rss_squared(self.characteristic, priced, factors)?.0.sqrt();
-                (rss, self.room_about(responses.middle(self.characteristic, shifts)?)?)
+                (rss, self.room_about(responses.middle(self.characteristic, factors, shifts)?)?)
             }
             _ => {
                 let factor = self.correction(responses).map_or(1.0, |of| of.factor(factors));
@@ -196,6 +198,69 @@ impl Constraint {
             .map(|group| factors[group.members[0]] * responses.dimensions[group.members[0]].half_band())
             .collect();
         self.worst_case(responses, &all, &at).map(|found| found.value)
+    }
+
+    /// The same with both limits moved outwards, or a required sigma raised; None where nothing is left of them.
+    pub(super) fn widened(&self, by: f64) -> Option<Self> {
+        if let Requirement::Sigma(most) = self.requirement {
+            return (most + by > 0.0).then_some(Self { requirement: Requirement::Sigma(most + by), ..*self });
+        }
+        let limits = SpecLimits::new(self.limits.lower().map(|l| l - by), self.limits.upper().map(|u| u + by));
+        Some(Self { limits: limits.ok()?, ..*self })
+    }
+
+    /// A distance in the unit of the limits: half of what lies between them, or their own size.
+    pub(super) fn extent(&self) -> Option<f64> {
+        let extent = match (self.requirement, self.limits.lower(), self.limits.upper()) {
+            (Requirement::Sigma(most), ..) => most,
+            (_, Some(lower), Some(upper)) => 0.5 * (upper - lower),
+            (_, lower, upper) => lower.or(upper)?.abs(),
+        };
+        (extent > 0.0).then_some(extent)
+    }
+
+    /// By what [`excess`](Self::excess) is measured: what varies at the station.
+    pub(super) fn width(&self, responses: &Responses, ones: &[f64]) -> Option<f64> {
+        let zero = vec![0.0; ones.len()];
+        let width = match self.requirement {
+            Requirement::Cpk(_) | Requirement::Rss | Requirement::WorstCase => {
+                let (centre, reach) = self.reached(responses, ones, &zero)?;
+                reach.abs().max(4.0 * f64::EPSILON * centre.abs())
+            }
+            Requirement::Sigma(_) | Requirement::Yield(_) => 1.0,
+        };
+        (width > 0.0).then_some(width)
+    }
+
+    /// How far it is exceeded, by its width: at most 0 where it is kept, and smooth in factors and shifts where the surface is.
+    pub(super) fn excess(&self, responses: &Responses, factors: &[f64], shifts: &[f64], width: f64) -> Option<f64> {
+        let value = match self.requirement {
+            Requirement::Sigma(_) => self.ratio_at(responses, &[], factors, Some(shifts))? - 1.0,
+            Requirement::Yield(_) => self.ratio_at(responses, &[], factors, Some(shifts))?.powi(2) - 1.0,
+            _ => {
+                let (centre, reach) = self.reached(responses, factors, shifts)?;
+                match self.side {
+                    Side::Above => (centre + reach - self.limits.upper()?) / width,
+                    _ => (self.limits.lower()? - centre + reach) / width,
+                }
+            }
+        };
+        value.is_finite().then_some(value)
+    }
+
+    /// Where a characteristic lies, and how far it reaches beyond on this side.
+    fn reached(&self, responses: &Responses, factors: &[f64], shifts: &[f64]) -> Option<(f64, f64)> {
+        let c = self.characteristic;
+        match self.requirement {
+            Requirement::Rss => {
+                Some((responses.middle(c, factors, Some(shifts))?, responses.rss_squared(c, &[], factors)?.0.sqrt()))
+            }
+            Requirement::WorstCase => responses.worst_reach(c, factors, shifts, self.side == Side::Above),
+            _ => {
+                let moments = responses.moments_shifted(c, factors, Some(shifts))?;
+                Some((moments.mean(), 3.0 * self.target(responses) * moments.sigma()))
+            }
+        }
     }
 
     /// The room that is left beside a value on this side; None where there is none.
@@ -333,7 +398,7 @@ fn room_for_yield(moments: &Moments, [below, above]: [Option<f64>; 2], rejected:
 }
 
 /// Where an increasing function is 0, between a place where it is at most 0 and one where it is at least 0.
-fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+pub(super) fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let (mut at_low, mut at_high) = (f(low), f(high));
     if at_low >= 0.0 {
         return low;
@@ -459,7 +524,8 @@ impl Constraint {
             return Some([None, None, Some(doubled / most)]);
         }
         if self.requirement == Requirement::Rss {
-            let price = doubled / self.room_about(responses.middle(self.characteristic, None)?)?;
+            let factors = responses.factors(priced, at);
+            let price = doubled / self.room_about(responses.middle(self.characteristic, &factors, None)?)?;
             return Some(match self.side {
                 Side::Below => [Some(price), None, None],
                 _ => [None, Some(price), None],

@@ -13,21 +13,27 @@
 //!
 //! Derivatives are taken by an ordinary analysis at the present tolerances. From there moments follow any tolerance by themselves
 //! ([`Surrogate::relocated`](crate::surrogate::Surrogate::relocated)), so that the search costs no evaluation; its answer is analysed by
-//! the model again, and where that says otherwise, tolerances are chosen anew from the derivatives there, until both agree.
+//! the model again, and where that says otherwise, tolerances are chosen anew from the derivatives there, until both agree. Nominal values
+//! that may move are unknowns of the same problem.
 //!
 //! What is claimed is shown: the residual of the conditions of Karush, Kuhn and Tucker for free tolerances, a bound that no
 //! choice can undercut for processes, and what every limit costs.
 
 mod augmented;
+mod basis;
 mod branch;
 mod choose;
 mod closed_form;
+mod conclude;
 mod constraint;
 mod correction;
 mod cost;
+mod driver;
 mod front;
+mod goal;
 mod joint;
 mod minimise;
+mod proportion;
 mod recentre;
 mod response;
 mod result;
@@ -40,9 +46,11 @@ mod solve;
 mod station;
 mod steps;
 mod task;
+mod together;
 mod vector;
 mod worst;
 
+pub use basis::CostBasis;
 pub(crate) use cost::CurveKind;
 pub use cost::{CostError, Curve, Offer, Priced};
 pub use joint::JointYield;
@@ -51,4 +59,4 @@ pub(crate) use result::ProofShape;
 
 pub use result::{Allocated, Allocation, Attainable, Bound, FrontPoint, Kept, Moved, Proof, ShadowPrice, Status};
 pub use run::{allocate, allocate_with};
-pub use task::{AllocateError, AllocationOptions, AllocationTask};
+pub use task::{AllocateError, AllocationOptions, AllocationTask, Goal};

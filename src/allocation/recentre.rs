@@ -1,9 +1,16 @@
-//! Nominal values moved to where the fewest assemblies are rejected.
+//! Nominal values moved: together with the tolerances, or to where the fewest assemblies are rejected.
 
+use super::constraint::Constraint;
+use super::driver::{Driver, Near};
 use super::minimise::minimised;
 use super::response::Responses;
+use super::solve::Setting;
+use super::station::Station;
+use super::task::AllocateError;
+use super::together::{Together, together};
 use crate::capability::Law;
 use crate::characteristic::SpecLimits;
+use crate::dimension::Dimension;
 use crate::moments::Moments;
 use crate::problem::Problem;
 
@@ -12,13 +19,78 @@ const STEP: f64 = 1e-4;
 /// The gradient of the logarithm per sigma at which it is at rest.
 const REST: f64 = 1e-9;
 const DESCENT: u64 = 200;
+/// Nominal values that are sought by themselves are at rest when they move by fewer sigmas.
+const REST_ALONE: f64 = 1e-3;
+/// A step of a nominal value, in sigmas, that derivatives are trusted for.
+const FAR: f64 = 30.0;
+
+/// Nominal values moved.
+pub(super) struct Recentred {
+    pub(super) problem: Problem,
+    /// How far at most, in sigmas.
+    pub(super) far: f64,
+    /// How far is not at all.
+    pub(super) rest: f64,
+    /// The half bands that go with them, where both were sought together.
+    pub(super) at: Option<Vec<f64>>,
+    pub(super) residual: Option<f64>,
+}
+
+impl Driver<'_> {
+    /// Nominal values moved: together with the tolerances where those may change too, or to where the fewest are rejected.
+    pub(super) fn recentred(
+        &self,
+        station: &Station,
+        constraints: &[Constraint],
+        at: &[f64],
+    ) -> Result<Recentred, AllocateError> {
+        let problem = &station.problem;
+        let of: Vec<usize> = (self.options.recentre.iter())
+            .filter_map(|name| problem.dimensions().iter().position(|dimension| dimension.name() == name))
+            .collect();
+        let bounds: Vec<[f64; 2]> = of.iter().map(|&d| self.bounds_of(&problem.dimensions()[d])).collect();
+        let stopped = || self.run.stopped();
+        let priced = &self.task.priced;
+        let setting =
+            Setting { responses: &station.responses, priced, constraints, stopped: &stopped, anywhere: false };
+        let both = (!priced.is_empty()).then(|| together(&setting, &of, &bounds, at)).flatten();
+        let none = Recentred { problem: problem.clone(), far: 0.0, rest: REST_ALONE, at: None, residual: None };
+        let (shifts, found) = match both {
+            Some(Together { shifts, at, residual }) => {
+                (shifts, Recentred { at: Some(at), residual: Some(residual), rest: Near::of(problem).rest, ..none })
+            }
+            None => match shifts(problem, &station.responses, &of) {
+                Some(shifts) => (shifts, none),
+                None => return Ok(none),
+            },
+        };
+        let far = shifts.iter().fold(0.0f64, |far, shift| far.max(shift.abs()));
+        let part = if far > FAR && found.at.is_none() { FAR / far } else { 1.0 };
+        let mut dimensions = problem.dimensions().to_vec();
+        let mut way: f64 = 0.0;
+        for ((&d, shift), &[low, high]) in of.iter().zip(&shifts).zip(&bounds) {
+            let shift = (part * shift).clamp(low, high);
+            way = way.max(shift.abs());
+            if let Some(moved) = dimensions[d].moved(dimensions[d].nominal() + shift * dimensions[d].sigma()) {
+                dimensions[d] = moved?;
+            }
+        }
+        Ok(Recentred { problem: problem.clone().with_dimensions(dimensions)?, far: way, ..found })
+    }
+
+    /// How far the nominal value of a dimension may move, in sigmas.
+    fn bounds_of(&self, dimension: &Dimension) -> [f64; 2] {
+        let given = self.options.nominal_bounds.iter().find(|(name, _)| name == dimension.name());
+        given.map_or([-FAR, FAR], |(_, bounds)| bounds.map(|bound| (bound - dimension.nominal()) / dimension.sigma()))
+    }
+}
 
 /// By how many sigmas each of these dimensions should move so that the fewest assemblies are rejected, all characteristics with limits
 /// together; at fixed derivatives. None where that is unknown.
 ///
 /// Minimised is `ln (sum of rejected shares) - ln (least share kept)`, which has a slope however far off the limits are. Where several
 /// dimensions do the same, each moves in proportion to its effect, the least way in sigmas.
-pub(super) fn shifts(problem: &Problem, responses: &Responses, of: &[usize]) -> Option<Vec<f64>> {
+fn shifts(problem: &Problem, responses: &Responses, of: &[usize]) -> Option<Vec<f64>> {
     let limited: Vec<(usize, SpecLimits)> = (problem.characteristics().iter().enumerate())
         .map(|(c, one)| (c, one.limits()))
         .filter(|(_, limits)| limits.exist())

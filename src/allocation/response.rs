@@ -80,11 +80,12 @@ enum Scaling {
     Still,
 }
 
-/// The band about the nominal: its middle, and its half width at a factor of 1.
+/// The band about the nominal at a factor of 1: its middle and half width, and by how many half widths the middle moves where they grow.
 #[derive(Clone, Copy)]
 struct Reach {
     middle: f64,
     half: f64,
+    lean: f64,
 }
 
 /// Differences smaller than this part are rounding.
@@ -299,7 +300,7 @@ impl Responses {
         for (d, &slope) in slopes.iter().enumerate() {
             let reach = self.reach[d];
             let group = priced.iter().position(|group| group.members.contains(&d));
-            constant += sign * slope * reach.middle;
+            constant += sign * slope * (reach.middle - reach.lean * reach.half);
             // Per half band of the derivatives; coefficients are per unit of T.
             let mut add = |value: f64| match group {
                 Some(g) => coefficients[g] += value / self.dimensions[d].half_band(),
@@ -307,7 +308,7 @@ impl Responses {
             };
             let wide = (slope * reach.half).abs();
             match self.dimensions[d].zone() {
-                None => add(wide),
+                None => add(wide + sign * slope * reach.lean * reach.half),
                 Some(zone) => match zones.iter_mut().find(|(name, ..)| *name == zone) {
                     Some((_, _, radius)) => *radius = radius.hypot(wide),
                     None => zones.push((zone, group, wide)),
@@ -324,13 +325,48 @@ impl Responses {
         Some((constant, coefficients))
     }
 
-    /// The value of a linear model with every dimension in the middle of its band, which no tolerance moves: about it lies the
-    /// rss, as an analysis has it. With nominals moved by `shifts`, in sigmas.
-    pub(super) fn middle(&self, characteristic: usize, shifts: Option<&[f64]>) -> Option<f64> {
+    /// The nominal value and how far the worst case lies beyond it, above or below, with nominals moved by `shifts`, in sigmas.
+    pub(super) fn worst_reach(
+        &self,
+        characteristic: usize,
+        factors: &[f64],
+        shifts: &[f64],
+        above: bool,
+    ) -> Option<(f64, f64)> {
         let of = &self.of[characteristic];
-        let moved = |d: usize| self.reach[d].middle + shifts.map_or(0.0, |by| by[d] * self.dimensions[d].sigma());
+        let nominal = of.nominal?;
+        if let Some(worst) = &of.worst {
+            return Some((nominal, worst.reach_moved(factors, shifts, above).0));
+        }
+        let all = self.every_dimension();
+        let (constant, coefficients) = self.worst_case(characteristic, &all, above)?;
+        let wide = |(group, coefficient): (&Priced, &f64)| {
+            let d = group.members[0];
+            coefficient * factors[d] * self.dimensions[d].half_band()
+        };
+        let reach = constant + all.iter().zip(&coefficients).map(wide).sum::<f64>();
+        let moved = |(d, slope): (usize, &f64)| slope * shifts[d] * self.dimensions[d].sigma();
+        Some((nominal + of.slopes.as_ref()?.iter().enumerate().map(moved).sum::<f64>(), reach))
+    }
+
+    /// The value of a linear model with every dimension in the middle of its band: about it lies the rss, as an analysis has it. With nominals
+    /// moved by `shifts`, in sigmas.
+    pub(super) fn middle(&self, characteristic: usize, factors: &[f64], shifts: Option<&[f64]>) -> Option<f64> {
+        let of = &self.of[characteristic];
+        let middle = |d: usize| {
+            let Reach { middle, half, lean } = self.reach[d];
+            middle + lean * half * (factors[d] - 1.0)
+        };
+        let moved = |d: usize| middle(d) + shifts.map_or(0.0, |by| by[d] * self.dimensions[d].sigma());
         let slopes = of.slopes.as_ref()?.iter().enumerate();
         Some(of.nominal? + slopes.map(|(d, slope)| slope * moved(d)).sum::<f64>())
+    }
+
+    /// How [`middle`](Self::middle) moves with `ln T` of every group, where one end of a band is held.
+    pub(super) fn middle_slopes(&self, characteristic: usize, priced: &[Priced], factors: &[f64]) -> Option<Vec<f64>> {
+        let slopes = self.of[characteristic].slopes.as_ref()?;
+        let of = |&d: &usize| slopes[d] * self.reach[d].lean * self.reach[d].half * factors[d];
+        Some(priced.iter().map(|group| group.members.iter().map(of).sum()).collect())
     }
 
     /// The squared root of the sum of squares, and its derivatives by `ln T` of every group.
@@ -451,7 +487,8 @@ fn worst_case(
     }
     let band = |&d: &usize| {
         let (dimension, reach) = (&dimensions[d], reach[d]);
-        [(dimension.nominal() + reach.middle - dimension.mean()) / dimension.sigma(), reach.half / dimension.sigma()]
+        let of_sigma = |length: f64| length / dimension.sigma();
+        [of_sigma(dimension.nominal() + reach.middle - dimension.mean()), of_sigma(reach.half), reach.lean]
     };
     WorstCase::of(surrogate, varying, varying.iter().map(band).collect(), found.nominal?, reached)
 }
@@ -499,7 +536,7 @@ impl Scaling {
 impl Reach {
     fn of(dimension: &Dimension) -> Self {
         let [lower, upper] = dimension.reach();
-        Self { middle: 0.5 * (lower + upper), half: 0.5 * (upper - lower) }
+        Self { middle: 0.5 * (lower + upper), half: 0.5 * (upper - lower), lean: dimension.lean() }
     }
 }
 

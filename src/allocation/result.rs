@@ -2,10 +2,14 @@
 
 use serde::{Serialize, Serializer};
 
+use super::basis::CostBasis;
 use super::joint::JointYield;
 #[cfg(feature = "cli")]
 use super::shape::RequiredOf;
-use super::shape::{After, Before, required};
+#[cfg(feature = "cli")]
+use super::shape::Sampled;
+use super::shape::{After, Before, required, sampled};
+use super::task::Goal;
 use crate::analysis::Analysis;
 use crate::problem::Problem;
 use crate::requirement::{Required, Requirement};
@@ -21,8 +25,11 @@ use crate::warning::Warning;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Status {
-    /// Every requirement is kept, and nothing cheaper does: within rounding.
+    /// Every requirement is kept, and nothing cheaper does: within rounding, and proven.
     Optimal,
+    /// Every requirement is kept, and nothing cheaper nearby does, within rounding. That nothing cheaper does elsewhere is not proven: the best
+    /// of several starts.
+    LocalOptimum,
     /// Every requirement is kept; how much cheaper it could be is bounded, or not known.
     AlmostOptimal,
     /// No tolerances within the bounds keep every requirement.
@@ -38,6 +45,7 @@ impl Status {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Optimal => "optimal",
+            Self::LocalOptimum => "local-optimum",
             Self::AlmostOptimal => "almost-optimal",
             Self::Infeasible => "infeasible",
             Self::NoFeasiblePointFound => "no-feasible-point-found",
@@ -115,11 +123,16 @@ pub struct Kept {
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "After"))]
     pub after: Option<Judged>,
+    /// What a sample of the model says of it there; None without one, and of rss and worst case, of which samples know nothing.
+    #[serde(serialize_with = "sampled")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<Sampled>"))]
+    pub sampled: Option<Judged>,
 }
 
 /// What a requirement costs: by how much the cost falls per unit by which something gives way.
 ///
-/// Where both sides of a requirement hold the cost up, widening one of them alone saves nothing, and only `both` is known.
+/// Where both sides of a requirement hold the cost up, widening one of them alone saves nothing, and only `both` is known. Where requirements
+/// of several characteristics hold it up in the same way, to widen one of them saves less than to narrow it costs, and there is no one price.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -127,8 +140,12 @@ pub struct ShadowPrice {
     /// Index of the characteristic in the problem; reports name it.
     #[serde(skip)]
     pub characteristic: usize,
-    /// Per unit by which both limits go outwards, or the only one.
+    /// Per unit by which both limits go outwards, or the only one; None where that is not what they cost inwards.
     pub both: Option<f64>,
+    /// What it saves per unit by which the limits go outwards, or a required sigma grows, and all else stays.
+    pub widen: Option<f64>,
+    /// What it costs per unit by which they go inwards.
+    pub narrow: Option<f64>,
     /// Per unit by which its lower limit goes down.
     pub lower: Option<f64>,
     /// Per unit by which its upper limit goes up.
@@ -177,6 +194,12 @@ pub struct Proof {
     pub nodes: usize,
     /// Whether Lagrange's condition had the answer in closed form.
     pub closed_form: bool,
+    /// Searches from different tolerances, where there may be several optima; None where one search is enough.
+    pub starts: Option<usize>,
+    /// How many of them ended at the tolerances found.
+    pub reached: Option<usize>,
+    /// The cost of the next cheapest optimum that one of them ended at; None where there was no other.
+    pub other_optimum: Option<f64>,
     /// By what part of the cost it may be above the bound; None without one.
     #[serde(skip)]
     pub gap: Option<f64>,
@@ -201,6 +224,10 @@ pub struct Allocation {
     pub cost_before: Option<f64>,
     /// All costs after.
     pub cost_after: Option<f64>,
+    /// What was sought.
+    pub goal: Goal,
+    /// Where the costs come from.
+    pub cost_basis: CostBasis,
     /// Every dimension with a cost.
     pub tolerances: Vec<Allocated>,
     /// Nominal values that have moved.

@@ -15,8 +15,15 @@ const RANGE: [f64; 2] = [1e-4, 100.0];
 ///
 /// At fixed derivatives, so that far from 1 it is an extrapolation.
 pub(super) fn loosest(responses: &Responses, constraints: &[Constraint]) -> Option<f64> {
+    let all: Vec<usize> = (0..responses.dimensions.len()).collect();
+    loosest_of(responses, constraints, &all)
+}
+
+/// The same of the tolerances of these dimensions alone.
+pub(super) fn loosest_of(responses: &Responses, constraints: &[Constraint], of: &[usize]) -> Option<f64> {
     let keeps = |factor: f64| {
-        let factors: Vec<f64> = vec![factor; responses.dimensions.len()];
+        let mut factors: Vec<f64> = vec![1.0; responses.dimensions.len()];
+        of.iter().for_each(|&d| factors[d] = factor);
         constraints.iter().all(|constraint| kept(constraint.value_at(responses, &factors)))
     };
     if constraints.is_empty() {

@@ -49,6 +49,28 @@ impl From<&Option<Judged>> for After {
     }
 }
 
+/// What a sample says of a requirement, as it is written.
+#[derive(Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub(super) struct Sampled {
+    /// What the sample has.
+    value: Option<f64>,
+    /// Within which that is known, three errors on either side; null where it is not known at all.
+    interval: Option<[Option<f64>; 2]>,
+    /// What that says of the requirement.
+    verdict: Verdict,
+}
+
+/// Null without a sample.
+pub(super) fn sampled<S: Serializer>(of: &Option<Judged>, serializer: S) -> Result<S::Ok, S::Error> {
+    let written = |of: &Judged| Sampled {
+        value: of.value.and_then(finite),
+        interval: of.interval.map(ends),
+        verdict: of.verdict,
+    };
+    of.as_ref().map(written).serialize(serializer)
+}
+
 /// What is required of a characteristic, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]

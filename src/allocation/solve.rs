@@ -24,6 +24,8 @@ pub(super) struct Setting<'a> {
     pub(super) priced: &'a [Priced],
     pub(super) constraints: &'a [Constraint],
     pub(super) stopped: &'a dyn Fn() -> bool,
+    /// Whether optima are sought from everywhere, where there may be several, rather than from the start alone.
+    pub(super) anywhere: bool,
 }
 
 /// Tolerances with what proves them.
@@ -42,10 +44,30 @@ pub(super) struct Solved {
     pub(super) closed: bool,
     /// Whether it ended by itself.
     pub(super) converged: bool,
+    pub(super) starts: Starts,
+}
+
+/// From where a search for the cheapest tolerances began.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Starts {
+    /// How many searches.
+    pub(super) begun: usize,
+    /// How many ended at the cheapest.
+    pub(super) reached: usize,
+    /// The cost of the next cheapest end.
+    pub(super) other: Option<f64>,
 }
 
 /// Steps at most.
 const STEPS: usize = 60;
+/// Starts between the tightest tolerances and the loosest,
+const BETWEEN: usize = 4;
+/// by multiples of the golden section, which have no pattern.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Groups times requirements times the square of the dimensions up to which more starts are tried: some tenths of a second.
+const MOST_WORK: usize = 100_000;
+/// Ends whose costs differ by a smaller part are one.
+const SAME_END: f64 = 1e-6;
 /// What other orders of the same sums may say differently.
 const RESERVE: f64 = 1e-13;
 /// A tolerance so near its bound is at it.
@@ -105,14 +127,19 @@ impl Setting<'_> {
             }
             starts.push(self.within(&start.iter().map(|t| 0.3 * t).collect::<Vec<_>>()));
             starts.push(self.reached(&tight, &loose, 0.5));
+            starts.extend(self.elsewhere(&tight, &loose));
         }
         let mut best: Option<Solved> = None;
+        let (mut ends, mut begun) = (Vec::new(), 0);
         for start in starts {
             // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
-            if best.as_ref().is_some_and(|best| best.converged && kept(best.value)) {
+            let done = best.as_ref().is_some_and(|best| best.converged && kept(best.value));
+            if done && (!self.anywhere || self.is_exact()) {
                 break;
             }
+            begun += 1;
             let found = self.usable(&start, &tight).and_then(|start| self.descend(&start));
+            ends.extend(found.iter().filter(|end| end.converged && kept(end.value)).map(|end| end.cost));
             let better = |best: &Solved| {
                 (!kept(best.value) && found.as_ref().is_some_and(|found| found.value < best.value))
                     || found.as_ref().is_some_and(|found| kept(found.value) && found.cost < best.cost * (1.0 - 1e-9))
@@ -124,7 +151,32 @@ impl Setting<'_> {
                 break;
             }
         }
-        best.filter(|best| kept(best.value)).or_else(|| self.kept_at_least(start, &tight))
+        let best = best.filter(|best| kept(best.value)).map(|best| {
+            let reached = ends.iter().filter(|&&cost| cost <= best.cost * (1.0 + SAME_END)).count();
+            let others =
+                ends.iter().copied().filter(|&cost| cost > best.cost * (1.0 + SAME_END)).fold(f64::NAN, f64::min);
+            Solved { starts: Starts { begun, reached, other: others.is_finite().then_some(others) }, ..best }
+        });
+        best.or_else(|| self.kept_at_least(start, &tight))
+    }
+
+    /// Other starts, where there may be several optima and a search is short: the loosest and the tightest tolerances, and points between them
+    /// that have no pattern.
+    fn elsewhere(&self, tight: &[f64], loose: &[f64]) -> Vec<Vec<f64>> {
+        let n = self.responses.varying().len();
+        let work = self.priced.len() * n * n * self.constraints.len();
+        if !self.anywhere || work > MOST_WORK {
+            return Vec::new();
+        }
+        let between = |index: usize| {
+            let ends = tight.iter().zip(loose).enumerate();
+            ends.map(|(g, (&low, &high))| {
+                let part = ((index * self.priced.len() + g + 1) as f64 * GOLDEN).fract();
+                low.powf(1.0 - part) * high.powf(part)
+            })
+            .collect()
+        };
+        [loose.to_vec(), tight.to_vec()].into_iter().chain((0..BETWEEN).map(between)).collect()
     }
 
     /// Where the search found nothing that keeps all constraints and the tightest tolerances do: as far from these towards the start as they
@@ -142,7 +194,8 @@ impl Setting<'_> {
         let (cost, value) = (self.cost(&at), self.value(&at));
         let multipliers = vec![0.0; self.constraints.len()];
         let residual = f64::INFINITY;
-        let solved = Solved { at, cost, multipliers, residual, value, closed: false, converged: false };
+        let starts = Starts::default();
+        let solved = Solved { at, cost, multipliers, residual, value, closed: false, converged: false, starts };
         kept(value).then_some(solved)
     }
 
@@ -282,6 +335,7 @@ impl Setting<'_> {
             value,
             closed,
             converged: false,
+            starts: Starts::default(),
         }
     }
 

@@ -1,10 +1,9 @@
 //! The model's answer at some tolerances, held against what is required.
 
 use super::constraint::Constraint;
-use super::cost::Priced;
 use super::response::Responses;
 use super::result::{Kept, ShadowPrice};
-use super::solve::Solved;
+use super::solve::{Setting, Solved};
 use crate::analysis::Analysis;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
@@ -31,34 +30,100 @@ pub(super) fn required(requirements: &[Option<Requirement>], station: &Station) 
     let of = |(characteristic, one): (usize, &Option<Requirement>)| {
         let requirement = (*one)?;
         let before = station.analysis.characteristics[characteristic].judge(requirement);
-        Some(Kept { characteristic, requirement, before, after: None })
+        Some(Kept { characteristic, requirement, before, after: None, sampled: None })
     };
     requirements.iter().enumerate().filter_map(of).collect()
 }
 
-/// What every limit costs.
-pub(super) fn prices(
-    station: &Station,
-    priced: &[Priced],
-    constraints: &[Constraint],
-    solved: &Solved,
-) -> Vec<ShadowPrice> {
+/// A part of a limit's distance by which it is moved, to see what that costs.
+const MOVED: f64 = 1e-4;
+/// Slopes that are this part of others, or less, are theirs.
+const DEPENDENT: f64 = 1e-6;
+
+/// What every limit costs, at tolerances that were found.
+pub(super) fn prices(setting: &Setting<'_>, solved: &Solved) -> Vec<ShadowPrice> {
+    let (responses, priced) = (setting.responses, setting.priced);
     let mut prices: Vec<ShadowPrice> = Vec::new();
-    for (constraint, &multiplier) in constraints.iter().zip(&solved.multipliers).filter(|(_, m)| **m > 0.0) {
+    let binds = |one: &Constraint| one.value(responses, priced, &solved.at) >= 1.0 - BINDING;
+    for (constraint, &multiplier) in setting.constraints.iter().zip(&solved.multipliers).filter(|(_, m)| **m > 0.0) {
         let c = constraint.characteristic;
-        let Some([lower, upper, sigma]) = constraint.prices(&station.responses, priced, &solved.at, multiplier) else {
+        let Some([lower, upper, sigma]) = constraint.prices(responses, priced, &solved.at, multiplier) else {
             continue;
         };
         let both = [lower, upper].into_iter().flatten().reduce(|a, b| a + b);
         let same = |other: &&Constraint| other.characteristic == c && *other != constraint;
         // The other side holds the cost up too, whichever of them the multipliers name.
-        let other = constraints.iter().find(same);
-        let binds = |other: &Constraint| other.value(&station.responses, priced, &solved.at) >= 1.0 - BINDING;
+        let other = setting.constraints.iter().find(same);
         let [lower, upper] = if other.is_some_and(binds) { [None, None] } else { [lower, upper] };
         match prices.iter_mut().find(|price| price.characteristic == c) {
             Some(price) => price.both = [price.both, both].into_iter().flatten().reduce(|a, b| a + b),
-            None => prices.push(ShadowPrice { characteristic: c, both, lower, upper, sigma }),
+            None => {
+                prices.push(ShadowPrice { characteristic: c, both, widen: None, narrow: None, lower, upper, sigma })
+            }
         }
     }
-    prices
+    match alike(setting, solved) {
+        Some(characteristics) => characteristics.into_iter().map(|c| on_either_side(setting, solved, c)).collect(),
+        None => {
+            for price in &mut prices {
+                (price.widen, price.narrow) = (price.both.or(price.sigma), price.both.or(price.sigma));
+            }
+            prices
+        }
+    }
+}
+
+/// The characteristics that hold the cost up, where their slopes depend on each other: then multipliers are not unique.
+fn alike(setting: &Setting<'_>, solved: &Solved) -> Option<Vec<usize>> {
+    let mut characteristics: Vec<usize> = Vec::new();
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let mut dependent = false;
+    for one in setting.constraints {
+        let linearised = one.linearised(setting.responses, setting.priced, &solved.at)?;
+        if linearised.value < 1.0 - BINDING || characteristics.contains(&one.characteristic) {
+            continue;
+        }
+        characteristics.push(one.characteristic);
+        let is_free = |g: usize| {
+            let (t, group) = (solved.at[g], &setting.priced[g]);
+            t > group.tightest() * (1.0 + BINDING) && t < group.loosest() * (1.0 - BINDING)
+        };
+        let mut slopes: Vec<f64> = linearised.slopes;
+        slopes.iter_mut().enumerate().filter(|&(g, _)| !is_free(g)).for_each(|(_, slope)| *slope = 0.0);
+        let length = |slopes: &[f64]| slopes.iter().map(|slope| slope * slope).sum::<f64>().sqrt();
+        let whole = length(&slopes);
+        for known in &basis {
+            let along: f64 = known.iter().zip(&slopes).map(|(a, b)| a * b).sum();
+            slopes.iter_mut().zip(known).for_each(|(slope, known)| *slope -= along * known);
+        }
+        let left = length(&slopes);
+        dependent |= left <= DEPENDENT * whole;
+        if left > 0.0 {
+            basis.push(slopes.into_iter().map(|slope| slope / left).collect());
+        }
+    }
+    (dependent && characteristics.len() > 1).then_some(characteristics)
+}
+
+/// What it saves to widen the limits of one characteristic alone, and costs to narrow them: by solving again with limits moved, extrapolated
+/// from two steps.
+fn on_either_side(setting: &Setting<'_>, solved: &Solved, c: usize) -> ShadowPrice {
+    let room = setting.constraints.iter().filter(|one| one.characteristic == c).find_map(Constraint::extent);
+    let cost = |by: f64| {
+        let moved: Vec<Constraint> = (setting.constraints.iter())
+            .map(|one| if one.characteristic == c { one.widened(by) } else { Some(*one) })
+            .collect::<Option<_>>()?;
+        let setting = Setting { constraints: &moved, anywhere: false, ..*setting };
+        setting.solve(&solved.at).filter(|found| found.converged).map(|found| found.cost)
+    };
+    let slope = |sign: f64| {
+        let step = MOVED * room?;
+        let here = cost(0.0)?;
+        let per_unit = |step: f64| Some(sign * (here - cost(sign * step)?) / step);
+        let price = 2.0 * per_unit(0.5 * step)? - per_unit(step)?;
+        // What rounding makes of the same cost is nothing.
+        Some(if price.abs() * step < DEPENDENT * MOVED * here.abs() { 0.0 } else { price })
+    };
+    let (widen, narrow) = (slope(1.0), slope(-1.0));
+    ShadowPrice { characteristic: c, both: None, widen, narrow, lower: None, upper: None, sigma: None }
 }

@@ -1,6 +1,9 @@
 //! What is to be allocated, and why it cannot be.
 
+use super::basis::{CostBasis, relative, unscalable};
 use super::cost::Priced;
+use serde::Serialize;
+
 use crate::dimension::Dimension;
 use crate::method::{Method, MethodError, Options};
 use crate::names::nearest;
@@ -17,12 +20,86 @@ pub struct AllocationTask {
     pub priced: Vec<Priced>,
     /// For every characteristic of the problem, what it must keep.
     pub requirements: Vec<Option<Requirement>>,
+    /// Where the costs come from.
+    pub basis: CostBasis,
+    /// What is sought.
+    pub goal: Goal,
+}
+
+/// What is sought.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Goal {
+    /// The least cost that keeps every requirement.
+    #[default]
+    LeastCost,
+    /// The greatest of the least Cpk of all characteristics with limits of which neither worst case nor sigma is required, for this cost.
+    MostCpk {
+        /// What may be spent.
+        cost_limit: f64,
+    },
+    /// The fewest rejects of the one characteristic with limits, for this cost.
+    FewestRejects {
+        /// What may be spent.
+        cost_limit: f64,
+    },
 }
 
 impl AllocationTask {
     /// These costs, and for every characteristic of the problem what it must keep.
     pub fn new(priced: Vec<Priced>, requirements: Vec<Option<Requirement>>) -> Self {
-        Self { priced, requirements }
+        Self { priced, requirements, basis: CostBasis::Given, goal: Goal::LeastCost }
+    }
+
+    /// With something else sought than the least cost: yields, Cpk and rss that are required of characteristics give way to it.
+    ///
+    /// ```
+    /// use sensitol::allocation::{AllocationOptions, AllocationTask, Curve, Goal, Offer, Priced, allocate};
+    /// use sensitol::{Characteristic, Closure, Dimension, Problem, SpecLimits};
+    /// let dimensions = [Dimension::normal("a", 10.0, 0.1)?, Dimension::normal("b", 6.0, 0.1)?];
+    /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(3.8), Some(4.2))?);
+    /// let problem = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?.asking([gap])?;
+    /// let cost = |d| Priced::new(vec![d], vec![Offer::between(Curve::reciprocal(0.0, 0.1)?, 0.01, 1.0)?]);
+    /// let task = AllocationTask::new(vec![cost(0)?, cost(1)?], vec![None]);
+    /// let found = allocate(&problem, &task.towards(Goal::MostCpk { cost_limit: 2.0 }), &AllocationOptions::default())?;
+    /// // Both cost 1: tolerances of 0.1, sigma 0.1 by 3 and the root of 2.
+    /// let cpk = found.after.unwrap().characteristics[0].capability.unwrap().cpk.unwrap();
+    /// assert!((cpk - 2.0 / 2f64.sqrt()).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn towards(mut self, goal: Goal) -> Self {
+        if goal != Goal::LeastCost {
+            let stays = |one: &Requirement| matches!(one, Requirement::Sigma(_) | Requirement::WorstCase);
+            self.requirements.iter_mut().for_each(|one| *one = one.filter(stays));
+        }
+        self.goal = goal;
+        self
+    }
+
+    /// The same requirements with relative costs in place of those given: every tolerance that can change has one.
+    ///
+    /// ```
+    /// use sensitol::allocation::{AllocationOptions, AllocationTask, CostBasis, allocate};
+    /// use sensitol::{Characteristic, Closure, Dimension, Problem, Requirement, SpecLimits};
+    /// let dimensions = [Dimension::normal("a", 200.0, 0.05)?, Dimension::normal("b", 8.0, 0.05)?];
+    /// let gap = Characteristic::new("gap").with_limits(SpecLimits::new(Some(191.85), Some(192.15))?);
+    /// let problem = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?.asking([gap])?;
+    /// let task = AllocationTask::new(Vec::new(), vec![Some(Requirement::Rss)]);
+    /// let found = allocate(&problem, &task.relative(&problem, CostBasis::ToleranceUnit), &AllocationOptions::default())?;
+    /// // By Lagrange's condition T goes as the third root of the tolerance unit: 2.896 um at 200 mm, 0.898 um at 8 mm.
+    /// let [a, b] = [0, 1].map(|g| found.tolerances[g].after);
+    /// assert!((a / b - (2.895918341346962f64 / 0.8979).cbrt()).abs() < 1e-4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn relative(self, problem: &Problem, basis: CostBasis) -> Self {
+        match basis {
+            CostBasis::Given => self,
+            _ => Self { priced: relative(problem), basis, ..self },
+        }
     }
 }
 
@@ -35,6 +112,8 @@ pub struct AllocationOptions {
     pub analysis: Options,
     /// Dimensions whose nominal values may move, by name.
     pub recentre: Vec<String>,
+    /// Least and greatest nominal value of dimensions that may move, by name; without, 30 sigmas on either side in one step.
+    pub nominal_bounds: Vec<(String, [f64; 2])>,
     /// Points of the front of cost against yield.
     pub front: Option<usize>,
     /// Points of the model at the tolerances found, by Monte Carlo.
@@ -45,7 +124,14 @@ pub struct AllocationOptions {
 
 impl Default for AllocationOptions {
     fn default() -> Self {
-        Self { analysis: Options::default(), recentre: Vec::new(), front: None, confirm: None, seed: Options::SEED }
+        Self {
+            analysis: Options::default(),
+            recentre: Vec::new(),
+            nominal_bounds: Vec::new(),
+            front: None,
+            confirm: None,
+            seed: Options::SEED,
+        }
     }
 }
 
@@ -67,6 +153,13 @@ impl AllocationOptions {
     #[must_use]
     pub fn with_recentre(mut self, names: Vec<String>) -> Self {
         self.recentre = names;
+        self
+    }
+
+    /// With bounds of nominal values that may move.
+    #[must_use]
+    pub fn with_nominal_bounds(mut self, bounds: Vec<(String, [f64; 2])>) -> Self {
+        self.nominal_bounds = bounds;
         self
     }
 
@@ -145,6 +238,26 @@ pub enum AllocateError {
     /// No limits to be in the middle of.
     #[error("recentring needs a characteristic with limits")]
     NoLimits,
+    /// Nothing to be the best of.
+    #[error(
+        "to seek {what} for a cost takes costs and {of} with limits of which neither worst case nor sigma is required; there are {count}"
+    )]
+    NoGoal {
+        /// What is sought.
+        what: &'static str,
+        /// Of how many.
+        of: &'static str,
+        /// How many there are.
+        count: usize,
+    },
+    /// A cost that the loosest tolerances exceed.
+    #[error("a cost limit of {limit} is too low: the loosest tolerances within their bounds cost {least}")]
+    CostLimit {
+        /// As given.
+        limit: f64,
+        /// The least cost.
+        least: f64,
+    },
     /// A front of what is not required.
     #[error("a front of cost against yield needs costs, and a characteristic with a required yield or Cpk")]
     NoFront,
@@ -205,9 +318,11 @@ impl AllocationTask {
         if self.priced.is_empty() && options.recentre.is_empty() {
             return Err(AllocateError::NothingToChoose);
         }
-        if !self.priced.is_empty() && self.requirements.iter().all(Option::is_none) {
+        let nothing = self.requirements.iter().all(Option::is_none);
+        if !self.priced.is_empty() && nothing && self.goal == Goal::LeastCost {
             return Err(AllocateError::NothingRequired);
         }
+        self.check_goal(problem)?;
         let mut seen = vec![false; dimensions.len()];
         for &d in self.priced.iter().flat_map(|group| &group.members) {
             let dimension = dimensions[d].name().to_owned();
@@ -234,6 +349,27 @@ impl AllocationTask {
         Ok(())
     }
 
+    fn check_goal(&self, problem: &Problem) -> Result<(), AllocateError> {
+        let (what, of, most) = match self.goal {
+            Goal::LeastCost => return Ok(()),
+            Goal::MostCpk { .. } => ("the highest Cpk", "a characteristic", usize::MAX),
+            Goal::FewestRejects { .. } => ("the fewest rejects", "one characteristic", 1),
+        };
+        let sought = problem.characteristics().iter().zip(&self.requirements);
+        let count = sought.filter(|(one, required)| one.limits().exist() && required.is_none()).count();
+        if self.priced.is_empty() || count == 0 || count > most {
+            return Err(AllocateError::NoGoal { what, of, count });
+        }
+        let cheapest = |group: &Priced| {
+            group.parts * group.offers.iter().map(|offer| offer.curve.cost(offer.max)).fold(f64::INFINITY, f64::min)
+        };
+        let least = self.priced.iter().map(cheapest).sum::<f64>();
+        match self.goal.cost_limit().filter(|limit| *limit < least || !limit.is_finite()) {
+            Some(limit) => Err(AllocateError::CostLimit { limit, least }),
+            None => Ok(()),
+        }
+    }
+
     fn check_recentre(&self, problem: &Problem, options: &AllocationOptions) -> Result<(), AllocateError> {
         let dimensions = problem.dimensions();
         for name in &options.recentre {
@@ -257,18 +393,5 @@ impl AllocationTask {
             return Err(AllocateError::NoLimits);
         }
         Ok(())
-    }
-}
-
-/// Why a dimension does not follow its tolerance.
-fn unscalable(dimension: &Dimension) -> Option<&'static str> {
-    let law = dimension.distribution()?;
-    if law.measured().is_some() {
-        return Some("it is measured, and its parts are as they are");
-    }
-    match dimension.scaled(1.0) {
-        Some(_) => None,
-        None if law.probability().is_none() => Some("it is known by its moments only"),
-        None => Some("its distribution does not follow a tolerance"),
     }
 }

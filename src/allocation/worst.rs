@@ -20,8 +20,8 @@ const NEAR: f64 = 2.0;
 pub(super) struct WorstCase {
     /// The surface in sigmas, and the same upside down: each is least where the characteristic reaches farthest below and above.
     sides: [Model; 2],
-    /// The middle of every band and its half, in sigmas from the mean.
-    bands: Vec<[f64; 2]>,
+    /// The middle of every band and its half, in sigmas from the mean, and by how many halves the middle moves where they grow.
+    bands: Vec<[f64; 3]>,
     /// Indices of the dimensions of these bands.
     varying: Vec<usize>,
     /// The surface at the means less the nominal value.
@@ -36,7 +36,7 @@ impl WorstCase {
     pub(super) fn of(
         surrogate: &Surrogate,
         varying: &[usize],
-        bands: Vec<[f64; 2]>,
+        bands: Vec<[f64; 3]>,
         nominal: f64,
         reached: Option<[f64; 2]>,
     ) -> Option<Self> {
@@ -67,9 +67,16 @@ impl WorstCase {
     /// How far it reaches beyond the nominal value, above or below, at these factors of all tolerances; and how that grows with the
     /// logarithm of every one, as `(dimension, slope)`.
     pub(super) fn reach(&self, factors: &[f64], above: bool) -> (f64, Vec<(usize, f64)>) {
+        self.reach_moved(factors, &vec![0.0; factors.len()], above)
+    }
+
+    /// The same with all nominal values moved by `shifts` sigmas, beyond the nominal value as it was.
+    pub(super) fn reach_moved(&self, factors: &[f64], shifts: &[f64], above: bool) -> (f64, Vec<(usize, f64)>) {
         let (side, sign) = (&self.sides[usize::from(above)], if above { 1.0 } else { -1.0 });
         let end = |sign: f64| {
-            let at = |(&[middle, half], &d): (&[f64; 2], &usize)| middle + sign * half * factors[d];
+            let at = |(&[middle, half, lean], &d): (&[f64; 3], &usize)| {
+                middle + shifts[d] + half * (sign * factors[d] + lean * (factors[d] - 1.0))
+            };
             self.bands.iter().zip(&self.varying).map(at).collect()
         };
         let region = Region { lower: end(-1.0), upper: end(1.0) };
@@ -77,7 +84,10 @@ impl WorstCase {
         let (factor, more) = self.corrections[usize::from(above)];
         let slope = |j: usize| {
             let held = at[j] == region.lower[j] || at[j] == region.upper[j];
-            if held { -factor * side.slope(&at, j) * (at[j] - self.bands[j][0]) } else { 0.0 }
+            let [middle, half, lean] = self.bands[j];
+            // An end of the band moves by what it has of the half width; the one that is held has nothing.
+            let way = at[j] - (middle + shifts[self.varying[j]] - lean * half);
+            if held { -factor * side.slope(&at, j) * way } else { 0.0 }
         };
         let slopes = (0..at.len()).map(|j| (self.varying[j], slope(j))).collect();
         (factor * (sign * self.rise - side.rise(&at)) + more, slopes)

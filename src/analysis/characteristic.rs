@@ -402,7 +402,12 @@ fn curved(problem: &Problem, sensitivities: &[Sensitivity], interactions: &[Inte
 
 /// The greatest part of the room between a value and the limits that is taken below and above it; infinite where there is no room.
 fn taken(limits: SpecLimits, from: f64, [below, above]: [f64; 2]) -> Option<f64> {
-    let part = |reach: f64, room: f64| if room > 0.0 { reach / room } else { f64::INFINITY };
+    // Where a nominal value lies at its limit, and nothing reaches beyond, nothing is taken.
+    let part = |reach: f64, room: f64| match room > 0.0 {
+        true => reach / room,
+        false if room == 0.0 && reach <= 4.0 * f64::EPSILON * from.abs() => 0.0,
+        false => f64::INFINITY,
+    };
     let below = limits.lower().map(|lower| part(below, from - lower));
     let above = limits.upper().map(|upper| part(above, upper - from));
     below.into_iter().chain(above).reduce(f64::max)

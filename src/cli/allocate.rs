@@ -2,20 +2,21 @@
 
 use std::path::Path;
 
-use super::args::AllocateArgs;
+use super::args::{AllocateArgs, CostArg, MaximiseArg, MinimiseArg};
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{Look, json};
 use super::progress::Bar;
 use super::running::{Clock, confirmed, externals, kept, on_threads};
 use super::{interrupt, study};
-use crate::allocation::{Allocation, AllocationOptions, Status, allocate_with};
+use crate::allocation::{Allocation, AllocationOptions, AllocationTask, CostBasis, Goal, Status, allocate_with};
 use crate::assembly::{Progress, Run};
 use crate::document::svg::svg;
 use crate::document::terminal::text;
 use crate::method::Options;
 use crate::report::html::allocate_html;
 use crate::report::{AllocationReport, WrittenAnew, csv_tables};
+use crate::sampling::{Draws, Sampler};
 use crate::study::{NamedFile, Rewritten, Study};
 use crate::warning::{Counted, Warning};
 
@@ -31,12 +32,14 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let clock = Clock::start(asked.work.time);
     let options = AllocationOptions {
         analysis: study.options.clone(),
-        recentre: asked.recentre.clone(),
+        recentre: asked.recentre.iter().map(|one| one.name.clone()).collect(),
+        nominal_bounds: asked.recentre.iter().filter_map(|one| Some((one.name.clone(), one.bounds?))).collect(),
         front: asked.front.or(asked.svg.is_some().then_some(FRONT)),
-        confirm: asked.confirm,
+        confirm: confirm(&study, asked.confirm),
         seed: asked.seed.or(study.seed).unwrap_or(Options::SEED),
     };
-    let allocation = allocate(&study, &options, asked.threads, &clock, look)?;
+    let task = task(&study, asked);
+    let allocation = allocate(&study, &task, &options, asked.threads, &clock, look)?;
     // What was stopped before the model had its say is shown and not written.
     let found = allocation.after.is_some() && allocation.status != Status::OutOfTime;
     // What cannot be written into the file can be shown all the same.
@@ -76,11 +79,19 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     let refuted = report.warnings.iter().any(|warning| warning.code == "confirmation-misses");
     let exit = match allocation.status {
         _ if incomplete && !allocation.run.unfinished() => Exit::NoResult,
-        Status::Optimal | Status::AlmostOptimal if refuted => Exit::Missed,
-        Status::Optimal | Status::AlmostOptimal => Exit::Done,
+        Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal if refuted => Exit::Missed,
+        Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal => Exit::Done,
         Status::Infeasible | Status::NoFeasiblePointFound | Status::OutOfTime => Exit::NotAllocated,
     };
     Ok(confirmed(exit, &allocation.run))
+}
+
+/// Points of the model that confirm what was found: as asked, or some of a cheap model, as far as a budget leaves them.
+fn confirm(study: &Study, asked: Option<u64>) -> Option<u64> {
+    let problem = &study.problem;
+    let drawn = || Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, Options::SEED).is_ok();
+    let cheap = !problem.function().signature().costly && study.options.budget.is_none() && drawn();
+    asked.or(cheap.then_some(CONFIRM)).filter(|&points| points > 0)
 }
 
 /// Paths in a study start from its folder: in another one they would lead elsewhere.
@@ -101,11 +112,34 @@ fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Fai
 /// The tables of an allocation, a file each.
 const TABLES: [&str; 3] = ["tolerances", "requirements", "front"];
 
+/// Points that confirm what was found for a cheap model.
+const CONFIRM: u64 = 100_000;
+
 /// Points of a chart when nobody said how many.
 const FRONT: usize = 12;
 
+/// What the study asks for; with relative costs where it has none, unless nominal values alone are to move.
+fn task(study: &Study, asked: &AllocateArgs) -> AllocationTask {
+    let task = study.allocation_task();
+    let without = task.priced.is_empty() && asked.recentre.is_empty();
+    let basis = match asked.cost {
+        Some(CostArg::ToleranceUnit) => CostBasis::ToleranceUnit,
+        Some(CostArg::ConstantPrecision) => CostBasis::ConstantPrecision,
+        Some(CostArg::EqualShares) => CostBasis::EqualShares,
+        None if without => CostBasis::ToleranceUnit,
+        None => CostBasis::Given,
+    };
+    let goal = match (asked.minimise, asked.maximise, asked.cost_limit) {
+        (Some(MinimiseArg::Rejects), _, Some(cost_limit)) => Goal::FewestRejects { cost_limit },
+        (_, Some(MaximiseArg::Cpk), Some(cost_limit)) => Goal::MostCpk { cost_limit },
+        _ => Goal::LeastCost,
+    };
+    task.relative(&study.problem, basis).towards(goal)
+}
+
 fn allocate(
     study: &Study,
+    task: &AllocationTask,
     options: &AllocationOptions,
     threads: Option<u16>,
     clock: &Clock,
@@ -119,8 +153,7 @@ fn allocate(
     let bar = plan.map(|plan| Bar::new(2 * plan.cost().0, look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);
-    let task = study.allocation_task();
-    let result = on_threads(threads, || allocate_with(&study.problem, &task, options, &run));
+    let result = on_threads(threads, || allocate_with(&study.problem, task, options, &run));
     if let Some(bar) = bar {
         bar.clear();
     }

@@ -4,8 +4,13 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
-pub(super) use super::values::{DerivativesArg, MethodArg, Over, SamplerArg, SensitivitiesArg, StackArg, StencilArg};
-use super::values::{count, finite, over, part, positive, probability, samples, whole};
+pub(super) use super::values::{
+    CostArg, DerivativesArg, MaximiseArg, MethodArg, MinimiseArg, Over, SamplerArg, SensitivitiesArg, StackArg,
+    StencilArg,
+};
+use super::values::{
+    Movable, count, finite, movable, over, part, positive, probability, samples, samples_or_none, whole,
+};
 
 /// The heading of the options that say what is printed, and where.
 const OUTPUT: &str = "Output";
@@ -391,16 +396,35 @@ pub(super) struct AllocateArgs {
     #[command(flatten)]
     pub(super) study: StudyArgs,
 
-    /// Move the nominal values of these dimensions too, to where the fewest are rejected; alone where there are no costs
-    #[arg(long, value_name = "DIM,..", value_delimiter = ',')]
-    pub(super) recentre: Vec<String>,
+    /// Move the nominal values of these dimensions too, together with the tolerances to the least cost; without costs to where the fewest
+    /// are rejected. With bounds: DIM=LOW:HIGH
+    #[arg(long, value_name = "DIM,..", value_delimiter = ',', value_parser = movable)]
+    pub(super) recentre: Vec<Movable>,
+
+    /// A relative cost for every tolerance, in place of the study's: the tolerance unit of ISO 286 by the tolerance, the same with one grade
+    /// everywhere, or with the same effect everywhere [default: tolerance-unit where the study has no costs]
+    #[arg(long, value_name = "BASIS")]
+    pub(super) cost: Option<CostArg>,
+
+    /// The fewest rejects for what --cost-limit allows, in place of the least cost
+    #[arg(long, value_name = "WHAT", requires = "cost_limit", conflicts_with_all = ["maximise", "front", "svg"])]
+    pub(super) minimise: Option<MinimiseArg>,
+
+    /// The highest Cpk for what --cost-limit allows, in place of the least cost
+    #[arg(long, value_name = "WHAT", requires = "cost_limit", conflicts_with_all = ["front", "svg"])]
+    pub(super) maximise: Option<MaximiseArg>,
+
+    /// What all tolerances together may cost, with --minimise or --maximise
+    #[arg(long, value_name = "COST", value_parser = positive, allow_negative_numbers = true)]
+    pub(super) cost_limit: Option<f64>,
 
     /// The front of cost against yield (or Cpk), in N points
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(super) front: Option<usize>,
 
-    /// Confirm the tolerances found by Monte Carlo: N points of the model
-    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
+    /// Confirm the tolerances found by Monte Carlo: N points of the model, 0 for none [default: 100000 of a formula or a built-in
+    /// model, none of an external one]
+    #[arg(long, value_name = "N", value_parser = samples_or_none, allow_negative_numbers = true)]
     pub(super) confirm: Option<u64>,
 
     #[command(flatten)]

@@ -9,6 +9,27 @@ pub(super) struct Over {
     pub(super) values: Vec<f64>,
 }
 
+/// A dimension whose nominal value may move, and within which bounds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Movable {
+    pub(super) name: String,
+    pub(super) bounds: Option<[f64; 2]>,
+}
+
+pub(super) fn movable(text: &str) -> Result<Movable, String> {
+    let form = || "it is NAME, or NAME=LOW:HIGH, such as shoulder=14.8:15.2".to_owned();
+    // A name may hold anything; numbers hold no `=`.
+    let Some((name, range)) = text.rsplit_once('=') else {
+        return Ok(Movable { name: text.to_owned(), bounds: None });
+    };
+    let (low, high) = range.split_once(':').filter(|_| !name.is_empty()).ok_or_else(form)?;
+    let end = |what: &str, text: &str| finite(text).map_err(|why| format!("{what} `{text}`: {why}"));
+    match [end("LOW", low)?, end("HIGH", high)?] {
+        [low, high] if low < high => Ok(Movable { name: name.to_owned(), bounds: Some([low, high]) }),
+        [low, high] => Err(format!("LOW {low} is not below HIGH {high}")),
+    }
+}
+
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |value| value.is_finite() && value > 0.0, "it must be a number above 0")
 }
@@ -41,6 +62,11 @@ pub(super) fn samples(text: &str) -> Result<u64, String> {
         count @ 2..=MOST => Ok(count),
         count => Err(format!("{count} is not in 2..={MOST}")),
     }
+}
+
+/// Points of a sample, or 0 for no sample.
+pub(super) fn samples_or_none(text: &str) -> Result<u64, String> {
+    if whole(text)? == 0 { Ok(0) } else { samples(text) }
 }
 
 /// Evaluations, or points of a front.
@@ -110,6 +136,31 @@ impl ValueEnum for MethodArg {
         let help = format!("{} ({})", procedure.about(), procedure.count());
         Some(clap::builder::PossibleValue::new(procedure.name()).help(help))
     }
+}
+
+/// The relative costs as values of an option.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum CostArg {
+    /// The tolerance unit of ISO 286 for the size, by the tolerance.
+    ToleranceUnit,
+    /// The same grade everywhere.
+    ConstantPrecision,
+    /// The same effect on the characteristic everywhere.
+    EqualShares,
+}
+
+/// What is to be few for a cost.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum MinimiseArg {
+    /// Rejected assemblies.
+    Rejects,
+}
+
+/// What is to be high for a cost.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub(super) enum MaximiseArg {
+    /// The least Cpk.
+    Cpk,
 }
 
 /// The samplers as values of an option.

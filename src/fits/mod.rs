@@ -17,9 +17,15 @@
 mod class;
 mod error;
 mod grade;
+mod held;
 mod tables;
+mod unit;
 
 pub use error::FitError;
+pub(crate) use held::HeldEnd;
+#[cfg(feature = "study")]
+pub(crate) use held::held_end;
+pub(crate) use unit::tolerance_unit;
 
 use class::Class;
 use grade::{Grade, Side};

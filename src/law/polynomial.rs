@@ -38,9 +38,14 @@ impl Few {
 ///
 /// Of a line and a parabola in closed form; of a higher degree between the extremes, where it is monotone, by Newton's method
 /// between bounds. A double root is none: nothing changes its sign there.
-pub(super) fn roots(c: &Quartic, [low, high]: [f64; 2]) -> Few {
+pub(super) fn roots(c: &Quartic, interval: [f64; 2]) -> Few {
+    of_degree(4, c, interval)
+}
+
+/// The same of a polynomial of this degree at most: that of its derivative is less whatever overflows.
+fn of_degree(most: usize, c: &Quartic, [low, high]: [f64; 2]) -> Few {
     let reach = low.abs().max(high.abs());
-    let mut degree = 4;
+    let mut degree = most;
     // A coefficient that moves nothing within the interval is no coefficient.
     let scale = (1..5).map(|k| c[k].abs() * reach.powi(k as i32)).fold(0.0, f64::max);
     while degree > 0 && c[degree].abs() * reach.powi(degree as i32) <= 1e-17 * scale {
@@ -50,7 +55,7 @@ pub(super) fn roots(c: &Quartic, [low, high]: [f64; 2]) -> Few {
         0 => Few::default(),
         1 => inside(&[-c[0] / c[1]], low, high),
         2 => parabola(c, low, high),
-        _ => between_extremes(c, low, high),
+        degree => between_extremes(degree, c, low, high),
     }
 }
 
@@ -75,9 +80,9 @@ fn parabola(c: &Quartic, low: f64, high: f64) -> Few {
     inside(&[a.min(b), a.max(b)], low, high)
 }
 
-fn between_extremes(c: &Quartic, low: f64, high: f64) -> Few {
+fn between_extremes(degree: usize, c: &Quartic, low: f64, high: f64) -> Few {
     let slope = derivative(c);
-    let extremes = roots(&slope, [low, high]);
+    let extremes = of_degree(degree - 1, &slope, [low, high]);
     let mut found = Few::default();
     let (mut from, mut at_from) = (low, value(c, low));
     for to in extremes.as_slice().iter().copied().chain([high]) {
@@ -159,6 +164,16 @@ mod tests {
         }
         assert_eq!(found.as_slice().len(), 4);
         assert_eq!(roots(&c, [-1.0, 2.0]).as_slice().len(), 2);
+    }
+
+    /// Found by a fuzz target: products that overflow are no numbers, and compare with nothing.
+    #[test]
+    fn what_overflows_has_an_end() {
+        let whole = [f64::NEG_INFINITY, f64::INFINITY];
+        assert!(roots(&[0.0, 1.0, 1e300, 1e300, 0.0], [-1e300, 1e300]).as_slice().len() <= 3);
+        assert!(roots(&[1.0, 0.0, 0.0, 0.0, f64::INFINITY], whole).as_slice().len() <= 4);
+        assert!(roots(&[f64::NAN; 5], whole).as_slice().len() <= 4);
+        assert!(range(&[0.0, 1e308, 1e308, 1e308, 1e-308], whole)[1] > 0.0);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::{About, Head, WarningReport};
 #[cfg(feature = "cli")]
 use crate::allocation::ProofShape;
 use crate::allocation::{
-    Allocated, Allocation, Attainable, FrontPoint, JointYield, Kept, Moved, Proof, ShadowPrice, Status,
+    Allocated, Allocation, Attainable, CostBasis, FrontPoint, Goal, JointYield, Kept, Moved, Proof, ShadowPrice, Status,
 };
 #[cfg(feature = "cli")]
 use crate::analysis::CharacteristicShape;
@@ -29,7 +29,7 @@ pub struct AllocationReport {
     /// The method by which derivatives were taken.
     #[cfg_attr(feature = "cli", schemars(with = "String"))]
     pub(crate) method: Method,
-    /// `optimal`, `almost-optimal`, `infeasible`, `no-feasible-point-found` or `out-of-time`.
+    /// `optimal`, `local-optimum`, `almost-optimal`, `infeasible`, `no-feasible-point-found` or `out-of-time`.
     pub(crate) status: Status,
     /// Whether the model was evaluated at the tolerances found.
     pub(crate) confirmed: bool,
@@ -42,6 +42,10 @@ pub struct AllocationReport {
     pub(crate) cost_before: Option<f64>,
     /// All costs after.
     pub(crate) cost_after: Option<f64>,
+    /// What was sought, and what may be spent on it.
+    pub(crate) goal: Goal,
+    /// Where the costs come from: given, or relative to the tolerance unit of ISO 286.
+    pub(crate) cost_basis: CostBasis,
     /// Every dimension with a cost, in the study's order.
     pub(crate) tolerances: Vec<AllocatedReport>,
     /// Nominal values that have moved.
@@ -176,6 +180,8 @@ impl AllocationReport {
             rounds: allocation.rounds,
             cost_before: allocation.cost_before.filter(|_| !allocation.tolerances.is_empty()),
             cost_after: allocation.cost_after,
+            goal: allocation.goal,
+            cost_basis: allocation.cost_basis,
             tolerances: allocation.tolerances.iter().map(|one| named.allocated(allocation, one)).collect(),
             recentred: allocation.moved.iter().map(|one| named.dimension(one.dimension, one)).collect(),
             requirements: allocation.requirements.iter().map(|one| named.of(one.characteristic, one)).collect(),

@@ -6,7 +6,7 @@ use super::allocation::{
 use super::figures::{Figures, Named};
 use super::head;
 use super::requirement::loud;
-use crate::allocation::{Allocated, Attainable, Bound, JointYield, Kept, Moved, ShadowPrice, Status};
+use crate::allocation::{Allocated, Attainable, Bound, CostBasis, Goal, JointYield, Kept, Moved, ShadowPrice, Status};
 use crate::analysis::CharacteristicAnalysis;
 use crate::document::number::{beside, index, known, plain, share, short, significant, yielded};
 use crate::document::{
@@ -78,7 +78,7 @@ impl AllocationReport {
 
     fn status_tone(&self) -> Tone {
         match self.status {
-            Status::Optimal => Tone::Good,
+            Status::Optimal | Status::LocalOptimum => Tone::Good,
             Status::Infeasible | Status::NoFeasiblePointFound => Tone::Bad,
             _ => Tone::Doubtful,
         }
@@ -98,16 +98,36 @@ impl AllocationReport {
             (None, None) => "nominal values moved".to_owned(),
         };
         page.line(Line::toned(self.status.name(), self.status_tone()).and(format!(": {cost}")));
+        match self.goal {
+            Goal::LeastCost => {}
+            Goal::MostCpk { cost_limit } => page.line(format!("the highest Cpk for a cost of {}", money(cost_limit))),
+            Goal::FewestRejects { cost_limit } => {
+                page.line(format!("the fewest rejects for a cost of {}", money(cost_limit)))
+            }
+        }
+        let basis = match self.cost_basis {
+            CostBasis::Given => "",
+            CostBasis::ToleranceUnit => "",
+            CostBasis::ConstantPrecision => "; the same grade everywhere",
+            CostBasis::EqualShares => "; the same effect everywhere",
+        };
+        if self.cost_basis != CostBasis::Given {
+            page.line(format!(
+                "relative cost i/T, with i the tolerance unit of ISO 286 for the size, in mm unless the unit says otherwise; where there is no size, the tolerance as written{basis}"
+            ));
+        }
+        let sampled = self.confirmation.as_ref().map_or(0, |confirmation| confirmation.samples);
         page.line(format!(
-            "{} evaluations in {} rounds{}{}",
-            self.run.evaluations,
+            "{} evaluations in {} rounds{}{}{}",
+            self.run.evaluations.saturating_sub(sampled),
             self.rounds,
             head::beside(&self.run),
             match self.status {
                 Status::NoFeasiblePointFound => ", which end at tolerances that miss a requirement",
                 _ if self.confirmed && self.cost_after.is_some() => ", confirmed by the model",
                 _ => "",
-            }
+            },
+            if sampled > 0 { format!("; {sampled} more to confirm") } else { String::new() }
         ));
         let proof = &self.proof;
         if let Some(gap) = proof.gap {
@@ -128,8 +148,16 @@ impl AllocationReport {
                 let within = 10f64.powi(residual.max(LEAST).log10().ceil() as i32);
                 page.line(format!("conditions of Karush, Kuhn and Tucker kept within {within:.0e}{closed}"));
             }
+            Some(_) if self.cost_after.is_none() => {}
             Some(_) => page.line("conditions of Karush, Kuhn and Tucker unknown: no cheaper tolerances were found"),
             None => {}
+        }
+        if let (Some(starts), Some(reached)) = (proof.starts, proof.reached) {
+            let other = match proof.other_optimum {
+                Some(cost) => format!("; the next cheapest optimum costs {}", money(cost)),
+                None => String::new(),
+            };
+            page.line(format!("the best of {starts} starts, of which {reached} ended here{other}"));
         }
     }
 
@@ -247,6 +275,19 @@ impl AllocationReport {
         let part = |what: &str, price: Option<f64>| {
             price.map(|price| format!("{what} by {by} saves {}", significant(price * step, 3)))
         };
+        if price.of.both.is_none() && price.of.sigma.is_none() && price.of.widen != price.of.narrow {
+            let saved = match price.of.widen {
+                Some(0.0) => {
+                    "wider by itself saves nothing, for another requirement holds the cost up as well".to_owned()
+                }
+                Some(widen) => format!("wider by {by} saves {}", significant(widen * step, 3)),
+                None => "what it saves to widen it alone is not known".to_owned(),
+            };
+            let lost =
+                price.of.narrow.map(|narrow| format!("; narrower by {by} costs {}", significant(narrow * step, 3)));
+            section.note(format!("{}: {saved}{}", short(&price.characteristic), lost.unwrap_or_default()));
+            return;
+        }
         let two = one.is_some_and(|one| one.before.lower().is_some() && one.before.upper().is_some());
         let all = [
             part("both limits wider", price.of.both.filter(|_| two)),

@@ -181,10 +181,8 @@ fn comparisons_and_sweeps_are_all_in_their_reports() {
 fn an_allocation_is_all_in_its_report() {
     let offer =
         |d| Priced::new(vec![d], vec![Offer::between(Curve::reciprocal(1.0, 0.1).unwrap(), 0.01, 1.0).unwrap()]);
-    let task = AllocationTask {
-        priced: vec![offer(0).unwrap(), offer(1).unwrap()],
-        requirements: vec![Some(Requirement::Cpk(1.0))],
-    };
+    let priced = vec![offer(0).unwrap(), offer(1).unwrap()];
+    let task = AllocationTask::new(priced, vec![Some(Requirement::Cpk(1.0))]);
     let found = allocate(&problem(), &task, &AllocationOptions::default()).unwrap();
     let json = json(&AllocationReport::of(&problem(), &found, None, About::default()));
     run_of(&json, &found.run);
@@ -192,7 +190,7 @@ fn an_allocation_is_all_in_its_report() {
     complete!(json, &found => Allocation {
         status: "/status", problem: "/tolerances", before: "/characteristics/0/before", after: "/characteristics/0/after",
         confirmed: "/confirmed", cost_before: "/cost_before", cost_after: "/cost_after", tolerances: "/tolerances/1",
-        moved: "/recentred", requirements: "/requirements/0", prices: "/shadow_prices", proof: "/proof",
+        goal: "/goal", cost_basis: "/cost_basis", moved: "/recentred", requirements: "/requirements/0", prices: "/shadow_prices", proof: "/proof",
         attainable: "/attainable", loosest_before: "/loosest_scaling/before", loosest_after: "/loosest_scaling/after",
         joint: "/joint_yield/after", front: "/front", confirmation: "/confirmation", run: "/evaluations", rounds: "/rounds",
         warnings: "/warnings",
@@ -205,5 +203,6 @@ fn an_allocation_is_all_in_its_report() {
     let one = json.pointer("/requirements/0").unwrap();
     complete!(one, &found.requirements[0] => Kept {
         characteristic: "/characteristic", requirement: "/requirement", before: "/before", after: "/interval",
+        sampled: "/sampled",
     });
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::correlation::correlated;
-use super::costs::{costs, requirement};
+use super::costs::{costs, holding, requirement};
 use super::data::Data;
 use super::dimension;
 use super::error::{Fault, Faults, StudyFault, fault};
@@ -69,7 +69,7 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> 
     warnings.extend(outside_limits(file));
     warnings.extend(mixed_units(&composite));
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
-    let problem = Problem::new(dimensions, composite)
+    let problem = Problem::new(holding(file, dimensions)?, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
     let problem = correlated(problem, &file.correlation.0)?;

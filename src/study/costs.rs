@@ -10,6 +10,8 @@ use super::spanned::Spanned;
 use super::words::REQUIREMENTS;
 use crate::allocation::{CostError, Curve, CurveKind, Offer, Priced};
 use crate::characteristic::Characteristic;
+use crate::dimension::Dimension;
+use crate::fits::{HeldEnd, held_end};
 use crate::names::nearest;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
@@ -132,8 +134,15 @@ fn one_form(entry: &CostEntry, name: &Spanned<String>, key: &str) -> Result<(), 
         let why = "say two things: leave one out".to_owned();
         return Err(fault(span, format!("{key}.{second}"), StudyFault::Conflict { a: first, b: second, why }));
     }
-    let numbers: [(&'static str, &Option<Spanned<f64>>); 6] =
-        [("a", &entry.a), ("b", &entry.b), ("k", &entry.k), ("c", &entry.c), ("min", &entry.min), ("max", &entry.max)];
+    let numbers: [(&'static str, &Option<Spanned<f64>>); 7] = [
+        ("a", &entry.a),
+        ("b", &entry.b),
+        ("k", &entry.k),
+        ("c", &entry.c),
+        ("min", &entry.min),
+        ("max", &entry.max),
+        ("step", &entry.step),
+    ];
     let number = numbers.iter().find_map(|(number, value)| Some((*number, value.as_ref()?)));
     if let Some((number, value)) = number.filter(|_| first != "model") {
         let (to, instead) = match first {
@@ -188,7 +197,13 @@ fn offers(entry: &CostEntry, name: &Spanned<String>, key: &str, present: f64) ->
     let CostEntry { model, a, b, k, c, min, max, processes, .. } = entry;
     let Some(processes) = processes else {
         let numbers = Numbers { model, a, b, k, c, min, max };
-        return numbers.offer(key, &name.span(), Some(present)).map(|offer| vec![offer]);
+        let offer = numbers.offer(key, &name.span(), Some(present))?;
+        return match &entry.step {
+            Some(step) => {
+                stepped(&offer, *step.get_ref()).map_err(|error| fault(step.span(), format!("{key}.step"), error))
+            }
+            None => Ok(vec![offer]),
+        };
     };
     if processes.get_ref().is_empty() {
         return Err(fault(processes.span(), format!("{key}.processes"), CostError::NoProcess));
@@ -239,6 +254,64 @@ fn offers(entry: &CostEntry, name: &Spanned<String>, key: &str, present: f64) ->
     // The loosest first, so that neighbours in the list are neighbours in cost.
     offers.sort_by(|x, y| (y.max, y.min).partial_cmp(&(x.max, x.min)).unwrap_or(std::cmp::Ordering::Equal));
     Ok(offers)
+}
+
+/// The most steps between the least and the greatest half band: more of them are as good as a free tolerance.
+const MOST_STEPS: f64 = 1000.0;
+
+/// The whole multiples of a step within an offer, the loosest first.
+fn stepped(offer: &Offer, step: f64) -> Result<Vec<Offer>, StudyFault> {
+    if !(step.is_finite() && step > 0.0) {
+        return Err(CostError::Tolerance { name: "step", value: step }.into());
+    }
+    // A bound that is a multiple itself is one, whatever its last digit.
+    let (first, last) = ((offer.min / step - 1e-9).ceil().max(1.0), (offer.max / step + 1e-9).floor());
+    if first > last {
+        return Err(StudyFault::NoStep { step, min: offer.min, max: offer.max });
+    }
+    if last - first > MOST_STEPS {
+        return Err(StudyFault::TooManySteps { step, count: last - first, most: MOST_STEPS });
+    }
+    let multiple = |index: usize| {
+        let t = (last - index as f64) * step;
+        Ok(Offer { curve: Curve::fixed(offer.curve.cost(t))?, ..Offer::between(offer.curve, t, t)? })
+    };
+    (0..=(last - first) as usize).map(multiple).collect::<Result<_, CostError>>().map_err(StudyFault::from)
+}
+
+/// The dimensions with the ends of their bands that stay: as their costs say, and otherwise as their fits have them.
+pub(super) fn holding(file: &StudyFile, mut dimensions: Vec<Dimension>) -> Result<Vec<Dimension>, Fault> {
+    for dimension in &mut dimensions {
+        let own = file.dimensions.0.iter().find(|(name, _)| name.get_ref() == dimension.name());
+        let of_fit = own.and_then(|(_, entry)| held_end(entry.get_ref().fit.as_ref()?.get_ref()));
+        let entry = file.costs.0.iter().find(|(name, _)| name.get_ref() == dimension.name());
+        let Some(side) = entry.and_then(|(_, entry)| entry.get_ref().fixed_side.as_ref()) else {
+            if let Some(end) = of_fit {
+                *dimension = dimension.clone().holding(end);
+            }
+            continue;
+        };
+        let key = format!("costs.{}.fixed_side", dimension.name());
+        let end = match side.get_ref().as_str() {
+            "lower" => HeldEnd::Lower,
+            "upper" => HeldEnd::Upper,
+            "middle" => continue,
+            found => {
+                let known = ["lower", "upper", "middle"];
+                let nearest = nearest(found, known).map(str::to_owned);
+                let known = known.map(str::to_owned).to_vec();
+                let unknown = StudyFault::UnknownWord { what: "fixed side", found: found.to_owned(), nearest, known };
+                return Err(fault(side.span(), key, unknown));
+            }
+        };
+        if dimension.tolerance().is_none() {
+            let instead = "a dimension without a band has no end that could stay: give it a tolerance";
+            let to = "a dimension without a tolerance".to_owned();
+            return Err(fault(side.span(), key, StudyFault::DoesNotApply { key: "fixed_side", to, instead }));
+        }
+        *dimension = dimension.clone().holding(end);
+    }
+    Ok(dimensions)
 }
 
 impl Numbers<'_> {

@@ -318,6 +318,28 @@ pub enum StudyFault {
     /// A cost is impossible.
     #[error(transparent)]
     Cost(#[from] CostError),
+    /// A step that no tolerance within the bounds is a multiple of.
+    #[error("no multiple of the step {step} lies between min {min} and max {max}")]
+    NoStep {
+        /// The step.
+        step: f64,
+        /// The least half band.
+        min: f64,
+        /// The greatest.
+        max: f64,
+    },
+    /// More steps than a list should have.
+    #[error(
+        "a step of {step} makes {count} tolerances between min and max, and {most} are the most: raise the step or leave it out"
+    )]
+    TooManySteps {
+        /// The step.
+        step: f64,
+        /// How many.
+        count: f64,
+        /// The most.
+        most: f64,
+    },
     /// A requirement is impossible.
     #[error(transparent)]
     Requirement(#[from] RequirementError),

@@ -134,10 +134,8 @@ impl Study {
         let of = |one: &Characteristic| {
             self.requirements.iter().find(|(name, _)| name == one.name()).map(|(_, requirement)| *requirement)
         };
-        AllocationTask {
-            priced: self.costs.clone(),
-            requirements: self.problem.characteristics().iter().map(of).collect(),
-        }
+        let requirements = self.problem.characteristics().iter().map(of).collect();
+        AllocationTask::new(self.costs.clone(), requirements)
     }
 
     /// Reads a `.toml` or `.json` file.

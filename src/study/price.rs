@@ -31,6 +31,11 @@ pub(super) struct CostEntry {
     pub(super) min: Option<Spanned<f64>>,
     /// Greatest half band; ten times the present one unless given.
     pub(super) max: Option<Spanned<f64>>,
+    /// Tolerances are whole multiples of this half band.
+    pub(super) step: Option<Spanned<f64>>,
+    /// The end of the band that stays where it is, `lower` or `upper`; that of a fit unless given, and the middle otherwise.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = ["lower", "upper", "middle"])))]
+    pub(super) fixed_side: Option<Spanned<String>>,
     /// The dimension with which this one shares tolerance and process; each part costs.
     pub(super) same_as: Option<Spanned<String>>,
     /// The processes that compete for it.

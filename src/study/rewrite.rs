@@ -11,7 +11,7 @@ use super::externals::{Externals, JournalPlace};
 use super::place::Format;
 use super::tree::{Key, Tree, Value};
 use super::write;
-use crate::dimension::{Dimension, about_middle};
+use crate::dimension::Dimension;
 use crate::problem::Problem;
 
 /// A study written anew.
@@ -271,9 +271,9 @@ impl Entry<'_> {
         (text, rounded)
     }
 
-    /// The band with `factor` times its width about the same middle.
+    /// The band with `factor` times its width.
     fn band(&self, factor: f64) -> [f64; 2] {
-        about_middle(self.old.tolerance().unwrap_or_else(|| self.old.reach()), factor)
+        self.old.opened(self.old.tolerance().unwrap_or_else(|| self.old.reach()), factor)
     }
 
     /// An end of the band in the way in which the old one is written, as a number or in percent of the nominal: rounded towards

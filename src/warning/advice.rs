@@ -183,7 +183,7 @@ impl fmt::Display for Advice {
             Self::TightenSolver => "Solve the model with a tighter tolerance.",
             Self::SplitBranches => "Give each branch a characteristic of its own.",
             Self::NearestFit => "Choose the nearest class, and write classes as processes where one is required.",
-            Self::RequireMore => "Require a higher yield or a Cpk, and confirm again.",
+            Self::RequireMore => "Require more than is needed, and confirm again.",
             Self::AnalyzeWrittenStudy => "Analyse the study with the new tolerances.",
             Self::WriteCosts => "Write the costs of tolerances below `[costs]`.",
             Self::NameMovableDimensions => "Name dimensions whose nominal values may move.",

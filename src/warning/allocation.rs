@@ -53,13 +53,24 @@ pub(super) fn not_confirmed() -> Text {
         .advise(Advice::AnalyzeWrittenStudy)
 }
 
-pub(super) fn confirmation_misses(characteristic: &str, required: &f64, [low, high]: &[f64; 2]) -> Text {
+pub(super) fn confirmation_misses(
+    characteristic: &str,
+    requirement: &&'static str,
+    required: &f64,
+    [low, high]: &[f64; 2],
+) -> Text {
+    let (name, low, high, required) = match *requirement {
+        "yield" => {
+            let percent = |share: f64| format!("{:.4} %", 100.0 * share);
+            ("yield", percent(*low), percent(*high), percent(*required))
+        }
+        name => {
+            let name = if name == "cpk" { "Cpk" } else { name };
+            (name, format!("{low:.5}"), format!("{high:.5}"), required.to_string())
+        }
+    };
     say(format!(
-        "A sample of the model refutes the yield of `{characteristic}`: its 95 % interval is {:.4} .. {:.4} %, and {:.4} % are required. Four \
-         moments do not describe its tails well enough.",
-        100.0 * low,
-        100.0 * high,
-        100.0 * required
+        "A sample of the model refutes the {name} of `{characteristic}`. Its interval is {low} .. {high}, and {required} is required."
     ))
     .advise(Advice::RequireMore)
 }

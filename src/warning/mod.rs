@@ -568,13 +568,15 @@ warnings! {
     };
     /// The model was not evaluated at the tolerances that were found.
     NotConfirmed = "not-confirmed" by allocation::not_confirmed;
-    /// Monte Carlo at the tolerances that were found misses a required yield.
+    /// Monte Carlo at the tolerances that were found misses what is required.
     ConfirmationMisses = "confirmation-misses" by allocation::confirmation_misses {
         /// The characteristic.
         characteristic: String,
-        /// The required yield.
+        /// `yield`, `cpk` or `sigma`.
+        requirement: &'static str,
+        /// How much of it is required.
         required: f64,
-        /// 95 % interval of the sample's yield.
+        /// Its interval by the sample, three errors on either side.
         interval: [f64; 2],
     };
     /// There are no tolerances to write into a study.

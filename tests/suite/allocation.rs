@@ -394,7 +394,7 @@ fn example(path: &str) -> (Study, AllocationTask, AllocationOptions) {
 fn the_optimum_of_a_curved_model_holds_when_it_is_simulated() {
     let (study, task, options) = example("engine-balance/allocate.toml");
     let found = allocate(&study.problem, &task, &options).unwrap();
-    assert_eq!(found.status, Status::Optimal, "{:?} {:?}", found.proof, found.requirements);
+    assert_eq!(found.status, Status::LocalOptimum, "{:?} {:?}", found.proof, found.requirements);
     assert!(found.confirmed && found.cost_after < found.cost_before);
     assert!(found.proof.residual.unwrap() < 1e-7, "{:?}", found.proof);
     // Nothing was re-used of the method beside derivatives at the optimum: a fresh sample of the model itself, whose interval is a ten
@@ -508,7 +508,8 @@ fn correlation_has_its_part_in_the_requirement() {
             vec![Some(requirement)],
         );
         let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
-        assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
+        // A form with products is solved by its slopes: nothing there proves that there is no other optimum.
+        assert_eq!(found.status, Status::LocalOptimum, "{:?}", found.proof);
         let [a, b] = [0, 1].map(|d| tolerance(&found, d));
         // By symmetry both are alike: 2 T^2 (1 - 0.6) = 0.01.
         relative(a, b, 1e-6);
@@ -530,7 +531,7 @@ fn shapes_that_change_are_followed() {
         vec![Some(Requirement::Yield(0.995))],
     );
     let found = allocate(&problem, &task, &options(Method::SecondOrder)).unwrap();
-    assert_eq!(found.status, Status::Optimal, "{:?} {:?}", found.proof, found.requirements);
+    assert_eq!(found.status, Status::LocalOptimum, "{:?} {:?}", found.proof, found.requirements);
     let sample = SimulationOptions::default().with_samples(1_000_000);
     let simulated = simulate(&found.problem, &sample).unwrap();
     let [low, high] = simulated.characteristics[0].yield_.unwrap().interval;
@@ -616,7 +617,8 @@ fn recentring_and_allocating_go_together() {
     let together = options(Method::SecondOrder).with_recentre(vec!["b".into()]);
     let found = allocate(&problem(30.7), &task, &together).unwrap();
     let centred = allocate(&problem(31.0), &task, &options(Method::SecondOrder)).unwrap();
-    assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
+    // A yield is not convex in nominal value and tolerances together.
+    assert_eq!(found.status, Status::LocalOptimum, "{:?}", found.proof);
     relative(found.cost_after.unwrap(), centred.cost_after.unwrap(), 1e-5);
 }
 

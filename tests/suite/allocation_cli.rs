@@ -32,7 +32,7 @@ fn an_allocation_prints_json_tables_and_a_chart() {
     let folder = tempfile::tempdir().unwrap();
     let (csv, svg) = (at(&folder, "tables"), at(&folder, "front.svg"));
     let report = json(&["allocate", ENGINE, "--json", "--front", "7", "--csv", &csv, "--svg", &svg]);
-    assert_eq!((&report["command"], &report["status"]), (&"allocate".into(), &"optimal".into()));
+    assert_eq!((&report["command"], &report["status"]), (&"allocate".into(), &"local-optimum".into()));
     assert_eq!((&report["schema"], &report["confirmed"]), (&2.into(), &true.into()));
     assert_eq!(report["tolerances"].as_array().unwrap().len(), 10);
     for key in ["dimension", "before", "after", "cost_before", "cost_after", "process"] {
@@ -49,7 +49,8 @@ fn an_allocation_prints_json_tables_and_a_chart() {
     assert!(report["proof"]["kkt_residual"].as_f64().unwrap() < 1e-7);
     assert!(report["characteristics"][0]["before"]["sigma"].is_f64());
     assert!(report["characteristics"][0]["after"]["yield"].as_f64().unwrap() >= 0.9973);
-    assert!(report["attainable"].is_null() && report["confirmation"].is_null());
+    assert!(report["attainable"].is_null());
+    assert_eq!(report["confirmation"]["samples"], 100_000);
     assert!(report["joint_yield"]["after"]["standard_error"].is_f64());
     let read = |name: &str| std::fs::read_to_string(folder.path().join("tables").join(name)).unwrap();
     assert_eq!(read("tolerances.csv").lines().count(), 11);
@@ -129,7 +130,9 @@ fn every_form_of_a_tolerance_is_written_anew() {
             let (study, written) = (at(&folder, &format!("a.{extension}")), at(&folder, &format!("b.{extension}")));
             std::fs::write(&study, &text).unwrap();
             let report = json(&["allocate", &study, "--json", "--write", &written]);
-            assert_eq!(report["status"], "optimal", "{name}: {report}");
+            // A shape that changes with its tolerance, and a mean that moves with it, leave no proof.
+            let status = report["status"].as_str().unwrap();
+            assert!(["optimal", "local-optimum"].contains(&status), "{name}: {report}");
             let new = std::fs::read_to_string(&written).unwrap();
             let again = sensitol::Study::read(Path::new(&written)).unwrap();
             let analysis = sensitol::analyze(&again.problem, &again.options).unwrap();
@@ -276,7 +279,7 @@ fn wrong_wishes_are_refused() {
         (known, &["--front", "0"]),
         (known, &["--recentre", "a"]),
         (known, &["--confirm", "1000"]),
-        (known, &["--confirm", "0"]),
+        (known, &["--confirm", "1"]),
         (known, &["--method", "three-point"]),
         (known, &["--seed", "-1"]),
         (known, &["--write", "STUDY"]),

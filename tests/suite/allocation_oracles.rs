@@ -1,6 +1,6 @@
 //! Allocation against optima that were found without the engine: `tests/data/allocation.json`, with how beside each.
 
-use sensitol::allocation::{Allocation, AllocationOptions, Status, allocate};
+use sensitol::allocation::{Allocation, AllocationOptions, CostBasis, Goal, Status, allocate};
 use sensitol::{Study, Verdict};
 use serde_json::Value;
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
@@ -34,8 +34,12 @@ fn all_met(found: &Allocation) -> bool {
 
 /// What is called optimal is: costs to 1e-6, of which the search itself keeps 1e-7 (tolerances are kept on the good side by 1e-9, and the
 /// enclosure of a worst case is a thousandth of a sigma wide at most), and the oracles 1e-8.
+///
+/// Linear worst cases, sums of squares and lists are proven, and tolerances that are all at their loosest; the others are the best of several
+/// starts, and called that.
 #[test]
 fn what_is_called_optimal_is() {
+    const PROVEN: [&str; 5] = ["squares-help", "two-temperatures", "twins", "list-12x4", "grades-of-size"];
     for name in [
         "lever-turning",
         "squares-help",
@@ -49,7 +53,8 @@ fn what_is_called_optimal_is() {
         let of = problem(name);
         let (found, expected) = (allocated(&of), of["optimum"]["cost"].as_f64().unwrap());
         let cost = found.cost_after.unwrap();
-        assert_eq!(found.status, Status::Optimal, "{name}: {cost}, {:?}", found.proof);
+        let word = if PROVEN.contains(&name) { Status::Optimal } else { Status::LocalOptimum };
+        assert_eq!(found.status, word, "{name}: {cost}, {:?}", found.proof);
         assert!((cost / expected - 1.0).abs() < 1e-6, "{name}: {cost} for {expected}");
         assert!(all_met(&found), "{name}: {:?}", found.requirements);
     }
@@ -111,11 +116,160 @@ fn of_smaller(means: [f64; 2], variances: [f64; 2], covariance: f64) -> f64 {
     (second - first * first).sqrt()
 }
 
-/// A search that ends at tolerances that miss a requirement does not call them anything else: neither optimal nor almost, nor proven impossible.
+/// Nominal value and tolerances are one problem: the shoulder gives the gap room that costs it most. Both Cpk rows are convex in both, so that
+/// the answer is proven; the oracle's own search ends at 1e-7.
 #[test]
-fn a_search_that_ends_beside_the_requirements_says_so() {
-    let found = allocated(&problem("move-the-shoulder"));
-    let missed = found.requirements.iter().any(|one| one.after.is_some_and(|after| after.verdict == Verdict::Missed));
-    assert_eq!(missed, found.status == Status::NoFeasiblePointFound, "{:?} {:?}", found.status, found.requirements);
-    assert_ne!(found.status, Status::Infeasible);
+fn nominal_values_move_together_with_tolerances() {
+    let of = problem("move-the-shoulder");
+    let (found, expected) = (allocated(&of), of["optimum"]["cost"].as_f64().unwrap());
+    let cost = found.cost_after.unwrap();
+    assert!((cost / expected - 1.0).abs() < 1e-6, "{cost} for {expected}");
+    let nominal = found.moved[0].after;
+    assert!((nominal - of["optimum"]["nominals"]["s"].as_f64().unwrap()).abs() < 1e-5, "{nominal}");
+    assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
+    assert!(all_met(&found), "{:?}", found.requirements);
+}
+
+/// Bounds of a nominal value hold, and cost what room they leave: with the shoulder at 15.02 at the most, tolerances are those of a study that
+/// has it there.
+#[test]
+fn a_bound_of_a_nominal_value_holds() {
+    let of = problem("move-the-shoulder");
+    let text = of["study"].as_str().unwrap();
+    let study = Study::from_toml(text, "study.toml").unwrap();
+    let options = AllocationOptions::default().with_analysis(study.options.clone()).with_recentre(vec!["s".to_owned()]);
+    let bounded = options.clone().with_nominal_bounds(vec![("s".to_owned(), [14.0, 15.02])]);
+    let found = allocate(&study.problem, &study.allocation_task(), &bounded).unwrap();
+    assert!((found.moved[0].after - 15.02).abs() < 1e-9, "{:?}", found.moved);
+    let there = Study::from_toml(&text.replace("nominal = 15.0,", "nominal = 15.02,"), "study.toml").unwrap();
+    let options = AllocationOptions::default().with_analysis(there.options.clone());
+    let alone = allocate(&there.problem, &there.allocation_task(), &options).unwrap();
+    let costs = [&found, &alone].map(|one| one.cost_after.unwrap());
+    assert!((costs[0] / costs[1] - 1.0).abs() < 1e-6, "{costs:?}");
+}
+
+/// Two limits of the same sum hold the cost up alike: to widen one of them alone saves nothing, to narrow it costs `10 c`, for the cost is
+/// homogeneous of degree -1 in the room. Two steps of 1e-4 leave 1e-7 of the price.
+#[test]
+fn a_price_of_one_of_two_twins_has_two_sides() {
+    let of = problem("twins");
+    let found = allocated(&of);
+    assert_eq!(found.prices.len(), 2);
+    for (price, name) in found.prices.iter().zip(["left", "right"]) {
+        let [widen, narrow] = [0, 1].map(|side| of["optimum"]["prices"][name][side].as_f64().unwrap());
+        assert_eq!((price.both, price.widen), (None, Some(widen)), "{price:?}");
+        assert!((price.narrow.unwrap() / narrow - 1.0).abs() < 1e-6, "{price:?}");
+    }
+}
+
+/// Without costs every tolerance has one by the tolerance unit of its size, with Lagrange's solution in closed form; and the same grade
+/// everywhere has one factor. The search of the factor ends at 1e-9.
+#[test]
+fn without_costs_the_size_says_what_is_hard_to_hold() {
+    let of = problem("no-costs");
+    let study = Study::from_toml(of["study"].as_str().unwrap(), "study.toml").unwrap();
+    let options = AllocationOptions::default().with_analysis(study.options.clone());
+    for (basis, key) in [(CostBasis::ToleranceUnit, "tolerances"), (CostBasis::ConstantPrecision, "constant_precision")]
+    {
+        let task = study.allocation_task().relative(&study.problem, basis);
+        let found = allocate(&study.problem, &task, &options).unwrap();
+        for (name, expected) in of["optimum"][key].as_object().unwrap() {
+            let (t, expected) = (band(&found, name), expected.as_f64().unwrap());
+            assert!((t / expected - 1.0).abs() < 1e-7, "{basis:?} {name}: {t} for {expected}");
+        }
+        assert_eq!((found.status, found.cost_basis), (Status::Optimal, basis));
+        assert!(all_met(&found), "{:?}", found.requirements);
+    }
+    // The same effect: slopes of this sum are 1 and -1, so that all tolerances are 0.15 by the root of 3.
+    let task = study.allocation_task().relative(&study.problem, CostBasis::EqualShares);
+    let found = allocate(&study.problem, &task, &options).unwrap();
+    for name in ["a", "b", "c"] {
+        assert!((band(&found, name) / (0.15 / 3f64.sqrt()) - 1.0).abs() < 1e-7, "{}", band(&found, name));
+    }
+}
+
+/// A hole H and a shaft h keep the end at the nominal size, so that the play begins at 0 whatever the tolerances are.
+#[test]
+fn a_held_end_of_a_band_stays() {
+    let of = problem("shaft-keeps-zero");
+    let found = allocated(&of);
+    let cost = found.cost_after.unwrap();
+    assert!((cost / of["optimum"]["cost"].as_f64().unwrap() - 1.0).abs() < 1e-7, "{cost}");
+    for dimension in found.problem.dimensions() {
+        let [lower, upper] = dimension.tolerance().unwrap();
+        let expected = &of["optimum"]["bands"][dimension.name()];
+        assert!((lower - expected[0].as_f64().unwrap()).abs() < 1e-8, "{lower} {expected}");
+        assert!((upper - expected[1].as_f64().unwrap()).abs() < 1e-8, "{upper} {expected}");
+    }
+    assert_eq!(found.problem.dimensions()[0].tolerance().unwrap()[0], 0.0);
+    assert_eq!(found.problem.dimensions()[1].tolerance().unwrap()[1], 0.0);
+    assert!(all_met(&found), "{:?}", found.requirements);
+}
+
+/// The same by fits: the end that the letter gives stays.
+#[test]
+fn a_fit_stays_one_sided() {
+    let text = |rss: &str| {
+        format!(
+            "[dimensions]\nhole = {{ nominal = 25.0, unit = \"mm\", fit = \"H7\" }}\n\
+         shaft = {{ nominal = 25.0, unit = \"mm\", fit = \"f7\" }}\n\
+         [characteristics]\nplay = {{ formula = \"hole - shaft\", lower = 0.0, upper = 0.05, require = \"{rss}\" }}\n\
+         [costs]\nhole = {{ model = \"reciprocal\", b = 0.02 }}\nshaft = {{ model = \"reciprocal\", b = 0.05 }}\n"
+        )
+    };
+    for require in ["worst-case", "rss"] {
+        let study = Study::from_toml(&text(require), "study.toml").unwrap();
+        let options = AllocationOptions::default().with_analysis(study.options.clone());
+        let found = allocate(&study.problem, &study.allocation_task(), &options).unwrap();
+        let [hole, shaft] = [0, 1].map(|d| found.problem.dimensions()[d].tolerance().unwrap());
+        assert_eq!((hole[0], shaft[1]), (0.0, -0.020), "ISO 286: H has EI = 0, f at 25 mm es = -20 um");
+        let [a, b] = [0.5 * hole[1], 0.5 * (shaft[1] - shaft[0])];
+        // Widths w of cost by the half band: play from 0.02 to 0.02 + w1 + w2, or its middle and the root of the squares of half widths.
+        let used = match require {
+            "rss" => 0.02 + a + b + a.hypot(b),
+            _ => 0.02 + 2.0 * (a + b),
+        };
+        assert!(used <= 0.05 + 1e-9 && used > 0.05 - 1e-6, "{require}: {used}");
+        // At the optimum the slopes of the cost are as those of what is used: b_j/T_j^2 over (1 + T_j/R), or over 2.
+        let slope = |t: f64| if require == "rss" { 1.0 + t / a.hypot(b) } else { 2.0 };
+        let ratio = (0.02 / (a * a) / slope(a)) / (0.05 / (b * b) / slope(b));
+        assert!((ratio - 1.0).abs() < 1e-4, "{require}: {ratio}");
+    }
+}
+
+/// Tolerances in whole steps: the cheapest of all 64,000, by the oracle's enumeration.
+#[test]
+fn steps_are_chosen_from_all_multiples() {
+    let of = problem("step-of-5");
+    let found = allocated(&of);
+    assert!((found.cost_after.unwrap() - of["optimum"]["cost"].as_f64().unwrap()).abs() < 1e-9);
+    for (name, expected) in of["optimum"]["tolerances"].as_object().unwrap() {
+        assert!((band(&found, name) - expected.as_f64().unwrap()).abs() < 1e-12, "{name}");
+    }
+    assert_eq!(found.status, Status::Optimal, "{:?}", found.proof);
+}
+
+/// The fewest rejects, and the highest Cpk, for a cost: tolerances in proportion to the third roots of the factors, in closed form. A level is a
+/// root to 1e-10 of the cost; of the rejects the double next to a yield of 1 leaves 2e-8.
+#[test]
+fn the_best_for_a_cost_is_found() {
+    let of = problem("best-for-a-budget");
+    let study = Study::from_toml(of["study"].as_str().unwrap(), "study.toml").unwrap();
+    let options = AllocationOptions::default().with_analysis(study.options.clone());
+    let optimum = &of["optimum"];
+    for goal in [Goal::FewestRejects { cost_limit: 2.5 }, Goal::MostCpk { cost_limit: 2.5 }] {
+        let task = study.allocation_task().towards(goal);
+        let found = allocate(&study.problem, &task, &options).unwrap();
+        assert_eq!(found.status, Status::Optimal, "{goal:?} {:?}", found.proof);
+        assert!((found.cost_after.unwrap() / 2.5 - 1.0).abs() < 1e-8, "{:?}", found.cost_after);
+        for (name, expected) in optimum["tolerances"].as_object().unwrap() {
+            assert!((band(&found, name) / expected.as_f64().unwrap() - 1.0).abs() < 1e-6, "{goal:?} {name}");
+        }
+        let kept = found.after.as_ref().unwrap().characteristics[0].capability.unwrap();
+        let rejected = kept.below.unwrap() + kept.above.unwrap();
+        assert!((rejected / optimum["rejects"].as_f64().unwrap() - 1.0).abs() < 1e-5, "{goal:?}");
+    }
+    let task = study.allocation_task().towards(Goal::FewestRejects { cost_limit: 0.01 });
+    let refused = allocate(&study.problem, &task, &options).unwrap_err().to_string();
+    assert!(refused.contains("the loosest tolerances within their bounds cost 0.08"), "{refused}");
 }

@@ -47,7 +47,7 @@ fn every_command_refuses_what_is_wrong() {
         &["simulate", "nowhere.toml"],
         &["compare", "nowhere.toml"],
         &["sweep", "examples/stacked-blocks/study.toml"],
-        &["allocate", "examples/stacked-blocks/study.toml"],
+        &["allocate", "nowhere.toml"],
         &["plan", "nowhere.toml"],
         &["check", "nowhere.toml"],
         &["models", "rocket"],

@@ -255,8 +255,15 @@ fn every() -> Vec<Warning> {
         Warning::NotConfirmed,
         Warning::ConfirmationMisses {
             characteristic: characteristic(),
+            requirement: "yield",
             required: 0.9973,
             interval: [0.993346, 0.994316],
+        },
+        Warning::ConfirmationMisses {
+            characteristic: characteristic(),
+            requirement: "cpk",
+            required: 1.33,
+            interval: [1.2104, 1.2216],
         },
         Warning::NothingToWrite,
         Warning::NotWritten { reason: text("`a` has its tolerance in a list") },

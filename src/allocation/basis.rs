@@ -1,0 +1,102 @@
+//! Costs where none are given: what is harder to hold costs more.
+//!
+//! ```text
+//! C_j = i_j/T_j           i_j: the tolerance unit of ISO 286-1 for the size, in the unit of the dimension
+//! C_j = T_j0/T_j          where there is no size that has one: angles, forces, a nominal value of 0; T_j0: the half band as written
+//! ```
+//!
+//! A third way fixes the proportions, and one factor remains: the same grade everywhere, `T_j = k i_j` (constant precision: K. W. Chase, W. H.
+//! Greenwood, Manufacturing Review 1 (1988)), or the same effect everywhere, `|s_j| T_j = k`.
+
+use serde::Serialize;
+
+use super::cost::{Curve, Offer, Priced};
+use crate::dimension::Dimension;
+use crate::fits::tolerance_unit;
+use crate::problem::Problem;
+
+/// Where costs come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum CostBasis {
+    /// They are given.
+    #[default]
+    Given,
+    /// The tolerance unit of the size by the half band.
+    ToleranceUnit,
+    /// The same, with the same grade everywhere.
+    ConstantPrecision,
+    /// The same, with the same effect on the characteristic everywhere.
+    EqualShares,
+}
+
+/// Half bands by the present ones between which a tolerance without a cost is sought.
+const RANGE: f64 = 10.0;
+/// Millimetres in the units of length that have a tolerance unit.
+const LENGTHS: [(&str, f64); 10] = [
+    ("mm", 1.0),
+    ("cm", 10.0),
+    ("m", 1000.0),
+    ("um", 1e-3),
+    ("µm", 1e-3),
+    ("μm", 1e-3),
+    ("micron", 1e-3),
+    ("in", 25.4),
+    ("inch", 25.4),
+    ("mil", 0.0254),
+];
+
+/// The unit of cost of a dimension in its own unit: that of its size, or the half band as written.
+pub(super) fn unit(dimension: &Dimension) -> f64 {
+    let length = match dimension.unit() {
+        None => Some(1.0),
+        Some(name) => LENGTHS.iter().find(|(unit, _)| *unit == name).map(|(_, millimetres)| *millimetres),
+    };
+    match length {
+        Some(millimetres) if dimension.nominal() != 0.0 => {
+            tolerance_unit(dimension.nominal() * millimetres) / millimetres
+        }
+        _ => dimension.half_band(),
+    }
+}
+
+/// A relative cost for every dimension, and every position, whose tolerance can change.
+pub(super) fn relative(problem: &Problem) -> Vec<Priced> {
+    let dimensions = problem.dimensions();
+    let mut groups: Vec<Priced> = Vec::new();
+    for (d, dimension) in dimensions.iter().enumerate() {
+        let free = dimension.sigma() > 0.0 && unscalable(dimension).is_none();
+        if !free || dimension.half_band() <= 0.0 {
+            continue;
+        }
+        let zone = dimension.zone();
+        if let Some(known) =
+            groups.iter_mut().find(|known| zone.is_some() && dimensions[known.members[0]].zone() == zone)
+        {
+            known.members.push(d);
+            continue;
+        }
+        let present = dimension.half_band();
+        let offer = Curve::reciprocal(0.0, unit(dimension))
+            .and_then(|curve| Offer::between(curve, present / RANGE, present * RANGE));
+        if let Ok(offer) = offer {
+            groups.push(Priced { members: vec![d], parts: 1.0, offers: vec![offer] });
+        }
+    }
+    groups
+}
+
+/// Why a dimension does not follow its tolerance.
+pub(super) fn unscalable(dimension: &Dimension) -> Option<&'static str> {
+    let law = dimension.distribution()?;
+    if law.measured().is_some() {
+        return Some("it is measured, and its parts are as they are");
+    }
+    match dimension.scaled(1.0) {
+        Some(_) => None,
+        None if law.probability().is_none() => Some("it is known by its moments only"),
+        None => Some("its distribution does not follow a tolerance"),
+    }
+}

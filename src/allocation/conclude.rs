@@ -1,0 +1,254 @@
+//! What follows from the tolerances that a search ended at: status, prices, the front, and what a sample of the model says.
+
+use super::constraint::Constraint;
+use super::cost::Priced;
+use super::driver::{Chosen, Driver, Ended, cost, kept_within, unit, with_tolerances};
+use super::front::front;
+use super::joint::joint;
+use super::result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, Status};
+use super::scaling::loosest;
+use super::solve::{Setting, Solved};
+use super::station::{Station, prices};
+use super::task::AllocateError;
+use crate::analysis::TRUSTED;
+use crate::problem::Problem;
+use crate::requirement::Requirement;
+use crate::simulation::{SimulationOptions, simulate_with};
+use crate::summary::StopReason;
+use crate::verdict::{Judged, Verdict};
+use crate::warning::Warning;
+
+/// A residual up to which tolerances are called optimal.
+const OPTIMAL: f64 = 1e-6;
+/// Fewer points confirm nothing.
+const FEWEST_CONFIRM: u64 = 2;
+/// A gap up to which a choice of processes is called optimal.
+const NO_GAP: f64 = 1e-9;
+
+impl Driver<'_> {
+    /// Everything that follows from the last tolerances.
+    pub(super) fn conclude(
+        &mut self,
+        allocation: &mut Allocation,
+        original: &Problem,
+        station: Station,
+        last: Option<Chosen>,
+        constraints: &[Constraint],
+        ended: Ended,
+    ) -> Result<(), AllocateError> {
+        allocation.moved = moved(original, &station.problem);
+        if last.is_none() && allocation.moved.is_empty() {
+            let finished = self.task.priced.is_empty() && ended.agreed;
+            if !finished {
+                return Ok(());
+            }
+        }
+        let stopped = || self.run.stopped();
+        let ones = vec![1.0; station.problem.dimensions().len()];
+        let values: Vec<f64> = constraints.iter().map(|one| one.value_at(&station.responses, &ones)).collect();
+        let met = values.iter().all(|&value| kept_within(value, self.task.goal));
+        let solved = last.as_ref().map(|(solved, ..)| solved);
+        if let Some((solved, offers, proof)) = &last {
+            let cost = cost(&self.task.priced, &solved.at, offers);
+            let gap = |bound: f64| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0);
+            allocation.proof = Proof { gap: proof.bound.map(gap), ..proof.clone() };
+            allocation.cost_after = Some(cost);
+            allocation.tolerances = self.allocated(original, &solved.at, offers);
+            let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
+            if free {
+                let (responses, priced) = (&station.responses, &self.task.priced);
+                let setting = Setting { responses, priced, constraints, stopped: &stopped, anywhere: false };
+                allocation.prices = prices(&setting, solved);
+            }
+        }
+        let judged = |one: &Kept| station.analysis.characteristics[one.characteristic].judge(one.requirement);
+        let judged: Vec<Judged> = allocation.requirements.iter().map(judged).collect();
+        let missed = judged.iter().any(|judged| judged.verdict == Verdict::Missed);
+        let reached = ended.within_budget && !self.spent.stopped;
+        allocation.confirmed = reached;
+        allocation.status = match &last {
+            _ if self.spent.stopped => Status::OutOfTime,
+            // Nothing but nominal values was to be chosen: what they cannot do, tolerances must.
+            None if !met => Status::Infeasible,
+            Some(_) if missed && ended.within_budget => Status::NoFeasiblePointFound,
+            None if ended.agreed => Status::Optimal,
+            None => Status::AlmostOptimal,
+            Some((solved, _, proof)) => {
+                // Slopes of a surface that the model refutes, and those of samples, prove nothing.
+                let trusted = constraints.iter().all(|one| {
+                    let c = one.characteristic;
+                    let left = station.analysis.characteristics[c].verification.as_ref().and_then(|of| of.left);
+                    !station.responses.is_sampled(c) && left.is_none_or(|left| left <= TRUSTED)
+                        || one.requirement == Requirement::WorstCase
+                });
+                let proven = trusted
+                    && proof.residual.is_none_or(|residual| residual <= OPTIMAL)
+                    && proof.bound.is_none_or(|bound| {
+                        proof.rigorous && solved.cost - bound <= NO_GAP * solved.cost.abs().max(f64::MIN_POSITIVE)
+                    });
+                let at_rest = ended.at_rest.is_none_or(|residual| residual <= OPTIMAL);
+                let recentred = !self.options.recentre.is_empty();
+                match proven && at_rest && ended.agreed && met {
+                    true if recentred && ended.at_rest.is_none() => Status::AlmostOptimal,
+                    true if self.is_certified(&station, constraints, (solved, proof), recentred) => Status::Optimal,
+                    true => Status::LocalOptimum,
+                    false => Status::AlmostOptimal,
+                }
+            }
+        };
+        if allocation.status == Status::Infeasible {
+            let worst = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map(|(k, _)| k);
+            allocation.attainable = worst.map(|k| {
+                let one = &constraints[k];
+                Attainable {
+                    characteristic: one.characteristic,
+                    unit: unit(original, one.characteristic),
+                    requirement: one.requirement,
+                    best: station.analysis.characteristics[one.characteristic].judge(one.requirement).value,
+                    because: Vec::new(),
+                    together: false,
+                }
+            });
+        }
+        // A budget that ended before the model was asked at these tolerances leaves nothing to say of them.
+        if let (false, Some((solved, ..))) = (ended.within_budget, &last) {
+            allocation.problem = with_tolerances(station.problem, &self.task.priced, &solved.at)?;
+            return Ok(());
+        }
+        allocation.requirements.iter_mut().zip(judged).for_each(|(one, judged)| one.after = Some(judged));
+        allocation.loosest_after = loosest(&station.responses, constraints);
+        allocation.joint[1] = joint(&station.problem, &station.responses, self.options.seed);
+        if let (Some(points), Some(solved), false) = (self.options.front, solved, self.spent.stopped) {
+            let (responses, priced) = (&station.responses, &self.task.priced);
+            let setting = Setting { responses, priced, constraints, stopped: &stopped, anywhere: false };
+            allocation.front = front(&setting, original, &self.task.requirements, points, &solved.at);
+            let group = |d: usize| self.task.priced.iter().position(|group| group.members.contains(&d));
+            for point in &mut allocation.front {
+                let of_groups = point.tolerances.take();
+                point.tolerances = of_groups.map(|of_groups| {
+                    allocation.tolerances.iter().filter_map(|one| Some(of_groups[group(one.dimension)?])).collect()
+                });
+            }
+        }
+        if let (Some(samples), false) = (self.options.confirm, self.spent.stopped) {
+            self.confirm(allocation, &station.problem, samples)?;
+        }
+        allocation.after = Some(station.analysis);
+        allocation.problem = station.problem;
+        Ok(())
+    }
+
+    /// Whether what keeps the conditions of an optimum is one: nothing can cost less than every tolerance at its loosest, or no choice does;
+    /// or the problem is convex. Linear worst cases, and sums of squares about means that stay, are convex in the tolerances, and so are all
+    /// costs; with the room that a moving mean leaves they are convex in both, but for a yield.
+    fn is_certified(
+        &self,
+        station: &Station,
+        constraints: &[Constraint],
+        (solved, proof): (&Solved, &Proof),
+        recentred: bool,
+    ) -> bool {
+        let priced = &self.task.priced;
+        let free = priced.iter().all(|group| group.offers.len() == 1);
+        let loosest = priced.iter().zip(&solved.at).all(|(group, &t)| t >= group.loosest());
+        let stopped = || false;
+        let setting =
+            Setting { responses: &station.responses, priced, constraints, stopped: &stopped, anywhere: false };
+        let bilinear = recentred && constraints.iter().any(|one| matches!(one.requirement, Requirement::Yield(_)));
+        free && loosest || free && setting.is_exact() && !bilinear || !free && proof.rigorous && !recentred
+    }
+
+    /// Asks the model itself at the tolerances found: as many points as the budget leaves.
+    fn confirm(&mut self, allocation: &mut Allocation, problem: &Problem, samples: u64) -> Result<(), AllocateError> {
+        let budget = self.options.analysis.budget.map_or(u64::MAX, |budget| budget as u64);
+        let samples = samples.min(budget.saturating_sub(self.spent.run.evaluations));
+        if samples < FEWEST_CONFIRM {
+            self.spent.run.stopped.get_or_insert(StopReason::Budget);
+            return Ok(());
+        }
+        let options = SimulationOptions { samples, seed: self.options.seed, ..SimulationOptions::default() };
+        let simulation = simulate_with(problem, &options, self.run, &|_| {})?;
+        self.spent.run = self.spent.run.and(&simulation.run);
+        for one in &mut allocation.requirements {
+            let sampled = !matches!(one.requirement, Requirement::Rss | Requirement::WorstCase);
+            let found = &simulation.characteristics[one.characteristic];
+            one.sampled = sampled.then(|| found.judge_widely(one.requirement));
+        }
+        allocation.confirmation = Some(simulation);
+        Ok(())
+    }
+
+    pub(super) fn cost_to_hold(&self, problem: &Problem) -> Option<f64> {
+        let of = |group: &Priced| group.cost_to_hold(group.tightest_member(problem));
+        self.task.priced.iter().map(of).sum()
+    }
+
+    pub(super) fn unchanged(&self, problem: &Problem) -> Vec<Allocated> {
+        let of = |group: &Priced, d: usize| {
+            let before = problem.dimensions()[d].half_band();
+            let each = group.parts / group.members.len() as f64;
+            Allocated {
+                dimension: d,
+                before,
+                after: before,
+                cost_before: group.cost_to_hold(before).map(|cost| cost / group.parts * each),
+                cost_after: None,
+                process: None,
+                bound: None,
+            }
+        };
+        self.task.priced.iter().flat_map(|group| group.members.iter().map(move |&d| of(group, d))).collect()
+    }
+
+    fn allocated(&self, original: &Problem, at: &[f64], offers: &[usize]) -> Vec<Allocated> {
+        let mut all = Vec::new();
+        for ((group, &t), &offer) in self.task.priced.iter().zip(at).zip(offers) {
+            let offer = &group.offers[offer];
+            let each = group.parts / group.members.len() as f64;
+            let near = |bound: f64| (t / bound - 1.0).abs() <= 1e-6 && offer.min < offer.max;
+            let bound = if near(offer.min) {
+                Some(Bound::Least)
+            } else if near(offer.max) {
+                Some(Bound::Greatest)
+            } else {
+                None
+            };
+            for &d in &group.members {
+                let before = original.dimensions()[d].half_band();
+                all.push(Allocated {
+                    dimension: d,
+                    before,
+                    after: t,
+                    cost_before: group.cost_to_hold(before).map(|cost| cost / group.parts * each),
+                    cost_after: Some(each * offer.curve.cost(t)),
+                    process: offer.process.clone(),
+                    bound,
+                });
+            }
+        }
+        all.sort_by_key(|one| one.dimension);
+        all
+    }
+}
+
+/// Where what was found is in doubt.
+pub(super) fn doubts(problem: &Problem, allocation: &Allocation) -> Vec<Warning> {
+    let found = matches!(allocation.status, Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal);
+    let not_confirmed = (!allocation.confirmed && found).then_some(Warning::NotConfirmed);
+    let refuted = |kept: &Kept| {
+        let Judged { interval: Some(interval), verdict: Verdict::Missed, .. } = kept.sampled? else { return None };
+        let characteristic = problem.characteristics()[kept.characteristic].name().to_owned();
+        let (requirement, required) = (kept.requirement.key(), kept.requirement.amount());
+        Some(Warning::ConfirmationMisses { characteristic, requirement, required, interval })
+    };
+    not_confirmed.into_iter().chain(allocation.requirements.iter().filter_map(refuted)).collect()
+}
+
+/// Nominal values that differ.
+fn moved(before: &Problem, after: &Problem) -> Vec<Moved> {
+    let pairs = before.dimensions().iter().zip(after.dimensions()).enumerate();
+    pairs
+        .filter(|(_, (before, after))| before.nominal() != after.nominal())
+        .map(|(dimension, (before, after))| Moved { dimension, before: before.nominal(), after: after.nominal() })
+        .collect()
+}

@@ -1,0 +1,171 @@
+//! What every search of tolerances shares: the model asked at some tolerances, within budget and time.
+
+use super::constraint::{Constraint, kept};
+use super::cost::Priced;
+use super::response::Responses;
+use super::result::Proof;
+use super::sampled::SampledCorrection;
+use super::solve::Solved;
+use super::station::Station;
+use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
+use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_keeping};
+use crate::assembly::Run;
+use crate::dimension::Dimension;
+use crate::method::{MethodError, Options};
+use crate::moments::Moments;
+use crate::problem::Problem;
+use crate::requirement::Requirement;
+use crate::summary::{RunSummary, StopReason};
+
+/// Rounds of derivatives, at most.
+pub(super) const ROUNDS: usize = 20;
+
+/// What was evaluated so far.
+#[derive(Default)]
+pub(super) struct Spent {
+    pub(super) run: RunSummary,
+    pub(super) rounds: usize,
+    pub(super) stopped: bool,
+}
+
+pub(super) struct Driver<'a> {
+    pub(super) task: &'a AllocationTask,
+    pub(super) options: &'a AllocationOptions,
+    pub(super) run: &'a Run<'a>,
+    pub(super) spent: Spent,
+}
+
+/// Tolerances, the offer of every group, and what proves them.
+pub(super) type Chosen = (Solved, Vec<usize>, Proof);
+
+/// How near is near enough: every round asks the model.
+#[derive(Clone, Copy)]
+pub(super) struct Near {
+    /// Tolerances that change by less than this part agree.
+    pub(super) agree: f64,
+    /// By what part tolerances are tightened for what the model may say differently where it is asked next.
+    pub(super) margin: f64,
+    /// Nominal values that move by fewer sigmas are at rest.
+    pub(super) rest: f64,
+}
+
+impl Near {
+    pub(super) fn of(problem: &Problem) -> Self {
+        match problem.function().signature().costly {
+            true => Self { agree: 1e-3, margin: 1e-7, rest: 1e-3 },
+            false => Self { agree: 1e-7, margin: 1e-9, rest: 1e-6 },
+        }
+    }
+}
+
+/// How the rounds ended.
+pub(super) struct Ended {
+    pub(super) agreed: bool,
+    pub(super) within_budget: bool,
+    /// The residual of nominal values and tolerances together, where both may change.
+    pub(super) at_rest: Option<f64>,
+}
+
+/// Whether a constraint of this value is kept; a level that is sought, and promised to no one, within what another round would change it by.
+pub(super) fn kept_within(value: f64, goal: Goal) -> bool {
+    /// Of a sigma squared.
+    const SOUGHT: f64 = 1e-6;
+    kept(value) || goal != Goal::LeastCost && value <= 1.0 + SOUGHT
+}
+
+impl Driver<'_> {
+    pub(super) fn constraints(&self, problem: &Problem, requirements: &[Option<Requirement>]) -> Vec<Constraint> {
+        let of = |(c, one): (usize, &Option<Requirement>)| {
+            Some(Constraint::of(c, (*one)?, problem.characteristics()[c].limits()))
+        };
+        requirements.iter().enumerate().filter_map(of).flatten().collect()
+    }
+
+    /// The model asked at a problem; an error only the first time.
+    pub(super) fn analysed(&mut self, problem: Problem) -> Result<Station, AllocateError> {
+        let budget = self
+            .options
+            .analysis
+            .budget
+            .map(|budget| budget.saturating_sub(usize::try_from(self.spent.run.evaluations).unwrap_or(usize::MAX)));
+        let options = Options { budget, ..self.options.derivatives(&problem) };
+        let (analysis, outcome) = analyze_keeping(&problem, &options, self.run)?;
+        self.spent.run = self.spent.run.and(&analysis.run);
+        self.spent.rounds += 1;
+        self.spent.stopped |= analysis.run.unfinished();
+        let mut responses = Responses::of(&problem, &outcome, &analysis, &self.task.requirements);
+        self.correct(&problem, &analysis, &mut responses);
+        Ok(Station { problem, analysis, responses })
+    }
+
+    /// Corrects by samples of the model what its own figures refute, where something is required of that and the model is cheap.
+    fn correct(&self, problem: &Problem, analysis: &Analysis, responses: &mut Responses) {
+        let of = |(c, one): (usize, &CharacteristicAnalysis)| {
+            let refuted = one.verification.as_ref().is_some_and(|of| of.replaced);
+            let moments =
+                self.task.requirements[c].is_some_and(|of| !matches!(of, Requirement::Rss | Requirement::WorstCase));
+            (refuted && moments).then_some((c, one.moments?))
+        };
+        let verified: Vec<(usize, Moments)> = analysis.characteristics.iter().enumerate().filter_map(of).collect();
+        let priced = &self.task.priced;
+        let many = priced.len() > SampledCorrection::MOST_GROUPS;
+        if verified.is_empty() || many || problem.function().signature().costly || self.run.stopped() {
+            return;
+        }
+        let at = |g: usize, factor: f64| {
+            let half = problem.dimensions()[priced[g].members[0]].half_band();
+            with_tolerances(problem.clone(), &priced[g..=g], &[factor * half]).ok()
+        };
+        let surface = |c: usize, g: usize, factor: f64| {
+            let mut factors = vec![1.0; problem.dimensions().len()];
+            priced[g].members.iter().for_each(|&d| factors[d] = factor);
+            responses.moments(c, &factors)
+        };
+        let found = SampledCorrection::of(&verified, priced, &at, &surface, self.options.seed, self.run);
+        for (c, correction) in found {
+            responses.of[c].sampled = correction;
+        }
+    }
+
+    /// The same further on: None where the budget does not allow it.
+    pub(super) fn station(&mut self, problem: Problem) -> Result<Option<Station>, AllocateError> {
+        match self.analysed(problem) {
+            Ok(station) => Ok(Some(station)),
+            Err(AllocateError::Method(MethodError::OverBudget { .. })) => {
+                self.spent.run.stopped.get_or_insert(StopReason::Budget);
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// The unit of a characteristic.
+pub(super) fn unit(problem: &Problem, characteristic: usize) -> Option<String> {
+    problem.characteristics()[characteristic].unit().map(str::to_owned)
+}
+
+pub(super) fn cost(priced: &[Priced], at: &[f64], offers: &[usize]) -> f64 {
+    let of = |((group, &t), &offer): ((&Priced, &f64), &usize)| group.parts * group.offers[offer].curve.cost(t);
+    priced.iter().zip(at).zip(offers).map(of).sum()
+}
+
+/// The problem with the groups at these half bands.
+pub(super) fn with_tolerances(problem: Problem, priced: &[Priced], at: &[f64]) -> Result<Problem, AllocateError> {
+    let dimensions: Vec<Dimension> = scaled(&problem, priced, at)?;
+    Ok(problem.with_dimensions(dimensions)?)
+}
+
+/// The dimensions with the groups at these half bands.
+fn scaled(problem: &Problem, priced: &[Priced], at: &[f64]) -> Result<Vec<Dimension>, AllocateError> {
+    let mut dimensions = problem.dimensions().to_vec();
+    for (group, &t) in priced.iter().zip(at) {
+        for &d in &group.members {
+            let factor = t / dimensions[d].half_band();
+            if let Some(scaled) = dimensions[d].scaled(factor) {
+                dimensions[d] = scaled?;
+            }
+        }
+    }
+    Ok(dimensions)
+}

@@ -1,0 +1,69 @@
+//! The best for a given cost: the level of a requirement that just costs it.
+//!
+//! ```text
+//! max b   with   min cost(T) <= limit   under   Cpk >= b/3, or rejected share <= 2 sf(b)
+//! ```
+//!
+//! The least cost of a level grows with it, so that the level is a root, found between one that costs less and one that costs more or
+//! cannot be kept. The greatest of the least Cpk of several characteristics is that of one level for all of them.
+
+use super::choose::{Choice, choose};
+use super::constraint::{Constraint, root};
+use super::driver::Driver;
+use super::solve::Setting;
+use super::task::Goal;
+use crate::distribution::standard_normal;
+use crate::problem::Problem;
+use crate::requirement::Requirement;
+
+/// Levels between which the best is sought, in sigmas: from where half of the assemblies are kept to where doubles end.
+const LEVELS: [f64; 2] = [0.7, 37.0];
+/// Costs that differ by less are the same.
+const SAME: f64 = 1e-10;
+
+impl Goal {
+    /// The requirement of this level.
+    pub(super) fn at(self, level: f64) -> Option<Requirement> {
+        match self {
+            Self::LeastCost => None,
+            Self::MostCpk { .. } => Some(Requirement::Cpk(level / 3.0)),
+            Self::FewestRejects { .. } => Some(Requirement::Yield(1.0 - 2.0 * standard_normal::sf(level))),
+        }
+    }
+
+    /// What may be spent.
+    pub(super) fn cost_limit(self) -> Option<f64> {
+        match self {
+            Self::LeastCost => None,
+            Self::MostCpk { cost_limit } | Self::FewestRejects { cost_limit } => Some(cost_limit),
+        }
+    }
+}
+
+impl Driver<'_> {
+    /// The requirements with those of the level that costs what may be spent, at the derivatives of a setting; None where even the lowest costs
+    /// more.
+    pub(super) fn levelled(&self, setting: &Setting<'_>, problem: &Problem, at: &[f64]) -> Option<Vec<Constraint>> {
+        let goal = self.task.goal;
+        let limit = goal.cost_limit()?;
+        let of_level = |level: f64| -> Vec<Constraint> {
+            let sought = problem
+                .characteristics()
+                .iter()
+                .enumerate()
+                .filter(|(c, one)| one.limits().exist() && self.task.requirements[*c].is_none());
+            let rows = sought.flat_map(|(c, one)| goal.at(level).map(|of| Constraint::of(c, of, one.limits())));
+            setting.constraints.iter().copied().chain(rows.flatten()).collect()
+        };
+        let dearer = |level: f64| {
+            let constraints = of_level(level);
+            match choose(&Setting { constraints: &constraints, anywhere: false, ..*setting }, at) {
+                Choice::Found { solved, .. } => (solved.cost / limit).ln(),
+                _ => f64::INFINITY,
+            }
+        };
+        let [low, high] = LEVELS;
+        // A level just below is one that was found to be kept.
+        (dearer(low) <= SAME).then(|| of_level(root(dearer, low, high) * (1.0 - SAME)))
+    }
+}

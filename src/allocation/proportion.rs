@@ -1,0 +1,97 @@
+//! Tolerances in fixed proportions: one factor is chosen.
+
+use super::basis::{CostBasis, unit};
+use super::constraint::Constraint;
+use super::driver::{Driver, Ended, Near, ROUNDS, cost, with_tolerances};
+use super::result::{Allocation, Proof, Status};
+use super::scaling::loosest_of;
+use super::solve::{Solved, Starts};
+use super::station::Station;
+use super::task::AllocateError;
+
+impl Driver<'_> {
+    /// The loosest tolerances in the proportions of the task's basis that keep every requirement.
+    pub(super) fn in_proportion(
+        &mut self,
+        allocation: &mut Allocation,
+        first: Station,
+        constraints: &[Constraint],
+    ) -> Result<(), AllocateError> {
+        let original = allocation.problem.clone();
+        let near = Near::of(&original);
+        let priced = &self.task.priced;
+        let members: Vec<usize> = priced.iter().flat_map(|group| group.members.iter().copied()).collect();
+        let mut at = self.proportions(&first);
+        let mut ended = Ended { agreed: false, within_budget: true, at_rest: None };
+        let mut station = match self.station(with_tolerances(first.problem.clone(), priced, &at)?)? {
+            Some(there) => there,
+            None => return Ok(()),
+        };
+        for _ in 0..ROUNDS {
+            if self.spent.stopped || !station.answers(constraints) {
+                break;
+            }
+            let Some(factor) = loosest_of(&station.responses, constraints, &members) else {
+                allocation.status = Status::NoFeasiblePointFound;
+                return Ok(());
+            };
+            // The first factor is only as near as its search; later ones must agree.
+            if (factor - 1.0).abs() <= near.agree && factor >= 1.0 {
+                ended.agreed = true;
+                break;
+            }
+            at.iter_mut().for_each(|t| *t *= factor * (1.0 - near.margin));
+            match self.station(with_tolerances(station.problem.clone(), priced, &at)?)? {
+                Some(there) => station = there,
+                None => {
+                    ended.within_budget = false;
+                    break;
+                }
+            }
+        }
+        let offers = vec![0; priced.len()];
+        let solved = Solved {
+            cost: cost(priced, &at, &offers),
+            multipliers: vec![0.0; constraints.len()],
+            residual: 0.0,
+            value: 1.0,
+            closed: false,
+            converged: ended.agreed,
+            starts: Starts::default(),
+            at,
+        };
+        self.conclude(allocation, &original, station, Some((solved, offers, Proof::default())), constraints, ended)
+    }
+
+    /// Half bands in the proportions of the basis, of the same geometric mean as the present ones.
+    fn proportions(&self, first: &Station) -> Vec<f64> {
+        let dimensions = first.problem.dimensions();
+        let present = |g: usize| dimensions[self.task.priced[g].members[0]].half_band();
+        let effect = |g: usize| {
+            let of = |c: usize| -> f64 {
+                let spread = |d: &usize| first.responses.spread(c, *d).powi(2);
+                self.task.priced[g].members.iter().map(spread).sum::<f64>().sqrt()
+            };
+            (0..first.analysis.characteristics.len())
+                .filter(|&c| self.task.requirements[c].is_some())
+                .map(of)
+                .fold(0.0, f64::max)
+        };
+        let all = 0..self.task.priced.len();
+        let wanted: Vec<f64> = match self.task.basis {
+            CostBasis::EqualShares => {
+                all.map(|g| if effect(g) > 0.0 { present(g) / effect(g) } else { f64::NAN }).collect()
+            }
+            _ => all.map(|g| unit(&dimensions[self.task.priced[g].members[0]])).collect(),
+        };
+        let known = || wanted.iter().enumerate().filter(|(_, wanted)| wanted.is_finite());
+        let count = known().count().max(1) as f64;
+        let scale = (known().map(|(g, wanted)| (present(g) / wanted).ln()).sum::<f64>() / count).exp();
+        // What has no effect stays as it is.
+        wanted
+            .iter()
+            .enumerate()
+            .map(|(g, wanted)| if wanted.is_finite() { wanted * scale } else { present(g) })
+            .collect()
+    }
+}

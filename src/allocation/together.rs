@@ -1,0 +1,111 @@
+//! Nominal values and tolerances at once: one problem, at fixed derivatives.
+//!
+//! ```text
+//! min over ln T and m of  cost(T)
+//! subject to   (mean + 3 C sigma - U)/w <= 0, (L - mean + 3 C sigma)/w <= 0      Cpk at least C; w: 3 C sigma at the station
+//!              (middle + rss - U)/w <= 0 and below                               rss
+//!              (greatest - U)/w <= 0 and below                                   worst case
+//!              sigma/s - 1 <= 0, (sigma/room)^2 - 1 <= 0                         sigma, yield
+//!              bounds of T and of the nominal values m
+//! ```
+//!
+//! A Cpk is a ratio with a pole where the mean passes a limit; as written it is linear in the mean and convex. Derivatives are central
+//! differences; the augmented Lagrangian ends at 1e-8, and the tolerances are then chosen about the nominal values by the exact search.
+
+use super::augmented::{Ended, Near, Slope, Smooth};
+use super::cost::Priced;
+use super::solve::Setting;
+
+/// Steps of the differences, in `ln T` and in sigmas: their truncation is 1e-10, and so is their rounding.
+const STEP: f64 = 1e-5;
+const NEAR: Near = Near { by: 1e-9, updates: 40 };
+/// Unknowns times rows beyond which differences take too long: nominal values then move to where the fewest are rejected.
+const MOST: usize = 2000;
+/// A violation with which an end is no answer.
+const KEPT: f64 = 1e-6;
+
+/// Nominal values and tolerances that were found together.
+pub(super) struct Together {
+    /// By how many sigmas every movable dimension moves.
+    pub(super) shifts: Vec<f64>,
+    /// Half bands of the groups.
+    pub(super) at: Vec<f64>,
+    /// The largest violation of the conditions of Karush, Kuhn and Tucker.
+    pub(super) residual: f64,
+}
+
+/// The cheapest tolerances with nominal values of dimensions `of` moved within `bounds`, in sigmas from where they are. None where none
+/// was found, or there are too many unknowns.
+pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]], at: &[f64]) -> Option<Together> {
+    let groups = setting.priced.len();
+    let free = setting.priced.iter().all(|group| group.offers.len() == 1);
+    if !free || (groups + of.len()) * setting.constraints.len() > MOST {
+        return None;
+    }
+    let responses = setting.responses;
+    let dimensions = responses.dimensions.len();
+    let ones = vec![1.0; dimensions];
+    let widths: Vec<f64> =
+        setting.constraints.iter().map(|one| one.width(responses, &ones)).collect::<Option<Vec<f64>>>()?;
+    let places = |x: &[f64]| {
+        let t: Vec<f64> = x[..groups].iter().map(|x| x.exp()).collect();
+        let mut shifts = vec![0.0; dimensions];
+        of.iter().zip(&x[groups..]).for_each(|(&d, &shift)| shifts[d] = shift);
+        (responses.factors(setting.priced, &t), shifts)
+    };
+    let values = |x: &[f64]| -> Option<Vec<f64>> {
+        let (factors, shifts) = places(x);
+        let of =
+            |(one, width): (&super::constraint::Constraint, &f64)| one.excess(responses, &factors, &shifts, *width);
+        setting.constraints.iter().zip(&widths).map(of).collect()
+    };
+    let rows = |x: &[f64]| -> Option<Vec<Slope>> {
+        let mut rows: Vec<Slope> = values(x)?.into_iter().map(|value| (value, vec![0.0; x.len()])).collect();
+        let mut moved = x.to_vec();
+        for j in 0..x.len() {
+            moved[j] = x[j] + STEP;
+            let up = values(&moved)?;
+            moved[j] = x[j] - STEP;
+            let down = values(&moved)?;
+            moved[j] = x[j];
+            rows.iter_mut()
+                .zip(up.iter().zip(down))
+                .for_each(|(row, (up, down))| row.1[j] = (up - down) / (2.0 * STEP));
+        }
+        Some(rows)
+    };
+    let within = |t: &[f64]| -> Vec<f64> {
+        let clamped = setting.priced.iter().zip(t).map(|(group, t)| t.clamp(group.tightest(), group.loosest()).ln());
+        clamped.chain(bounds.iter().map(|&[low, high]| 0.0f64.clamp(low, high))).collect()
+    };
+    let scale = setting.cost(at).abs().max(f64::MIN_POSITIVE);
+    let objective = |x: &[f64]| {
+        let mut slopes = vec![0.0; x.len()];
+        let of = |((group, slope), x): ((&Priced, &mut f64), &f64)| {
+            let curve = &group.offers[0].curve;
+            *slope = group.parts * curve.log_derivatives(x.exp())[0] / scale;
+            group.parts * curve.cost(x.exp()) / scale
+        };
+        (setting.priced.iter().zip(&mut slopes).zip(x).map(of).sum::<f64>(), slopes)
+    };
+    let all: Vec<[f64; 2]> = (setting.priced.iter().map(|group| [group.tightest().ln(), group.loosest().ln()]))
+        .chain(bounds.iter().copied())
+        .collect();
+    let smooth = Smooth { objective: &objective, rows: &rows, bounds: &all };
+    let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
+    let middle: Vec<f64> = at.iter().zip(&tight).map(|(at, tight)| (at * tight).sqrt()).collect();
+    let mut best: Option<(f64, Ended)> = None;
+    for start in [at, &middle, &tight] {
+        let Some(ended) = smooth.minimised(&within(start), NEAR) else { continue };
+        let kept = values(&ended.x).is_some_and(|values| values.iter().all(|&value| value <= KEPT));
+        let cost = objective(&ended.x).0;
+        if kept && best.as_ref().is_none_or(|(least, _)| cost < least * (1.0 - KEPT)) {
+            best = Some((cost, ended));
+        }
+        if (setting.stopped)() {
+            break;
+        }
+    }
+    let Ended { x, residual, .. } = best?.1;
+    Some(Together { shifts: x[groups..].to_vec(), at: x[..groups].iter().map(|x| x.exp()).collect(), residual })
+}
