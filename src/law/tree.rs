@@ -22,7 +22,7 @@ use crate::elementary::{Elementary, Exp};
 const LEAST: f64 = 40.0;
 /// Elements of a table of products at most: beyond, the contour ends where it is, with the error that this leaves.
 const MOST: usize = 1 << 22;
-/// Products of a table's elements with the points of the contour so far: a second of work. The contour ends there too.
+/// Products of a table's elements with the points of the contour so far, some 1e8: the contour ends there too.
 const EFFORT: f64 = (1u64 << 27) as f64;
 
 /// Sigmas of its neighbours that an input's nodes resolve the products with; half of them may add to the weight of a node.
