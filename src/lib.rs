@@ -48,6 +48,8 @@ mod summary;
 mod surrogate;
 pub mod sweep;
 mod time;
+#[cfg_attr(not(feature = "study"), allow(dead_code))]
+mod unit;
 mod verdict;
 mod verification;
 pub mod warning;

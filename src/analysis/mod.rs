@@ -58,9 +58,11 @@ use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, enclose, search};
 use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 use crate::shape::through;
 use crate::summary::{RunSummary, StopReason};
 use crate::time::Instant;
+use crate::verdict::{self, Judged};
 use crate::warning::Warning;
 
 /// What an analysis found out.
@@ -84,6 +86,9 @@ pub struct Analysis {
     /// limits, and where it is not known.
     #[serde(rename = "joint_yield")]
     pub joint: Option<Verified>,
+    /// Whether that share reaches the target for all characteristics at once; None without such a target.
+    #[cfg_attr(feature = "cli", schemars(with = "Option<crate::verdict::JudgedShape>"))]
+    pub joint_requirement: Option<Judged>,
     /// How every two characteristics vary together; empty with one characteristic, and with more than 40.
     #[serde(rename = "characteristic_correlation")]
     pub correlations: Vec<OutputCorrelation>,
@@ -187,12 +192,29 @@ pub(crate) fn analyze_keeping(
         account,
         basis: outcome.basis,
         surface: Surface::of(&outcome, &characteristics),
+        joint_requirement: joint_requirement(problem, options, joint, &characteristics),
         characteristics,
         joint,
         correlations,
         warnings,
     };
     Ok((analysis, outcome))
+}
+
+/// Whether the joint yield reaches its target: by its value and two errors on either side.
+fn joint_requirement(
+    problem: &Problem,
+    options: &Options,
+    joint: Option<Verified>,
+    characteristics: &[CharacteristicAnalysis],
+) -> Option<Judged> {
+    let requirement = Requirement::Yield(options.target_joint_yield?);
+    if problem.characteristics().iter().filter(|one| one.limits().exist()).count() < 2 {
+        return None;
+    }
+    let interval = joint.and_then(|joint| verdict::about(joint.value, Some(joint.error))).map(verdict::share);
+    let judged = Judged::of(requirement, joint.map(|joint| joint.value), interval);
+    Some(judged.unless(characteristics.iter().any(|one| one.unfinished)))
 }
 
 /// The bounds of interval arithmetic, where a formula has them and nobody searched the extremes.

@@ -1,14 +1,16 @@
 //! The assembly function of a study: a model, formulas, or formulas on top of a model, with values that are found from
 //! closure conditions.
 
+mod driven;
 mod exact;
 mod switches;
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
 
-#[cfg(feature = "study")]
-use super::formula::MixedUnits;
 use super::formula::{Formula, FormulaError, FormulaSet, Meaning};
+#[cfg(feature = "study")]
+use super::formula::{Role, UnitFinding};
 use super::implicit::{Anchor, Assembler, AssemblyFailure, Conditions, ConditionsError};
 use super::process::EvaluatorAccount;
 use super::responses::all_finite;
@@ -16,6 +18,8 @@ use super::{
     AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, Input, ModelInfo, Output, Points, Request,
     Responses, Run, Signature, Switches, in_blocks,
 };
+#[cfg(feature = "study")]
+use crate::unit::Unit;
 use crate::warning::Warning;
 
 /// Parts of formulas that are looked at to explain the failures of one block of rows: all failures of short formulas, and the first few
@@ -30,6 +34,8 @@ pub enum Source {
     Dimension(usize),
     /// Always this value.
     Fixed(f64),
+    /// The value of the formula of this index, of dimensions, constants and unknowns: the formula drives the model.
+    Formula(usize),
 }
 
 /// Parts that do not fit together.
@@ -49,6 +55,16 @@ pub enum CompositeError {
     /// Conditions that determine no state.
     #[error(transparent)]
     Conditions(#[from] ConditionsError),
+    /// A formula that drives the model and needs what the model answers.
+    #[error("formula `{name}` drives the model and needs its output `{output}`: a cycle")]
+    Driven {
+        /// The formula's name.
+        name: String,
+        /// Its place among the formulas.
+        index: usize,
+        /// The output of the model.
+        output: String,
+    },
 }
 
 /// Dimensions in; formulas of dimensions, constants, the outputs of a model and the unknowns of closure conditions out.
@@ -70,6 +86,10 @@ pub struct Composite {
 struct Inner {
     function: Arc<dyn AssemblyFunction>,
     inputs: Vec<Source>,
+    /// What each of its inputs is multiplied by; empty where none is.
+    factors: Vec<f64>,
+    /// Where a costly model that formulas drive was sent for which point, by the bits of what it was sent.
+    sent: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -118,7 +138,8 @@ impl Composite {
         let named = formulas.len();
         formulas.extend(conditions.iter().flat_map(Conditions::formulas));
         let names: Vec<String> = formulas.iter().map(|(name, _)| name.clone()).collect();
-        let model = model.map(|(function, inputs)| Inner { function, inputs });
+        let model =
+            model.map(|(function, inputs)| Inner { function, inputs, factors: Vec::new(), sent: Mutex::default() });
         let offers = model.as_ref().map_or(&[][..], |model| &model.function.signature().outputs);
         let given = inputs.len() + offers.len();
         let unknowns = conditions.as_ref().map_or(&[][..], Conditions::unknowns);
@@ -151,6 +172,7 @@ impl Composite {
             model,
             outputs: Vec::with_capacity(outputs.len()),
         };
+        composite.drives_without_circle(&names)?;
         for (name, unit) in outputs {
             let formula = names[..named].iter().position(|formula| *formula == name).map(Origin::Formula);
             let unknown = || unknowns.iter().position(|unknown| unknown.name() == name).map(Origin::Unknown);
@@ -164,24 +186,35 @@ impl Composite {
         Ok(composite)
     }
 
-    /// The formulas and conditions that add or compare different units.
+    /// Where units of formulas and conditions do not go together, as `FormulaSet::units` finds it.
     #[cfg(feature = "study")]
-    pub(crate) fn mixed_units(&self) -> Vec<MixedUnits> {
-        let inputs = self.signature.inputs.iter().map(|input| input.unit.as_deref());
-        let answers = self.model.iter().flat_map(|model| &model.function.signature().outputs);
-        let units: Vec<Option<&str>> = inputs.chain(answers.map(|output| output.unit.as_deref())).collect();
-        self.formulas.mixed_units(|variable| units.get(variable).copied().flatten())
+    pub(crate) fn units(
+        &self,
+        unit: &dyn Fn(&str) -> Option<Unit>,
+        role: &dyn Fn(usize) -> Role,
+        convert: bool,
+    ) -> Vec<UnitFinding> {
+        self.formulas.units(unit, role, convert)
+    }
+
+    /// With every input of the model multiplied by a factor; none where there are no factors.
+    #[cfg(feature = "study")]
+    pub(crate) fn with_factors(mut self, factors: Vec<f64>) -> Self {
+        self.model.iter_mut().for_each(|model| model.factors.clone_from(&factors));
+        self
     }
 
     /// Which formulas the outputs need, as a flag per formula, and whether they need the unknowns.
     pub(crate) fn used(&self) -> (Vec<bool>, bool) {
-        let unknowns = self.all_needs(&self.outputs).unknowns;
+        let needs = self.all_needs(&self.outputs);
+        let driving = if needs.answers.is_empty() { Vec::new() } else { self.driving() };
+        let unknowns = needs.unknowns || driving.iter().any(|&formula| self.drives_by_unknowns(formula));
         let outputs = self.outputs.iter().filter_map(|origin| match origin {
             Origin::Formula(formula) => Some(*formula),
             _ => None,
         });
         let conditions = if unknowns { self.named..self.formulas.len() } else { 0..0 };
-        let mut used = self.formulas.used(outputs.chain(conditions));
+        let mut used = self.formulas.used(outputs.chain(conditions).chain(driving));
         used.truncate(self.named);
         (used, unknowns)
     }
@@ -198,10 +231,7 @@ impl Composite {
             let all = || (0..model.inputs.len()).collect();
             // A black box may depend on every input it has, but on no dimension that is none of its inputs.
             let inputs: Vec<usize> = model.function.signature().outputs[answer].depends_on.clone().unwrap_or_else(all);
-            dimensions.extend(inputs.iter().filter_map(|&input| match model.inputs[input] {
-                Source::Dimension(dimension) => Some(dimension),
-                Source::Fixed(_) => None,
-            }));
+            inputs.iter().for_each(|&input| dimensions.extend(self.behind(model.inputs[input])));
         }
         dimensions.sort_unstable();
         dimensions.dedup();
@@ -260,43 +290,6 @@ impl Composite {
 
     fn origins(&self, outputs: &[usize]) -> Vec<Origin> {
         outputs.iter().map(|&output| self.outputs[output]).collect()
-    }
-
-    /// Passes the derivatives of the model's own outputs on, by the dimensions that its inputs are.
-    fn pass_gradients(&self, origins: &[Origin], needed: &[usize], answers: &Responses, out: &mut Responses) {
-        let Some(model) = &self.model else { return };
-        for (column, origin) in origins.iter().enumerate() {
-            let Origin::Model(output) = origin else { continue };
-            let Ok(answer) = needed.binary_search(output) else { continue };
-            for row in 0..answers.rows() {
-                let Some(gradient) = answers.gradient(row, answer) else { continue };
-                let mut passed = vec![0.0; self.signature.inputs.len()];
-                for (source, slope) in model.inputs.iter().zip(gradient) {
-                    if let Source::Dimension(dimension) = *source {
-                        passed[dimension] += slope;
-                    }
-                }
-                out.set_gradient(row, column, passed);
-            }
-        }
-    }
-
-    /// Asks the model for these of its outputs.
-    fn ask_model(&self, points: &Points, run: &Run<'_>, needed: &[usize]) -> Responses {
-        let rows = points.rows();
-        let mut answers = Responses::open(rows, needed.len());
-        if let (Some(model), false) = (&self.model, needed.is_empty()) {
-            let mut values = Vec::with_capacity(rows * model.inputs.len());
-            for source in &model.inputs {
-                match *source {
-                    Source::Dimension(dimension) => values.extend_from_slice(points.column(dimension)),
-                    Source::Fixed(value) => values.resize(values.len() + rows, value),
-                }
-            }
-            let points = Points::of_values(rows, model.inputs.len(), values);
-            model.function.evaluate(&Request::values(&points, needed), run, &mut answers);
-        }
-        answers
     }
 
     /// The nominal state of the conditions, with what finding it cost; None when it could not be sought now.
@@ -376,6 +369,7 @@ impl AssemblyFunction for Composite {
                 let info = model.function.prepare(&needs.answers)?;
                 // Of a formula over the answers no derivatives are sent.
                 let plain = self.origins(outputs).iter().all(|origin| matches!(origin, Origin::Model(_)));
+                let plain = plain && !self.driving().into_iter().any(|formula| self.drives_by_unknowns(formula));
                 Ok(info.map(|info| ModelInfo { gradients: info.gradients && plain, ..info }))
             }
             _ => Ok(None),
@@ -493,11 +487,16 @@ impl AssemblyFunction for Composite {
         out.retried(answers.count_retried());
         out.note_non_repeatable(answers.non_repeatable().iter().cloned());
         answers.revoked().iter().for_each(|point| out.revoke(point.clone()));
-        self.pass_gradients(&origins, &needed, &answers, out);
+        let request = request.points;
+        self.pass_gradients(request, &origins, &needed, &answers, out);
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         self.exact(outputs, directions)
+    }
+
+    fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
+        self.model_points(points)
     }
 
     fn switches(&self, output: usize) -> Option<Switches> {

@@ -81,6 +81,13 @@ pub trait AssemblyFunction: Send + Sync {
         vec![None; outputs.len()]
     }
 
+    /// What an external model is sent at these points, each point once, with the names of its inputs; None where it is sent the points
+    /// themselves. This is no evaluation.
+    fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
+        let _ = points;
+        None
+    }
+
     /// The places at which an output changes its form; None from a black box.
     fn switches(&self, output: usize) -> Option<Switches> {
         let _ = output;

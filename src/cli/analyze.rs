@@ -26,7 +26,7 @@ use crate::warning::{Counted, Warning};
 /// `sensitol analyze` of one study.
 pub(super) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
     let given = asked.points.as_deref().map(points::read).transpose()?.map(Arc::new);
-    let study = read(path, asked, given.clone(), look)?;
+    let study = read(path, asked.how.configuration.as_deref(), asked, given.clone(), look)?;
     let mut files = Files::of(path, &study, asked.work.journal.as_deref());
     asked.points.iter().for_each(|points| files.reads(points, "read by --points"));
     let destination = files.output(&asked.output)?;
@@ -37,8 +37,14 @@ pub(super) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, 
 }
 
 /// The study as it is to be analysed.
-pub(super) fn read(path: &Path, asked: &AnalyzeArgs, given: Option<Arc<Table>>, look: Look) -> Result<Study, Failure> {
-    let externals = externals(asked.work.journal.as_deref(), look, given);
+pub(super) fn read(
+    path: &Path,
+    configuration: Option<&str>,
+    asked: &AnalyzeArgs,
+    given: Option<Arc<Table>>,
+    look: Look,
+) -> Result<Study, Failure> {
+    let externals = study::configured(externals(asked.work.journal.as_deref(), look, given), configuration);
     let mut study = study::read_file(path, &asked.how, externals)?;
     study.options.seed = asked.seed.or(study.options.seed);
     // A file of answers has those that the plan asks for.
@@ -46,7 +52,8 @@ pub(super) fn read(path: &Path, asked: &AnalyzeArgs, given: Option<Arc<Table>>, 
     study.options.verify = asked.verify.or(study.options.verify).or(answers);
     study.options.extremes |= asked.extremes;
     study.options.densities |= asked.html.is_some();
-    if asked.check && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
+    let joint = study.options.target_joint_yield.is_some();
+    if asked.check && !joint && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
         return Err(Failure::NothingToCheck);
     }
     Ok(study)
@@ -104,7 +111,7 @@ pub(super) fn analyzed(
     }));
     let points = given.map(Table::missing).unwrap_or_default();
     let written =
-        written.and(files.missing.map_or(Ok(()), |missing| missing.write(&points::table(&study.problem, &points))));
+        written.and(files.missing.map_or(Ok(()), |missing| missing.write(&points::of_model(&study.problem, &points))));
     look.tell_all(&report.warnings);
     if let Some(given) = given {
         unmatched(given, asked.write_missing.as_deref(), look);
@@ -120,6 +127,7 @@ pub(super) fn analyzed(
     }
     let unfinished = analysis.characteristics.iter().any(|one| one.unfinished);
     let judged = analysis.characteristics.iter().flat_map(CharacteristicAnalysis::requirements);
+    let judged = judged.chain(analysis.joint_requirement);
     let exit = if asked.check { checked(unfinished, judged) } else { Exit::Done };
     Ok(confirmed(exit, &analysis.run))
 }

@@ -78,6 +78,12 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol check examples/stacked-blocks/study.toml\n  sensitol check examples/stacked-blocks/study.toml examples/engine-balance/study.toml"
     )]
     Check(CheckArgs),
+    /// Prints a study as TOML with every short form written out; evaluates nothing
+    ///
+    /// A relative dimension becomes a dimension of its own and a formula. Each such entry names its origin. Analysing what is printed
+    /// gives the same numbers.
+    #[command(after_help = "Examples:\n  sensitol expand examples/first-study/study.toml")]
+    Expand(ExpandArgs),
     /// The built-in models, or one of them with its inputs and outputs
     #[command(after_help = "Examples:\n  sensitol models engine-balance")]
     Models(ModelsArgs),
@@ -138,6 +144,10 @@ pub(super) struct HowArgs {
     /// Ask for this characteristic only (repeatable)
     #[arg(long = "kc", value_name = "NAME")]
     pub(super) characteristics: Vec<String>,
+
+    /// The nominal values and constants of this one of the study's [configurations]; analyze knows `all` too
+    #[arg(long, value_name = "NAME")]
+    pub(super) configuration: Option<String>,
 
     /// Wanted relative error of sigma, for auto [default: that of the study, or 0.01]
     #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
@@ -262,6 +272,10 @@ pub(super) struct SampledArgs {
     /// Ask for this characteristic only (repeatable)
     #[arg(long = "kc", value_name = "NAME")]
     pub(super) characteristics: Vec<String>,
+
+    /// The nominal values and constants of this one of the study's [configurations]
+    #[arg(long, value_name = "NAME")]
+    pub(super) configuration: Option<String>,
 
     /// Seed of what is drawn [default: that of the study, or 1]
     #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
@@ -496,6 +510,16 @@ pub(super) struct CheckArgs {
     /// The study, a .toml or .json file; several are checked one after another
     #[arg(value_name = "STUDY", required = true)]
     pub(super) studies: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExpandArgs {
+    /// The study, a .toml or .json file
+    pub(super) study: PathBuf,
+
+    /// The nominal values and constants of this one of the study's [configurations]
+    #[arg(long, value_name = "NAME")]
+    pub(super) configuration: Option<String>,
 }
 
 #[derive(Debug, Args)]

@@ -12,7 +12,7 @@ use super::output::Look;
 use super::running::listener;
 use crate::assembly::{Points, Request, Responses, Run};
 use crate::problem::Problem;
-use crate::study::{Externals, JournalPlace, Study};
+use crate::study::{Externals, Study};
 
 /// The version of the protocol that is spoken here (`adapters/PROTOCOL.md`).
 const VERSION: u32 = 1;
@@ -82,8 +82,7 @@ struct Session {
 
 pub(super) fn run(asked: &EvaluateArgs, look: Look) -> Result<Exit, Failure> {
     // The engine that asks keeps the answers, and sends the nominal point as often as it wants to.
-    let externals =
-        Externals { journal: JournalPlace::Nowhere, listener: listener(look), points: None, sentinels: false };
+    let externals = Externals { listener: listener(look), ..Externals::default() }.with_sentinels(false);
     let study = Study::read_with(&asked.study, externals)?;
     look.warn_all(&study.warnings);
     interrupt::listen();

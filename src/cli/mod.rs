@@ -10,6 +10,7 @@ mod check;
 mod compare;
 mod csv;
 mod evaluate;
+mod expand;
 mod failure;
 mod files;
 mod init;
@@ -89,7 +90,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose, study: None };
     let result = match &arguments.command {
         Command::Analyze(asked) => match &asked.studies[..] {
-            [study] => analyze::run(study, asked, style),
+            [study] if asked.how.configuration.as_deref() != Some(several::ALL) => analyze::run(study, asked, style),
             studies => several::analyze(studies, asked, style),
         },
         Command::Simulate(asked) => simulate::run(asked, style),
@@ -98,6 +99,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Allocate(asked) => allocate::run(asked, style),
         Command::Plan(asked) => plan::run(asked, style),
         Command::Check(asked) => check::run(asked, style),
+        Command::Expand(asked) => expand::run(asked, style),
         Command::Models(asked) => models::run(asked, style),
         Command::Probe(asked) => probe::run(asked, style),
         Command::Evaluate(asked) => evaluate::run(asked, style),

@@ -1,17 +1,43 @@
 //! Points that are evaluated elsewhere, as CSV: written without answers, read with them.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use super::failure::Failure;
-use crate::assembly::Table;
+use crate::assembly::{Points, Table};
 use crate::document::csv::{guarded, unguarded};
 use crate::problem::Problem;
 
-/// A column for every dimension, a row for every point, every number to its last digit.
+/// A column for every input that the model is sent, a row for every point, every number to its last digit.
+///
+/// `points` are of the dimensions. Points that send the same numbers stand once.
 pub(super) fn table(problem: &Problem, points: &[Vec<f64>]) -> String {
+    let of_dimensions = || problem.dimensions().iter().map(|dimension| dimension.name().to_owned()).collect();
+    match problem.function().sent(&Points::from_rows(points)) {
+        None => written(of_dimensions(), points.to_vec()),
+        Some((inputs, sent)) => {
+            let names = inputs.into_iter().map(|input| input.name).collect();
+            let mut seen = HashSet::new();
+            let mut rows: Vec<Vec<f64>> = (0..sent.rows()).map(|row| sent.row(row)).collect();
+            rows.retain(|row| seen.insert(row.iter().map(|x| x.to_bits()).collect::<Vec<u64>>()));
+            written(names, rows)
+        }
+    }
+}
+
+/// Points of the model's own inputs, as [`table`] writes those of the dimensions.
+pub(super) fn of_model(problem: &Problem, points: &[Vec<f64>]) -> String {
+    let nominal: Vec<f64> = problem.dimensions().iter().map(crate::dimension::Dimension::nominal).collect();
+    let names = match problem.function().sent(&Points::from_rows(&[nominal])) {
+        None => problem.dimensions().iter().map(|dimension| dimension.name().to_owned()).collect(),
+        Some((inputs, _)) => inputs.into_iter().map(|input| input.name).collect(),
+    };
+    written(names, points.to_vec())
+}
+
+fn written(names: Vec<String>, points: Vec<Vec<f64>>) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let names = problem.dimensions().iter().map(|dimension| guarded(dimension.name()));
-    writer.write_record(names).expect("memory takes any record");
+    writer.write_record(names.iter().map(|name| guarded(name))).expect("memory takes any record");
     for point in points {
         writer.write_record(point.iter().map(f64::to_string)).expect("memory takes any record");
     }

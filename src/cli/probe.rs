@@ -16,7 +16,7 @@ use crate::document::terminal::text;
 use crate::document::{Blocks, Document, Line, Section, Tone};
 use crate::method::MethodError;
 use crate::probe::{Finding, Probe, evaluations, probe};
-use crate::study::{Externals, JournalPlace};
+use crate::study::Externals;
 use crate::summary::RunSummary;
 
 /// What `probe --json` prints.
@@ -69,8 +69,7 @@ struct StepReport {
 
 pub(super) fn run(asked: &ProbeArgs, look: Look) -> Result<Exit, Failure> {
     // Answers from a journal would prove nothing, and sentinels would hide what is looked for.
-    let externals =
-        Externals { journal: JournalPlace::Nowhere, listener: listener(look), points: None, sentinels: false };
+    let externals = Externals { listener: listener(look), ..Externals::default() }.with_sentinels(false);
     let study = study::read(&asked.study, externals)?;
     let mut files = Files::of(&asked.study.study, &study, None);
     let destination = files.output(&asked.output)?;

@@ -58,7 +58,8 @@ impl Clock {
 
 /// Where the answers of an external model are kept, and who hears it.
 pub(super) fn externals(journal: Option<&Path>, look: Look, points: Option<Arc<Table>>) -> Externals {
-    Externals { journal: JournalPlace::asked(journal), listener: listener(look), points, sentinels: true }
+    let (journal, listener) = (JournalPlace::asked(journal), listener(look));
+    Externals { journal, listener, points, ..Externals::default() }
 }
 
 /// Who shows what an external program writes to stderr: somebody, when all details are asked for.

@@ -14,7 +14,7 @@ use super::files::Files;
 use super::interrupt;
 use super::output::{Destination, Look, error, json};
 use crate::report::{Report, Stack, stack_csv_of_studies};
-use crate::study::Study;
+use crate::study::{Externals, Study};
 use crate::summary::StopReason;
 use crate::warning::{Counted, Warning};
 
@@ -36,17 +36,62 @@ fn tell(study: &str, failure: &Failure) {
     }
 }
 
-/// `sensitol analyze` of several studies.
+/// The word for every configuration of a study.
+pub(super) const ALL: &str = "all";
+
+/// A study, or one of its configurations.
+struct Asked<'a> {
+    path: &'a Path,
+    configuration: Option<String>,
+}
+
+/// Every study, or every configuration of each.
+fn of_configurations<'a>(paths: &'a [PathBuf], asked: &AnalyzeArgs) -> Result<Vec<Asked<'a>>, Failure> {
+    let named = asked.how.configuration.as_deref();
+    let mut all = Vec::new();
+    for path in paths {
+        match named {
+            Some(ALL) => {
+                let configurations = Study::read(path)?.configurations;
+                if configurations.is_empty() {
+                    // The study's own error says that there is none.
+                    Study::read_with(path, Externals::default().with_configuration(ALL))?;
+                }
+                all.extend(configurations.into_iter().map(|name| Asked { path, configuration: Some(name) }));
+            }
+            named => all.push(Asked { path, configuration: named.map(str::to_owned) }),
+        }
+    }
+    Ok(all)
+}
+
+/// `sensitol analyze` of several studies, or configurations.
 pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Result<Exit, Failure> {
+    let all = of_configurations(paths, asked)?;
     if asked.points.is_some() {
-        return Err(Failure::PointsOfOne { count: paths.len() });
+        return Err(Failure::PointsOfOne { count: all.len() });
     }
     let stems = match asked.csv.is_some() || asked.html.is_some() {
-        true => stems(paths)?,
-        false => vec![String::new(); paths.len()],
+        true => {
+            let of_paths = stems(paths)?;
+            let of = |one: &Asked<'_>| {
+                let place = paths.iter().position(|path| path == one.path).unwrap_or(0);
+                match asked.how.configuration.as_deref() {
+                    Some(ALL) => format!("{}-{}", of_paths[place], one.configuration.as_deref().unwrap_or_default()),
+                    _ => of_paths[place].clone(),
+                }
+            };
+            all.iter().map(of).collect()
+        }
+        false => vec![String::new(); all.len()],
     };
-    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-    let studies = paths.iter().zip(&names).map(|(path, name)| read(path, asked, None, look.of(name)));
+    let name = |one: &Asked<'_>| match (&one.configuration, asked.how.configuration.as_deref()) {
+        (Some(name), Some(ALL)) => format!("{} ({name})", one.path.display()),
+        _ => one.path.display().to_string(),
+    };
+    let names: Vec<String> = all.iter().map(name).collect();
+    let studies = (all.iter().zip(&names))
+        .map(|(one, name)| read(one.path, one.configuration.as_deref(), asked, None, look.of(name)));
     let studies: Vec<Result<Study, Failure>> = studies.collect();
     for (name, study) in names.iter().zip(&studies) {
         if let Err(failure) = study {
@@ -54,8 +99,8 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
         }
     }
     let mut files = Files::default();
-    for (path, study) in paths.iter().zip(&studies) {
-        study.iter().for_each(|study| files.study(path, study, asked.work.journal.as_deref()));
+    for (one, study) in all.iter().zip(&studies) {
+        study.iter().for_each(|study| files.study(one.path, study, asked.work.journal.as_deref()));
     }
     let mut printer = Printer::open(asked, look, &mut files)?;
     let studies = open(&stems, studies, asked, &mut files)?;

@@ -14,7 +14,16 @@ use crate::study::{Externals, Study};
 /// Reads the study of which points are drawn.
 pub(super) fn read_sampled(asked: &SampledArgs, look: Look) -> Result<Study, Failure> {
     let externals = externals(asked.work.journal.as_deref(), look, None);
+    let externals = configured(externals, asked.configuration.as_deref());
     asking(Study::read_with(&asked.study, externals)?, &asked.characteristics)
+}
+
+/// The same of a configuration, where one is named.
+pub(super) fn configured(externals: Externals, name: Option<&str>) -> Externals {
+    match name {
+        Some(name) => externals.with_configuration(name),
+        None => externals,
+    }
 }
 
 /// The study, asking for these characteristics only, where any is named.
@@ -27,7 +36,7 @@ fn asking(mut study: Study, characteristics: &[String]) -> Result<Study, Failure
 
 /// Reads the study; what the command line says wins over its `[analysis]`.
 pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Failure> {
-    read_file(&asked.study, &asked.how, externals)
+    read_file(&asked.study, &asked.how, configured(externals, asked.how.configuration.as_deref()))
 }
 
 /// The same of a file that stands for itself.
@@ -37,6 +46,7 @@ pub(super) fn read_file(path: &Path, asked: &HowArgs, externals: Externals) -> R
 
 /// The same for a sweep over this parameter.
 pub(super) fn read_sweeping(asked: &StudyArgs, externals: Externals, parameter: &str) -> Result<Study, Failure> {
+    let externals = configured(externals, asked.how.configuration.as_deref());
     changed(Study::read_sweeping(&asked.study, externals, parameter)?, &asked.how)
 }
 

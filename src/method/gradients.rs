@@ -39,14 +39,9 @@ pub(super) fn mixed(
     pairs: &[(usize, usize)],
 ) -> Vec<Option<Mixed>> {
     // For every position the gradients at its nodes, with their places.
-    type Ends<'a> = Vec<(f64, Option<&'a [f64]>)>;
-    let ends: Vec<Ends<'_>> = (plan.varying().iter())
-        .map(|&d| {
-            nodes(plan, d)
-                .into_iter()
-                .map(|(point, u)| (u, evaluated.gradients.get(&(point, c)).map(Vec::as_slice)))
-                .collect()
-        })
+    type Node<'e> = (f64, Option<&'e Vec<f64>>);
+    let ends: Vec<Vec<Node<'_>>> = (plan.varying().iter())
+        .map(|&d| nodes(plan, d).into_iter().map(|(point, u)| (u, evaluated.gradients.get(&(point, c)))).collect())
         .collect();
     // The slope by the dimension at position k, in sigmas, over the nodes of the one at position j.
     let half = |j: usize, k: usize| {

@@ -49,6 +49,8 @@ pub struct Options {
     /// costly one evaluated at no more check points than this, 18 at most. Unless said otherwise [`Options::VERIFY`] where the function
     /// says that it is cheap or costly ([`Signature`](crate::assembly::Signature)), and 0 where it says neither, as a closure.
     pub verify: Option<usize>,
+    /// The share of assemblies that must keep the limits of all characteristics at once.
+    pub target_joint_yield: Option<f64>,
     /// Whether the densities of surface laws are tabulated, for those who draw them.
     pub densities: bool,
     /// Whether figures of a cheap model take the place of those of a surface that it refutes, as `auto` has it.
@@ -288,6 +290,7 @@ impl Default for Options {
             seed: None,
             derivatives: None,
             verify: None,
+            target_joint_yield: None,
             densities: false,
             model_figures: false,
         }

@@ -19,6 +19,7 @@ use crate::document::{
 use crate::extremes::{Extreme, Place};
 use crate::method::Basis;
 use crate::pearson::Pearson;
+use crate::requirement::Requirement;
 
 /// Contributions and interactions that a terminal shows unless all are asked for, and interactions that a page shows.
 const CONTRIBUTIONS: usize = 30;
@@ -53,7 +54,13 @@ impl Report {
         if let Some(joint) = &self.analysis.joint {
             let error = significant(100.0 * joint.error, 2);
             let text = Rejects::all(1.0 - joint.value, Some(joint.error)).yield_text().unwrap_or_default();
-            document.note(format!("all limits at once: yield {text}, ± {error} %"));
+            let target = self.analysis.joint_requirement.map_or_else(String::new, |judged| {
+                let Requirement::Yield(target) = judged.requirement else { return String::new() };
+                // Without the digits that a product by 100 adds.
+                let percent = (1e11 * target).round() / 1e9;
+                format!("; target {percent} %: {}", judged.verdict.name())
+            });
+            document.note(format!("all limits at once: yield {text}, ± {error} %{target}"));
         }
         if let Some(line) = self.together() {
             document.wrapped(2, line);

@@ -88,7 +88,7 @@ fn an_analysis_is_all_in_its_report() {
     // The surface is for pages that try other tolerances.
     complete!(json, &found => Analysis {
         method: "/method", varying: "/varying", run: "/evaluations", characteristics: "/characteristics/0",
-        joint: "/joint_yield", correlations: "/characteristic_correlation", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
+        joint: "/joint_yield", joint_requirement: "/joint_requirement", correlations: "/characteristic_correlation", account: "/account", basis: "/basis", surface: "", warnings: "/warnings",
     });
     characteristic(json.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 }

@@ -7,18 +7,21 @@ use super::correlation::correlated;
 use super::costs::{costs, holding, requirement};
 use super::data::Data;
 use super::dimension;
+use super::drive;
 use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
-use super::implicit::{Implicit, implicit, placed};
+use super::implicit::{implicit, placed};
+use super::joint;
 use super::model::{ModelOf, model, process};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
+use super::units;
 use super::values::NominalEntry;
+use super::written::{Named, Written};
 use crate::allocation::Priced;
-use crate::assembly::formula::{Formula, FormulaError, FormulaFault, MixedUnits, is_plain, is_reserved};
-use crate::assembly::process::Greeting;
-use crate::assembly::{self, AssemblyFunction, Composite, CompositeError, Input, Parts};
+use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
+use crate::assembly::{AssemblyFunction, Composite, CompositeError, Input, Parts};
 use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
 use crate::dimension::Dimension;
 use crate::method::Options;
@@ -41,13 +44,13 @@ pub(super) struct Built {
     pub(super) files: Vec<NamedFile>,
 }
 
-pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> {
+pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Result<Built, Faults> {
     let evaluated = file.model.as_ref().map(|entry| model(entry, source)).transpose()?;
     let program = matches!(evaluated, Some(ModelOf::Program(_)));
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     let mut faults = Faults::default();
     faults.take(names(file, model));
-    let mut data = Data::of(&source.place);
+    let blocks = faults.take(joint::blocks(file, &mut data)).unwrap_or_default();
     let dimensions = faults.take(dimensions(file, model, &mut data)).unwrap_or_default();
     let formulas = faults.take(formulas(file, source)).unwrap_or_default();
     faults.take(characteristics(file, model, program));
@@ -63,16 +66,28 @@ pub(super) fn build(file: &StudyFile, source: &Source) -> Result<Built, Faults> 
     let written = Written { formulas, implicit };
     let used = |name: &str| written.names().any(|used| used == name);
     known_to_model(file, model, &used)?;
+    drive::known_to_program(file, &used)?;
     let (characteristics, outputs) = characteristics(file, model, program)?;
-    let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs, source)?;
+    let composite = compose(file, evaluated.as_ref(), &dimensions, &written, outputs.clone(), source)?;
+    let held = units::Units::of(file, model, &dimensions, &written, source)?;
+    let of_units = held.check(&composite)?;
+    let composite = match held.converted(&written) {
+        None => composite,
+        Some(converted) => {
+            let again = compose(file, evaluated.as_ref(), &dimensions, &converted, outputs, source)?;
+            again.with_factors(held.factors())
+        }
+    };
     let mut warnings = aggregated(std::mem::take(&mut data.warnings));
     warnings.extend(outside_limits(file));
-    warnings.extend(mixed_units(&composite));
+    warnings.extend(of_units);
+    idle_formula(program, &composite, &written)?;
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(holding(file, dimensions)?, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
-    let problem = correlated(problem, &file.correlation.0)?;
+    let (problem, of_rows) = correlated(problem, &file.correlation.0, &blocks)?;
+    warnings.extend(of_rows);
     let options = super::options::options(&file.analysis, &problem)?;
     let costs = costs(file, &problem)?;
     let requirements = requirements(file, &problem)?;
@@ -134,7 +149,10 @@ fn names(file: &StudyFile, model: Option<&Model>) -> Result<(), Faults> {
         } else if is_reserved(text) && formulas {
             Some(StudyFault::ReservedName { name: text.clone() })
         } else {
-            taken.insert(text, by).map(|by| StudyFault::NameTaken { name: text.clone(), by })
+            taken.insert(text, by).map(|earlier| match (earlier, by) {
+                ("a dimension", "a formula") => StudyFault::DimensionAndFormula { name: text.clone() },
+                (by, _) => StudyFault::NameTaken { name: text.clone(), by },
+            })
         };
         faults.0.extend(found.map(at));
     }
@@ -161,52 +179,34 @@ fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> R
     faults.none().map(|()| dimensions)
 }
 
-/// A formula of the file: of `[formulas]` or of a characteristic.
-struct Named<'f> {
-    name: String,
-    /// The text with its quotes, in the file.
-    text: &'f Spanned<String>,
-    key: String,
-    formula: Formula,
-}
-
 fn formulas<'f>(file: &'f StudyFile, source: &Source) -> Result<Vec<Named<'f>>, Faults> {
     let mut faults = Faults::default();
-    let own = file.formulas.0.iter().map(|(name, text)| (name, text, format!("formulas.{}", name.get_ref())));
-    let of_characteristics = file.characteristics.0.iter().filter_map(|(name, entry)| {
-        Some((name, entry.get_ref().formula.as_ref()?, format!("characteristics.{}.formula", name.get_ref())))
+    let own = file.formulas.0.iter().map(|(name, entry)| {
+        let (span, text) = entry.get_ref().text(entry.span());
+        let unit = entry.get_ref().unit.as_deref();
+        (name, span, text, format!("formulas.{}", name.get_ref()), unit, false)
     });
-    let parsed =
-        |(name, text, key): (&Spanned<String>, &'f Spanned<String>, String)| match Formula::parse(text.get_ref()) {
-            Ok(formula) => Ok(Named { name: name.get_ref().clone(), text, key, formula }),
-            Err(error) => Err(in_formula(source, text.span(), key, of_several_words(file, text.get_ref(), error))),
-        };
-    let parsed: Vec<Named<'f>> = own.chain(of_characteristics).filter_map(|one| faults.take(parsed(one))).collect();
+    let of_characteristics = file.characteristics.0.iter().filter_map(|(name, entry)| {
+        let text = entry.get_ref().formula.as_ref()?;
+        let key = format!("characteristics.{}.formula", name.get_ref());
+        Some((name, text.span(), text.get_ref().as_str(), key, entry.get_ref().unit.as_deref(), true))
+    });
+    let mut parsed: Vec<Named<'f>> = Vec::new();
+    for (name, span, text, key, unit, result) in own.chain(of_characteristics) {
+        let formula = Formula::parse(text)
+            .map_err(|error| in_formula(source, span.clone(), key.clone(), of_several_words(file, text, error)));
+        let formula = faults.take(formula);
+        parsed.extend(formula.map(|formula| Named {
+            name: name.get_ref().clone(),
+            text,
+            span,
+            key,
+            formula,
+            unit,
+            result,
+        }));
+    }
     faults.none().map(|()| parsed)
-}
-
-/// Everything that is written as a formula.
-struct Written<'f> {
-    formulas: Vec<Named<'f>>,
-    implicit: Option<Implicit>,
-}
-
-impl Written<'_> {
-    /// Every name that a formula or a condition uses.
-    fn names(&self) -> impl Iterator<Item = String> {
-        let of_conditions = self.implicit.iter().flat_map(|implicit| implicit.conditions.formulas());
-        let all =
-            self.formulas.iter().map(|named| named.formula.clone()).chain(of_conditions.map(|(_, formula)| formula));
-        all.flat_map(|formula| formula.names().map(|(name, _)| name.to_owned()).collect::<Vec<_>>())
-    }
-
-    fn is_formula(&self, name: &str) -> bool {
-        self.formulas.iter().any(|named| named.name == name)
-    }
-
-    fn is_unknown(&self, name: &str) -> bool {
-        self.implicit.iter().flat_map(|implicit| implicit.conditions.unknowns()).any(|unknown| unknown.name() == name)
-    }
 }
 
 /// Dimensions and constants are inputs of the model, or else a formula uses them.
@@ -312,36 +312,30 @@ fn compose(
     written: &Written<'_>,
     outputs: Outputs,
     source: &Source,
-) -> Result<Composite, Fault> {
+) -> Result<Composite, Faults> {
     let inputs: Vec<Input> = (dimensions.iter())
         .map(|dimension| Input { name: dimension.name().to_owned(), unit: dimension.unit().map(str::to_owned) })
         .collect();
     let constants: Vec<(String, f64)> =
-        file.constants.0.iter().map(|(name, value)| (name.get_ref().clone(), *value.get_ref())).collect();
+        file.constants.0.iter().map(|(name, value)| (name.get_ref().clone(), value.get_ref().value)).collect();
     let nowhere = |found: StudyFault| Fault { span: None, key: String::new(), fault: Box::new(found) };
     let program = matches!(model, Some(ModelOf::Program(_)));
     if source.externals.points.is_some() && !program {
-        return Err(nowhere(StudyFault::NothingExternal));
+        return Err(nowhere(StudyFault::NothingExternal).into());
     }
-    let function = |model: &ModelOf| -> Result<(Arc<dyn AssemblyFunction>, Vec<assembly::Source>), Fault> {
-        Ok(match model {
-            ModelOf::BuiltIn(model) => (Arc::new(model.function()), sources(model, dimensions, &constants)),
-            ModelOf::Program(program) => {
-                let used = |name: &str| written.names().any(|used| used == name);
-                let names =
-                    dimensions.iter().map(Dimension::name).chain(constants.iter().map(|(name, _)| name.as_str()));
-                let greeting = Greeting {
-                    nominal: dimensions.iter().map(Dimension::nominal).collect(),
-                    constants: constants.clone(),
-                    optional: names.filter(|name| used(name)).map(str::to_owned).collect(),
-                };
-                let offered = asked_of_program(&inputs, &constants, written, &outputs);
-                let all = (0..dimensions.len()).map(assembly::Source::Dimension).collect();
-                (process(program, &inputs, greeting, offered, source).map_err(nowhere)?, all)
-            }
-        })
+    let model = match model {
+        None => None,
+        Some(ModelOf::BuiltIn(model)) => {
+            let function: Arc<dyn AssemblyFunction> = Arc::new(model.function());
+            Some((function, drive::of_built_in(model, dimensions, &constants, written)))
+        }
+        Some(ModelOf::Program(program)) => {
+            let sent = drive::of_program(file, dimensions, &constants, written, &outputs)?;
+            let offered = asked_of_program(&inputs, &constants, written, &outputs);
+            let function = process(program, &sent.inputs, sent.greeting, offered, source).map_err(nowhere)?;
+            Some((function, sent.sources))
+        }
     };
-    let model = model.map(function).transpose()?;
     let parts = Parts {
         inputs,
         constants,
@@ -350,17 +344,21 @@ fn compose(
         conditions: written.implicit.as_ref().map(|implicit| implicit.conditions.clone()),
         outputs,
     };
-    Composite::new(parts).map_err(|error| match error {
+    let failed = |error: CompositeError| match error {
         CompositeError::Conditions(error) => placed(file, error),
+        CompositeError::Driven { name, index, output } => {
+            written.at(index, StudyFault::DrivenByOutput { name, output })
+        }
         CompositeError::Formula { index, error, .. } => {
             let (text, key) = match index.checked_sub(written.formulas.len()) {
-                None => (written.formulas[index].text.span(), written.formulas[index].key.clone()),
+                None => (written.formulas[index].span.clone(), written.formulas[index].key.clone()),
                 Some(index) => written.implicit.as_ref().expect("the formula came from here").places[index].clone(),
             };
-            let formula = written.formulas.get(index).map_or("", |named| named.text.get_ref());
+            let formula = written.formulas.get(index).map_or("", |named| named.text);
             in_formula(source, text, key, of_several_words(file, formula, error))
         }
-    })
+    };
+    Composite::new(parts).map_err(|error| failed(error).into())
 }
 
 /// The fault of a formula, or that a name in it which reads as several needs backquotes.
@@ -376,17 +374,6 @@ fn of_several_words(file: &StudyFile, formula: &str, error: FormulaError) -> For
         Some((name, span)) => FormulaError { span, fault: FormulaFault::NeedsBackquotes { name } },
         None => error,
     }
-}
-
-/// Where the inputs of a built-in model come from: a dimension, a constant, or its own nominal value.
-fn sources(model: &Model, dimensions: &[Dimension], constants: &[(String, f64)]) -> Vec<assembly::Source> {
-    let constant = |name: &str| constants.iter().find(|(constant, _)| constant == name).map(|(_, value)| *value);
-    let input =
-        |input: &models::ModelInput| match dimensions.iter().position(|dimension| dimension.name() == input.name) {
-            Some(index) => assembly::Source::Dimension(index),
-            None => assembly::Source::Fixed(constant(input.name).unwrap_or(input.nominal)),
-        };
-    model.inputs.iter().map(input).collect()
 }
 
 /// What a program is asked for: characteristics without formula, and names in formulas that mean nothing else.
@@ -422,12 +409,17 @@ fn outside_limits(file: &StudyFile) -> Option<Warning> {
     (!dimensions.is_empty()).then_some(Warning::NominalOutsideLimits { dimensions })
 }
 
-/// Formulas that add or compare different units, in one warning.
-fn mixed_units(composite: &Composite) -> Option<Warning> {
-    let mut mixed = composite.mixed_units().into_iter();
-    let MixedUnits { formula, part, units } = mixed.next()?;
-    let others = mixed.map(|other| other.formula).collect();
-    Some(Warning::MixedUnits { formula, part, units: units.map(str::to_owned), others })
+/// Beside a program a formula that nothing needs was meant to drive it.
+fn idle_formula(program: bool, composite: &Composite, written: &Written<'_>) -> Result<(), Faults> {
+    if !program {
+        return Ok(());
+    }
+    let mut faults = Faults::default();
+    for (index, _) in composite.used().0.iter().enumerate().filter(|(_, needed)| !**needed) {
+        let name = written.formulas[index].name.clone();
+        faults.0.push(written.at(index, StudyFault::IdleFormula { name }));
+    }
+    faults.none()
 }
 
 /// Constants, formulas and unknowns that no characteristic of the file needs.

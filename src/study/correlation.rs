@@ -2,22 +2,42 @@
 
 use super::error::{Fault, StudyFault, fault};
 use super::file::CorrelationEntry;
+use super::joint::Block;
 use super::spanned::Spanned;
-use crate::correlation::{Pair, Refusal};
+use crate::correlation::{CorrelationError, Pair, Refusal};
 use crate::problem::Problem;
+use crate::warning::Warning;
 
-/// The problem with its dimensions correlated.
-pub(super) fn correlated(problem: Problem, entries: &[Spanned<CorrelationEntry>]) -> Result<Problem, Fault> {
+/// Rounds in which correlations of rows are brought to what their distributions allow.
+const ROUNDS: usize = 8;
+/// A correlation that is off by less is the same in print.
+const TRIFLE: f64 = 0.001;
+/// What is nearest to impossible is possible only beside it.
+const INSIDE: f64 = 1.0 - 1e-9;
+
+/// The problem with its dimensions correlated: as its pairs say, and as the rows of measured files do.
+pub(super) fn correlated(
+    problem: Problem,
+    entries: &[Spanned<CorrelationEntry>],
+    blocks: &[Block],
+) -> Result<(Problem, Option<Warning>), Fault> {
     let pair = |entry: &Spanned<CorrelationEntry>| {
         let entry = entry.get_ref();
         let (a, b) = entry.between.get_ref().clone();
         Pair { between: [a, b], value: *entry.value.get_ref() }
     };
-    let pairs: Vec<Pair> = entries.iter().map(pair).collect();
-    problem.correlated(&pairs).map_err(|error| {
-        let Some(index) = error.pair else {
+    for (index, entry) in entries.iter().enumerate() {
+        beside_rows(entry, blocks).map_or(Ok(()), |found| {
+            Err(fault(entry.get_ref().between.span(), format!("correlation[{}].between", index + 1), found))
+        })?;
+    }
+    let mut pairs: Vec<Pair> = entries.iter().map(pair).collect();
+    pairs.extend(blocks.iter().flat_map(|block| block.pairs.clone()));
+    let at = |error: CorrelationError| {
+        let Some(index) = error.pair.filter(|&index| index < entries.len()) else {
             // All pairs together: the first of them has to stand for the whole.
-            return fault(entries[0].span(), "correlation", StudyFault::Correlation(error.refusal));
+            let span = entries.first().map(Spanned::span);
+            return Fault { span, key: "correlation".into(), fault: Box::new(StudyFault::Correlation(error.refusal)) };
         };
         let entry = entries[index].get_ref();
         let (span, key) = match &error.refusal {
@@ -25,5 +45,65 @@ pub(super) fn correlated(problem: Problem, entries: &[Spanned<CorrelationEntry>]
             _ => (entry.between.span(), "between"),
         };
         fault(span, format!("correlation[{}].{key}", index + 1), StudyFault::Correlation(error.refusal))
-    })
+    };
+    for _ in 0..ROUNDS {
+        match problem.clone().correlated(&pairs) {
+            Ok(problem) => return Ok((problem, moved(&pairs[entries.len()..], blocks))),
+            Err(error) => {
+                if !nearer(&mut pairs, entries.len(), &error) {
+                    return Err(at(error));
+                }
+            }
+        }
+    }
+    let problem = problem.correlated(&pairs).map_err(at)?;
+    Ok((problem, moved(&pairs[entries.len()..], blocks)))
+}
+
+/// The correlation of rows that is farthest off what is taken, where that is more than a trifle.
+fn moved(taken: &[Pair], blocks: &[Block]) -> Option<Warning> {
+    let rows = blocks.iter().flat_map(|block| &block.pairs);
+    let off = |(taken, rows): &(&Pair, &Pair)| (taken.value - rows.value).abs();
+    let (taken, rows) = taken.iter().zip(rows).max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let correlation = [rows.value, taken.value];
+    (off(&(taken, rows)) > TRIFLE).then(|| Warning::RowsByCopula { dimensions: rows.between.clone(), correlation })
+}
+
+/// Brings correlations of rows to the nearest that distributions by a copula have; false where that is not what is wrong.
+fn nearer(pairs: &mut [Pair], written: usize, error: &CorrelationError) -> bool {
+    match (&error.refusal, error.pair) {
+        (Refusal::Unreachable { range, .. }, Some(index)) if index >= written => {
+            pairs[index].value = pairs[index].value.clamp(range[0] * INSIDE, range[1] * INSIDE);
+            true
+        }
+        (Refusal::NoSuchMatrix { nearest } | Refusal::NotForTheseDistributions { nearest }, _) => {
+            let rows = &mut pairs[written..];
+            for pair in rows.iter_mut() {
+                let found = nearest.iter().find(|(between, _)| {
+                    *between == pair.between || [&between[1], &between[0]] == [&pair.between[0], &pair.between[1]]
+                });
+                if let Some((_, value)) = found {
+                    pair.value = value * INSIDE;
+                }
+            }
+            !rows.is_empty()
+        }
+        _ => false,
+    }
+}
+
+/// What a pair says of dimensions whose rows say it already.
+fn beside_rows(entry: &Spanned<CorrelationEntry>, blocks: &[Block]) -> Option<StudyFault> {
+    let (a, b) = entry.get_ref().between.get_ref();
+    let block = blocks.iter().find(|block| block.dimensions.iter().any(|name| name == a || name == b))?;
+    let [has_a, has_b] = [a, b].map(|name| block.dimensions.contains(name));
+    if has_a && has_b {
+        let same = |pair: &&Pair| pair.between.contains(a) && pair.between.contains(b);
+        let value = block.pairs.iter().find(same).filter(|_| a != b)?.value;
+        return Some(StudyFault::CorrelationOfRows { between: [a.clone(), b.clone()], value });
+    }
+    let inside = if has_a { a } else { b };
+    let others = block.dimensions.iter().filter(|name| *name != inside).map(|name| format!("`{name}`"));
+    let others = others.collect::<Vec<_>>().join(", ");
+    Some(StudyFault::CorrelationBesideRows { inside: inside.clone(), others })
 }

@@ -1,5 +1,6 @@
 //! Tables of measured values: CSV files beside a study.
 
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::files::{FileRole, NamedFile};
@@ -121,6 +122,14 @@ pub enum DataProblem {
         /// How many there must be.
         least: usize,
     },
+    /// A number of a part that stands twice.
+    #[error("`{text}` stands in line {other} already: it joins rows of several files")]
+    SerialTwice {
+        /// The number.
+        text: String,
+        /// The first line with it.
+        other: u64,
+    },
     /// All values are the same.
     #[error("all {count} values are {value}: nothing varies")]
     Constant {
@@ -176,6 +185,9 @@ impl DataProblem {
                 Some("measure more parts, or write nominal and tolerance instead of measured".into())
             }
             Self::NotFinite { .. } => Some("leave a cell empty, or write NA, where nothing was measured".into()),
+            Self::SerialTwice { .. } => {
+                Some("every part has a number of its own: leave one of the two rows out".into())
+            }
             Self::ColumnTwice { .. } => Some("one of the two needs another name".into()),
         }
     }
@@ -187,6 +199,8 @@ pub(super) struct Data<'s> {
     /// Every file once, in the order of the dimensions.
     files: Vec<(NamedFile, Arc<[u8]>)>,
     pub(super) warnings: Vec<Warning>,
+    /// Of a dimension whose rows belong together with others: the lines that all have.
+    kept: HashMap<String, HashSet<u64>>,
 }
 
 /// One column of measured values.
@@ -199,9 +213,17 @@ pub(super) struct Column {
     pub(super) missing: Vec<u64>,
 }
 
+/// A table with a name in the first column of every row.
+pub(super) struct Cells {
+    /// Of the other columns.
+    pub(super) names: Vec<String>,
+    /// The name of a row, and its numbers; None where a cell is empty.
+    pub(super) rows: Vec<(String, Vec<Option<f64>>)>,
+}
+
 impl<'s> Data<'s> {
     pub(super) fn of(place: &'s Place) -> Self {
-        Self { place, files: Vec::new(), warnings: Vec::new() }
+        Self { place, files: Vec::new(), warnings: Vec::new(), kept: HashMap::new() }
     }
 
     /// The bytes of every file that was read.
@@ -216,18 +238,73 @@ impl<'s> Data<'s> {
 
     /// A column of a file; without a name the only one, or the only one that holds nothing but numbers.
     pub(super) fn column(&mut self, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
+        let table = self.table(file)?;
+        let fault = |line, problem| DataFault { file: file.to_owned(), line, column: None, problem: Box::new(problem) };
+        let index = table.index(name).map_err(|problem| fault(None, problem))?;
+        table.numbers(index).map_err(|(line, problem)| {
+            let column = Some(table.names[index].clone());
+            DataFault { column, ..fault(Some(line), problem) }
+        })
+    }
+
+    /// Keeps these lines of a dimension's column only.
+    pub(super) fn keep(&mut self, dimension: &str, lines: HashSet<u64>) {
+        self.kept.insert(dimension.to_owned(), lines);
+    }
+
+    /// A column of a file for this dimension, without the rows that lack a value of another dimension of the same parts.
+    pub(super) fn column_of(&mut self, dimension: &str, file: &str, name: Option<&str>) -> Result<Column, DataFault> {
+        let mut column = self.column(file, name)?;
+        if let Some(lines) = self.kept.get(dimension) {
+            let all: Vec<(f64, u64)> = column.values.iter().copied().zip(column.lines.iter().copied()).collect();
+            // The dimension that lacks the value is the one that is warned of.
+            (column.values, column.lines) = all.into_iter().filter(|(_, line)| lines.contains(line)).unzip();
+        }
+        Ok(column)
+    }
+
+    /// The names of a file's columns, and the lines with the text of one of them; None where there is no such column.
+    #[allow(clippy::type_complexity)]
+    pub(super) fn texts(
+        &mut self,
+        file: &str,
+        name: &str,
+    ) -> Result<(Vec<String>, Option<Vec<(u64, String)>>), DataFault> {
+        let table = self.table(file)?;
+        let texts = table.names.iter().position(|known| known == name).map(|index| {
+            table.rows.iter().map(|(line, row)| (*line, row.get(index).unwrap_or("").to_owned())).collect()
+        });
+        Ok((table.names, texts))
+    }
+
+    /// All cells of a file whose first column is a name.
+    pub(super) fn cells(&mut self, file: &str) -> Result<Cells, DataFault> {
+        let table = self.table(file)?;
+        let mut rows: Vec<(String, Vec<Option<f64>>)> =
+            table.rows.iter().map(|(_, row)| (row.get(0).unwrap_or("").to_owned(), Vec::new())).collect();
+        for index in 1..table.names.len() {
+            let column = table.numbers(index).map_err(|(line, problem)| DataFault {
+                file: file.to_owned(),
+                line: Some(line),
+                column: Some(table.names[index].clone()),
+                problem: Box::new(problem),
+            })?;
+            for ((line, _), (_, cells)) in table.rows.iter().zip(&mut rows) {
+                let found = column.lines.iter().position(|known| known == line);
+                cells.push(found.map(|place| column.values[place]));
+            }
+        }
+        Ok(Cells { names: table.names[1..].to_vec(), rows })
+    }
+
+    fn table(&mut self, file: &str) -> Result<Table, DataFault> {
         let bytes = self.read(file)?;
         let fault = |line, problem| DataFault { file: file.to_owned(), line, column: None, problem: Box::new(problem) };
         let text = std::str::from_utf8(&bytes).map_err(|error| {
             let line = bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
             fault(Some(line), DataProblem::NotUtf8)
         })?;
-        let table = Table::parse(text).map_err(|(line, problem)| fault(line, problem))?;
-        let index = table.index(name).map_err(|problem| fault(None, problem))?;
-        table.numbers(index).map_err(|(line, problem)| {
-            let column = Some(table.names[index].clone());
-            DataFault { column, ..fault(Some(line), problem) }
-        })
+        Table::parse(text).map_err(|(line, problem)| fault(line, problem))
     }
 
     fn read(&mut self, file: &str) -> Result<Arc<[u8]>, DataFault> {

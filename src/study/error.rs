@@ -256,6 +256,92 @@ pub enum StudyFault {
         /// What bears it.
         by: &'static str,
     },
+    /// A name that stands in two sections.
+    #[error("`{name}` is a dimension and a formula")]
+    DimensionAndFormula {
+        /// The name.
+        name: String,
+    },
+    /// Dimensions that are measured from each other.
+    #[error("`{}` is measured from itself{}", path[0], way(path))]
+    FromCircle {
+        /// The dimensions, each measured from the next, and the last from the first.
+        path: Vec<String>,
+    },
+    /// A configuration of something else.
+    #[error("configuration `{configuration}` sets `{name}`, which is no dimension or constant")]
+    UnknownConfigured {
+        /// The configuration.
+        configuration: String,
+        /// The name.
+        name: String,
+        /// The most similar dimension or constant.
+        nearest: Option<String>,
+        /// The dimensions and constants that there are.
+        known: Vec<String>,
+    },
+    /// A configuration of a dimension whose limits do not move with its nominal value.
+    #[error("configuration `{configuration}` sets `{name}`, whose limits are absolute")]
+    ConfiguredLimits {
+        /// The configuration.
+        configuration: String,
+        /// The dimension.
+        name: String,
+    },
+    /// A configuration that bears the word for all of them.
+    #[error("the name `all` stands for every configuration")]
+    ReservedConfiguration,
+    /// A configuration is asked for, and there is none.
+    #[error("the study has no [configurations]")]
+    NoConfigurations,
+    /// A correlation of two columns of one measured file.
+    #[error("the correlation between `{}` and `{}` is that of their rows, {value:.3}", between[0], between[1])]
+    CorrelationOfRows {
+        /// The dimensions.
+        between: [String; 2],
+        /// The correlation of the rows.
+        value: f64,
+    },
+    /// A correlation of a measured dimension that varies with others of its file, and one beside them.
+    #[error(
+        "`{inside}` varies with {others} as the rows of their file say, so that nothing else is correlated with it"
+    )]
+    CorrelationBesideRows {
+        /// The dimension.
+        inside: String,
+        /// The others of the same rows.
+        others: String,
+    },
+    /// Units that do not go together.
+    #[error("{what}")]
+    Units {
+        /// What is wrong.
+        what: String,
+        /// What to write instead.
+        remedy: String,
+    },
+    /// A formula that drives the model and needs what it answers.
+    #[error("formula `{name}` drives the model and needs its output `{output}`: a cycle")]
+    DrivenByOutput {
+        /// The formula.
+        name: String,
+        /// The output of the model.
+        output: String,
+    },
+    /// A formula beside a program that nothing needs.
+    #[error("formula `{name}` reaches neither a characteristic nor the model")]
+    IdleFormula {
+        /// The formula.
+        name: String,
+    },
+    /// A formula that drives a program has no value where the program is greeted with one.
+    #[error("formula `{name}` drives the model and has no value at the nominal dimensions: {reason}")]
+    NoNominal {
+        /// The formula.
+        name: String,
+        /// Why.
+        reason: String,
+    },
     /// A dimension or constant that the model does not have and no formula uses.
     #[error("the model `{model}` has no input `{name}`, and no formula uses it")]
     UnknownInput {
@@ -348,6 +434,11 @@ pub enum StudyFault {
     Problem(#[from] ProblemError),
 }
 
+/// The way back to the first of these names.
+fn way(path: &[String]) -> String {
+    if path.len() < 2 { String::new() } else { format!(": {} -> {}", path.join(" -> "), path[0]) }
+}
+
 impl From<UnknownName> for StudyFault {
     fn from(UnknownName { what, name, nearest, known }: UnknownName) -> Self {
         let known = known.into_iter().map(str::to_owned).collect();
@@ -379,6 +470,7 @@ impl StudyFault {
             }
             Self::UnknownKey { valid, .. } if valid.is_empty() => None,
             Self::UnknownKey { valid, .. } => Some(format!("keys are {}", valid.join(", "))),
+            Self::UnknownWord { known, .. } if known.is_empty() => None,
             Self::UnknownWord { known, .. } => Some(one_of(known)),
             Self::UnknownInput { nearest, known, .. } => {
                 let nearest = nearest.as_ref().map(|name| format!("did you mean `{name}`? ")).unwrap_or_default();
@@ -432,6 +524,19 @@ impl StudyFault {
             }
             Self::Formula(fault) => fault.help(),
             Self::ReservedName { .. } => Some("choose another name".into()),
+            Self::UnknownConfigured { nearest: Some(name), .. } => Some(format!("nearest: `{name}`")),
+            Self::UnknownConfigured { known, .. } => Some(one_of(known)),
+            Self::ConfiguredLimits { .. } => Some("write tolerance or fit in place of limits".into()),
+            Self::FromCircle { .. } => Some("measure one of them from a datum: leave out its `from`".into()),
+            Self::CorrelationOfRows { .. } => Some("leave it out, or write joint = false at one of the two".into()),
+            Self::CorrelationBesideRows { inside, .. } => {
+                Some(format!("leave the pair out, or write joint = false at `{inside}`"))
+            }
+            Self::Units { remedy, .. } => Some(remedy.clone()),
+            Self::ReservedConfiguration => Some("choose another name".into()),
+            Self::DimensionAndFormula { .. } => Some("leave one out".into()),
+            Self::DrivenByOutput { .. } => Some("use dimensions, constants and other formulas".into()),
+            Self::IdleFormula { .. } => Some("name it in [model] inputs, or leave it out".into()),
             Self::NameTaken { .. } => Some("one of the two needs another name".into()),
             Self::Nothing { what: "dimension" } => {
                 Some("write one a line below [dimensions], such as `a = { nominal = 10.0, tolerance = 0.3 }`".into())

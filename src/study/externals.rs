@@ -1,4 +1,4 @@
-//! What a study file does not say of external programs: where their answers are kept, who hears them.
+//! What a study file does not say: where the answers of external programs are kept, who hears them, and which configuration is meant.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,11 +18,13 @@ pub struct Externals {
     pub points: Option<Arc<Table>>,
     /// Whether they are asked again and again for the nominal point, to see whether they still answer as they did.
     pub sentinels: bool,
+    /// Which of the study's configurations is meant; the study as written where it is None.
+    pub configuration: Option<String>,
 }
 
 impl Default for Externals {
     fn default() -> Self {
-        Self { journal: JournalPlace::Nowhere, listener: None, points: None, sentinels: true }
+        Self { journal: JournalPlace::Nowhere, listener: None, points: None, sentinels: true, configuration: None }
     }
 }
 
@@ -45,6 +47,13 @@ impl Externals {
     #[must_use]
     pub fn with_points(mut self, table: Arc<Table>) -> Self {
         self.points = Some(table);
+        self
+    }
+
+    /// Of this configuration of the study.
+    #[must_use]
+    pub fn with_configuration(mut self, name: impl Into<String>) -> Self {
+        self.configuration = Some(name.into());
         self
     }
 

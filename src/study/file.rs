@@ -2,13 +2,14 @@
 
 use std::fmt;
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use super::price::{CostEntry, RequireEntry};
 #[cfg(feature = "cli")]
 use super::registry;
 use super::spanned::Spanned;
 use super::words::CORRELATIONS;
-use serde::de::{MapAccess, SeqAccess, Visitor, value};
+use serde::de::{IgnoredAny, MapAccess, SeqAccess, Visitor, value};
 use serde::{Deserialize, Deserializer};
 
 use super::values::{NominalEntry, ToleranceEntry};
@@ -26,17 +27,21 @@ pub(super) struct StudyFile {
     pub(super) _schema: Option<String>,
     /// What the study is about, in one line.
     pub(super) title: Option<String>,
+    /// How units are held: labels (not at all), warn, check (units that do not go together are errors) or convert (every name times its
+    /// factor to SI, results to their own unit).
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::unit_modes(), "default" = registry::unit_modes()[1])))]
+    pub(super) units: Option<Spanned<String>>,
     /// The inputs: each with its nominal value, its tolerance and its distribution.
     #[serde(default)]
     pub(super) dimensions: Entries<DimensionEntry>,
     /// Fixed numbers for formulas and models.
     #[serde(default)]
-    pub(super) constants: Entries<f64>,
-    /// Intermediate values by name, in any order, without cycles. A formula knows + - * / ^, comparisons, if(condition, x, y), abs,
+    pub(super) constants: Entries<ConstantEntry>,
+    /// Intermediate values by name, in any order, without cycles. One that bears the name of an input of the model drives it. A formula knows + - * / ^, comparisons, if(condition, x, y), abs,
     /// sign, floor, ceil, sqrt, exp, ln, log10, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, hypot, min, max, and the
     /// constants pi and deg = pi/180; angles are radians; a name with other characters than letters, digits and _ stands in backquotes.
     #[serde(default)]
-    pub(super) formulas: Entries<String>,
+    pub(super) formulas: Entries<FormulaEntry>,
     /// What equations and loops determine: where the search for each begins.
     #[serde(default)]
     pub(super) unknowns: Entries<UnknownEntry>,
@@ -56,6 +61,11 @@ pub(super) struct StudyFile {
     /// Pairs of dimensions that vary together.
     #[serde(default)]
     pub(super) correlation: Correlations,
+    /// Sizes of one assembly by name: nominal values and constants that take the place of those of the study, such as
+    /// small = { L = 40, D = 8 }; or file = "sizes.csv", whose first column is the name.
+    #[serde(default, rename = "configurations")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::configurations"))]
+    pub(super) _configurations: Option<IgnoredAny>,
     /// What is evaluated beside formulas: a built-in model or an external program.
     pub(super) model: Option<Spanned<ModelEntry>>,
     /// How the study is analysed; flags of the command line win.
@@ -81,9 +91,14 @@ pub(super) struct DimensionEntry {
     pub(super) limits: Option<Spanned<[f64; 2]>>,
     /// A tolerance class of ISO 286, H7 or g6, in place of a tolerance; the unit must be mm.
     pub(super) fit: Option<Spanned<String>>,
+    /// What it is measured from: a dimension or formula, or several that are added; of a position another position. Its nominal is
+    /// then the distance.
+    #[serde(default, rename = "from")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::names"))]
+    pub(super) _from: Option<IgnoredAny>,
     /// Diameter of the circular zone of a position, in place of a tolerance: two dimensions, NAME_x and NAME_y.
     pub(super) position: Option<Spanned<f64>>,
-    /// The unit, which is shown and never converted.
+    /// The unit of its numbers: a label, checked or converted as `units` says.
     pub(super) unit: Option<String>,
     /// How it is distributed: the name of a kind, or a table with its parameters.
     #[serde(default, deserialize_with = "distribution")]
@@ -105,6 +120,12 @@ pub(super) struct DimensionEntry {
     pub(super) measured: Option<Spanned<String>>,
     /// The column of the measured file, by the name in its first line; its only one where it is left out.
     pub(super) column: Option<Spanned<String>>,
+    /// Whether rows of the measured file are the same parts as those of other columns of it, which then vary together; false for values
+    /// of other parts; true unless given.
+    pub(super) joint: Option<Spanned<bool>>,
+    /// The column with the number of the part: rows of several files with the same one belong together.
+    #[serde(rename = "match")]
+    pub(super) serial: Option<Spanned<String>>,
     /// What is made of measured values: empirical, each with the same probability, or the pearson law with their moments.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::measured_models(), "default" = registry::measured_models()[0])))]
     pub(super) model: Option<Spanned<String>>,
@@ -188,6 +209,34 @@ pub(super) struct UnknownEntry {
     pub(super) start: f64,
     pub(super) lower: Option<f64>,
     pub(super) upper: Option<f64>,
+    pub(super) unit: Option<String>,
+}
+
+/// One line of `[constants]`: `205.0` or `{ value = 205.0, unit = "GPa" }`.
+#[derive(Debug)]
+pub(super) struct ConstantEntry {
+    pub(super) value: f64,
+    pub(super) unit: Option<String>,
+}
+
+/// One line of `[formulas]`: a text, or `{ formula = "a + b", unit = "mm" }`.
+#[derive(Debug)]
+pub(super) struct FormulaEntry {
+    /// Of the text alone.
+    plain: String,
+    /// Of a table.
+    written: Option<Spanned<String>>,
+    pub(super) unit: Option<String>,
+}
+
+impl FormulaEntry {
+    /// Its text, and where that stands; `whole` is where the entry stands.
+    pub(super) fn text(&self, whole: Range<usize>) -> (Range<usize>, &str) {
+        match &self.written {
+            None => (whole, &self.plain),
+            Some(written) => (written.span(), written.get_ref()),
+        }
+    }
 }
 
 /// One vector of a loop.
@@ -212,7 +261,7 @@ pub(super) struct TermEntry(pub(super) String);
 pub(super) struct CharacteristicEntry {
     /// A formula of dimensions, constants, formulas and outputs of the model; without one it is an output of that name.
     pub(super) formula: Option<Spanned<String>>,
-    /// The unit, which is shown and never converted.
+    /// The unit of the result and its limits: a label, checked or converted as `units` says.
     pub(super) unit: Option<String>,
     /// Lower limit; without a limit there is no yield.
     pub(super) lower: Option<Spanned<f64>>,
@@ -253,6 +302,9 @@ pub(super) struct ModelEntry {
     pub(super) builtin: Option<Spanned<String>>,
     /// A program and its arguments, each a text of its own, run in the study's folder; it speaks the adapter protocol.
     pub(super) command: Option<Spanned<Vec<String>>>,
+    /// Names that a command is sent at every point, in this order: dimensions, constants and formulas, in place of all dimensions. A
+    /// formula in it drives the program. Two points that send the same numbers are one evaluation.
+    pub(super) inputs: Option<Spanned<Vec<Spanned<String>>>>,
     /// Processes side by side.
     #[cfg_attr(feature = "cli", schemars(extend("default" = registry::program().workers)))]
     pub(super) workers: Option<Spanned<u64>>,
@@ -315,6 +367,8 @@ pub(super) struct AnalysisEntry {
     /// Seed of random numbers, for what draws some.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::SEED)))]
     pub(super) seed: Option<Spanned<u64>>,
+    /// The share of assemblies that must keep the limits of all characteristics at once, between 0 and 1; what --check looks at too.
+    pub(super) target_joint_yield: Option<Spanned<f64>>,
     /// How many check points of a costly model verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
     /// verification.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::VERIFY)))]
@@ -436,6 +490,7 @@ impl<'de> Deserialize<'de> for UnknownEntry {
             start: f64,
             lower: Option<f64>,
             upper: Option<f64>,
+            unit: Option<String>,
         }
         struct Unknown;
         impl<'de> Visitor<'de> for Unknown {
@@ -446,19 +501,81 @@ impl<'de> Deserialize<'de> for UnknownEntry {
             }
 
             fn visit_f64<E>(self, start: f64) -> Result<Self::Value, E> {
-                Ok(UnknownEntry { start, lower: None, upper: None })
+                Ok(UnknownEntry { start, lower: None, upper: None, unit: None })
             }
 
             fn visit_i64<E>(self, start: i64) -> Result<Self::Value, E> {
-                Ok(UnknownEntry { start: start as f64, lower: None, upper: None })
+                Ok(UnknownEntry { start: start as f64, lower: None, upper: None, unit: None })
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
-                let Table { start, lower, upper } = Table::deserialize(value::MapAccessDeserializer::new(map))?;
-                Ok(UnknownEntry { start, lower, upper })
+                let Table { start, lower, upper, unit } = Table::deserialize(value::MapAccessDeserializer::new(map))?;
+                Ok(UnknownEntry { start, lower, upper, unit })
             }
         }
         deserializer.deserialize_any(Unknown)
+    }
+}
+
+impl<'de> Deserialize<'de> for ConstantEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Table {
+            value: f64,
+            unit: Option<String>,
+        }
+        struct Constant;
+        impl<'de> Visitor<'de> for Constant {
+            type Value = ConstantEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, or { value = 205.0, unit = \"GPa\" },")
+            }
+
+            fn visit_f64<E>(self, value: f64) -> Result<Self::Value, E> {
+                Ok(ConstantEntry { value, unit: None })
+            }
+
+            fn visit_i64<E>(self, value: i64) -> Result<Self::Value, E> {
+                Ok(ConstantEntry { value: value as f64, unit: None })
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+                let Table { value, unit } = Table::deserialize(value::MapAccessDeserializer::new(map))?;
+                Ok(ConstantEntry { value, unit })
+            }
+        }
+        deserializer.deserialize_any(Constant)
+    }
+}
+
+impl<'de> Deserialize<'de> for FormulaEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Table {
+            formula: Spanned<String>,
+            unit: Option<String>,
+        }
+        struct Formula;
+        impl<'de> Visitor<'de> for Formula {
+            type Value = FormulaEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a text in quotes")
+            }
+
+            fn visit_str<E>(self, text: &str) -> Result<Self::Value, E> {
+                Ok(FormulaEntry { plain: text.to_owned(), written: None, unit: None })
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+                let Table { formula, unit } = Table::deserialize(value::MapAccessDeserializer::new(map))?;
+                Ok(FormulaEntry { plain: String::new(), written: Some(formula), unit })
+            }
+        }
+        deserializer.deserialize_any(Formula)
     }
 }
 

@@ -42,11 +42,14 @@ mod costs;
 mod data;
 mod de;
 mod dimension;
+mod drive;
 mod error;
+mod expand;
 mod externals;
 mod file;
 mod files;
 mod implicit;
+mod joint;
 mod lines;
 mod model;
 mod options;
@@ -62,9 +65,11 @@ mod source;
 mod spanned;
 mod sweep;
 mod tree;
+mod units;
 mod values;
 mod words;
 pub(crate) mod write;
+mod written;
 
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
@@ -118,6 +123,11 @@ pub struct Study {
     pub sha256: String,
     /// The files that it names, in the order of the dimensions, those of the model last.
     pub files: Vec<NamedFile>,
+    /// The names of its configurations.
+    pub configurations: Vec<String>,
+    /// The study in plain keys, as TOML: what stands for relative dimensions is written out, each with its origin as comment, and a
+    /// configuration that was asked for is set. Analysing it gives the same numbers.
+    pub expanded: String,
     /// What it was read from.
     text: Arc<str>,
     format: Format,
@@ -255,11 +265,13 @@ impl Study {
             Format::Json => Tree::of_json(text),
         };
         let tree = tree.map_err(|fault| failed(fault.into()))?;
-        let mut file: file::StudyFile = de::read(&tree).map_err(failed)?;
+        let mut data = data::Data::of(&source.place);
+        let expanded = expand::expand(tree, source.externals.configuration.as_deref(), &mut data).map_err(failed)?;
+        let mut file: file::StudyFile = de::read(&expanded.tree).map_err(failed)?;
         if let Some(parameter) = parameter {
             sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
         }
-        let built = build::build(&file, &source).map_err(failed)?;
+        let built = build::build(&file, &source, data).map_err(failed)?;
         let mut hash = Sha256::new_with_prefix(text.as_bytes());
         built.data.iter().for_each(|bytes| hash.update(bytes));
         Ok(Self {
@@ -267,7 +279,9 @@ impl Study {
             problem: built.problem,
             options: built.options,
             seed: file.analysis.seed.map(spanned::Spanned::into_inner),
-            lines: lines::of(&tree),
+            lines: lines::of(&expanded.tree),
+            expanded: expanded.toml(text),
+            configurations: expanded.configurations,
             costs: built.costs,
             requirements: built.requirements,
             warnings: built.warnings,

@@ -53,7 +53,8 @@ pub(super) fn model(entry: &Spanned<ModelEntry>, source: &Source) -> Result<Mode
             Err(fault(command.span(), "model.command", StudyFault::Conflict { a: "builtin", b: "command", why }))
         }
         (Some(name), None) => {
-            let of_programs: [(&'static str, Option<std::ops::Range<usize>>); 6] = [
+            let of_programs: [(&'static str, Option<std::ops::Range<usize>>); 7] = [
+                ("inputs", entry.inputs.as_ref().map(Spanned::span)),
                 ("workers", entry.workers.as_ref().map(Spanned::span)),
                 ("timeout_s", entry.timeout_s.as_ref().map(Spanned::span)),
                 ("start_timeout_s", entry.start_timeout_s.as_ref().map(Spanned::span)),
@@ -125,7 +126,7 @@ fn program(command: &Spanned<Vec<String>>, entry: &ModelEntry, source: &Source) 
     Ok(Program { settings, files })
 }
 
-/// The program as assembly function: of all dimensions, with `outputs` by name and unit; its answers kept where the study is
+/// The program as assembly function: of what it is sent, with `outputs` by name and unit; its answers kept where the study is
 /// read to be evaluated.
 pub(super) fn process(
     program: &Program,

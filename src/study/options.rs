@@ -15,6 +15,21 @@ fn named<T: FromStr<Err = UnknownName>>(word: &Spanned<String>, key: &str) -> Re
     word.get_ref().parse().map_err(|unknown: UnknownName| fault(word.span(), format!("analysis.{key}"), unknown))
 }
 
+/// A share of assemblies that keep all limits at once: there are two characteristics with limits at least.
+fn joint_target(target: &Spanned<f64>, problem: &Problem) -> Result<f64, Fault> {
+    let value = *target.get_ref();
+    let at = |found| fault(target.span(), "analysis.target_joint_yield", found);
+    if !(value > 0.0 && value < 1.0) {
+        return Err(at(StudyFault::OutOfRange { value, range: "between 0 and 1" }));
+    }
+    if problem.characteristics().iter().filter(|one| one.limits().exist()).count() < 2 {
+        let instead =
+            "a joint yield is of two characteristics with limits at least: write target_yield at the one".to_owned();
+        return Err(at(StudyFault::MissingKey { key: "lower".into(), instead }));
+    }
+    Ok(value)
+}
+
 pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Options, Fault> {
     let positive = |given: &Option<Spanned<f64>>, key: &str| match given {
         Some(given) if *given.get_ref() <= 0.0 => {
@@ -37,6 +52,9 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
         budget: entry.budget.as_ref().map(|budget| usize::try_from(*budget.get_ref()).unwrap_or(usize::MAX)),
         ..Options::default()
     };
+    if let Some(target) = &entry.target_joint_yield {
+        options.target_joint_yield = Some(joint_target(target, problem)?);
+    }
     if let Some(method) = &entry.method {
         options.method = named(method, "method")?;
     }

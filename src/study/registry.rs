@@ -20,6 +20,11 @@ pub(super) fn built_in_models() -> Vec<&'static str> {
     models::ALL.iter().map(|model| model.name).collect()
 }
 
+/// How units are held.
+pub(super) fn unit_modes() -> Vec<&'static str> {
+    words::UNIT_MODES.to_vec()
+}
+
 /// The names of all stencils.
 pub(super) fn stencils() -> Vec<&'static str> {
     Stencil::NAMES.to_vec()
@@ -58,6 +63,24 @@ pub(super) fn cost_models() -> Vec<&'static str> {
 /// Exactly one of these keys must be there.
 pub(super) fn one_of<const N: usize>(keys: [&str; N]) -> Value {
     keys.iter().map(|key| json!({ "required": [key] })).collect()
+}
+
+/// A name, or a list of names.
+pub(super) fn names(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" }, "minItems": 1 }] })
+}
+
+/// Tables of numbers by name, or a file of them.
+pub(super) fn configurations(_: &mut SchemaGenerator) -> Schema {
+    let place = json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });
+    let values = json!({ "type": "object", "additionalProperties": { "anyOf": [{ "type": "number" }, place] } });
+    json_schema!({
+        "type": "object",
+        "properties": {
+            "file": { "description": "A CSV file with a configuration a row, or a configuration of this name.", "anyOf": [{ "description": "A CSV file with a configuration a row.", "type": "string" }, values] },
+        },
+        "additionalProperties": values,
+    })
 }
 
 /// The name of a kind, or a table with the parameters that it knows, of the type that has those of all kinds.

@@ -84,6 +84,9 @@ impl Study {
                 continue;
             }
             let name = old.zone().unwrap_or(old.name());
+            // Of a relative dimension the study writes its own part under its name.
+            let own = name.strip_suffix(".own").filter(|_| lines.is_some_and(|lines| lines.entry(name).is_none()));
+            let name = own.unwrap_or(name);
             if changed.contains(&name) {
                 continue;
             }

@@ -9,7 +9,10 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
-use super::file::{CorrelationEntry, Correlations, Entries, PairsEntry, StudyFile, TermEntry, UnknownEntry};
+use super::file::{
+    ConstantEntry, CorrelationEntry, Correlations, Entries, FormulaEntry, PairsEntry, StudyFile, TermEntry,
+    UnknownEntry,
+};
 use super::price::{RequireEntry, RequireTable};
 use super::values::{Deviation, NominalEntry, ToleranceEntry};
 use super::words::REQUIREMENTS;
@@ -147,8 +150,55 @@ impl JsonSchema for UnknownEntry {
                         "start": number("Where the search for it begins."),
                         "lower": number("It does not lie below."),
                         "upper": number("It does not lie above."),
+                        "unit": { "description": "The unit of these numbers.", "type": "string" },
                     },
                     "required": ["start"],
+                    "additionalProperties": false,
+                },
+            ],
+        })
+    }
+}
+
+impl JsonSchema for ConstantEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Constant".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "anyOf": [
+                { "type": "number" },
+                {
+                    "type": "object",
+                    "properties": {
+                        "value": { "description": "The number.", "type": "number" },
+                        "unit": { "description": "Its unit.", "type": "string" },
+                    },
+                    "required": ["value"],
+                    "additionalProperties": false,
+                },
+            ],
+        })
+    }
+}
+
+impl JsonSchema for FormulaEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Formula".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "anyOf": [
+                { "type": "string" },
+                {
+                    "type": "object",
+                    "properties": {
+                        "formula": { "description": "The formula.", "type": "string" },
+                        "unit": { "description": "The unit of its value.", "type": "string" },
+                    },
+                    "required": ["formula"],
                     "additionalProperties": false,
                 },
             ],

@@ -18,6 +18,7 @@ pub(super) fn as_dimension(file: &mut StudyFile, name: &str) -> Result<(), Fault
     let builtin = model.and_then(|model| model.builtin.as_ref()).and_then(|name| name.get_ref().parse::<&Model>().ok());
     let constant = file.constants.0.iter().position(|(constant, _)| constant.get_ref() == name);
     let input = builtin.and_then(|model| model.inputs.iter().find(|input| input.name == name));
+    let mut unit = None;
     let (key, nominal) = match (constant, input) {
         (Some(at), _) => {
             let key = file.constants.0[at].0.clone();
@@ -27,7 +28,9 @@ pub(super) fn as_dimension(file: &mut StudyFile, name: &str) -> Result<(), Fault
                 let does_not = StudyFault::DoesNotApply { key: "sweep", to: what, instead };
                 return Err(fault(key.span(), format!("constants.{name}"), does_not));
             }
-            (key, *file.constants.0.remove(at).1.get_ref())
+            let constant = file.constants.0.remove(at).1.into_inner();
+            unit = constant.unit;
+            (key, constant.value)
         }
         (None, Some(input)) => (Spanned::new(0..0, name.to_owned()), input.nominal),
         (None, None) => {
@@ -44,7 +47,7 @@ pub(super) fn as_dimension(file: &mut StudyFile, name: &str) -> Result<(), Fault
     };
     let span = key.span();
     let nominal = Some(Spanned::new(span.clone(), NominalEntry::One(nominal)));
-    let entry = DimensionEntry { nominal, ..DimensionEntry::default() };
+    let entry = DimensionEntry { nominal, unit, ..DimensionEntry::default() };
     file.dimensions.0.push((key, Spanned::new(span, entry)));
     Ok(())
 }

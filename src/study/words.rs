@@ -55,3 +55,6 @@ pub(super) const KINDS: [KnownKind; 12] = [
 pub(super) fn kinds() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
     KINDS.iter().map(|known| (known.0, known.2))
 }
+
+/// How units are held, the second where nothing is said.
+pub(super) const UNIT_MODES: [&str; 4] = ["labels", "warn", "check", "convert"];

@@ -52,7 +52,7 @@ pub(super) fn number(number: f64) -> String {
 }
 
 /// A key of TOML, in quotes where it needs them.
-fn name(name: &str) -> String {
+pub(super) fn name(name: &str) -> String {
     let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_');
     if bare { name.to_owned() } else { quoted(name) }
 }

@@ -162,7 +162,9 @@ impl fmt::Display for Advice {
             Self::LeaveOutCorrelation => "Leave `[[correlation]]` out to see the interval.",
             Self::UseFormula => "Replace the model by a formula.",
             Self::CheckNames => "Look for a wrong name in the formulas, or leave the unused ones out.",
-            Self::CheckUnits => "Convert in the formula (`deg` is pi/180), or correct the unit of a dimension.",
+            Self::CheckUnits => {
+                "Convert in the formula (`deg` is pi/180, `25.4[mm/in]` a factor with a unit), or correct a unit."
+            }
             Self::CheckNominal => "Check the nominal dimensions.",
             Self::CheckPosition => "Check whether the mechanism is at a dead centre.",
             Self::CheckInputs => "Check that the model uses the dimensions.",

@@ -1,4 +1,10 @@
 //! From the list of warnings to the enumeration, and to everything that follows from the list alone.
+//!
+//! # A new warning
+//! One entry in the list of `warning` (variant, code, fields), one function of these fields in the file of its theme, and one entry on the page
+//! `docs/reference/warnings.md`. The compiler and the tests ask for whatever is forgotten. A field named `characteristic` or `output` is the
+//! characteristic that the warning concerns. A field named `dimension`, or `dimensions` with one name, is its dimension. A field named
+//! `others` takes the further dimensions when `aggregated` joins warnings of one code.
 
 /// Defines the enumeration, and everything that follows from the list alone.
 macro_rules! warnings {

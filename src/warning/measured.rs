@@ -3,11 +3,29 @@
 use super::Advice;
 use super::text::{Text, likewise, lines, names, say, values_and_lines};
 
+/// Measured values that make a sample.
+const ENOUGH: usize = 30;
+
 pub(super) fn missing_values(dimension: &str, file: &str, missing: &usize, rows: &usize, first: &[u64]) -> Text {
     let are = if *missing == 1 { "is" } else { "are" };
     let (of, first) = (format!("{missing} of {rows} values of `{dimension}`"), lines(first, *missing));
     say(format!("{of} {are} missing in {file} ({first}). The result assumes that the others represent all parts."))
         .advise(Advice::FindMissingValues)
+}
+
+pub(super) fn unmatched_rows(dimension: &str, file: &str, unmatched: &usize, first: &[u64]) -> Text {
+    let (have, are) = if *unmatched == 1 { ("has", "It is") } else { ("have", "They are") };
+    let rows = if *unmatched == 1 { "row" } else { "rows" };
+    let of = format!("{unmatched} {rows} of `{dimension}`");
+    say(format!("{of} in {file} {have} no partner in the other files ({}). {are} left out.", lines(first, *unmatched)))
+        .advise(Advice::FindMissingValues)
+}
+
+pub(super) fn rows_by_copula([a, b]: &[String; 2], [rows, taken]: &[f64; 2]) -> Text {
+    say(format!(
+        "The rows of `{a}` and `{b}` are correlated by {rows:.3}, more than the copula between measured columns can be. The result takes {taken:.3}."
+    ))
+    .advise(Advice::MeasureMore { values: ENOUGH })
 }
 
 pub(super) fn outliers(dimension: &str, file: &str, count: &usize, values: &usize, first: &[(f64, u64)]) -> Text {

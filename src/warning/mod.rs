@@ -2,12 +2,6 @@
 //!
 //! A warning is data: its [`code`](Warning::code) and its fields, which it serialises as `data`. The [`message`](Warning::message) says what happened
 //! and what it means for the result. The [`advice`](Warning::advice) says what to do; each front end shows it in its own words.
-//!
-//! # A new warning
-//! One entry in the list below (variant, code, fields), one function of these fields in the file of its theme, and one entry on the page
-//! `docs/reference/warnings.md`. The compiler and the tests ask for whatever is forgotten. A field named `characteristic` or `output` is the
-//! characteristic that the warning concerns. A field named `dimension`, or `dimensions` with one name, is its dimension. A field named
-//! `others` takes the further dimensions when [`aggregated`] joins warnings of one code.
 
 #[macro_use]
 mod define;
@@ -49,16 +43,25 @@ warnings! {
         /// The dimensions.
         dimensions: Vec<String>,
     };
-    /// Formulas add or compare values of different units.
-    MixedUnits = "mixed-units" by study::mixed_units {
-        /// The first of these formulas.
+    /// The units in a formula do not go together.
+    UnitMismatch = "unit-mismatch" by study::unit_mismatch {
+        /// The key of the first such formula.
         formula: String,
-        /// The sum or comparison in it, as written.
+        /// The column in its text, from 1.
+        column: usize,
+        /// The part of it, as written.
         part: String,
-        /// The units on its two sides.
-        units: [String; 2],
-        /// Further formulas that do so.
+        /// What does not go together.
+        what: String,
+        /// What to write instead.
+        instead: String,
+        /// Further formulas whose units do not go together.
         others: Vec<String>,
+    };
+    /// Units of which nothing is known: they are labels.
+    UnknownUnit = "unknown-unit" by study::unknown_unit {
+        /// The units, each once.
+        units: Vec<String>,
     };
     /// No characteristic of the study uses these constants, formulas or unknowns.
     UnusedName = "unused-name" by study::unused_name {
@@ -74,7 +77,6 @@ warnings! {
         /// The condition number of the scaled closure conditions.
         condition: f64,
     };
-
     /// Cells of a measured column have no value.
     MissingValues = "missing-values" by measured::missing_values {
         /// The dimension.
@@ -87,6 +89,24 @@ warnings! {
         rows: usize,
         /// The first lines without a value.
         lines: Vec<u64>,
+    };
+    /// Rows of a measured file whose number stands in no other file.
+    UnmatchedRows = "unmatched-rows" by measured::unmatched_rows {
+        /// The dimension.
+        dimension: String,
+        /// The file.
+        file: String,
+        /// Rows without a partner.
+        unmatched: usize,
+        /// The first lines without a partner.
+        lines: Vec<u64>,
+    };
+    /// Rows of a measured file vary together as no normal copula has it between their columns.
+    RowsByCopula = "rows-by-copula" by measured::rows_by_copula {
+        /// The two dimensions that are farthest off.
+        dimensions: [String; 2],
+        /// The correlation of their rows, and the one that is taken.
+        correlation: [f64; 2],
     };
     /// Measured values that lie too far from the others.
     Outliers = "outliers" by measured::outliers {
@@ -145,7 +165,6 @@ warnings! {
         /// Whether their mean lies outside too.
         mean_too: bool,
     };
-
     /// The model failed at some points of the evaluation plan.
     FailedPoints = "failed-points" by model::failed_points {
         /// The characteristic that has no value there.
@@ -272,7 +291,6 @@ warnings! {
         /// Dimensions whose second difference is no larger than the scatter.
         drowned: usize,
     };
-
     /// A derivative is unknown.
     LostDerivative = "lost-derivative" by derivatives::lost_derivative {
         /// The characteristic.
@@ -346,7 +364,6 @@ warnings! {
         /// All interactions.
         possible: usize,
     };
-
     /// A first-order method on a characteristic that is visibly curved.
     RssInvalid = "rss-invalid" by surface::rss_invalid {
         /// The characteristic.
@@ -473,7 +490,6 @@ warnings! {
         /// Whether the budget ended the analysis.
         budget: bool,
     };
-
     /// No distribution has the moments.
     InfeasibleMoments = "infeasible-moments" by distribution::infeasible_moments {
         /// The characteristic.
@@ -508,7 +524,6 @@ warnings! {
         /// `(skewness^2 + 1)/kurtosis`: 5/9 for a uniform distribution, 1 for one with two values.
         coefficient: f64,
     };
-
     /// One drawn point carries most of a small probability.
     HeavyPoint = "heavy-point" by sample::heavy_point {
         /// The characteristic.
@@ -545,7 +560,6 @@ warnings! {
         /// Points drawn.
         points: u64,
     };
-
     /// The extremes of a characteristic come from a search and are not proven.
     NotProven = "not-proven" by allocation::not_proven {
         /// The characteristic.
@@ -586,7 +600,6 @@ warnings! {
         /// The reason, in words.
         reason: String,
     };
-
     /// The run was stopped before its end.
     Stopped = "stopped" by run::stopped {
         /// What stopped it.
@@ -621,16 +634,4 @@ warnings! {
     };
     /// Only the points of the first stage are known.
     FirstStageOnly = "first-stage-only" by run::first_stage_only;
-}
-
-impl Warning {
-    /// What happened, and what it means for the result, in sentences. It names no option of any front end.
-    pub fn message(&self) -> String {
-        self.text().message
-    }
-
-    /// What to do, the most promising first; empty where there is nothing to do.
-    pub fn advice(&self) -> Vec<Advice> {
-        self.text().advice
-    }
 }

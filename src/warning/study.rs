@@ -34,14 +34,29 @@ pub(super) fn nominal_outside_limits(dimensions: &[String]) -> Text {
     .advise(Advice::CheckLimits)
 }
 
-pub(super) fn mixed_units(formula: &str, part: &str, [one, other]: &[String; 2], others: &[String]) -> Text {
+pub(super) fn unit_mismatch(
+    formula: &str,
+    column: &usize,
+    part: &str,
+    what: &str,
+    instead: &str,
+    others: &[String],
+) -> Text {
     let part = shortened_to(part, PART);
     say(format!(
-        "The formula `{formula}` adds or compares different units, {one} and {other}. It does so in `{part}`. Units are never converted: the \
-         numbers are used as they are.{}",
+        "The units of {formula} do not go together. Column {column}, `{part}`, is {what}. The numbers are used as they are. To correct it, {instead}.{}",
         likewise(others)
     ))
     .advise(Advice::CheckUnits)
+}
+
+pub(super) fn unknown_unit(units: &[String]) -> Text {
+    let (which, they) = match units {
+        [_] => ("unit", "It is a label that goes"),
+        _ => ("units", "They are labels that go"),
+    };
+    say(format!("Nothing is known of the {which} {}. {they} with every other unit.", names(units)))
+        .advise(Advice::CheckUnits)
 }
 
 pub(super) fn unused_name(kind: &NameKind, unused: &[String]) -> Text {

@@ -3,8 +3,8 @@
 use serde::ser::{SerializeMap, SerializeStruct};
 use serde::{Serialize, Serializer};
 
-use super::Warning;
 use super::text::Text;
+use super::{Advice, Warning};
 
 impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -29,5 +29,17 @@ impl Serialize for WarningData<'_> {
         let mut map = serializer.serialize_map(None)?;
         self.0.fields(&mut map)?;
         map.end()
+    }
+}
+
+impl Warning {
+    /// What happened, and what it means for the result, in sentences. It names no option of any front end.
+    pub fn message(&self) -> String {
+        self.text().message
+    }
+
+    /// What to do, the most promising first; empty where there is nothing to do.
+    pub fn advice(&self) -> Vec<Advice> {
+        self.text().advice
     }
 }

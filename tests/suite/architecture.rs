@@ -32,7 +32,7 @@ const LAYERS: &[&[&str]] = &[
     &["dimension", "characteristic"],
     &["distribution", "fits", "requirement"],
     &["pearson", "method_kind"],
-    &["names", "elementary", "summary", "time"],
+    &["names", "elementary", "summary", "time", "unit"],
     &["shape"],
 ];
 

@@ -51,6 +51,7 @@ fn every_command_refuses_what_is_wrong() {
         &["plan", "nowhere.toml"],
         &["check", "nowhere.toml"],
         &["models", "rocket"],
+        &["expand", "nowhere.toml"],
         &["init", "no-such-folder/gap"],
         &["schema", "-o", "/nowhere/study.schema.json"],
         &["pearson", "--skewness", "1", "--kurtosis", "1.9"],

@@ -239,18 +239,19 @@ fn leftovers_go_at_the_next_start() {
 #[test]
 fn sums_of_different_units_warn() {
     let text = "[dimensions]\na = { nominal = 1, unit = \"mm\" }\nphi = { nominal = 1, unit = \"deg\" }\n[formulas]\nboth = \"a + phi\"\n\
-        [characteristics]\ny = { formula = \"2*both\" }\nz = { formula = \"a < phi\" }\nok = { formula = \"a + 3*phi + a*sin(phi*deg)\" }\n";
+        [characteristics]\ny = { formula = \"2*both\" }\nz = { formula = \"a < phi\" }\nok = { formula = \"a + 7*phi + a*sin(phi*deg)\" }\n";
     let warnings = parse(text).unwrap().warnings;
     let messages: Vec<String> =
         warnings.iter().map(|warning| format!("[{}] {}", warning.code(), warning.message())).collect();
     assert_eq!(
         messages,
         [
-            "[mixed-units] The formula `both` adds or compares different units, mm and deg. It does so in `a + phi`. Units are never converted: the \
-             numbers are used as they are. The same is true of `z`."
+            "[unit-mismatch] The units of formulas.both do not go together. Column 1, `a + phi`, is a sum of mm and deg. The numbers are used as they \
+             are. To correct it, correct the unit of one of them, or the formula. The same is true of `z`."
         ]
     );
-    assert_eq!(parse(&text.replace("unit = \"deg\"", "unit = \"mm\"")).unwrap().warnings, []);
+    let alike = text.replace("unit = \"deg\"", "unit = \"mm\"").replace("a + 7*phi + a*sin(phi*deg)", "a + phi");
+    assert_eq!(parse(&alike).unwrap().warnings, []);
 }
 
 /// Many warnings of one code are three, and the names of the others; --verbose tells each.

@@ -18,7 +18,9 @@ impl Composite {
             Origin::Model(_) | Origin::Unknown(_) => Vec::new(),
         };
         let conditions = if self.needs(origin).unknowns { self.named..self.formulas.len() } else { 0..0 };
-        own.into_iter().chain(conditions).collect()
+        // What drives the model changes the form of what the model answers.
+        let driving = if self.needs(origin).answers.is_empty() { Vec::new() } else { self.driving() };
+        own.into_iter().chain(driving).chain(conditions).collect()
     }
 
     pub(super) fn switches_of(&self, output: usize) -> Option<Switches> {
@@ -87,15 +89,10 @@ impl Composite {
             margins.push(solved);
         }
         if let Some(model) = &self.model {
-            let inputs: Vec<Vec<f64>> = (model.inputs.iter())
-                .map(|source| match *source {
-                    Source::Dimension(dimension) => points.column(dimension).to_vec(),
-                    Source::Fixed(value) => vec![value; rows],
-                })
-                .collect();
+            let sent = self.sent(points, &Run::to_the_end());
             for &answer in &needs.answers {
                 if model.function.switches(answer).is_some() {
-                    margins.extend(model.function.margins(answer, &Points::from_columns(rows, &inputs))?);
+                    margins.extend(model.function.margins(answer, &sent.columns)?);
                 }
             }
         }
@@ -105,8 +102,17 @@ impl Composite {
     pub(super) fn degree_of(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let of_answer = |output: usize| {
             let model = self.model.as_ref()?;
-            let varying = |source: &Source| matches!(*source, Source::Dimension(dimension) if varying[dimension]);
-            model.function.degree(output, &model.inputs.iter().map(varying).collect::<Vec<_>>())
+            let dimensions = self.signature.inputs.len();
+            let of_source = |source: &Source| match *source {
+                Source::Dimension(dimension) => Some(u32::from(varying[dimension])),
+                Source::Fixed(_) => Some(0),
+                Source::Formula(formula) => {
+                    self.formulas.degree(formula, |index| (index < dimensions).then(|| u32::from(varying[index])))
+                }
+            };
+            let degrees = model.inputs.iter().map(of_source).collect::<Option<Vec<u32>>>()?;
+            let own = model.function.degree(output, &degrees.iter().map(|&degree| degree > 0).collect::<Vec<_>>())?;
+            own.checked_mul(degrees.into_iter().max().unwrap_or(0).max(1))
         };
         let (dimensions, given) = (self.signature.inputs.len(), self.given());
         let variable = |index: usize| match index.checked_sub(dimensions) {

@@ -40,6 +40,15 @@ pub enum FormulaFault {
     /// A backquoted name without its second backquote.
     #[error("the name that starts here has no closing backquote")]
     UnclosedName,
+    /// A unit without its second bracket.
+    #[error("this `[` is never closed")]
+    UnclosedUnit,
+    /// A unit that nothing is known of.
+    #[error("there is no unit `{text}`")]
+    UnknownUnit {
+        /// As written.
+        text: String,
+    },
     /// A parenthesis without its partner.
     #[error("this `(` is never closed")]
     UnclosedParenthesis,
@@ -129,6 +138,8 @@ impl FormulaFault {
         match self {
             Self::Empty => Some("write a formula such as \"a + b - c\"".into()),
             Self::UnexpectedCharacter { instead, .. } => instead.map(str::to_owned),
+            Self::UnclosedUnit => Some("add a `]`".into()),
+            Self::UnknownUnit { .. } => Some("units are written such as mm, N/mm^2, 1/K, deg, kg.m^2".into()),
             Self::UnclosedParenthesis => Some("add a `)`".into()),
             Self::UnopenedParenthesis => Some("remove it, or add a `(` before it".into()),
             Self::MissingOperator { .. } => Some("multiplication is written with `*`".into()),

@@ -15,6 +15,8 @@ pub(super) enum Token {
     Open,
     Close,
     Comma,
+    /// What stands in brackets after a number.
+    Unit(String),
 }
 
 /// Longest first, so that `<=` is not read as `<`.
@@ -47,6 +49,12 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(Token, Range<usize>)>, FormulaEr
             return Ok(tokens);
         }
         let fault = |length: usize, fault| Err(FormulaError { span: start..start + length, fault });
+        if let (Some(unit), Some((Token::Number(_), _))) = (rest.strip_prefix('['), tokens.last()) {
+            let Some(length) = unit.find(']') else { return fault(1, FormulaFault::UnclosedUnit) };
+            tokens.push((Token::Unit(unit[..length].to_owned()), start..start + length + 2));
+            start += length + 2;
+            continue;
+        }
         let habit = HABITS
             .iter()
             .find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="))

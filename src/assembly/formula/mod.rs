@@ -43,4 +43,4 @@ pub(crate) use parser::is_reserved;
 pub(crate) use scalar::Scalar;
 pub(crate) use set::{FormulaSet, Meaning, Routine};
 #[cfg(feature = "study")]
-pub(crate) use units::MixedUnits;
+pub(crate) use units::{Role, UnitFinding};

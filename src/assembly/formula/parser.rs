@@ -9,12 +9,15 @@ use super::error::{FormulaError, FormulaFault};
 use super::functions::{Binary, CONSTANTS, Callable, Unary};
 use super::lexer::{Token, tokens};
 use crate::names::nearest;
+use crate::unit::Unit;
 
 /// A formula as it was written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
     pub(super) text: String,
     pub(super) nodes: Vec<(Node, Range<usize>)>,
+    /// The units of numbers that have one, by node.
+    units: Vec<(usize, Unit)>,
 }
 
 /// One part of a formula; operands are indices of earlier nodes.
@@ -47,10 +50,10 @@ impl Formula {
         if tokens.is_empty() {
             return Err(FormulaError { span: 0..text.len(), fault: FormulaFault::Empty });
         }
-        let mut parser = Parser { tokens: &tokens, next: 0, end: text.len(), nodes: Vec::new() };
+        let mut parser = Parser { tokens: &tokens, next: 0, end: text.len(), nodes: Vec::new(), units: Vec::new() };
         parser.expression(0, 0)?;
         match parser.peek() {
-            None => Ok(Self { text: text.to_owned(), nodes: parser.nodes }),
+            None => Ok(Self { text: text.to_owned(), nodes: parser.nodes, units: parser.units }),
             Some(Token::Close) => Err(parser.error_here(FormulaFault::UnopenedParenthesis)),
             Some(Token::Comma) => Err(parser.error_here(FormulaFault::StrayComma)),
             Some(_) => Err(parser.error_here(FormulaFault::MissingOperator { before: parser.shown() })),
@@ -60,6 +63,57 @@ impl Formula {
     /// The text it was read from.
     pub(crate) fn text(&self) -> &str {
         &self.text
+    }
+
+    /// The unit that the number at a node has.
+    #[cfg(feature = "study")]
+    pub(super) fn unit_of(&self, node: usize) -> Option<&Unit> {
+        self.units.iter().find(|(place, _)| *place == node).map(|(_, unit)| unit)
+    }
+
+    /// Whether no number has a unit.
+    #[cfg(feature = "study")]
+    pub(super) fn has_no_units(&self) -> bool {
+        self.units.is_empty()
+    }
+
+    /// The formula on names that are multiplied by a factor each, and divided by `result`: numbers with units in SI.
+    #[cfg(feature = "study")]
+    pub(crate) fn converted(&self, factor: &dyn Fn(&str) -> f64, result: f64) -> Self {
+        let mut nodes: Vec<(Node, Range<usize>)> = Vec::with_capacity(self.nodes.len());
+        let mut places = Vec::with_capacity(self.nodes.len());
+        let mut push = |node: Node, span: &Range<usize>| {
+            nodes.push((node, span.clone()));
+            nodes.len() - 1
+        };
+        for (index, (node, span)) in self.nodes.iter().enumerate() {
+            let place = match node {
+                Node::Number(value) => {
+                    push(Node::Number(value * self.unit_of(index).map_or(1.0, |unit| unit.scale)), span)
+                }
+                Node::Name(name) => {
+                    let (own, by) = (push(Node::Name(name.clone()), span), factor(name));
+                    if by == 1.0 {
+                        own
+                    } else {
+                        let by = push(Node::Number(by), span);
+                        push(Node::Binary(Binary::Multiply, own, by), span)
+                    }
+                }
+                Node::Unary(function, a) => push(Node::Unary(*function, places[*a]), span),
+                Node::Binary(function, a, b) => push(Node::Binary(*function, places[*a], places[*b]), span),
+                Node::If(condition, then, otherwise) => {
+                    push(Node::If(places[*condition], places[*then], places[*otherwise]), span)
+                }
+            };
+            places.push(place);
+        }
+        if result != 1.0 {
+            let (last, whole) = (places[places.len() - 1], 0..self.text.len());
+            let by = push(Node::Number(result), &whole);
+            push(Node::Binary(Binary::Divide, last, by), &whole);
+        }
+        Self { text: self.text.clone(), nodes, units: Vec::new() }
     }
 
     /// Every name it uses, with its place; names used twice appear twice.
@@ -86,6 +140,7 @@ struct Parser<'a> {
     next: usize,
     end: usize,
     nodes: Vec<(Node, Range<usize>)>,
+    units: Vec<(usize, Unit)>,
 }
 
 /// How tightly a sign binds what stands after it: more than `*`, less than `^`, so that `-x^2` is `-(x^2)`.
@@ -131,6 +186,7 @@ impl Parser<'_> {
             Some(Token::Open) => "`(`".to_owned(),
             Some(Token::Close) => "`)`".to_owned(),
             Some(Token::Comma) => "`,`".to_owned(),
+            Some(Token::Unit(unit)) => format!("`[{unit}]`"),
         }
     }
 
@@ -170,7 +226,18 @@ impl Parser<'_> {
         match self.peek().cloned() {
             Some(Token::Number(value)) => {
                 self.next += 1;
-                Ok(self.push(Node::Number(value), span))
+                let node = self.push(Node::Number(value), span.clone());
+                if let Some(Token::Unit(text)) = self.peek().cloned() {
+                    let place = self.here();
+                    let unknown = || FormulaError {
+                        span: place.clone(),
+                        fault: FormulaFault::UnknownUnit { text: text.clone() },
+                    };
+                    self.units.push((node, Unit::parse(&text).ok_or_else(unknown)?));
+                    self.nodes[node].1 = span.start..place.end;
+                    self.next += 1;
+                }
+                Ok(node)
             }
             Some(Token::Name(name, quoted)) => {
                 self.next += 1;

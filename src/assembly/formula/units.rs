@@ -1,196 +1,614 @@
-//! Units in sums: units are never converted, so a sum of millimetres and degrees is a number without a meaning.
+//! Units of formulas: what every part of a formula measures, and where two units do not go together.
 //!
-//! The unit of a part follows from those of the variables. Signs, sums, `abs`, `min`, `max` and `hypot` keep it, and so does a factor
-//! or divisor of 2; inverse trigonometric functions return radians. Every other product may convert, so its unit is unknown. An
-//! unknown unit, that of a number included, fits every other.
+//! Numbers are used as they are written, so that a result is right exactly where units agree in kind and in scale. A name without a
+//! unit, and what is made of it, is of any unit. A literal factor may be a conversion by hand (`25.4*shim`), and one that is no
+//! common factor may hide a unit (`400*travel`). Radians may be dropped, never invented.
+
+use std::ops::Range;
 
 use super::functions::{Binary, Unary};
 use super::parser::{Formula, Node};
-use super::set::{FormulaSet, Meaning, Reference};
+use super::set::{FormulaSet, Reference};
+use crate::unit::{SAME, Unit};
 
-/// The spellings of one unit, the usual one first. Units that are not listed are unknown.
-const UNITS: [&[&str]; 33] = [
-    &["nm"],
-    &["um", "\u{b5}m", "\u{3bc}m"],
-    &["mm"],
-    &["cm"],
-    &["dm"],
-    &["m"],
-    &["in", "inch", "\""],
-    &["mil", "thou"],
-    &["ft"],
-    &["deg", "\u{b0}", "degree", "degrees"],
-    &["rad"],
-    &["mrad"],
-    &["arcmin"],
-    &["arcsec"],
-    &["gon"],
-    &["s"],
-    &["ms"],
-    &["min"],
-    &["g"],
-    &["kg"],
-    &["lb"],
-    &["N"],
-    &["kN"],
-    &["N.m", "Nm"],
-    &["Pa"],
-    &["kPa"],
-    &["MPa"],
-    &["GPa"],
-    &["bar"],
-    // Differences of temperature are the same in both.
-    &["K", "degC", "\u{b0}C"],
-    &["degF", "\u{b0}F"],
-    &["Hz"],
-    &["rpm"],
-];
+/// Literal factors that are followed.
+const FOLLOWED: usize = 8;
+/// Factors and divisors that hide no unit.
+const SIMPLE: [f64; 7] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, std::f64::consts::PI];
 
-/// A formula that adds or compares two units, and the first part of it that does.
+/// What a formula is for, where its unit follows from that.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct MixedUnits {
-    /// The formula's name.
-    pub(crate) formula: String,
-    /// The sum or comparison, as written.
-    pub(crate) part: String,
-    /// The units on its two sides.
-    pub(crate) units: [&'static str; 2],
+pub(crate) enum Role {
+    /// Anything.
+    Free,
+    /// A value in this unit.
+    Declared(Unit),
+    /// An angle in radians.
+    Angle,
+    /// A length that goes with that of this formula.
+    Like(usize),
+    /// A result whose unit has to be declared where it has one and units are converted.
+    Result,
+}
+
+/// Two units that do not go together.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct UnitFinding {
+    /// Index of the formula.
+    pub(crate) formula: usize,
+    /// The part of its text.
+    pub(crate) span: Range<usize>,
+    /// What is wrong.
+    pub(crate) what: String,
+    /// What to write instead.
+    pub(crate) remedy: String,
+    /// Whether a number without a unit could explain it.
+    pub(crate) doubtful: bool,
+}
+
+/// What a part of a formula measures.
+#[derive(Debug, Clone, PartialEq)]
+struct Quantity {
+    unit: Unit,
+    /// Literal factors in it.
+    factors: Vec<f64>,
+    /// Whether it is a number without a unit.
+    literal: bool,
+}
+
+impl Quantity {
+    fn of(unit: Unit) -> Self {
+        Self { unit, factors: Vec::new(), literal: false }
+    }
+
+    fn number(value: f64) -> Self {
+        Self { unit: Unit::one(), factors: vec![value], literal: true }
+    }
+
+    /// Its scale, and those that it has where some of its factors are conversions by hand.
+    fn scales(&self) -> Vec<f64> {
+        let mut scales = vec![self.unit.scale];
+        for factor in self.factors.iter().filter(|factor| **factor != 0.0) {
+            scales.extend(scales.clone().iter().map(|scale| scale / factor));
+        }
+        scales
+    }
+
+    fn fits(&self, other: &Self) -> bool {
+        let others = other.scales();
+        self.unit.same_kind(&other.unit) && self.scales().iter().any(|a| others.iter().any(|b| near(*a, *b)))
+    }
+
+    /// A factor that may hide a unit.
+    fn doubtful(&self) -> Option<f64> {
+        let simple = |x: f64| SIMPLE.iter().any(|simple| near(x.abs(), *simple) || near(1.0 / x.abs(), *simple));
+        self.factors.iter().copied().find(|&factor| factor != 0.0 && !simple(factor))
+    }
+
+    fn combined(&self, other: &Self, divides: bool) -> Self {
+        let unit = if divides { self.unit.over(&other.unit) } else { self.unit.times(&other.unit) };
+        let theirs = other.factors.iter().filter(|factor| **factor != 0.0);
+        let theirs = theirs.map(|factor| if divides { 1.0 / factor } else { *factor });
+        let factors = self.factors.iter().copied().chain(theirs).take(FOLLOWED).collect();
+        Self { unit, factors, literal: self.literal && other.literal }
+    }
+
+    fn power(&self, exponent: f64) -> Self {
+        if self.literal {
+            return self.clone();
+        }
+        let factors = self.factors.iter().filter(|factor| **factor > 0.0).map(|factor| factor.powf(exponent)).collect();
+        Self { unit: self.unit.to_the(exponent), factors, literal: false }
+    }
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
+/// What was found in one formula: the first finding counts, as the others follow from it.
+struct Pass<'f> {
+    formula: &'f Formula,
+    index: usize,
+    convert: bool,
+    first: Option<UnitFinding>,
 }
 
 impl FormulaSet {
-    /// The formulas that add or compare different units, in their order; `unit` names the unit of a variable.
+    /// What every formula measures, and the first thing in each that does not go together; `unit` knows what is named outside, and
+    /// `role` what a formula is for. With `convert` all names are taken in SI.
     ///
-    /// Cost: one pass over the formulas.
-    pub(crate) fn mixed_units<'u>(&self, unit: impl Fn(usize) -> Option<&'u str>) -> Vec<MixedUnits> {
-        let mut known: Vec<Option<&'static str>> = vec![None; self.len()];
-        let mut mixed: Vec<Option<MixedUnits>> = vec![None; self.len()];
+    /// Cost: one pass over the formulas, and no evaluation.
+    pub(crate) fn units(
+        &self,
+        unit: &dyn Fn(&str) -> Option<Unit>,
+        role: &dyn Fn(usize) -> Role,
+        convert: bool,
+    ) -> Vec<UnitFinding> {
+        let si = |unit: Unit| if convert { unit.in_si() } else { unit };
+        let mut known: Vec<Option<Quantity>> = vec![None; self.len()];
+        let mut findings = Vec::new();
         for &index in &self.order {
             let entry = &self.formulas[index];
-            let of_name = |node: usize| match entry.references[&node] {
-                Reference::Outside(Meaning::Variable(variable)) => unit(variable).and_then(usual),
-                Reference::Outside(Meaning::Constant(_)) => None,
-                Reference::Formula(formula) => known[formula],
+            let of_name = |node: usize, name: &str| match entry.references[&node] {
+                Reference::Outside(_) => unit(name).map(si).map(Quantity::of),
+                Reference::Formula(formula) => known[formula].clone(),
             };
-            let (own, first) = units_of(&entry.formula, of_name);
-            known[index] = own;
-            mixed[index] = first.map(|(node, units)| {
-                let span = entry.formula.nodes[node].1.clone();
-                let part = entry.formula.text().get(span).unwrap_or_default().trim().to_owned();
-                MixedUnits { formula: entry.name.clone(), part, units }
-            });
+            let mut pass = Pass { formula: &entry.formula, index, convert, first: None };
+            let found = pass.run(&of_name);
+            known[index] = match role(index) {
+                Role::Free => found,
+                Role::Declared(declared) => {
+                    pass.declared(found.as_ref(), &si(declared.clone()));
+                    Some(Quantity::of(si(declared)))
+                }
+                Role::Angle => {
+                    pass.angle(found.as_ref(), entry.formula.nodes.len() - 1, "angle");
+                    found
+                }
+                Role::Like(first) => {
+                    if first != index
+                        && let (Some(a), Some(b)) = (&known[first], &found)
+                    {
+                        pass.alike([Some(a), Some(b)], entry.formula.nodes.len() - 1, None, "a loop");
+                    }
+                    found
+                }
+                Role::Result => {
+                    if convert {
+                        pass.needs_unit(found.as_ref());
+                    }
+                    found
+                }
+            };
+            findings.extend(pass.first);
         }
-        mixed.into_iter().flatten().collect()
+        findings
     }
 }
 
-/// The usual spelling of a unit; None for one that is not listed.
-fn usual(unit: &str) -> Option<&'static str> {
-    UNITS.iter().find(|spellings| spellings.contains(&unit.trim())).map(|spellings| spellings[0])
+impl Pass<'_> {
+    fn fail(&mut self, node: usize, what: String, remedy: String, doubtful: bool) {
+        let (formula, span) = (self.index, self.formula.nodes[node].1.clone());
+        self.first.get_or_insert(UnitFinding { formula, span, what, remedy, doubtful });
+    }
+
+    /// A part as it is written, in parentheses where it is a sum.
+    fn text(&self, node: usize) -> String {
+        let text = self.formula.text()[self.formula.nodes[node].1.clone()].trim();
+        match self.formula.nodes[node].0 {
+            Node::Binary(Binary::Add | Binary::Subtract, ..) if !text.starts_with('(') => format!("({text})"),
+            _ => text.to_owned(),
+        }
+    }
+
+    /// Whether a node is the constant `deg`.
+    fn is_deg(&self, node: usize) -> bool {
+        matches!(self.formula.nodes[node].0, Node::Number(_))
+            && self.formula.text()[self.formula.nodes[node].1.clone()].trim_matches(['(', ')', ' ']) == "deg"
+    }
+
+    /// What the formula measures; None where a unit is unknown.
+    fn run(&mut self, of_name: &dyn Fn(usize, &str) -> Option<Quantity>) -> Option<Quantity> {
+        let formula = self.formula;
+        let mut all: Vec<Option<Quantity>> = Vec::with_capacity(formula.nodes.len());
+        let mut unknown = None;
+        for (index, (node, _)) in formula.nodes.iter().enumerate() {
+            let own = match node {
+                Node::Number(_) if formula.unit_of(index).is_some() => {
+                    let unit = formula.unit_of(index).cloned().expect("it was just there");
+                    Some(Quantity::of(if self.convert { unit.in_si() } else { unit }))
+                }
+                Node::Number(_) if self.is_deg(index) && !self.convert => {
+                    // The number of radians of a degree: degrees times it are radians.
+                    Some(Quantity::of(Unit::radians_of_a_degree()))
+                }
+                Node::Number(value) => Some(Quantity::number(*value)),
+                Node::Name(name) => {
+                    let found = of_name(index, name);
+                    if found.is_none() {
+                        unknown.get_or_insert(index);
+                    }
+                    found
+                }
+                Node::Unary(function, a) => self.unary(*function, all[*a].clone(), *a),
+                Node::Binary(function, a, b) => self.binary(*function, [&all[*a], &all[*b]], [*a, *b], index),
+                Node::If(_, then, otherwise) => self.alike(
+                    [all[*then].as_ref(), all[*otherwise].as_ref()],
+                    index,
+                    Some([*then, *otherwise]),
+                    "branches of `if`",
+                ),
+            };
+            all.push(own);
+        }
+        if let (true, Some(node)) = (self.convert, unknown) {
+            let some = (formula.nodes.iter().zip(&all))
+                .any(|((node, _), found)| matches!(node, Node::Name(_)) && found.is_some());
+            if some || !formula.has_no_units() {
+                let name = self.text(node);
+                let remedy = "write its unit; that of a plain number is unit = \"1\"".to_owned();
+                self.fail(node, format!("`{name}` has no unit: convert needs all of a formula"), remedy, false);
+            }
+        }
+        all.pop().flatten()
+    }
+
+    fn unary(&mut self, function: Unary, a: Option<Quantity>, node: usize) -> Option<Quantity> {
+        match function {
+            Unary::Negate | Unary::Abs | Unary::Floor | Unary::Ceil => a,
+            Unary::Sqrt => a.map(|a| a.power(0.5)),
+            Unary::Sign => Some(Quantity::of(Unit::one())),
+            Unary::Sin | Unary::Cos | Unary::Tan => {
+                let name = match function {
+                    Unary::Sin => "sine",
+                    Unary::Cos => "cosine",
+                    _ => "tangent",
+                };
+                self.angle(a.as_ref(), node, name);
+                Some(Quantity::of(Unit::one()))
+            }
+            _ => {
+                self.plain(a.as_ref(), node, function);
+                let inverse = matches!(function, Unary::Asin | Unary::Acos | Unary::Atan);
+                Some(Quantity::of(if inverse { Unit::radian() } else { Unit::one() }))
+            }
+        }
+    }
+
+    /// Sine and others want radians or a plain number.
+    fn angle(&mut self, found: Option<&Quantity>, node: usize, of: &str) {
+        let Some(found) = found.filter(|found| !found.literal) else { return };
+        let what = if of == "angle" { "an angle".to_owned() } else { format!("{of} of") };
+        let what = |unit: &str| if of == "angle" { format!("{what} in {unit}") } else { format!("{what} {unit}") };
+        if !found.unit.is_plain() {
+            let remedy = "its argument is an angle or a plain number".to_owned();
+            let text = format!("{}, which is no angle", what(&found.unit.to_string()));
+            return self.fail(node, text, remedy, found.doubtful().is_some());
+        }
+        if self.convert || found.scales().iter().any(|scale| near(*scale, 1.0)) {
+            return;
+        }
+        let degrees = near(found.unit.scale, std::f64::consts::PI / 180.0);
+        let (unit, remedy) = match degrees {
+            true => ("degrees".to_owned(), format!("write {}*deg", self.text(node))),
+            false => (found.unit.to_string(), "convert it to radians".to_owned()),
+        };
+        self.fail(node, what(&unit), remedy, false);
+    }
+
+    /// Exponentials, logarithms and inverse functions want a plain number.
+    fn plain(&mut self, found: Option<&Quantity>, node: usize, function: Unary) {
+        let Some(found) = found.filter(|found| !found.literal) else { return };
+        let scale = self.convert || found.scales().iter().any(|scale| near(*scale, 1.0));
+        if found.unit.is_plain() && scale {
+            return;
+        }
+        let name = format!("{function:?}").to_lowercase();
+        let (what, doubtful) = (format!("`{name}` of a quantity in {}", found.unit), found.doubtful());
+        let remedy = match doubtful {
+            Some(factor) => hidden(factor, &Unit::one().over(&found.unit)),
+            None => format!("divide by a reference in {}", found.unit),
+        };
+        self.fail(node, what, remedy, doubtful.is_some());
+    }
+
+    fn binary(
+        &mut self,
+        function: Binary,
+        [a, b]: [&Option<Quantity>; 2],
+        nodes: [usize; 2],
+        node: usize,
+    ) -> Option<Quantity> {
+        let what = match function {
+            Binary::Add => "a sum",
+            Binary::Subtract => "a difference",
+            Binary::Min => "`min`",
+            Binary::Max => "`max`",
+            Binary::Hypot => "`hypot`",
+            Binary::Atan2 => "`atan2`",
+            Binary::Multiply | Binary::Divide | Binary::Power => return self.product(function, [a, b], nodes, node),
+            _ => "a comparison",
+        };
+        if let (Binary::Add | Binary::Subtract, Some(one), Some(other)) = (function, a, b)
+            && (one.unit.point || other.unit.point)
+        {
+            return self.temperatures(function, one, other, node);
+        }
+        let joined = self.alike([a.as_ref(), b.as_ref()], node, Some(nodes), what);
+        match function {
+            Binary::Atan2 => Some(Quantity::of(Unit::radian())),
+            Binary::Add | Binary::Subtract if a.is_none() || b.is_none() => None,
+            Binary::Add | Binary::Subtract | Binary::Min | Binary::Max | Binary::Hypot => joined,
+            _ => Some(Quantity::of(Unit::one())),
+        }
+    }
+
+    fn temperatures(&mut self, function: Binary, a: &Quantity, b: &Quantity, node: usize) -> Option<Quantity> {
+        let remedy = || "subtract their reference first".to_owned();
+        let (point, other) = if a.unit.point { (a, b) } else { (b, a) };
+        if !other.literal && !other.unit.same_kind(&point.unit) {
+            self.fail(node, format!("a temperature and {}", other.unit), remedy(), false);
+            return None;
+        }
+        match (function, a.unit.point, b.unit.point) {
+            (Binary::Add, true, true) => {
+                self.fail(node, "a sum of two temperatures".to_owned(), remedy(), false);
+                None
+            }
+            (_, true, true) => Some(Quantity::of(a.unit.difference())),
+            (Binary::Subtract, false, _) => {
+                self.fail(node, "a temperature subtracted from a difference".to_owned(), remedy(), false);
+                None
+            }
+            _ => Some(point.clone()),
+        }
+    }
+
+    fn product(
+        &mut self,
+        function: Binary,
+        [a, b]: [&Option<Quantity>; 2],
+        nodes: [usize; 2],
+        node: usize,
+    ) -> Option<Quantity> {
+        if function == Binary::Power {
+            return self.power(a.as_ref()?, b.as_ref(), node);
+        }
+        for (place, other) in [(nodes[0], b), (nodes[1], a)] {
+            let Some(other) = other.as_ref().filter(|_| self.is_deg(place)) else { continue };
+            if other.literal && function == Binary::Multiply {
+                return Some(Quantity::of(Unit::radian()));
+            }
+            let radians = near(other.unit.radians, 1.0) && other.unit.is_plain();
+            if function == Binary::Multiply && !self.convert && radians && near(other.unit.scale, 1.0) {
+                self.fail(node, "radians already".to_owned(), "leave out deg".to_owned(), false);
+                return None;
+            }
+            if self.convert && radians {
+                let text = self.text(if place == nodes[0] { nodes[1] } else { nodes[0] });
+                let (what, sign) =
+                    (format!("{text} is converted already"), if function == Binary::Multiply { '*' } else { '/' });
+                self.fail(node, what, format!("leave out {sign}deg"), false);
+                return None;
+            }
+        }
+        let (a, b) = (a.as_ref()?, b.as_ref()?);
+        if a.unit.point || b.unit.point {
+            let what = "a temperature in degC as a factor".to_owned();
+            self.fail(node, what, "subtract its reference first".to_owned(), false);
+            return None;
+        }
+        Some(a.combined(b, function == Binary::Divide))
+    }
+
+    fn power(&mut self, a: &Quantity, b: Option<&Quantity>, node: usize) -> Option<Quantity> {
+        if a.literal {
+            return Some(a.clone());
+        }
+        match b.filter(|b| b.literal) {
+            Some(b) => Some(a.power(b.factors.iter().product())),
+            None if a.unit.is_plain() => Some(Quantity::of(Unit::one())),
+            None => {
+                let what = format!("{} to a power that is no number", a.unit);
+                self.fail(node, what, "write the exponent as a number".to_owned(), false);
+                None
+            }
+        }
+    }
+
+    /// Two parts of one unit; what both measure.
+    fn alike(
+        &mut self,
+        [a, b]: [Option<&Quantity>; 2],
+        node: usize,
+        nodes: Option<[usize; 2]>,
+        what: &str,
+    ) -> Option<Quantity> {
+        let (a, b) = match (a, b) {
+            (Some(a), Some(b)) => (a, b),
+            (one, other) => return one.or(other).filter(|found| !found.literal).cloned(),
+        };
+        if a.literal || b.literal {
+            let (known, bare, place) = if a.literal { (b, a, 0) } else { (a, b, 1) };
+            let zero = bare.factors.contains(&0.0);
+            // A number beside an angle is in radians, as `pi` is.
+            let plain = known.unit.is_plain() && (known.unit.radians > 0.0 || known.unit.to_string() == "1");
+            if self.convert && !known.literal && !zero && !plain {
+                let number = nodes.map_or_else(|| "2".to_owned(), |nodes| self.text(nodes[place]));
+                let text = format!("{what} of {} and a bare number", known.unit);
+                self.fail(node, text, format!("write {number}[{}]", known.unit), false);
+            }
+            return Some(known.clone());
+        }
+        if !a.unit.same_kind(&b.unit) {
+            let text = format!("{what} of {} and {}", a.unit, b.unit);
+            let (doubt, needed) = match (a.doubtful(), b.doubtful()) {
+                (Some(factor), _) => (Some(factor), b.unit.over(&a.unit)),
+                (None, Some(factor)) => (Some(factor), a.unit.over(&b.unit)),
+                (None, None) => (None, Unit::one()),
+            };
+            let remedy = match doubt {
+                Some(factor) => hidden(factor, &needed),
+                None => "correct the unit of one of them, or the formula".to_owned(),
+            };
+            self.fail(node, text, remedy, doubt.is_some());
+            return None;
+        }
+        if !a.fits(b) && !self.convert {
+            let factor = b.unit.scale / a.unit.scale;
+            let text = format!("{what} of {} and {} (factor {})", a.unit, b.unit, shown(factor));
+            let part = nodes.map_or_else(|| "it".to_owned(), |nodes| self.text(nodes[1]));
+            let by = format!("{}[{}]", shown(factor), a.unit.over(&b.unit));
+            self.fail(node, text, format!("write {by}*{part}, or units = \"convert\" at the top"), false);
+            return None;
+        }
+        Some(a.clone())
+    }
+
+    /// What a formula gives is in the unit that it is said to be in.
+    fn declared(&mut self, found: Option<&Quantity>, declared: &Unit) {
+        let Some(found) = found.filter(|found| !found.literal) else { return };
+        let node = self.formula.nodes.len() - 1;
+        let said = format!("the formula gives {}, unit says {declared}", found.unit);
+        if !found.unit.same_kind(declared) {
+            let doubt = found.doubtful();
+            let remedy = match doubt {
+                Some(factor) => hidden(factor, &declared.over(&found.unit)),
+                None => "correct the formula, or the unit".to_owned(),
+            };
+            return self.fail(node, said, remedy, doubt.is_some());
+        }
+        if !self.convert && !found.fits(&Quantity::of(declared.clone())) {
+            let factor = found.unit.scale / declared.scale;
+            let remedy = format!("write unit = \"{}\", or units = \"convert\" at the top", found.unit);
+            self.fail(node, format!("{said}: factor {}", shown(factor)), remedy, false);
+        }
+    }
+
+    /// A result with a unit says which.
+    fn needs_unit(&mut self, found: Option<&Quantity>) {
+        let Some(found) = found.filter(|found| !found.literal && !found.unit.is_plain()) else { return };
+        let (node, unit) = (self.formula.nodes.len() - 1, found.unit.clone());
+        self.fail(
+            node,
+            format!("the formula gives {unit}, and no unit is asked for"),
+            format!("write unit = \"{unit}\""),
+            false,
+        );
+    }
 }
 
-type Mixed = (usize, [&'static str; 2]);
+/// A factor as it is shown: with as many digits as it needs, twelve at most.
+fn shown(factor: f64) -> String {
+    let rounded: f64 = format!("{factor:.11e}").parse().unwrap_or(factor);
+    if (1e-4..1e6).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
+}
 
-/// The unit of a formula, and the first node that joins two units.
-fn units_of(
-    formula: &Formula,
-    of_name: impl Fn(usize) -> Option<&'static str>,
-) -> (Option<&'static str>, Option<Mixed>) {
-    let mut units: Vec<Option<&'static str>> = Vec::with_capacity(formula.nodes.len());
-    let mut first = None;
-    let is_two = |node: usize| matches!(formula.nodes[node].0, Node::Number(2.0));
-    for (index, (node, _)) in formula.nodes.iter().enumerate() {
-        let mut joined = |a: usize, b: usize| match (units[a], units[b]) {
-            (Some(one), Some(other)) if one != other => {
-                first.get_or_insert((index, [one, other]));
-                None
-            }
-            (one, other) => one.or(other),
-        };
-        let own = match *node {
-            Node::Number(_) => None,
-            Node::Name(_) => of_name(index),
-            Node::Unary(Unary::Negate | Unary::Abs, a) => units[a],
-            Node::Unary(Unary::Asin | Unary::Acos | Unary::Atan, _) => Some("rad"),
-            Node::Unary(..) => None,
-            Node::Binary(Binary::Add | Binary::Subtract | Binary::Min | Binary::Max | Binary::Hypot, a, b) => {
-                joined(a, b)
-            }
-            Node::Binary(Binary::Multiply, a, b) if is_two(a) => units[b],
-            Node::Binary(Binary::Multiply | Binary::Divide, a, b) if is_two(b) => units[a],
-            Node::Binary(Binary::Multiply | Binary::Divide | Binary::Power, ..) => None,
-            Node::Binary(Binary::Atan2, a, b) => {
-                joined(a, b);
-                Some("rad")
-            }
-            Node::Binary(
-                Binary::Less
-                | Binary::LessEqual
-                | Binary::Greater
-                | Binary::GreaterEqual
-                | Binary::Equal
-                | Binary::NotEqual,
-                a,
-                b,
-            ) => {
-                joined(a, b);
-                None
-            }
-            Node::If(_, then, otherwise) => joined(then, otherwise),
-        };
-        units.push(own);
-    }
-    (units.last().copied().flatten(), first)
+/// That a number hides a unit.
+fn hidden(factor: f64, unit: &Unit) -> String {
+    format!("if the number {} has a unit, write it: {}[{unit}]", shown(factor), shown(factor))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::set::Meaning;
     use super::*;
 
-    /// The places found in formulas over `a`, `b` in mm, `inch` in in, `phi` in deg, `t` without a unit, `odd` in an unlisted one.
-    fn found(text: &str) -> Option<(String, [&'static str; 2])> {
-        let names = ["a", "b", "inch", "phi", "t", "odd"];
-        let units = [Some("mm"), Some(" mm"), Some("inch"), Some("\u{b0}"), None, Some("furlong")];
-        let formulas = vec![
-            ("y".to_owned(), Formula::parse(text).unwrap()),
-            ("angle".to_owned(), Formula::parse("phi/2").unwrap()),
+    fn case(name: &str) -> serde_json::Map<String, serde_json::Value> {
+        let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/elements.json")).unwrap();
+        let cases: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let found = cases["cases"].as_array().unwrap().iter().find(|case| case["name"] == name).cloned().unwrap();
+        found["printed"].as_object().unwrap().clone()
+    }
+
+    /// Over the names of the case `units-check-accepts`, and `x` without a unit.
+    fn findings(text: &str, role: Role, convert: bool) -> Vec<UnitFinding> {
+        let named = [
+            ("a", "mm"),
+            ("l", "mm"),
+            ("r", "mm"),
+            ("b", "in"),
+            ("th", "deg"),
+            ("ph", "rad"),
+            ("F", "N"),
+            ("A", "mm^2"),
+            ("E", "MPa"),
+            ("al", "1/K"),
+            ("T", "degC"),
+            ("T0", "degC"),
+            ("w", "rad/s"),
+            ("x", "furlong"),
         ];
-        let meanings = names.iter().enumerate().map(|(index, name)| (*name, Meaning::Variable(index)));
-        let set = FormulaSet::new(formulas, meanings).unwrap();
-        set.mixed_units(|variable| units[variable]).pop().map(|mixed| (mixed.part, mixed.units))
+        let meanings = named.iter().enumerate().map(|(index, (name, _))| (*name, Meaning::Variable(index)));
+        let set = FormulaSet::new(vec![("y".to_owned(), Formula::parse(text).unwrap())], meanings).unwrap();
+        let unit = |name: &str| named.iter().find(|(known, _)| *known == name).and_then(|(_, unit)| Unit::parse(unit));
+        set.units(&unit, &|_| role.clone(), convert)
     }
 
     #[test]
-    fn sums_of_different_units_are_found() {
-        for (text, part, units) in [
-            ("a + phi", "a + phi", ["mm", "deg"]),
-            ("2*(a - inch)", "(a - inch)", ["mm", "in"]),
-            ("a*b + max(a, 2*phi)", "max(a, 2*phi)", ["mm", "deg"]),
-            ("a + b + t + angle", "a + b + t + angle", ["mm", "deg"]),
-            ("phi - atan2(a, b)", "phi - atan2(a, b)", ["deg", "rad"]),
-            ("atan2(a, inch)", "atan2(a, inch)", ["mm", "in"]),
-            ("if(a < phi, 1, 2)", "a < phi", ["mm", "deg"]),
-            ("if(t, a, phi)", "if(t, a, phi)", ["mm", "deg"]),
-            // The first of several.
-            ("hypot(a, phi) + inch", "hypot(a, phi)", ["mm", "deg"]),
-        ] {
-            assert_eq!(found(text), Some((part.to_owned(), units)), "{text}");
+    fn what_goes_together_is_accepted_with_its_unit() {
+        let accepted = case("units-check-accepts");
+        assert_eq!(accepted.len(), 14);
+        for (text, unit) in &accepted {
+            let declared = Unit::parse(unit.as_str().unwrap()).unwrap();
+            assert_eq!(findings(text, Role::Declared(declared), false), [], "{text}");
+        }
+        let percent = Unit::parse("%").unwrap();
+        assert_eq!(findings("100*(2*a*pi/(4*l))", Role::Declared(percent), false), []);
+        for text in
+            ["a + x", "hypot(a, x) + F*x", "a^2.5/l^1.5 + a", "if(a > l, a, 0)", "a/2 + pi*l/4", "floor(a) - abs(-l)"]
+        {
+            assert_eq!(findings(text, Role::Declared(Unit::parse("mm").unwrap()), false), [], "{text}");
         }
     }
 
-    /// Products may convert, and what has no listed unit fits everything.
     #[test]
-    fn sums_that_may_be_meant_are_not() {
-        for text in [
-            "a + b/2 - 2*abs(-a)",
-            "a + 50*phi",
-            "a + 25.4*inch",
-            "phi*deg + atan(a/b)",
-            "a + odd + t + 3",
-            "a*sin(phi) + b",
-            "a^2 + phi",
-            "floor(a) + phi",
-        ] {
-            assert_eq!(found(text), None, "{text}");
+    fn what_does_not_go_together_is_refused() {
+        let refused = case("units-check-refuses");
+        assert_eq!(refused.len(), 11);
+        for (text, words) in &refused {
+            let found = findings(text, Role::Free, false);
+            assert!(found.len() == 1 && !found[0].doubtful, "{text} {found:?}");
+            let words = words.as_str().unwrap();
+            let said =
+                found[0].what.contains(words) || words == "a unit in exp" && found[0].what.starts_with("`exp` of");
+            assert!(said && !found[0].remedy.is_empty(), "{text} {found:?}");
         }
+        assert_eq!(findings("a*sin(th)", Role::Free, false)[0].span, 6..8);
+    }
+
+    #[test]
+    fn numbers_that_may_hide_a_unit_are_doubts() {
+        let doubts = case("units-check-doubts");
+        assert_eq!(doubts.len(), 3);
+        for text in doubts.keys() {
+            let found = findings(text, Role::Free, false);
+            assert!(found.len() == 1 && found[0].doubtful, "{text} {found:?}");
+        }
+        assert_eq!(
+            findings("400*a + F", Role::Free, false)[0].remedy,
+            "if the number 400 has a unit, write it: 400[N/mm]"
+        );
+        assert_eq!(findings("400[N/mm]*a + F", Role::Free, false), []);
+        // A common factor hides none.
+        assert!(!findings("2*a + F", Role::Free, false)[0].doubtful);
+    }
+
+    #[test]
+    fn conversion_wants_every_unit_and_no_conversion_by_hand() {
+        for (text, what) in [
+            ("a + b", None),
+            ("a*sin(th)", None),
+            ("a + x", Some("`x` has no unit: convert needs all of a formula")),
+            ("a + 2", Some("a sum of mm and a bare number")),
+            ("a + 2[mm] + max(b, 0)", None),
+            ("a*sin(th*deg)", Some("th is converted already")),
+            ("a*sin(30*deg)", None),
+            ("a + F", Some("a sum of mm and N")),
+            ("400*a + F", Some("a sum of mm and N")),
+        ] {
+            let found = findings(text, Role::Declared(Unit::parse("mm").unwrap()), true);
+            assert_eq!(found.first().map(|found| found.what.as_str()), what, "{text}");
+        }
+        assert_eq!(findings("a + b", Role::Result, true)[0].remedy, "write unit = \"mm\"");
+    }
+
+    #[test]
+    fn declared_units_and_angles_are_held() {
+        let declared = |text: &str, unit: &str| {
+            let found = findings(text, Role::Declared(Unit::parse(unit).unwrap()), false);
+            found.first().map(|found| format!("{}: {}", found.what, found.remedy))
+        };
+        assert_eq!(
+            declared("F/A", "kPa").unwrap(),
+            "the formula gives N/mm^2, unit says kPa: factor 1000: write unit = \"N/mm^2\", or units = \"convert\" at the top"
+        );
+        assert_eq!(declared("F/A", "MPa"), None);
+        // A conversion by hand.
+        assert_eq!(declared("1000*F/A", "kPa"), None);
+        assert!(declared("F*a", "mm").unwrap().starts_with("the formula gives N.mm, unit says mm"));
+        assert_eq!(findings("th", Role::Angle, false)[0].remedy, "write th*deg");
+        assert_eq!(findings("th*deg + pi/2", Role::Angle, false), []);
     }
 }

@@ -183,6 +183,30 @@ impl Conditions {
         &self.unknowns
     }
 
+    /// The same conditions with every formula made another.
+    #[cfg(feature = "study")]
+    pub(crate) fn with_formulas(&self, of: &dyn Fn(&Formula) -> Formula) -> Self {
+        let condition = |condition: &Condition| match condition {
+            Condition::Equation { name, formula } => Condition::Equation { name: name.clone(), formula: of(formula) },
+            Condition::Loop { name, links } => Condition::Loop {
+                name: name.clone(),
+                links: links.iter().map(|link| Link { length: of(&link.length), angle: of(&link.angle) }).collect(),
+            },
+        };
+        Self { conditions: self.conditions.iter().map(condition).collect(), ..self.clone() }
+    }
+
+    /// For every formula of the conditions, in their order: its place within its loop, None of an equation. Even places are lengths,
+    /// odd ones angles.
+    #[cfg(feature = "study")]
+    pub(crate) fn places(&self) -> Vec<Option<usize>> {
+        let of = |condition: &Condition| match condition {
+            Condition::Equation { .. } => vec![None],
+            Condition::Loop { links, .. } => (0..2 * links.len()).map(Some).collect(),
+        };
+        self.conditions.iter().flat_map(of).collect()
+    }
+
     /// Every formula of the conditions, in order: an equation's one, a loop's lengths and angles in turn.
     pub(crate) fn formulas(&self) -> Vec<(String, Formula)> {
         self.conditions.iter().flat_map(Condition::formulas).collect()

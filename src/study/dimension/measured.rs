@@ -43,7 +43,8 @@ pub(super) fn law(name: &str, entry: &DimensionEntry, data: &mut Data<'_>) -> Re
     };
     conflicts(entry)?;
     let pearson = is_pearson(entry)?;
-    let column = data.column(measured.get_ref(), entry.column.as_ref().map(|column| column.get_ref().as_str()));
+    let column =
+        data.column_of(name, measured.get_ref(), entry.column.as_ref().map(|column| column.get_ref().as_str()));
     let column = column.map_err(|found| {
         let (span, key) = match (&*found.problem, &entry.column) {
             (DataProblem::UnknownColumn { .. } | DataProblem::ColumnTwice { .. }, Some(column)) => {

@@ -1,0 +1,274 @@
+//! What a model is sent: dimensions, fixed values, and formulas that drive its inputs.
+//!
+//! With dimensions `x` and formulas `z(x)` a characteristic is `y(x) = F(z(x))`. By the chain rule `dy/dx = F_z z_x`, where `z_x` is exact.
+
+use std::collections::HashMap;
+
+use super::{Composite, CompositeError, Inner, Origin, SolvedRows, Source};
+use crate::assembly::formula::Jet;
+use crate::assembly::{EvaluationError, Input, NonRepeatable, Points, Request, Responses, Run};
+
+/// What a model is sent at some points.
+pub(super) struct Sent {
+    /// A column for every input of the model, NaN where a formula has no value.
+    pub(super) columns: Points,
+    /// Why nothing is sent for a row.
+    errors: Vec<Option<EvaluationError>>,
+}
+
+impl Composite {
+    /// The formulas that drive the model, each once.
+    pub(super) fn driving(&self) -> Vec<usize> {
+        let mut driving: Vec<usize> = self.model.iter().flat_map(Inner::driving).collect();
+        driving.sort_unstable();
+        driving.dedup();
+        driving
+    }
+
+    /// Whether a formula needs the unknowns.
+    pub(super) fn drives_by_unknowns(&self, formula: usize) -> bool {
+        self.split(&self.formulas.variables(formula)).unknowns
+    }
+
+    /// What drives the model does not need its answers.
+    pub(super) fn drives_without_circle(&self, names: &[String]) -> Result<(), CompositeError> {
+        for index in self.driving() {
+            let mut needs = self.split(&self.formulas.variables(index));
+            if let (true, Some(assembler)) = (needs.unknowns, &self.assembler) {
+                needs.answers.extend(self.split(assembler.uses()).answers);
+            }
+            if let (Some(&output), Some(model)) = (needs.answers.first(), &self.model) {
+                let output = model.function.signature().outputs[output].name.clone();
+                return Err(CompositeError::Driven { name: names[index].clone(), index, output });
+            }
+        }
+        Ok(())
+    }
+
+    /// The dimensions on which an input of the model depends.
+    pub(super) fn behind(&self, source: Source) -> Vec<usize> {
+        match source {
+            Source::Dimension(dimension) => vec![dimension],
+            Source::Fixed(_) => Vec::new(),
+            Source::Formula(formula) => self.needs(Origin::Formula(formula)).dimensions,
+        }
+    }
+
+    /// What the model is sent at these points.
+    pub(super) fn sent(&self, points: &Points, run: &Run<'_>) -> Sent {
+        let rows = points.rows();
+        let mut errors = vec![None; rows];
+        let Some(model) = &self.model else { return Sent { columns: Points::of_values(rows, 0, Vec::new()), errors } };
+        let driving = self.driving();
+        let values = self.driven(&driving, points, run, &mut errors);
+        let mut columns = Vec::with_capacity(rows * model.inputs.len());
+        for source in &model.inputs {
+            match *source {
+                Source::Dimension(dimension) => columns.extend_from_slice(points.column(dimension)),
+                Source::Fixed(value) => columns.resize(columns.len() + rows, value),
+                Source::Formula(formula) => {
+                    let place = driving.binary_search(&formula).expect("it drives the model");
+                    columns.extend_from_slice(&values[place]);
+                }
+            }
+        }
+        let mut columns = Points::of_values(rows, model.inputs.len(), columns);
+        for (input, factor) in model.factors.iter().enumerate().filter(|(_, factor)| **factor != 1.0) {
+            columns.column_mut(input).iter_mut().for_each(|value| *value *= factor);
+        }
+        Sent { columns, errors }
+    }
+
+    /// The formulas that drive the model, a column each; `errors` says why a row has no value.
+    fn driven(
+        &self,
+        driving: &[usize],
+        points: &Points,
+        run: &Run<'_>,
+        errors: &mut [Option<EvaluationError>],
+    ) -> Vec<Vec<f64>> {
+        let (rows, given) = (points.rows(), self.given());
+        let mut values = vec![vec![f64::NAN; rows]; driving.len()];
+        if driving.is_empty() {
+            return values;
+        }
+        let mut unknowns = vec![vec![f64::NAN; rows]; self.assembler.as_ref().map_or(0, |of| of.len())];
+        if let (Some(assembler), true) =
+            (&self.assembler, driving.iter().any(|&formula| self.drives_by_unknowns(formula)))
+        {
+            match self.anchor(run).0 {
+                Some(Ok(anchor)) => {
+                    let variable = |index: usize, row: usize| points.column(index)[row];
+                    let found = SolvedRows::of((assembler, &self.formulas), &anchor, rows, given, variable);
+                    let failed = found.errors.into_iter().map(|failure| failure.map(Into::into));
+                    errors.iter_mut().zip(failed).for_each(|(error, failure)| *error = failure);
+                    unknowns = found.columns;
+                }
+                Some(Err(error)) => errors.fill(Some(error)),
+                None => {}
+            }
+        }
+        let variable = |index: usize| match index.checked_sub(given) {
+            None => points.column(index),
+            Some(unknown) => &unknowns[unknown][..],
+        };
+        self.formulas.evaluate(driving, rows, variable, |position, row, value| {
+            values[position][row] = value;
+            if !value.is_finite() && errors[row].is_none() {
+                let failure = self.formulas.explain(driving[position], |index| variable(index)[row]);
+                errors[row] =
+                    Some(failure.map_or(EvaluationError::NotFinite { value }, |failure| Box::new(failure).into()));
+            }
+        });
+        values
+    }
+
+    /// Names of what the model is sent, and this at some points; None where it is sent the points themselves.
+    pub(super) fn model_points(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
+        // A built-in model is sent nothing outside.
+        let model = self.model.as_ref().filter(|_| self.signature.costly)?;
+        let same = |(index, source): (usize, &Source)| *source == Source::Dimension(index);
+        if model.inputs.len() == points.dimensions() && model.inputs.iter().enumerate().all(same) {
+            return None;
+        }
+        let Sent { columns, errors } = self.sent(points, &Run::to_the_end());
+        let kept: Vec<Vec<f64>> =
+            (0..columns.rows()).filter(|&row| errors[row].is_none()).map(|row| columns.row(row)).collect();
+        Some((model.function.signature().inputs.clone(), Points::from_rows(&kept)))
+    }
+
+    /// Asks the model for these of its outputs.
+    pub(super) fn ask_model(&self, points: &Points, run: &Run<'_>, needed: &[usize]) -> Responses {
+        let rows = points.rows();
+        let mut answers = Responses::open(rows, needed.len());
+        let Some(model) = self.model.as_ref().filter(|_| !needed.is_empty()) else { return answers };
+        let Sent { columns, errors } = self.sent(points, run);
+        let whole = model.function.signature().inputs.len() == points.dimensions();
+        if errors.iter().all(Option::is_none) && (!self.signature.costly || whole && model.driving().next().is_none()) {
+            model.function.evaluate(&Request::values(&columns, needed), run, &mut answers);
+            return answers;
+        }
+        // Points that send the same numbers are one evaluation.
+        let mut place: HashMap<Vec<u64>, usize> = HashMap::new();
+        let (mut distinct, mut rows_of): (Vec<Vec<f64>>, Vec<Option<usize>>) = (Vec::new(), Vec::with_capacity(rows));
+        for (row, error) in errors.iter().enumerate() {
+            rows_of.push(error.is_none().then(|| {
+                let point = columns.row(row);
+                *place.entry(bits(&point)).or_insert_with(|| {
+                    distinct.push(point);
+                    distinct.len() - 1
+                })
+            }));
+        }
+        let mut found = Responses::open(distinct.len(), needed.len());
+        if !distinct.is_empty() {
+            model.remember(&distinct, &rows_of, points);
+            model.function.evaluate(&Request::values(&Points::from_rows(&distinct), needed), run, &mut found);
+        }
+        for (row, (error, from)) in errors.into_iter().zip(rows_of).enumerate() {
+            for column in 0..needed.len() {
+                match (&error, from) {
+                    (Some(error), _) => answers.fail(row, column, error.clone()),
+                    (None, Some(from)) => answers.pass_on(row, column, &found, from, column),
+                    (None, None) => {}
+                }
+            }
+        }
+        let unsent = answers.answered().count() as i64 - found.answered().count() as i64;
+        answers.spent(found.extra() + found.count_reused() as i64 - unsent);
+        answers.reused(found.count_reused());
+        answers.retried(found.count_retried());
+        answers.note_non_repeatable(found.non_repeatable().iter().map(|doubt| NonRepeatable {
+            suspects: doubt.suspects.iter().map(|point| model.sent_for(point)).collect(),
+            ..doubt.clone()
+        }));
+        found.revoked().iter().for_each(|point| answers.revoke(model.sent_for(point)));
+        answers
+    }
+
+    /// Passes the derivatives of the model's own outputs on, by the dimensions that its inputs are or depend on.
+    pub(super) fn pass_gradients(
+        &self,
+        points: &Points,
+        origins: &[Origin],
+        needed: &[usize],
+        answers: &Responses,
+        out: &mut Responses,
+    ) {
+        let Some(model) = &self.model else { return };
+        let driving = self.driving();
+        let by_unknowns = driving.iter().any(|&formula| self.drives_by_unknowns(formula));
+        for (column, origin) in origins.iter().enumerate() {
+            let Origin::Model(output) = origin else { continue };
+            let Ok(answer) = needed.binary_search(output) else { continue };
+            for row in 0..answers.rows() {
+                let Some(gradient) = answers.gradient(row, answer).filter(|_| !by_unknowns) else { continue };
+                let slopes = self.slopes_of(&driving, points, row);
+                let mut passed = vec![0.0; self.signature.inputs.len()];
+                for (input, (source, slope)) in model.inputs.iter().zip(gradient).enumerate() {
+                    let slope = slope * model.factors.get(input).unwrap_or(&1.0);
+                    match *source {
+                        Source::Dimension(dimension) => passed[dimension] += slope,
+                        Source::Fixed(_) => {}
+                        Source::Formula(formula) => {
+                            let place = driving.binary_search(&formula).expect("it drives the model");
+                            passed.iter_mut().zip(&slopes[place]).for_each(|(sum, own)| *sum += slope * own);
+                        }
+                    }
+                }
+                if passed.iter().all(|slope| slope.is_finite()) {
+                    out.set_gradient(row, column, passed);
+                }
+            }
+        }
+    }
+
+    /// The slopes of these formulas along every dimension, NaN where there is none.
+    fn slopes_of(&self, formulas: &[usize], points: &Points, row: usize) -> Vec<Vec<f64>> {
+        let dimensions = self.signature.inputs.len();
+        let mut slopes = vec![vec![0.0; dimensions]; formulas.len()];
+        if formulas.is_empty() {
+            return slopes;
+        }
+        for d in 0..dimensions {
+            let variable = |index: usize| match index < dimensions {
+                true => Jet::variable(points.column(index)[row], [f64::from(u8::from(index == d)); 2]),
+                false => Jet::variable(f64::NAN, [0.0; 2]),
+            };
+            let jets = self.formulas.jets(formulas, variable);
+            slopes.iter_mut().zip(jets).for_each(|(of, jet)| of[d] = jet.first(0).unwrap_or(f64::NAN));
+        }
+        slopes
+    }
+}
+
+impl Inner {
+    /// The formulas that drive it.
+    fn driving(&self) -> impl Iterator<Item = usize> + '_ {
+        self.inputs.iter().filter_map(|source| match source {
+            Source::Formula(formula) => Some(*formula),
+            _ => None,
+        })
+    }
+
+    /// Keeps for which points these are sent: what the model says of a point is then said of the dimensions.
+    fn remember(&self, distinct: &[Vec<f64>], rows_of: &[Option<usize>], points: &Points) {
+        let mut sent = self.sent.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        for (row, from) in rows_of.iter().enumerate() {
+            if let Some(from) = from {
+                sent.entry(bits(&distinct[*from])).or_insert_with(|| points.row(row));
+            }
+        }
+    }
+
+    /// The point for which this was sent.
+    fn sent_for(&self, point: &[f64]) -> Vec<f64> {
+        let sent = self.sent.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        sent.get(&bits(point)).cloned().unwrap_or_else(|| point.to_vec())
+    }
+}
+
+/// 0 has one sign only.
+fn bits(point: &[f64]) -> Vec<u64> {
+    point.iter().map(|x| (x + 0.0).to_bits()).collect()
+}

@@ -1,0 +1,192 @@
+//! Relative dimensions: `x2 = { nominal = 40, tolerance = 0.1, from = "x1" }` is `x1` plus a dimension of its own.
+
+use super::{Expanded, Origin, Tree, Value, wrong_type};
+use crate::assembly::formula::is_plain;
+use crate::names::nearest;
+use crate::study::error::{Fault, Faults, StudyFault, fault};
+use crate::study::tree::Key;
+
+/// What stands after the name of a relative dimension in that of its own part.
+const OWN: &str = ".own";
+
+/// What a dimension is relative to, before it is checked.
+struct Relative {
+    /// Its place in the section.
+    place: usize,
+    name: String,
+    bases: Vec<(String, std::ops::Range<usize>)>,
+    position: bool,
+}
+
+/// Replaces every relative dimension by a dimension of its own and a formula.
+pub(super) fn expand(expanded: &mut Expanded) -> Result<(), Faults> {
+    let mut faults = Faults::default();
+    let Some(relatives) = relatives(&expanded.tree, &mut faults) else { return faults.none() };
+    for relative in &relatives {
+        checked(&expanded.tree, relative, &relatives).into_iter().for_each(|found| faults.0.push(found));
+    }
+    faults.none()?;
+    for relative in &relatives {
+        replace(expanded, relative);
+    }
+    Ok(())
+}
+
+/// Every dimension with a `from`; None where there is none.
+fn relatives(tree: &Tree, faults: &mut Faults) -> Option<Vec<Relative>> {
+    let dimensions = tree.get("dimensions")?.entries();
+    let mut relatives = Vec::new();
+    for (place, (key, entry)) in dimensions.iter().enumerate() {
+        let Some(from) = entry.get("from") else { continue };
+        let at = format!("dimensions.{}.from", key.name);
+        let expected = "the name of a dimension or formula such as \"x1\", or a list of such names";
+        let texts: Option<Vec<_>> = match &from.value {
+            Value::Text(text) => Some(vec![(text.clone(), from.span.clone())]),
+            Value::Array(items) if !items.is_empty() => (items.iter())
+                .map(|item| match &item.value {
+                    Value::Text(text) => Some((text.clone(), item.span.clone())),
+                    _ => None,
+                })
+                .collect(),
+            _ => None,
+        };
+        match texts {
+            Some(bases) => {
+                let position = entry.get("position").is_some();
+                relatives.push(Relative { place, name: key.name.clone(), bases, position });
+            }
+            None => faults.0.push(wrong_type(from, at, expected)),
+        }
+    }
+    (!relatives.is_empty()).then_some(relatives)
+}
+
+/// What is wrong with one of them.
+fn checked(tree: &Tree, relative: &Relative, all: &[Relative]) -> Option<Fault> {
+    let dimensions = tree.get("dimensions")?.entries();
+    let (key, entry) = &dimensions[relative.place];
+    let name = &relative.name;
+    if !["nominal", "limits", "measured"].iter().any(|known| entry.get(known).is_some()) {
+        let instead =
+            format!("it is measured from `{}`: write its distance, such as nominal = 40", relative.bases[0].0);
+        let missing = StudyFault::MissingKey { key: "nominal".into(), instead };
+        return Some(fault(key.span.clone(), format!("dimensions.{name}"), missing));
+    }
+    let own = format!("{name}{OWN}");
+    if ["dimensions", "formulas", "constants"]
+        .iter()
+        .any(|section| tree.get(section).is_some_and(|of| of.get(&own).is_some()))
+    {
+        let taken = StudyFault::NameTaken { name: own, by: "another entry" };
+        return Some(fault(key.span.clone(), format!("dimensions.{name}"), taken));
+    }
+    let formulas = tree.get("formulas").map_or(&[][..], Tree::entries);
+    let characteristics = tree.get("characteristics").map_or(&[][..], Tree::entries);
+    let positions = || dimensions.iter().filter(|(_, entry)| entry.get("position").is_some());
+    let mut known: Vec<String> = match relative.position {
+        true => positions().map(|(key, _)| key.name.clone()).collect(),
+        false => (dimensions.iter().filter(|(_, entry)| entry.get("position").is_none()))
+            .chain(formulas)
+            .chain(characteristics.iter().filter(|(_, entry)| entry.get("formula").is_some()))
+            .map(|(key, _)| key.name.clone())
+            .chain(positions().flat_map(|(key, _)| ["x", "y"].map(|axis| format!("{}_{axis}", key.name))))
+            .collect(),
+    };
+    known.retain(|known| known != name);
+    for (base, span) in &relative.bases {
+        let at = |found: StudyFault| fault(span.clone(), format!("dimensions.{name}.from"), found);
+        if base == name {
+            return Some(at(StudyFault::FromCircle { path: vec![name.clone()] }));
+        }
+        if !known.contains(base) {
+            let nearest = nearest(base, known.iter().map(String::as_str)).map(str::to_owned);
+            let what = if relative.position { "position" } else { "dimension or formula" };
+            return Some(at(StudyFault::UnknownWord { what, found: base.clone(), nearest, known }));
+        }
+        if let Some(path) = circle(name, base, all) {
+            return Some(at(StudyFault::FromCircle { path }));
+        }
+    }
+    None
+}
+
+/// The names along which one comes back to itself.
+fn circle(name: &str, base: &str, all: &[Relative]) -> Option<Vec<String>> {
+    let mut paths = vec![vec![name.to_owned(), base.to_owned()]];
+    while let Some(path) = paths.pop() {
+        let last = path.last().expect("a path has an end");
+        for (next, _) in all.iter().filter(|other| other.name == *last).flat_map(|other| &other.bases) {
+            if next == name {
+                return Some(path);
+            }
+            if !path.contains(next) {
+                let mut longer = path.clone();
+                longer.push(next.clone());
+                paths.push(longer);
+            }
+        }
+    }
+    None
+}
+
+fn replace(expanded: &mut Expanded, relative: &Relative) {
+    let own = format!("{}{OWN}", relative.name);
+    let key = format!("dimensions.{}", relative.name);
+    let mut span = 0..0;
+    let mut from = 0..0;
+    if let Some(dimensions) = expanded.tree.get_mut("dimensions").and_then(Tree::entries_mut) {
+        let (name, entry) = &mut dimensions[relative.place];
+        span = name.span.clone();
+        name.name.clone_from(&own);
+        if let Some(keys) = entry.entries_mut() {
+            from = keys.iter().find(|(key, _)| key.name == "from").map_or(0..0, |(_, value)| value.span.clone());
+            keys.retain(|(key, _)| key.name != "from");
+        }
+    }
+    expanded.origins.push(Origin { section: "dimensions", name: own.clone(), key: key.clone(), span: span.clone() });
+    let axes: &[&str] = if relative.position { &["_x", "_y"] } else { &[""] };
+    for axis in axes {
+        let name = format!("{}{axis}", relative.name);
+        let terms =
+            relative.bases.iter().map(|(base, _)| base).chain([&own]).map(|term| quoted(&format!("{term}{axis}")));
+        let text = terms.collect::<Vec<_>>().join(" + ");
+        if let Some(formulas) = expanded.tree.section("formulas") {
+            let formula = Tree { span: from.clone(), value: Value::Text(text) };
+            formulas.push((Key { span: span.clone(), name: name.clone() }, formula));
+        }
+        expanded.origins.push(Origin { section: "formulas", name, key: key.clone(), span: span.clone() });
+    }
+    renamed(&mut expanded.tree, &relative.name, &own);
+}
+
+/// Costs and correlations of a relative dimension are those of its own part.
+fn renamed(tree: &mut Tree, name: &str, own: &str) {
+    if let Some(costs) = tree.get_mut("costs").and_then(Tree::entries_mut) {
+        for (key, entry) in costs {
+            if key.name == name {
+                own.clone_into(&mut key.name);
+            }
+            entry.get_mut("same_as").into_iter().for_each(|same| text(same, name, own));
+        }
+    }
+    if let Some(Value::Array(pairs)) = tree.get_mut("correlation").map(|list| &mut list.value) {
+        pairs.iter_mut().filter_map(|pair| pair.get_mut("between")).for_each(|between| text(between, name, own));
+    }
+    if let Some(pairs) = tree.get_mut("analysis").and_then(|analysis| analysis.get_mut("pairs")) {
+        text(pairs, name, own);
+    }
+}
+
+/// Replaces a text, and those of a list.
+fn text(tree: &mut Tree, name: &str, own: &str) {
+    match &mut tree.value {
+        Value::Text(found) if found == name => own.clone_into(found),
+        Value::Array(items) => items.iter_mut().for_each(|item| text(item, name, own)),
+        _ => {}
+    }
+}
+
+/// A name as a formula writes it.
+fn quoted(name: &str) -> String {
+    if is_plain(name) { name.to_owned() } else { format!("`{name}`") }
+}

@@ -1,0 +1,205 @@
+//! Formulas that drive the inputs of a model: built-in ones by name, programs by `[model] inputs`.
+
+use std::path::Path;
+
+use assert_cmd::Command;
+use sensitol::assembly::{Points, Request, Responses, Run};
+use sensitol::{Analysis, Method, Study, analyze};
+
+use super::studies::{faults, parse};
+use super::support::{close, data, relative, repository};
+
+/// A case of the elements by its name.
+pub fn case(name: &str) -> serde_json::Value {
+    let cases = data("elements.json");
+    let found = cases["cases"].as_array().unwrap().iter().find(|case| case["name"] == name).cloned();
+    found.unwrap_or_else(|| panic!("no case {name}"))
+}
+
+pub fn analysed(text: &str, method: Method) -> Analysis {
+    let study = parse(text).unwrap_or_else(|error| panic!("{error}"));
+    analyze(&study.problem, &method.into()).unwrap()
+}
+
+/// The values of the first characteristics at one point of the dimensions.
+fn at(study: &Study, point: &[f64]) -> Vec<Option<f64>> {
+    let outputs: Vec<usize> = (0..study.problem.characteristics().len()).collect();
+    let mut out = Responses::open(1, outputs.len());
+    let points = Points::from_rows(&[point]);
+    study.problem.function().evaluate(&Request::values(&points, &outputs), &Run::to_the_end(), &mut out);
+    (0..outputs.len()).map(|output| out.value(0, output)).collect()
+}
+
+const FIXED_SUM: &str = "[model]\nbuiltin = \"dual-mass-flywheel\"\n[dimensions]\nJ2 = { nominal = 0.04, tolerance = 0.002 }\n\
+                         [constants]\nk = 327.844\n[formulas]\nJ1 = \"0.33 - J2\"\n[characteristics]\nn_crit_DMF = {}\n";
+
+/// The slope by hand, with J1 = J - J2: n/2 (1/J1 - 1/J2); were J1 fixed it would be another. The step of `full` is sqrt(3) sigma, and
+/// its fourth-order remainder a part of 1e-3 of the slope: (sigma/J2)^2.
+#[test]
+fn a_formula_drives_an_input_of_a_built_in_model() {
+    let case = case("flywheel-fixed-sum");
+    let exact = |key: &str| case["exact"][key].as_f64().unwrap();
+    let study = parse(FIXED_SUM).unwrap();
+    relative(at(&study, &[0.04])[0].unwrap(), exact("n_crit_DMF"), 1e-12);
+    let printed = case["printed"]["n_crit_DMF"]["value"].as_f64().unwrap();
+    assert!(
+        (at(&study, &[0.04])[0].unwrap() - printed).abs()
+            < case["printed"]["n_crit_DMF"]["tolerance"].as_f64().unwrap()
+    );
+    let first = |text: &str| analysed(text, Method::Full).characteristics[0].sensitivities[0].first.unwrap();
+    relative(first(FIXED_SUM), exact("slope J2"), 2e-3);
+    let free =
+        FIXED_SUM.replace("[formulas]\nJ1 = \"0.33 - J2\"\n", "").replace("k = 327.844", "k = 327.844\nJ1 = 0.29");
+    relative(first(&free), exact("slope J2 with J1 fixed"), 2e-3);
+}
+
+/// A formula of the outputs, a formula of a formula, and constants drive alike: the same study with J1 as a dimension at the same
+/// value answers the same to the last digit.
+#[test]
+fn driven_inputs_are_what_their_formulas_say() {
+    let chained = FIXED_SUM.replace("J1 = \"0.33 - J2\"", "total = \"0.3 + J2 - 0.01\"\nJ1 = \"total - J2 + 0*k\"");
+    let plain = FIXED_SUM
+        .replace("[formulas]\nJ1 = \"0.33 - J2\"\n", "")
+        .replace("[constants]", "J1 = { nominal = 0.29 }\n[constants]");
+    let (chained, plain) = (parse(&chained).unwrap(), parse(&plain).unwrap());
+    let j1 = 0.3 + 0.045 - 0.01 - 0.045;
+    assert_eq!(at(&chained, &[0.045]), at(&plain, &[0.045, j1]));
+}
+
+/// A point at which the driving formula has no value costs that point, with the formula's reason.
+#[test]
+fn a_formula_without_a_value_is_a_point_without_one() {
+    let study = parse(&FIXED_SUM.replace("0.33 - J2", "sqrt(0.04 - J2) + 0.29")).unwrap();
+    let mut out = Responses::open(1, 1);
+    let points = Points::from_rows(&[[0.05]]);
+    study.problem.function().evaluate(&Request::values(&points, &[0]), &Run::to_the_end(), &mut out);
+    let error = out.error(0, 0).unwrap().to_string();
+    assert!(error.contains("sqrt"), "{error}");
+}
+
+/// Driven by unknowns of closure conditions: u solves u^2 = J2, so that J1 = 0.33 - u^2.
+#[test]
+fn unknowns_may_drive() {
+    let text = FIXED_SUM.replace(
+        "\"0.33 - J2\"\n",
+        "\"0.33 - u^2\"\n[unknowns]\nu = { start = 0.2, lower = 0 }\n[equations]\ne = \"u^2 - J2\"\n",
+    );
+    let (implicit, plain) = (parse(&text).unwrap(), parse(FIXED_SUM).unwrap());
+    for j2 in [0.038, 0.04, 0.0415] {
+        // Newton's method ends within 1e-12 of the root.
+        relative(at(&implicit, &[j2])[0].unwrap(), at(&plain, &[j2])[0].unwrap(), 1e-10);
+    }
+}
+
+#[test]
+fn what_cannot_drive_is_said() {
+    let model = "[model]\nbuiltin = \"dual-mass-flywheel\"\n";
+    let rest = "[characteristics]\nn_crit_DMF = {}\n";
+    let program = |inputs: &str| format!("[model]\ncommand = [\"true\"]\n{inputs}");
+    let dimensions = "[dimensions]\na = { nominal = 1, tolerance = 0.1 }\nb = { nominal = 2, tolerance = 0.1 }\n";
+    insta::assert_snapshot!(faults(&[
+        &format!(
+            "{model}[dimensions]\nJ2 = {{ tolerance = 0.002 }}\n[formulas]\nJ1 = \"0.33 - J2*n_crit_DMF\"\n{rest}"
+        ),
+        &format!(
+            "{model}[dimensions]\nJ2 = {{ tolerance = 0.002 }}\nJ1 = {{ tolerance = 0.1 }}\n[formulas]\nJ1 = \"0.33 - J2\"\n{rest}"
+        ),
+        &format!("{}{dimensions}[formulas]\nc = \"a + b\"\n[characteristics]\ny = {{}}\n", program("")),
+        &format!(
+            "{}{dimensions}[formulas]\nc = \"a + b\"\n[characteristics]\ny = {{}}\n",
+            program("inputs = [\"a\", \"d\"]\n")
+        ),
+        &format!("{}{dimensions}[characteristics]\ny = {{}}\n", program("inputs = [\"a\", \"a\", \"b\"]\n")),
+        &format!("{}{dimensions}[characteristics]\ny = {{}}\n", program("inputs = [\"a\"]\n")),
+        &format!(
+            "{}{dimensions}[formulas]\nc = \"a + y\"\n[characteristics]\ny = {{}}\n",
+            program("inputs = [\"b\", \"c\"]\n")
+        ),
+        &format!(
+            "{}{dimensions}[formulas]\nc = \"sqrt(a - b)\"\n[characteristics]\ny = {{}}\n",
+            program("inputs = [\"c\"]\n")
+        ),
+        &format!(
+            "{}{dimensions}[formulas]\nc = \"a + bb\"\n[characteristics]\ny = {{}}\n",
+            program("inputs = [\"b\", \"c\"]\n")
+        ),
+        &format!("{model}inputs = [\"J2\"]\n[dimensions]\nJ2 = {{ tolerance = 0.002 }}\n{rest}"),
+    ]));
+}
+
+/// A study of a child that counts what it is asked, with two inputs that three dimensions and a constant drive.
+fn counting(folder: &Path) -> String {
+    let (script, counter) = (repository("tests/children/counting.py"), folder.join("count"));
+    format!(
+        "[model]\ncommand = [\"python3\", {:?}, {:?}, \"0\", \"1\"]\ninputs = [\"gap\", \"k\", \"c\"]\nverify = 0\n\
+         [dimensions]\na = {{ nominal = 10, tolerance = 0.75 }}\nb = {{ nominal = 4, tolerance = 0.75 }}\nc = {{ nominal = 1, tolerance = 0.375 }}\n\
+         [constants]\nk = 2\n[formulas]\ngap = \"a - b\"\n[characteristics]\ny = {{}}\n[analysis]\nmethod = \"full\"\nstep = 1\nverify = 0\n",
+        script.display().to_string(),
+        counter.display().to_string(),
+    )
+}
+
+/// The child answers gap + 2 k + 3 c + 0.01 gap k: with k = 2 its slopes are 1.02 along a, -1.02 along b, 3 along c. The nominal point,
+/// 6 points along the axes and 6 of the pairs make the plan of `full`; a - b is the same for a up and b down, and for both up the nominal
+/// one, so that fewer are sent.
+#[test]
+fn a_program_is_sent_what_its_inputs_name_and_each_point_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("study.toml");
+    std::fs::write(&path, counting(folder.path())).unwrap();
+    let run = || {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+        let output = command
+            .arg("analyze")
+            .arg(&path)
+            .args(["--json", "--journal"])
+            .arg(folder.path().join("j.sqlite"))
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    let report = run();
+    let counted = || std::fs::metadata(folder.path().join("count")).unwrap().len();
+    let slope = |index: usize| report["characteristics"][0]["sensitivities"][index]["first"].as_f64().unwrap();
+    // Differences of a linear model: rounding of values of 12 over steps of 0.1.
+    [1.02, -1.02, 3.0].into_iter().enumerate().for_each(|(index, exact)| close(slope(index), exact, 1e-12, 1.0));
+    let sent = counted();
+    // Steps of one sigma are exact in doubles. The gap is up or down, with c up or down: 2 + 2 along the axes; pairs of a and b make a
+    // gap of 0 or of 2 steps; pairs of a or b with c are both up or both down: 2 + 2.
+    assert!(sent < 12, "{sent} points sent");
+    let evaluations = report["evaluations"].as_u64().unwrap();
+    // The nominal point, and again at the end of the batch.
+    assert_eq!(evaluations, sent + 2, "what is sent is what is counted");
+    run();
+    assert_eq!(counted(), sent, "what was sent once is known");
+}
+
+/// `plan --write-points` writes what the program is sent.
+#[test]
+fn points_are_written_as_they_are_sent() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("study.toml");
+    std::fs::write(&path, counting(folder.path())).unwrap();
+    let points = folder.path().join("points.csv");
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+    command.arg("plan").arg(&path).arg("--write-points").arg(&points).assert().success();
+    let text = std::fs::read_to_string(&points).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("gap,k,c"));
+    let rows: Vec<Vec<f64>> = lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    assert!(rows.contains(&vec![6.0, 2.0, 1.0]) && rows.iter().all(|row| row[1] == 2.0), "{text}");
+    // With their answers they are an analysis: the same model by hand.
+    let answered: String =
+        std::iter::once("gap,k,c,y\n".to_owned())
+            .chain(rows.iter().map(|x| {
+                format!("{},{},{},{}\n", x[0], x[1], x[2], x[0] + 2.0 * x[1] + 3.0 * x[2] + 0.01 * x[0] * x[1])
+            }))
+            .collect();
+    std::fs::write(&points, answered).unwrap();
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
+    let output = command.arg("analyze").arg(&path).arg("--json").arg("--points").arg(&points).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    close(report["characteristics"][0]["sensitivities"][1]["first"].as_f64().unwrap(), -1.02, 1e-12, 1.0);
+}

@@ -1,0 +1,191 @@
+//! Units of formulas: warned of, checked, converted; the model's border; literals with units.
+
+use sensitol::assembly::{Points, Request, Responses, Run};
+use sensitol::{Method, Study};
+
+use super::driven::analysed;
+use super::studies::{faults, parse};
+use super::support::{close, example_studies, relative};
+
+/// mm, in and degrees in one formula.
+const MIXED: &str = "[dimensions]\narm = { nominal = 118, tolerance = 0.4, unit = \"mm\" }\nshim = { nominal = 0.625, tolerance = 0.003, unit = \"in\" }\n\
+                     tilt = { nominal = 14, tolerance = 0.25, unit = \"deg\" }\n[characteristics]\n\
+                     h = { formula = \"arm*sin(tilt) + shim + 0.5[mm]\", unit = \"mm\" }\n";
+
+fn mode(mode: &str, text: &str) -> String {
+    format!("units = \"{mode}\"\n{text}")
+}
+
+fn at_nominal(study: &Study) -> f64 {
+    let nominal: Vec<f64> = study.problem.dimensions().iter().map(|one| one.nominal()).collect();
+    let mut out = Responses::open(1, 1);
+    let points = Points::from_rows(&[nominal]);
+    study.problem.function().evaluate(&Request::values(&points, &[0]), &Run::to_the_end(), &mut out);
+    out.value(0, 0).unwrap()
+}
+
+/// By hand: 118 sin 14° + 0.625 · 25.4 + 0.5.
+#[test]
+fn conversion_gives_the_value_by_hand() {
+    let study = parse(&mode("convert", MIXED)).unwrap();
+    assert!(study.warnings.is_empty(), "{:?}", study.warnings);
+    let exact = 118.0 * 14f64.to_radians().sin() + 0.625 * 25.4 + 0.5;
+    // A few products and a quotient by a factor more than by hand.
+    relative(at_nominal(&study), exact, 4e-15);
+    // Slopes stay in the study's own units: mm for an inch, mm for a degree.
+    let text = mode("convert", MIXED);
+    let analysis = analysed(&text, Method::SecondOrder);
+    let slope = |index: usize| analysis.characteristics[0].sensitivities[index].first.unwrap();
+    relative(slope(1), 25.4, 1e-9);
+    relative(slope(2), 118.0 * 14f64.to_radians().cos() * 1f64.to_radians(), 1e-5);
+    // The numbers as written, where nothing is converted.
+    let raw = 118.0 * 14f64.sin() + 0.625 + 0.5;
+    relative(at_nominal(&parse(&mode("labels", MIXED)).unwrap()), raw, 4e-15);
+    relative(at_nominal(&parse(MIXED).unwrap()), raw, 4e-15);
+}
+
+/// Formulas with units of their own, constants and unknowns with units, loops in degrees: the same as by hand in millimetres.
+#[test]
+fn conversion_follows_formulas_constants_unknowns_and_loops() {
+    let text = "units = \"convert\"\n[constants]\nE = { value = 205, unit = \"GPa\" }\n[dimensions]\nA = { nominal = 100, tolerance = 1, unit = \"mm^2\" }\n\
+                e = { nominal = 0.1, tolerance = 0.01, unit = \"%\" }\n[formulas]\nF = { formula = \"E*A*e\", unit = \"kN\" }\n\
+                [characteristics]\ny = { formula = \"2*F\", unit = \"N\" }\n";
+    // 205e9 · 100e-6 · 0.001 = 20500 N.
+    relative(at_nominal(&parse(text).unwrap()), 41000.0, 1e-14);
+    let text = "units = \"convert\"\n[dimensions]\na = { nominal = 30, tolerance = 0.1, unit = \"mm\" }\nb = { nominal = 4, tolerance = 0.01, unit = \"cm\" }\n\
+                [unknowns]\nc = { start = 2, unit = \"in\" }\nphi = { start = 30, unit = \"deg\" }\n\
+                [loops]\nl = [ { length = \"a\", angle = 0 }, { length = \"b\", angle = \"pi/2\" }, { length = \"c\", angle = \"phi + pi\" } ]\n\
+                [characteristics]\nc = { unit = \"in\" }\n";
+    // A right triangle of 30 and 40 mm: 50 mm.
+    relative(at_nominal(&parse(text).unwrap()), 50.0 / 25.4, 1e-12);
+}
+
+/// The border of a built-in model in m and rad: mm and degrees are converted, or else an error.
+#[test]
+fn inputs_of_a_model_are_converted_or_refused() {
+    let text = |units: &str| {
+        format!(
+            "{units}[model]\nbuiltin = \"engine-balance\"\n[dimensions]\na = {{ nominal = 78, tolerance = 0.1, unit = \"mm\" }}\n[characteristics]\nF = {{}}\nM = {{}}\n"
+        )
+    };
+    let plain = text("").replace("nominal = 78, tolerance = 0.1, unit = \"mm\"", "nominal = 0.078, tolerance = 0.0001");
+    let sigma = |text: &str| analysed(text, Method::SecondOrder).characteristics[1].moments.unwrap().sigma();
+    // A linear input: the same differences but for rounding.
+    relative(sigma(&text("units = \"convert\"\n")), sigma(&plain), 1e-9);
+    for units in ["", "units = \"check\"\n"] {
+        let error = parse(&text(units)).unwrap_err().to_string();
+        assert!(
+            error.contains("the input `a` of the model engine-balance is in m, unit says mm: factor 0.001"),
+            "{error}"
+        );
+    }
+    parse(&text("units = \"labels\"\n")).unwrap();
+}
+
+#[test]
+fn units_that_do_not_go_together_are_faults() {
+    let rest = "[dimensions]\narm = { nominal = 118, tolerance = 0.4, unit = \"mm\" }\nshim = { nominal = 0.625, unit = \"in\" }\n\
+                tilt = { nominal = 14, unit = \"deg\" }\nF = { nominal = 3, unit = \"N\" }\nT = { nominal = 20, unit = \"degC\" }\nx = { nominal = 3 }\n\
+                [constants]\nE = { value = 205, unit = \"GPa\" }\nA = { value = 2, unit = \"mm^2\" }\n";
+    let formula = |formula: &str| {
+        mode("check", &format!("{rest}[characteristics]\ny = {{ formula = \"{formula}\", unit = \"mm\" }}\n"))
+    };
+    let converted = |formula: &str| formula.replace("\"check\"", "\"convert\"");
+    insta::assert_snapshot!(faults(&[
+        &formula("arm + shim"),
+        &formula("arm - x - (shim + arm)"),
+        &formula("arm*sin(tilt)"),
+        &formula("arm*exp(F)"),
+        &formula("arm + F"),
+        &formula("arm + 400*F"),
+        &formula("arm*T"),
+        &formula("arm*acos(shim)"),
+        &formula("arm^F"),
+        &formula("E*A"),
+        &formula("arm + 2[furlong]"),
+        &formula("arm + 2[mm"),
+        &formula("arm + arm[mm]"),
+        &converted(&formula("arm*sin(tilt*deg)")),
+        &converted(&formula("arm + 2")),
+        &converted(&formula("arm + x")),
+        &converted(&formula("arm + F")),
+        &converted(&formula("arm + shim"))
+            .replace("\", unit = \"mm\" }\n", "\" }\n")
+            .replace("shim\", unit = \"mm\"", "shim\""),
+        &mode("metric", MIXED),
+        &mode(
+            "check",
+            &format!(
+                "{rest}[formulas]\ns = {{ formula = \"E\", unit = \"MPa\" }}\n[characteristics]\ny = {{ formula = \"s*x\" }}\n"
+            )
+        ),
+        &mode(
+            "check",
+            &format!(
+                "{rest}[unknowns]\nu = 3\nv = 2\n[loops]\nl = [ {{ length = \"arm\", angle = \"tilt\" }}, {{ length = \"u\", angle = \"v\" }}, {{ length = \"shim\", angle = 0 }} ]\n[characteristics]\nu = {{}}\n"
+            )
+        ),
+    ]));
+}
+
+/// A warning with its place by default; numbers that may hide a unit are silent, and so is what has no unit.
+#[test]
+fn units_that_do_not_go_together_warn() {
+    let warnings = |text: &str| {
+        let warnings = parse(text).unwrap().warnings;
+        warnings.iter().map(|warning| format!("[{}] {}", warning.code(), warning.message())).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        warnings(MIXED),
+        [
+            "[unit-mismatch] The units of characteristics.h.formula do not go together. Column 9, `tilt`, is sine of degrees. The numbers are used as \
+             they are. To correct it, write tilt*deg."
+        ]
+    );
+    let silent = MIXED.replace("arm*sin(tilt) + shim + 0.5[mm]", "arm*sin(tilt*deg) + 25.4*shim + 400*F");
+    assert_eq!(
+        warnings(&silent.replace("[characteristics]", "F = { nominal = 2, unit = \"N\" }\n[characteristics]")),
+        [""; 0]
+    );
+    assert_eq!(
+        warnings(&MIXED.replace(", unit = \"deg\"", "").replace(", unit = \"in\"", "").replace("0.5[mm]", "0.5")),
+        [""; 0]
+    );
+    let unknown = warnings(&MIXED.replace("\"deg\"", "\"turns\""));
+    assert_eq!(unknown.len(), 2);
+    assert!(unknown[1].starts_with("[unknown-unit] Nothing is known of the unit `turns`."), "{unknown:?}");
+}
+
+/// `2[mm]` is a number everywhere.
+#[test]
+fn numbers_with_units_are_numbers() {
+    let text = "[dimensions]\na = { nominal = 3, tolerance = 0.1, unit = \"mm\" }\n[characteristics]\ny = { formula = \"2[mm]*a + 25.4[mm/in]^2 - -1[mm]\" }\n";
+    close(at_nominal(&parse(text).unwrap()), 6.0 + 25.4 * 25.4 + 1.0, 1e-15, 1.0);
+}
+
+/// Every example declares its units and passes `check`.
+#[test]
+fn every_example_passes_check() {
+    let mut without = Vec::new();
+    for (name, path) in example_studies() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let json = path.extension().is_some_and(|extension| extension == "json");
+        let checked = match (json, text.contains("units = ")) {
+            (_, true) => text.clone(),
+            (true, _) => text.replacen('{', "{ \"units\": \"check\",", 1),
+            (false, _) => format!("units = \"check\"\n{text}"),
+        };
+        let folder = path.parent().unwrap();
+        let file = tempfile::Builder::new().suffix(if json { ".json" } else { ".toml" }).tempfile_in(folder).unwrap();
+        std::fs::write(file.path(), checked).unwrap();
+        let study = Study::read(file.path()).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(!study.warnings.iter().any(|warning| warning.code() == "unknown-unit"), "{name}");
+        let bare =
+            study.problem.dimensions().iter().filter(|one| one.unit().is_none()).map(|one| one.name().to_owned());
+        let bare: Vec<String> = bare.collect();
+        if !bare.is_empty() {
+            without.push(format!("{}: {}", path.display(), bare.join(", ")));
+        }
+    }
+    assert!(without.is_empty(), "dimensions without a unit:\n{}", without.join("\n"));
+}
