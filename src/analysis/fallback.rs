@@ -1,6 +1,10 @@
 //! Where a surrogate is not trusted: points of the model itself, with the surrogate as control variate.
 
+use std::sync::Arc;
+
 use super::errors::of_yield;
+use super::remembered::Remembered;
+use super::strides::{Beside, StridedFigures, Strides};
 use super::wanted::excess;
 use super::{CharacteristicAnalysis, SampledModel};
 use crate::assembly::{NonRepeatable, Run};
@@ -9,8 +13,9 @@ use crate::method::{Climbed, ErrorEstimate, ErrorSource, Outcome};
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
-use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
+use crate::simulation::{REPLICATES, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
 use crate::summary::RunSummary;
+use crate::verification::{carried_by, student};
 use crate::warning::Figure;
 
 /// Points of a cheap model, at most;
@@ -23,6 +28,10 @@ const FIRST: u64 = 1 << 10;
 const PART: f64 = 0.5;
 /// By how much a second attempt exceeds the first.
 const MORE: u64 = 4;
+/// Points of strides beside regressions, at most: where they have not reached what is wanted, a regression does not follow the model. Of
+/// what a costly model may be asked they are a part, because the points of its sample are others.
+const STRIDES: usize = 512;
+const COSTLY_PART: usize = 4;
 
 /// What the fallback cost.
 #[derive(Debug, Default)]
@@ -47,6 +56,7 @@ pub(super) fn fall_back(
     if short.is_empty() {
         return spent;
     }
+    let remembered;
     let costly = problem.function().signature().costly;
     // A model whose evaluations cost something is sampled only from what was allowed for it.
     let most = match (costly, left.map(|left| left as u64)) {
@@ -57,12 +67,25 @@ pub(super) fn fall_back(
     if most < FEWEST {
         return spent;
     }
+    let strided = if costly { most as usize / COSTLY_PART } else { most as usize }.min(STRIDES);
+    let problem = match stride((problem, outcome, climbed), (seed, strided), &short, characteristics, run, &mut spent) {
+        Strided::Enough => return spent,
+        Strided::Known(answers) => {
+            // The sample begins with these points, and they are not evaluated again.
+            remembered = problem.replacing(0, problem.dimensions()[0].clone(), Arc::new(*answers));
+            &remembered
+        }
+        Strided::Nothing => problem,
+    };
     let needed = short.iter().filter_map(|&c| shortfall(&characteristics[c], climbed, c)).fold(0.0, f64::max);
     let finest =
         climbed.accuracies.wanted().into_iter().filter_map(|(_, wanted)| wanted).fold(climbed.accuracy, f64::min);
     let few = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count() <= SOBOL_DIMENSIONS;
     let sampler = if costly || !few { Sampler::Random } else { Sampler::Sobol };
+    let few_scramblings = if sampler == Sampler::Sobol { student(REPLICATES as usize) } else { 1.0 };
     let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
+    // What was evaluated in strides is not evaluated again.
+    let most = most + if sampler == Sampler::Sobol { spent.run.evaluations } else { 0 };
     while spent.run.evaluations + samples <= most {
         // Sobol's points come in powers of two: not more of them than may be.
         let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
@@ -76,13 +99,75 @@ pub(super) fn fall_back(
         let last = enough || spent.run.evaluations + MORE * samples > most;
         if last {
             for &c in &short {
-                replace(&mut characteristics[c], climbed, c, &found.characteristics[c]);
+                replace(&mut characteristics[c], climbed, c, (&found.characteristics[c], few_scramblings));
             }
             return spent;
         }
         samples *= MORE;
     }
     spent
+}
+
+/// What strides came to.
+enum Strided {
+    /// Everything is known as well as it was wanted, or the run was stopped.
+    Enough,
+    /// They are not enough, and these are their answers.
+    Known(Box<Remembered>),
+    Nothing,
+}
+
+/// Samples in strides beside sparse regressions, and takes what they say where all of it is known as well as it was wanted.
+fn stride(
+    (problem, outcome, climbed): (&Problem, &Outcome, &Climbed),
+    (seed, most): (u64, usize),
+    short: &[usize],
+    characteristics: &mut [CharacteristicAnalysis],
+    run: &Run<'_>,
+    spent: &mut Spent,
+) -> Strided {
+    let strides = Strides::new(problem, outcome, seed).filter(|strides| strides.next(most) > 0);
+    let Some(mut strides) = strides else { return Strided::Nothing };
+    let mut beside: Vec<Vec<Beside<'_>>> = short.iter().map(|&c| strides.beside(c)).collect();
+    let mut enough = false;
+    while !enough && strides.next(most) > 0 {
+        enough = !strides.draw(most, run);
+        if enough {
+            break;
+        }
+        let found: Option<Vec<StridedFigures>> = (short.iter().zip(&mut beside))
+            .map(|(&c, beside)| strides.found(c, beside, left(&characteristics[c], climbed, c)))
+            .collect();
+        if let Some(found) = found.filter(|found| found.iter().all(|found| found.is_known(climbed))) {
+            short.iter().zip(found).for_each(|(&c, found)| take(&mut characteristics[c], found));
+            enough = true;
+        }
+    }
+    spent.run = spent.run.and(&strides.run);
+    spent.non_repeatable.extend(strides.non_repeatable.iter().cloned());
+    if enough { Strided::Enough } else { Strided::Known(Box::new(strides.answers)) }
+}
+
+impl StridedFigures {
+    /// Whether two errors are within what is wanted, of sigma and of whatever else.
+    fn is_known(&self, climbed: &Climbed) -> bool {
+        let within = |error: Option<f64>, wanted: f64| error.is_some_and(|error| error <= PART * wanted);
+        let [_, sigma, skewness, kurtosis] = self.moments;
+        let each = |(figure, wanted): (Figure, Option<f64>)| {
+            let Some(wanted) = wanted else { return true };
+            match figure {
+                Figure::Sigma => true,
+                Figure::Skewness => within(skewness.standard_error, wanted),
+                Figure::Kurtosis => within(kurtosis.standard_error, wanted),
+                Figure::Yield => {
+                    let share = self.sampled.yield_;
+                    share.is_none_or(|(share, interval)| within(Some(one_error(share, interval)), wanted))
+                }
+            }
+        };
+        let sigma = within(sigma.standard_error, climbed.accuracy * sigma.value);
+        sigma && climbed.accuracies.wanted().into_iter().all(each)
+    }
 }
 
 /// How far off sigma may be, as a part of it, where that is more than wanted; None where it is not.
@@ -114,24 +199,53 @@ fn known(found: &SimulatedCharacteristic, climbed: &Climbed) -> bool {
     within(sigma, climbed.accuracy) && climbed.accuracies.wanted().into_iter().all(each)
 }
 
-fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found: &SimulatedCharacteristic) {
+fn replace(
+    one: &mut CharacteristicAnalysis,
+    climbed: &Climbed,
+    c: usize,
+    (found, few): (&SimulatedCharacteristic, f64),
+) {
     let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return };
     let (Some(skewness), Some(kurtosis)) = (found.skewness, found.kurtosis) else { return };
-    let before = one.moments.map_or(0.0, |moments| moments.variance());
-    let moments = Moments::new(mean.value, sigma.value, skewness.value, kurtosis.value - 3.0);
+    let moments = [mean, sigma, skewness, kurtosis];
+    // As the errors of a verification: few randomisations, and few points that carry a power, know little of their own scatter.
+    let carried = found.control.map(|control| control.carried);
+    let widths = carried.map_or([1.0; 4], |points| points.map(|points| few * carried_by(points)));
+    let standard_errors = std::array::from_fn(|i| moments[i].standard_error.map(|error| widths[i] * error));
+    let sampled = SampledModel {
+        samples: found.samples,
+        failed: found.failed,
+        error: found.error.as_ref().map(ToString::to_string),
+        left: left(one, climbed, c),
+        standard_errors,
+        yield_: found.yield_.map(|share| (share.value, share.interval)),
+        beyond: [found.below, found.above],
+        histogram: found.histogram.clone(),
+    };
+    take(one, StridedFigures { moments, sampled });
+}
+
+/// The share of the variance that the surface leaves, by the check.
+fn left(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> f64 {
+    let variance = one.moments.map_or(0.0, |moments| moments.variance());
+    let checked = climbed.checked[c].as_ref().map(|check| check.variance);
+    checked.map_or(0.0, |off| if variance > 0.0 { (off / variance).min(1.0) } else { 1.0 })
+}
+
+/// Takes the model's figures in place of the surface's.
+fn take(one: &mut CharacteristicAnalysis, StridedFigures { moments, sampled }: StridedFigures) {
+    let [mean, sigma, skewness, kurtosis] = moments.map(|of| of.value);
+    let moments = Moments::new(mean, sigma, skewness, kurtosis - 3.0);
     let limits = one.characteristic.limits();
     let capability = |law: &Law| Capability::of(law, moments.mean(), moments.sigma(), limits);
     let law = Law::fit(&moments);
     one.capability = law.as_ref().ok().map(capability);
     one.normal = Law::normal(&moments).ok().map(|law| capability(&law));
-    let error = |estimate: Estimate| estimate.standard_error;
-    let standard_errors = [error(mean), error(sigma), error(skewness), error(kurtosis)];
-    let sources = vec![ErrorSource::Sampled { points: found.samples }];
-    let [mean, sigma, skewness, kurtosis] = standard_errors;
+    let sources = vec![ErrorSource::Sampled { points: sampled.samples }];
+    let [mean, sigma, skewness, kurtosis] = sampled.standard_errors;
     let estimate = ErrorEstimate { mean, sigma, skewness, kurtosis, yield_: None, sources };
-    let yield_ = found.yield_.map(|share| (share.value, share.interval));
     // The fit of four moments is off the sample itself by what it is off, and the sample by its interval.
-    let of_fit = one.capability.and_then(|capability| capability.yield_()).zip(yield_);
+    let of_fit = one.capability.and_then(|capability| capability.yield_()).zip(sampled.yield_);
     let off = of_fit.map(|(fit, (value, interval))| (fit - value).abs() + one_error(value, interval));
     let of_moments = of_yield(&estimate, &moments, limits);
     one.error_estimate =
@@ -139,19 +253,8 @@ fn replace(one: &mut CharacteristicAnalysis, climbed: &Climbed, c: usize, found:
     one.law = Some(law);
     one.moments = Some(moments);
     one.sampled = None;
-    let left =
-        climbed.checked[c].as_ref().map_or(0.0, |check| if before > 0.0 { check.variance / before } else { 1.0 });
-    one.without_value += found.failed as usize;
-    one.model_sampled = Some(SampledModel {
-        samples: found.samples,
-        failed: found.failed,
-        error: found.error.as_ref().map(ToString::to_string),
-        left: left.min(1.0),
-        standard_errors,
-        yield_,
-        beyond: [found.below, found.above],
-        histogram: found.histogram.clone(),
-    });
+    one.without_value += sampled.failed as usize;
+    one.model_sampled = Some(sampled);
 }
 
 impl Spent {

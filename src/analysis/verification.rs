@@ -15,7 +15,7 @@ use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::verification::{
-    Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, unexplained, variance_shares,
+    Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, unexplained, variance_shares_during,
     verify_by_checks, verify_characteristic,
 };
 use crate::warning::{Change, Warning};
@@ -52,7 +52,8 @@ pub(super) fn verify(
     run: &Run<'_>,
 ) -> (RunSummary, Vec<NonRepeatable>) {
     let most = options.verification(problem.function().signature());
-    if most == 0 || outcome.evaluated.stopped.is_some() || run.stopped() {
+    let costly = problem.function().signature().costly;
+    if most == 0 || outcome.evaluated.stopped.is_some() || costly && run.stopped() {
         return Default::default();
     }
     let open: Vec<usize> =
@@ -60,18 +61,19 @@ pub(super) fn verify(
     if open.is_empty() {
         return Default::default();
     }
-    if problem.function().signature().costly {
+    if costly {
         return check(problem, outcome, options, most.min(left.unwrap_or(usize::MAX)), (&open, characteristics), run);
     }
     let seed = options.seed.unwrap_or(Options::SEED);
+    let mut stopped = None;
     for c in open {
         // A long formula takes a while for each of some 45 000 points: what is left has no verification, and the report says so.
-        if run.stopped() {
+        if !sample(problem, outcome, options, c, &mut characteristics[c], (seed, run)) {
+            stopped = Some(run.why_open());
             break;
         }
-        sample(problem, outcome, options, c, &mut characteristics[c], (seed, run));
     }
-    Default::default()
+    (RunSummary { stopped, ..RunSummary::default() }, Vec::new())
 }
 
 /// Whether the formula's own degree proves that the surface is the function; then its errors are roundings.
@@ -123,6 +125,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
     true
 }
 
+/// Verifies one characteristic by a sample; false where the run was stopped before there was one.
 fn sample(
     problem: &Problem,
     outcome: &Outcome,
@@ -130,11 +133,11 @@ fn sample(
     c: usize,
     one: &mut CharacteristicAnalysis,
     (seed, run): (u64, &Run<'_>),
-) {
+) -> bool {
     let mut core = crate::verification::CORE;
     let surrogate = outcome.fitted[c].surrogate.as_ref();
     let beside = surrogate.map(|surrogate| (outcome.plan.varying(), surrogate));
-    let mut found = verify_characteristic(problem, c, seed, core, beside);
+    let Some(mut found) = verify_characteristic(problem, c, (seed, core), beside, run) else { return false };
     let climbed = outcome.climbed.as_ref();
     let wanted = climbed.map(|climbed| climbed.accuracy);
     // Of a target that leaves little to be rejected, the weight of one point may be all.
@@ -146,17 +149,20 @@ fn sample(
     };
     while core < MOST && coarse(&found) && !run.stopped() {
         core *= MORE;
-        found = verify_characteristic(problem, c, seed, core, beside);
+        // What is known stays known where there is no time for more.
+        let Some(more) = verify_characteristic(problem, c, (seed, core), beside, run) else { break };
+        found = more;
     }
-    let left = surrogate.and_then(|surrogate| unexplained(problem, c, outcome.plan.varying(), surrogate, seed));
-    let shares =
-        left.filter(|&left| left > UNTRUSTED && !run.stopped()).and_then(|_| variance_shares(problem, c, seed));
+    let left = beside.and_then(|beside| unexplained(problem, c, beside, seed, run));
+    let shares = left
+        .filter(|&left| left > UNTRUSTED && !run.stopped())
+        .and_then(|_| variance_shares_during(problem, c, seed, run));
     let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
     let share = |(d, [first, total]): (usize, [Verified; 2])| VarianceShare { dimension: dimension(d), first, total };
     let shares = shares.map(|shares| shares.into_iter().map(share).collect());
     let refuted = options.model_figures && left.is_none_or(|left| left > TRUSTED);
     let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
-    let Some(moments) = one.moments else { return };
+    let Some(moments) = one.moments else { return true };
     let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
     let law = one.capability.and_then(|capability| capability.yield_());
     one.error_estimate = Some(ErrorEstimate {
@@ -183,6 +189,7 @@ fn sample(
         shares,
         replaced,
     });
+    true
 }
 
 /// Takes the model's figures where those at hand contradict them; whether any was taken.

@@ -22,6 +22,8 @@ use crate::elementary::{Elementary, Exp};
 const LEAST: f64 = 40.0;
 /// Elements of a table of products at most: beyond, the contour ends where it is, with the error that this leaves.
 const MOST: usize = 1 << 22;
+/// Products of a table's elements with the points of the contour so far, some 1e8: the contour ends there too.
+const EFFORT: f64 = (1u64 << 27) as f64;
 
 /// Sigmas of its neighbours that an input's nodes resolve the products with; half of them may add to the weight of a node.
 const REACH: f64 = 8.0;
@@ -252,6 +254,7 @@ impl Tree {
     fn few(&self, theta: f64, from: f64, step: f64, out: &mut [Complex]) -> bool {
         let top = libm::hypot(theta, from + step * out.len() as f64);
         let done = self.up(theta, top);
+        let points = from / step + out.len() as f64;
         let mut messages: Vec<Option<Message>> = Vec::with_capacity(self.nodes.len());
         let mut parents = vec![usize::MAX; self.nodes.len()];
         for (place, node) in self.nodes.iter().enumerate() {
@@ -263,7 +266,8 @@ impl Tree {
                 false => None,
                 true => {
                     let (own, parent) = (&done[place].0, &done[parents[place]].0);
-                    if own.z.len() * parent.z.len() > MOST {
+                    let elements = own.z.len() * parent.z.len();
+                    if elements > MOST || elements as f64 * points > EFFORT {
                         return false;
                     }
                     Some(Message::new(own, &parent.z, theta, node.product, from, step))

@@ -2,6 +2,7 @@
 
 use super::Accuracies;
 use super::check::SurrogateCheck;
+use crate::plan::Point;
 
 /// How a climb ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -48,9 +49,16 @@ pub struct Climbed {
     pub tails: Vec<Option<f64>>,
     /// The share of the variance that interactions have which the screening did not find, where it was needed.
     pub unscreened: Vec<Option<f64>>,
+    /// The points that were looked at there, by characteristic.
+    pub(crate) far: Vec<(usize, [Point; 2])>,
 }
 
 impl Climbed {
+    /// The relative error of sigma where a surface is off by so many sigmas three sigma out.
+    pub(crate) fn far_out(off: f64) -> f64 {
+        SurrogateCheck::far_out(off)
+    }
+
     /// The variance that the surrogate of a characteristic does not have, by the check; None where nothing was checked.
     pub(crate) fn unexplained(&self, c: usize) -> Option<f64> {
         self.checked[c].as_ref().filter(|check| check.points > 1).map(|check| check.variance)

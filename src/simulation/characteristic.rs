@@ -4,7 +4,7 @@ use serde::{Serialize, Serializer};
 
 use super::control::Twin;
 use super::count::{Count, Replicate};
-use super::difference::{Controlled, Difference, Shares, moments as controlled, shares};
+use super::difference::{Controlled, Difference, Shares, carried, moments as controlled, shares};
 use super::replicate::of_replicates;
 use super::shape::value;
 use crate::assembly::EvaluationError;
@@ -93,6 +93,8 @@ pub struct SurrogateControl {
     pub mean: Option<f64>,
     /// The same of sigma.
     pub sigma: Option<f64>,
+    /// How many points carry mean, sigma, skewness and kurtosis.
+    pub(crate) carried: [f64; 4],
 }
 
 /// The share of assemblies that keep the limits.
@@ -190,11 +192,12 @@ impl SimulatedCharacteristic {
             }),
             range,
             quantiles,
-            control: evidence.beside.as_ref().map(|(twin, _)| SurrogateControl {
+            control: evidence.beside.as_ref().map(|(twin, differences)| SurrogateControl {
                 method: twin.method,
                 evaluations: twin.evaluations,
                 mean: reduction(plain[0], mean),
                 sigma: reduction(plain[1], sigma),
+                carried: fewer(carried(differences)),
             }),
         }
     }
@@ -340,6 +343,11 @@ fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Optio
     let Some(own) = own else { return Some(estimate) };
     let best = if without.is_some_and(|without| without < own) { plain? } else { estimate };
     Some(Estimate { standard_error: best.standard_error.map(|error| CHOICE * error), ..best })
+}
+
+/// How many points carry each moment: of the sums with the surrogate and without it the fewer.
+fn fewer([plain, controlled]: [[f64; 4]; 2]) -> [f64; 4] {
+    std::array::from_fn(|moment| plain[moment].min(controlled[moment]))
 }
 
 /// By how much the standard error has shrunk.

@@ -40,6 +40,34 @@ pub(super) struct Difference {
     moved: [i64; 2],
     /// Points outside the limits for the model only, and for the surrogate only.
     only: [u64; 2],
+    /// How few points carry the sums of `v^k`, and those of `n_k - t^k`.
+    carried: [Carried; 2],
+}
+
+/// Sums of the squares and the fourth powers of four terms: `(sum r^2)^2 / sum r^4` points carry a sum (Kish 1965).
+#[derive(Clone, Copy, Default)]
+struct Carried([[f64; 2]; CONTROLS]);
+
+impl Carried {
+    fn count(&mut self, terms: [f64; CONTROLS]) {
+        for ([squares, fourths], term) in self.0.iter_mut().zip(terms) {
+            let square = term * term;
+            (*squares, *fourths) = (*squares + square, *fourths + square * square);
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        for (own, more) in self.0.iter_mut().zip(&other.0) {
+            own.iter_mut().zip(more).for_each(|(own, more)| *own += more);
+        }
+    }
+
+    /// How many points carry each sum, at least 1.
+    fn points(&self) -> [f64; CONTROLS] {
+        let points =
+            |[squares, fourths]: [f64; 2]| if fourths > 0.0 { (squares * squares / fourths).max(1.0) } else { 1.0 };
+        self.0.map(points)
+    }
 }
 
 impl Difference {
@@ -54,6 +82,7 @@ impl Difference {
                 difference.lost += 1;
                 let [p1, p2, p3, p4] = powers;
                 rows.push([-1.0, -p1, -p2, -p3, -p4, p1, p2, p3, p4]);
+                difference.carried[1].count(powers);
                 continue;
             }
             let d = ((value - twin.centre) - rise) / twin.moments.sigma;
@@ -63,6 +92,8 @@ impl Difference {
             let [d1, d2, d3, d4] = differences;
             let [p1, p2, p3, p4] = powers;
             rows.push([0.0, d1, d2, d3, d4, p1, p2, p3, p4]);
+            difference.carried[0].count([v, v * v, v * v * v, v * v * v * v]);
+            difference.carried[1].count(differences);
             let (model, surrogate) = (sides(&twin.limits, value), twin.sides(rise));
             for (side, moved) in difference.moved.iter_mut().enumerate() {
                 *moved += i64::from(model[side]) - i64::from(surrogate[side]);
@@ -84,6 +115,7 @@ impl Difference {
             self.moved[side] += other.moved[side];
             self.only[side] += other.only[side];
         });
+        self.carried.iter_mut().zip(&other.carried).for_each(|(own, more)| own.merge(more));
     }
 
     fn net(&self) -> f64 {
@@ -177,6 +209,12 @@ fn standardised(differences: &[f64; 4], twin: &Twin) -> [Option<(f64, [f64; 4])>
         Some((skewness, sum(&by3, 1.0 / (c2 * root), 1.5 * skewness / c2))),
         Some((kurtosis, sum(&by4, 1.0 / (c2 * c2), 2.0 * kurtosis / c2))),
     ]
+}
+
+/// How many points carry mean, sigma, skewness and kurtosis: without the surrogate, and with it. A handful of them does not know how far
+/// a sum may be off, whatever the replicates say.
+pub(super) fn carried(replicates: &[&Difference]) -> [[f64; CONTROLS]; 2] {
+    pooled(replicates).carried.map(|carried| carried.points())
 }
 
 /// A moment with the surrogate as control.

@@ -6,6 +6,7 @@
 //!
 //! It is filled by difference plans; its moments are exact for any independent inputs, and for correlated normal ones.
 
+mod chaos;
 mod correlated;
 mod inputs;
 mod parabolas;
@@ -15,6 +16,7 @@ mod shape;
 mod univariate;
 mod values;
 
+pub(crate) use chaos::{Chaos, Places, Sparse};
 pub use inputs::Inputs;
 pub use relocation::Relocation;
 pub use shape::{InputShape, shapes};

@@ -3,7 +3,7 @@
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// How many figures the moments are: mean, sigma, skewness, kurtosis. Shares follow them.
-pub(super) const MOMENTS: usize = 4;
+pub(crate) const MOMENTS: usize = 4;
 /// The probability below three sigmas of a normal law.
 const THREE_SIGMAS: f64 = 0.998_65;
 
@@ -29,7 +29,7 @@ pub(super) fn moments(values: &[f64], weights: &[f64]) -> [f64; MOMENTS] {
 }
 
 /// Mean, sigma, skewness and kurtosis from raw moments 1 to 4 about an origin in units of a scale; what follows them is passed on.
-pub(super) fn standard(raw: &[f64], origin: f64, scale: f64) -> Vec<f64> {
+pub(crate) fn standard(raw: &[f64], origin: f64, scale: f64) -> Vec<f64> {
     let [m1, m2, m3, m4] = [raw[0], raw[1], raw[2], raw[3]];
     let second = m2 - m1 * m1;
     let third = m3 - 3.0 * m1 * m2 + 2.0 * m1.powi(3);
@@ -48,7 +48,7 @@ pub(super) fn standard(raw: &[f64], origin: f64, scale: f64) -> Vec<f64> {
 /// `f_(r)` the figures without randomisation r (Tukey 1958), so that ratios and roots need no derivative.
 ///
 /// Shapes: `sums` has a row for every sum, with R columns.
-pub(super) fn jackknife(of: impl Fn(&[f64]) -> Vec<f64>, sums: &[Vec<f64>]) -> Vec<f64> {
+pub(crate) fn jackknife(of: impl Fn(&[f64]) -> Vec<f64>, sums: &[Vec<f64>]) -> Vec<f64> {
     let replicates = sums.first().map_or(0, Vec::len);
     let totals = totals(sums);
     let left_out: Vec<Vec<f64>> = (0..replicates)
@@ -66,12 +66,12 @@ pub(super) fn jackknife(of: impl Fn(&[f64]) -> Vec<f64>, sums: &[Vec<f64>]) -> V
 }
 
 /// The sum of every row.
-pub(super) fn totals(sums: &[Vec<f64>]) -> Vec<f64> {
+pub(crate) fn totals(sums: &[Vec<f64>]) -> Vec<f64> {
     sums.iter().map(|row| row.iter().sum()).collect()
 }
 
 /// How many terms carry the variance of a sum, `(sum r^2)^2 / sum r^4` (Kish 1965), at least 1.
-pub(super) fn effective(terms: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn effective(terms: impl Iterator<Item = f64>) -> f64 {
     let (mut squares, mut fourths) = (0.0, 0.0);
     for term in terms {
         let square = term * term;
@@ -81,9 +81,18 @@ pub(super) fn effective(terms: impl Iterator<Item = f64>) -> f64 {
     if fourths > 0.0 { (squares * squares / fourths).max(1.0) } else { 1.0 }
 }
 
+/// Standard errors grow by `1 + FEW/sqrt(n)`. Without it and with random tails the kurtosis of `exp(0.8 a + 0.3 b)` was off by more
+/// than three of them in 4 of 20 runs; with it in none.
+const FEW: f64 = 5.0;
+
+/// By how much the standard error of a sum grows that so many points carry.
+pub(crate) fn carried_by(points: f64) -> f64 {
+    1.0 + FEW / points.sqrt()
+}
+
 /// By how much a standard error from so many randomisations grows, so that three of it are as rare as three of a normal law:
 /// the quantile of Student's distribution by that of the normal one, 1.2 for 16 randomisations.
-pub(super) fn student(replicates: usize) -> f64 {
+pub(crate) fn student(replicates: usize) -> f64 {
     let freedom = (replicates.max(2) - 1) as f64;
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| law.inverse_cdf(THREE_SIGMAS) / 3.0)
 }

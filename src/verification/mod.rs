@@ -21,12 +21,14 @@ mod space;
 mod strata;
 
 pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
+pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub(crate) use outputs::output_correlations;
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
 
 use serde::Serialize;
 
+use crate::assembly::Run;
 use crate::problem::Problem;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
@@ -111,7 +113,10 @@ impl Verified {
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub fn verify_by_sampling(problem: &Problem, seed: u64) -> Vec<SampledFigures> {
-    (0..problem.characteristics().len()).map(|c| verify_characteristic(problem, c, seed, CORE, None)).collect()
+    let run = Run::to_the_end();
+    (0..problem.characteristics().len())
+        .filter_map(|c| verify_characteristic(problem, c, (seed, CORE), None, &run))
+        .collect()
 }
 
 /// The likeliest points beyond those switches of a cheap model that are seldom met, in independent normal variables of the dimensions at
@@ -129,15 +134,18 @@ pub(crate) fn seldom_points(problem: &Problem, c: usize, varying: &[usize], seed
 pub(crate) fn unexplained(
     problem: &Problem,
     c: usize,
-    varying: &[usize],
-    surrogate: &Surrogate,
+    (varying, surrogate): (&[usize], &Surrogate),
     seed: u64,
+    run: &Run<'_>,
 ) -> Option<f64> {
     const POINTS: usize = 1 << 10;
-    let model = Model::over(problem, c, varying);
+    let model = Model::over(problem, c, varying).during(run);
     let z = Normals::new(varying.len(), seed).columns(1 << 35, POINTS);
     let rises = surrogate.rises(&model.standardised(&z))?;
     let y = model.values(&z);
+    if model.stopped() {
+        return None;
+    }
     let (valid, off): (Vec<f64>, Vec<f64>) = (y.iter().zip(&rises))
         .filter(|(y, _)| y.is_finite())
         .map(|(y, rise)| (*y, y - surrogate.centre - rise))
@@ -165,28 +173,43 @@ pub(crate) fn unexplained(
 /// # Ok::<(), sensitol::Error>(())
 /// ```
 pub fn variance_shares(problem: &Problem, characteristic: usize, seed: u64) -> Option<Vec<(usize, [Share; 2])>> {
+    variance_shares_during(problem, characteristic, seed, &Run::to_the_end())
+}
+
+/// [`variance_shares`]; None where the run was stopped meanwhile.
+pub(crate) fn variance_shares_during(
+    problem: &Problem,
+    characteristic: usize,
+    seed: u64,
+    run: &Run<'_>,
+) -> Option<Vec<(usize, [Share; 2])>> {
     if problem.correlation().is_some() {
         return None;
     }
-    let model = Model::new(problem, characteristic);
-    Some(model.dimensions().zip(shares::shares(&model, seed)?).collect())
+    let model = Model::new(problem, characteristic).during(run);
+    let found = model.dimensions().zip(shares::shares(&model, seed)?).collect();
+    (!model.stopped()).then_some(found)
 }
 
-/// One characteristic, by so many points in the core, beside its surface over these dimensions.
+/// One characteristic, by a seed and so many points in the core, beside its surface over these dimensions; None where the run was stopped
+/// meanwhile: a part of the strata is no sample.
 pub(crate) fn verify_characteristic(
     problem: &Problem,
     c: usize,
-    seed: u64,
-    core: usize,
+    (seed, core): (u64, usize),
     beside: Option<(&[usize], &Surrogate)>,
-) -> SampledFigures {
-    let model = Model::new(problem, c);
+    run: &Run<'_>,
+) -> Option<SampledFigures> {
+    let model = Model::new(problem, c).during(run);
     let limits = problem.characteristics()[c].limits();
     let [low, high] = [limits.lower().unwrap_or(f64::NEG_INFINITY), limits.upper().unwrap_or(f64::INFINITY)];
     if model.len() == 0 {
-        return constant(&model, [low, high]);
+        return Some(constant(&model, [low, high])).filter(|_| !model.stopped());
     }
     let sample = Sample::draw(&model, seed, core, beside.filter(|_| limits.exist()));
+    if model.stopped() {
+        return None;
+    }
     let sides = sample.sides.clone();
     let beyond = [[f64::NEG_INFINITY, low.next_down()], [high.next_up(), f64::INFINITY]];
     let figures = sample.figures(&[[low, high], beyond[0], beyond[1]]);
@@ -195,7 +218,7 @@ pub(crate) fn verify_characteristic(
         (!sample.is_void() && value.is_finite()).then_some(Verified { value, error })
     };
     let varies = known(1).is_some_and(|sigma| sigma.value > 0.0);
-    SampledFigures {
+    Some(SampledFigures {
         points: sample.points,
         mean: known(0),
         sigma: known(1),
@@ -207,7 +230,7 @@ pub(crate) fn verify_characteristic(
         valid: Verified { value: figures.valid.0, error: figures.valid.1 },
         switches: sides.switches,
         switches_complete: sides.complete,
-    }
+    })
 }
 
 /// One point of a characteristic that does not vary says all.

@@ -9,6 +9,7 @@ pub(super) struct Model<'p> {
     problem: &'p Problem,
     output: usize,
     space: Space<'p>,
+    run: Run<'p>,
 }
 
 impl<'p> Model<'p> {
@@ -23,7 +24,17 @@ impl<'p> Model<'p> {
     /// A characteristic over these dimensions.
     pub(super) fn over(problem: &'p Problem, characteristic: usize, dimensions: &[usize]) -> Self {
         let space = Space::new(problem, dimensions);
-        Self { problem, output: problem.outputs()[characteristic], space }
+        Self { problem, output: problem.outputs()[characteristic], space, run: Run::to_the_end() }
+    }
+
+    /// The same, evaluated under the conditions of a run: what it does not wait for has no value.
+    pub(super) fn during(self, run: &Run<'p>) -> Self {
+        Self { run: run.quiet(), ..self }
+    }
+
+    /// Whether the run was stopped, so that some points have no value for that reason.
+    pub(super) fn stopped(&self) -> bool {
+        self.run.stopped()
     }
 
     /// The inputs in sigmas off their means.
@@ -45,7 +56,7 @@ impl<'p> Model<'p> {
     pub(super) fn values(&self, z: &Columns) -> Vec<f64> {
         let (points, outputs) = (self.space.points(z), [self.output]);
         let mut out = Responses::open(points.rows(), 1);
-        self.problem.function().evaluate(&Request::values(&points, &outputs), &Run::to_the_end(), &mut out);
+        self.problem.function().evaluate(&Request::values(&points, &outputs), &self.run, &mut out);
         out.column(0).to_vec()
     }
 

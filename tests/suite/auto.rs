@@ -1,18 +1,19 @@
 //! `auto`: counts, budgets, determinism, warnings, and what happens at extremes.
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
 
 use sensitol::analysis::{YieldSource, analyze_with};
 use sensitol::assembly::{EvaluationError, Run};
 use sensitol::distribution::Exponential;
 use sensitol::internals::reach::*;
 use sensitol::method::Accuracies;
-use sensitol::simulation::{SimulationOptions, simulate};
+use sensitol::simulation::{Sampler, SimulationOptions, simulate};
 use sensitol::{
-    Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, analyze,
+    Analysis, Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, Study, analyze,
 };
 
-use super::support::{Asked, close, normals, refusing, relative, standard};
+use super::support::{Asked, close, normals, refusing, relative, repository, standard};
 
 /// The search itself, and the sample that it draws where it does not trust its surface: without the verification, which takes
 /// points of its own.
@@ -446,4 +447,58 @@ fn the_account_says_what_ended_it() {
     assert!(short.ends_with("the budget ended it") && !short.contains("needed"), "{short}");
     let whole = account(&Method::Auto.into(), false);
     assert!(!whole.contains("budget") && !whole.contains("interrupted"), "{whole}");
+}
+
+/// Where no regression follows the model, the sample goes on from the points of the strides: 1024 in all, none of them twice.
+#[test]
+fn a_sample_goes_on_from_the_strides() {
+    let seen: Arc<Mutex<HashMap<Vec<u64>, usize>>> = Arc::default();
+    let counted = Arc::clone(&seen);
+    let gaps = move |x: &[f64]| {
+        let key = x.iter().map(|x| x.to_bits()).collect();
+        *counted.lock().unwrap().entry(key).or_default() += 1;
+        (x[0] + x[1]).min(x[2] + x[3])
+    };
+    let found = of(standard(4), gaps, &auto(0.05));
+    let seen = seen.lock().unwrap();
+    let calls: usize = seen.values().sum();
+    assert_eq!(found.characteristics[0].model_sampled.as_ref().unwrap().samples, 1024);
+    assert_eq!(found.run.evaluations as usize, calls);
+    assert_eq!(calls, seen.len(), "points that were evaluated twice");
+    // The plan before it has all second derivatives, and check points.
+    assert!((1024..1024 + 80).contains(&calls), "{calls}");
+}
+
+/// A ratio that its surface does not follow to 1 %: a sparse regression over the points of a few strides does. By the sample alone it took
+/// 1024 points and more. The errors of such regressions are tested on other functions, in `coverage`.
+#[test]
+fn strides_end_where_a_regression_follows() {
+    let engine = Study::read(&repository("examples/engine-balance/study.toml")).unwrap().problem;
+    let one = engine.characteristics()[0].clone();
+    let engine = engine.asking([one]).unwrap();
+    let wish = SimulationOptions::default().with_samples(1 << 16).with_sampler(Sampler::Sobol);
+    let truth = simulate(&engine, &wish).unwrap().characteristics[0].sigma.unwrap();
+    for accuracy in [0.01, 0.001] {
+        let found = analyze(&engine, &auto(accuracy)).unwrap();
+        let (evaluations, off) = (found.run.evaluations, (sigma(&found) - truth.value).abs());
+        assert!(evaluations < 1024 / 4, "{accuracy}: {evaluations}");
+        // What was wanted, and three errors of the sample.
+        assert!(off < accuracy * truth.value + 3.0 * truth.standard_error.unwrap(), "{accuracy}: {off}");
+    }
+}
+
+/// A finer error takes no fewer evaluations than a coarser one: it is reached through the same errors.
+#[test]
+fn a_finer_error_never_takes_fewer_evaluations() {
+    let functions: [fn(&[f64]) -> f64; 4] = [
+        |x| x.iter().map(|x| (0.3 * x).exp()).sum(),
+        |x| x.iter().map(|x| 0.2 * x + 0.02 * x * x * x).sum(),
+        |x| x[0] * x[1] + 0.1 * x[2] * x[3] + x[4],
+        |x| (1.0 + 0.1 * x[0]).hypot(0.5 + 0.1 * x[1]) + 0.1 * x[2],
+    ];
+    for (index, function) in functions.into_iter().enumerate() {
+        let counts = [0.1, 0.05, 0.02, 0.01, 0.005, 0.001]
+            .map(|accuracy| of(standard(5), function, &auto(accuracy)).run.evaluations);
+        assert!(counts.is_sorted(), "{index}: {counts:?}");
+    }
 }

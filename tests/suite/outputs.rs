@@ -2,6 +2,8 @@
 
 use sensitol::{Analysis, Closure, Dimension, Method, Problem, Study, analyze};
 
+use super::cli::sensitol;
+
 const UNITS: &str = "[dimensions]\nu = { nominal = 0, sigma = 1 }\nv = { nominal = 0, sigma = 1 }\n[characteristics]\n";
 
 fn of(characteristics: &str, verify: Option<usize>) -> Analysis {
@@ -84,4 +86,30 @@ fn corners_of_the_box_of_a_circle_are_no_worst_case() {
     let bounds = one.bounds.as_ref().unwrap();
     let [least, most] = one.worst_case.unwrap();
     assert!(!bounds.proven && bounds.bounds[0] <= least && bounds.bounds[1] >= most, "{bounds:?} {least} {most}");
+}
+
+/// The worst case by slopes is named as linear beside a kink or a curvature, with the proven one below it; where both are the same it is
+/// the worst case, and without bounds it is the linear one again.
+#[test]
+fn a_linear_worst_case_is_named_as_linear() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("study.toml").display().to_string();
+    let cases = [
+        ("max(u, 2*v - 1)", "", [true, true]),
+        ("u^2 + v", "", [true, true]),
+        ("u + 2*v", "", [false, false]),
+        ("u + 2*v", "--verify=0", [true, false]),
+    ];
+    for (formula, option, expected) in cases {
+        let text = format!(
+            "[dimensions]\nu = {{ nominal = 0, tolerance = 3 }}\nv = {{ nominal = 0, tolerance = 3 }}\n\
+             [characteristics]\ny = {{ formula = \"{formula}\" }}\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        let words: Vec<&str> = ["analyze", &path, option].into_iter().filter(|word| !word.is_empty()).collect();
+        let out = sensitol(&words).output().unwrap();
+        let shown = String::from_utf8(out.stdout).unwrap();
+        assert!(shown.contains("worst case"), "{formula}: {shown}");
+        assert_eq!(["linear worst case", "proven worst case"].map(|name| shown.contains(name)), expected, "{shown}");
+    }
 }

@@ -7,9 +7,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use sensitol::analysis::{Crossing, VerificationKind, Verified};
 use sensitol::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
+use sensitol::correlation::Pair;
 use sensitol::internals::reach::*;
 use sensitol::internals::{SampledFigures, Target, procedure, variance_shares, verify_by_checks, verify_by_sampling};
-use sensitol::{Closure, Dimension, Method, Options, Problem, Study, analyze};
+use sensitol::{
+    Characteristic, Closure, Dimension, Method, Options, Problem, SpecLimits, StopReason, Study, Verdict, analyze,
+    analyze_with,
+};
 use serde_json::{Value, json};
 
 use super::support::repository;
@@ -20,15 +24,15 @@ const FELT: [f64; 6] = [1e-4, 1e-4, 1e-3, 0.01, 2e-6, 1e-4];
 const FIGURES: [&str; 6] = ["mean", "sigma", "skewness", "kurtosis", "yield", "mid"];
 
 /// A function with what is known of it.
-struct Truth {
-    name: String,
-    study: Study,
+pub(super) struct Truth {
+    pub(super) name: String,
+    pub(super) study: Study,
     /// Value and uncertainty of each of [`FIGURES`].
-    figures: [(f64, f64); 6],
+    pub(super) figures: [(f64, f64); 6],
     valid: f64,
 }
 
-fn truths() -> Vec<Truth> {
+pub(super) fn truths() -> Vec<Truth> {
     let text = std::fs::read_to_string(repository("tests/data/trust.jsonl")).unwrap();
     text.lines().map(|line| truth(&serde_json::from_str(line).unwrap())).collect()
 }
@@ -56,10 +60,14 @@ fn truth(entry: &Value) -> Truth {
 
 impl Truth {
     /// How many times the estimate allows the error, for every figure: at most 1 where it is covered.
-    fn excess(&self, figure: usize, found: Verified) -> f64 {
-        let (value, uncertainty) = self.figures[figure];
+    pub(super) fn excess(&self, figure: usize, found: Verified) -> f64 {
         let felt = FELT[figure] * if figure < 2 { self.figures[1].0 } else { 1.0 };
-        ((found.value - value).abs() - felt).max(0.0) / (3.0 * found.error + 3.0 * uncertainty)
+        (self.off(figure, found.value) - felt).max(0.0) / (3.0 * found.error + 3.0 * self.figures[figure].1)
+    }
+
+    /// How far a figure is off.
+    pub(super) fn off(&self, figure: usize, value: f64) -> f64 {
+        (value - self.figures[figure].0).abs()
     }
 }
 
@@ -302,15 +310,23 @@ impl AssemblyFunction for Costly {
     }
 }
 
-fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
+pub(super) fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
     let asked = Arc::new(AtomicUsize::new(0));
     let signature = Signature { costly: true, cheap: false, ..problem.function().signature().clone() };
     let function = Costly { signature, inner: problem.clone(), asked: Arc::clone(&asked) };
-    let again = Problem::new(problem.dimensions().to_vec(), function).unwrap();
+    let mut again = Problem::new(problem.dimensions().to_vec(), function).unwrap();
+    if let Some(correlation) = problem.correlation() {
+        let dimensions = problem.dimensions();
+        let all = (0..dimensions.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let name = |d: usize| dimensions[d].name().to_owned();
+        let pair = |(a, b)| Pair { between: [name(a), name(b)], value: correlation.of(a, b) };
+        let pairs: Vec<Pair> = all.map(pair).filter(|pair| pair.value != 0.0).collect();
+        again = again.correlated(&pairs).unwrap();
+    }
     (again.asking(problem.characteristics().to_vec()).unwrap(), asked)
 }
 
-fn verified(method: Method, points: usize) -> Options {
+pub(super) fn verified(method: Method, points: usize) -> Options {
     Options::from(method).with_verify(points)
 }
 
@@ -441,4 +457,40 @@ fn an_exact_formula_does_not_scatter() {
         let codes: Vec<_> = found.warnings.iter().map(|warning| warning.code()).collect();
         assert!(!codes.contains(&"scatter"), "{formula}: {codes:?}");
     }
+}
+
+/// A sample ends with the time that a run has: the method's figures stay, without a verification and without a verdict.
+#[test]
+fn a_sample_ends_with_the_time() {
+    let asked = Arc::new(AtomicUsize::new(0));
+    let counted = Arc::clone(&asked);
+    let dimensions = [Dimension::normal("a", 1.0, 0.3).unwrap(), Dimension::normal("b", 0.0, 0.6).unwrap()];
+    let function = Closure::scalar("y", move |x| {
+        counted.fetch_add(1, Ordering::Relaxed);
+        x[0] * x[1].exp()
+    });
+    let wanted = Characteristic::new("y")
+        .with_limits(SpecLimits::new(Some(0.0), Some(9.0)).unwrap())
+        .with_target_yield(0.5)
+        .unwrap();
+    let problem = Problem::new(dimensions, function).unwrap().asking([wanted]).unwrap();
+    // One thread: it is at one part of 2048 points when the time is over, and a whole sample has 42 000.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let analyzed = |most: usize| {
+        asked.store(0, Ordering::Relaxed);
+        let stop = || (asked.load(Ordering::Relaxed) > most).then_some(StopReason::TimeLimit);
+        let run = Run::to_the_end().stopping_when(&stop);
+        pool.install(|| analyze_with(&problem, &verified(Method::SecondOrder, 18), &run)).unwrap()
+    };
+    for most in [10, 3000, 20_000] {
+        let found = analyzed(most);
+        let one = &found.characteristics[0];
+        assert_eq!(found.run.stopped, Some(StopReason::TimeLimit), "{most}");
+        assert!(one.moments.is_some() && one.verification.is_none(), "{most}");
+        assert!(one.requirements().iter().all(|judged| judged.verdict != Verdict::Met), "{most}");
+        assert!(asked.load(Ordering::Relaxed) <= most + 4096, "{most}: {}", asked.load(Ordering::Relaxed));
+    }
+    let found = analyzed(usize::MAX);
+    assert!(found.run.stopped.is_none() && found.characteristics[0].verification.is_some());
+    assert!(found.characteristics[0].requirements().iter().all(|judged| judged.verdict == Verdict::Met));
 }

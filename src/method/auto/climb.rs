@@ -40,6 +40,12 @@ const FINEST: f64 = 1e-7;
 /// Evaluations beyond which nothing is worth its price any more: so many times those of every second derivative, and these.
 const OVER_FULL: f64 = 1.3;
 const ON_TOP: usize = 16;
+/// Errors of sigma that are reached one after the other, and every tenth of them.
+const LEVELS: [f64; 3] = [0.1, 0.05, 0.02];
+/// A share of the variance that is a rounding.
+const NOTHING: f64 = 1e-12;
+/// Scores nearer to each other than this part are those of twins, which are bought together or not at all.
+const TWINS: f64 = 1e-6;
 /// The signs are the same for every study of as many dimensions, and no seed of anybody's.
 const KEY: u64 = 0x5e_75_17_02;
 
@@ -48,11 +54,27 @@ pub(super) fn most(n: usize) -> usize {
     (OVER_FULL * (n * n + 3 * n + 1) as f64) as usize + ON_TOP
 }
 
+/// The next smaller of [`LEVELS`] and their tenths.
+fn next_level(accuracy: f64) -> f64 {
+    let mut unit = 1.0;
+    loop {
+        let level = LEVELS.iter().map(|level| level * unit).find(|&level| level < accuracy * (1.0 - TWINS));
+        match level {
+            Some(level) => return level,
+            None => unit /= 10.0,
+        }
+    }
+}
+
 /// The state of a climb.
 pub(super) struct Climb<'p> {
     problem: &'p Problem,
     pub(super) plan: DifferencePlan,
     pub(super) bought: ChosenPoints,
+    /// What is wanted of sigma in the end,
+    wanted: f64,
+    /// and for now: it falls in steps that are the same for everybody, so that what a finer error takes begins with what a coarser
+    /// one takes.
     accuracy: f64,
     budget: usize,
     /// Evaluated so far, and what has been chosen since.
@@ -77,7 +99,8 @@ impl<'p> Climb<'p> {
             problem,
             plan,
             bought: ChosenPoints::default(),
-            accuracy,
+            wanted: accuracy,
+            accuracy: LEVELS[0].max(accuracy),
             budget,
             spent: 0,
             refined,
@@ -99,10 +122,10 @@ impl<'p> Climb<'p> {
 
     /// Wants more of sigma than it did, by a factor below 1, where that can lead on; whether it can.
     pub(super) fn tighten(&mut self, factor: f64) -> bool {
-        let on = self.rest == Some(ClimbEnd::Reached) && self.accuracy > FINEST;
+        let on = self.rest == Some(ClimbEnd::Reached) && self.wanted > FINEST;
         if on {
             self.rest = None;
-            self.accuracy = (self.accuracy * factor.clamp(0.1, 0.5)).max(FINEST);
+            self.wanted = (self.wanted * factor.clamp(0.1, 0.5)).max(FINEST);
         }
         on
     }
@@ -178,6 +201,9 @@ impl<'p> Climb<'p> {
             if doubtful && self.sets == 1 && self.positions() >= CONFIRM_FROM && self.check() {
                 return true;
             }
+            if self.descend() {
+                return true;
+            }
             self.rest = Some(ClimbEnd::Reached);
             return false;
         }
@@ -188,10 +214,22 @@ impl<'p> Climb<'p> {
             || self.refine_rest(&short)
             || self.examine_rest(&short)
             || near && self.sets < SETS && self.spent + 2 * CHECKS <= most(self.positions()) && self.check();
+        if !found && !self.short_of_budget && self.descend() {
+            return true;
+        }
         if !found {
             self.rest = Some(if self.short_of_budget { ClimbEnd::Budget } else { ClimbEnd::Exhausted });
         }
         found
+    }
+
+    /// Goes on to the next of the errors on the way to what is wanted; whether there is one.
+    fn descend(&mut self) -> bool {
+        let on = self.accuracy > self.wanted * (1.0 + TWINS);
+        if on {
+            self.accuracy = next_level(self.accuracy).max(self.wanted);
+        }
+        on
     }
 
     /// Another set of points that check.
@@ -324,7 +362,10 @@ impl<'p> Climb<'p> {
         for view in short {
             let [even, odd] = self.left(view);
             let curved = odd < 0.25 * even;
-            let strength = |j: usize| if self.refined[j] { 0.0 } else { view.shares[j][usize::from(curved)] };
+            // The corners of a kink may take all curvature from its axes.
+            let straight = self.positions() <= DIRECT && view.shares.iter().all(|[_, curved]| *curved < NOTHING);
+            let of = usize::from(curved && !straight);
+            let strength = |j: usize| if self.refined[j] { 0.0 } else { view.shares[j][of] };
             let strongest = (0..self.positions()).map(strength).fold(0.0, f64::max);
             // A part does not hide more than it is.
             if strongest > 0.01 * self.accuracy {
@@ -388,7 +429,9 @@ impl<'p> Climb<'p> {
             }
         }
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-        ranked.truncate(most);
+        let twin = |score: f64| ranked.get(most.wrapping_sub(1)).is_some_and(|last| score >= last.0 * (1.0 - TWINS));
+        let together = ranked.iter().take_while(|(score, ..)| twin(*score)).count();
+        ranked.truncate(together.max(most));
         let square = |&(_, j, k): &(f64, usize, usize)| {
             lacking.iter().any(|view| view.bends.square(j, k) && self.plan.joint(view.characteristic, j, k))
         };

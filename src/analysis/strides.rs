@@ -1,0 +1,522 @@
+//! Points of the model in strides, and what they say beside a regression that has not seen them.
+//!
+//! Sobol' points in 16 scramblings (Owen 1997), of which every stride doubles the number: 16, 32, 64, ... The scramblings fall into
+//! four parts. For each part a sparse regression `s` is fitted to the points of the other three, and to those that the method has
+//! evaluated before; with `v` whether the model has a value,
+//!
+//! ```text
+//! E[v y^p] = E[s^p] + E[v y^p - s^p]        p = 1 .. 4, and the same of the indicators of a share
+//! ```
+//!
+//! the first by many points of `s`, which cost nothing, and the second by the part that `s` has not seen. So the estimate has no
+//! bias, whatever the regression is worth, and its error is that of what the regression leaves (Glynn and Szechtman 2002 on control
+//! variates, Chernozhukov and others 2018 on the exchange of parts). Errors are those of the jackknife over the scramblings, and
+//! never below what so few points overlook.
+
+use super::SampledModel;
+use super::remembered::Remembered;
+use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
+use crate::method::{Climbed, Outcome};
+use crate::moments::Moments;
+use crate::plan::Point;
+use crate::problem::Problem;
+use crate::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSIONS, Sampler, Scale};
+use crate::simulation::Histogram;
+use crate::summary::RunSummary;
+use crate::surrogate::{Chaos, Places, Sparse, Surrogate};
+use crate::time::Instant;
+use crate::verification::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
+
+/// Scramblings, and the parts into which they fall.
+const REPLICATES: usize = 16;
+const PARTS: usize = 4;
+/// Points to which a regression is fitted, at most.
+const FITTED: usize = 1 << 10;
+/// Points of a regression in each scrambling, at most and at least, and the numbers that all of them may take.
+const KNOTS: usize = 1 << 12;
+const FEWEST: usize = 1 << 8;
+const NUMBERS: usize = 1 << 21;
+/// What so many points overlook: a difference of 0.004 sigma at 14 points, as at the check points of a costly model.
+const FLOOR: f64 = 0.004;
+const CHECKS: f64 = 14.0;
+/// A root mean square of a handful of differences is this much too small at times.
+const SMALL: f64 = 1.3;
+/// The root mean squares of the influence of a point on mean, sigma, skewness and kurtosis of a normal law, in its sigmas
+/// (Serfling 1980).
+const INFLUENCE: [f64; MOMENTS] = [1.0, 1.0, 4.3, 9.8];
+/// The smaller of two errors is too small: errors of 16 scramblings are uncertain by a fifth.
+const CHOICE: f64 = 1.1;
+/// From so many points on they tell by themselves what there is three sigma out: one of 370 lies there along a line.
+const TELL: usize = 1 << 10;
+/// Exact moments of a regression that differ from its own points by more standard errors than that are not believed.
+const EXACT: f64 = 4.0;
+/// Intervals of the histogram.
+const BINS: usize = 40;
+
+/// Points that were drawn together, the same number of every scrambling, one scrambling after the other.
+struct Stride {
+    rows: usize,
+    /// In sigmas off the means, a column for every varying dimension.
+    u: Vec<Vec<f64>>,
+    /// A column for every characteristic.
+    y: Vec<Vec<f64>>,
+}
+
+/// The points so far.
+pub(super) struct Strides<'p> {
+    problem: &'p Problem,
+    outcome: &'p Outcome,
+    draws: Draws<'p>,
+    strides: Vec<Stride>,
+    /// Points of the regressions: of every scrambling as many.
+    knots: Stride,
+    failed: Vec<(usize, Option<EvaluationError>)>,
+    /// All answers, for who goes on with the same points.
+    pub(super) answers: Remembered,
+    pub(super) run: RunSummary,
+    pub(super) non_repeatable: Vec<NonRepeatable>,
+}
+
+/// What stands beside the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Basis {
+    /// The known surface as it is.
+    Surface,
+    Products,
+    /// With powers of the known surface.
+    Powers,
+}
+
+/// The regressions of one characteristic, one for every part, and its known surface with mean and sigma.
+pub(super) struct Beside<'p> {
+    kind: Basis,
+    chaos: Chaos,
+    surface: Option<(&'p Surrogate, Moments)>,
+    /// Whether the moments of the surface are exact.
+    exact: bool,
+    parts: Vec<Sparse>,
+    rows: usize,
+    /// By how many sigmas the regressions are off three sigma out, at points that they have not seen.
+    far: f64,
+}
+
+/// Mean, sigma, skewness and kurtosis, with the shares below and above the limits and within them.
+#[derive(Clone)]
+struct Figures {
+    values: Vec<f64>,
+    errors: Vec<f64>,
+}
+
+/// What the points say of one characteristic.
+pub(super) struct StridedFigures {
+    /// Mean, sigma, skewness, kurtosis.
+    pub(super) moments: [Estimate; MOMENTS],
+    pub(super) sampled: SampledModel,
+}
+
+impl<'p> Strides<'p> {
+    /// None where a dimension cannot be sampled.
+    pub(super) fn new(problem: &'p Problem, outcome: &'p Outcome, seed: u64) -> Option<Self> {
+        let n = outcome.plan.varying().len();
+        let all = problem.dimensions().iter().filter(|dimension| dimension.sigma() > 0.0).count();
+        let sampler = if all <= SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
+        let draws = |seed| Draws::new(problem.dimensions(), problem.correlation(), sampler, seed).ok();
+        let rows = (NUMBERS / n.max(1) / REPLICATES).clamp(FEWEST, KNOTS).next_power_of_two();
+        let (points, own) = (points(&draws(!seed)?, 0, rows), draws(seed)?);
+        let knots = Stride { rows, u: problem.standardised(&points, outcome.plan.varying()), y: Vec::new() };
+        let characteristics = problem.characteristics().len();
+        Some(Self {
+            problem,
+            outcome,
+            draws: own,
+            strides: Vec::new(),
+            knots,
+            failed: vec![(0, None); characteristics],
+            answers: Remembered::new(problem),
+            run: RunSummary::default(),
+            non_repeatable: Vec::new(),
+        })
+    }
+
+    /// Points of one scrambling.
+    fn rows(&self) -> usize {
+        self.strides.iter().map(|stride| stride.rows).sum()
+    }
+
+    /// How many points the next stride has: as many as there are, of at most so many in all.
+    pub(super) fn next(&self, most: usize) -> usize {
+        let rows = self.rows();
+        REPLICATES * rows.max(1).min((most / REPLICATES).saturating_sub(rows))
+    }
+
+    /// Evaluates the next stride; whether all of it was answered.
+    pub(super) fn draw(&mut self, most: usize, run: &Run<'_>) -> bool {
+        let rows = self.next(most) / REPLICATES;
+        let points = points(&self.draws, self.rows(), rows);
+        let mut out = Responses::open(points.rows(), self.problem.outputs().len());
+        let begun = Instant::now();
+        self.problem.function().evaluate(&Request::values(&points, self.problem.outputs()), run, &mut out);
+        let open = |row: usize| (0..out.outputs()).all(|output| out.is_open(row, output));
+        let answered = (0..out.rows()).filter(|&row| !open(row)).count();
+        let whole = (0..out.rows()).all(|row| (0..out.outputs()).all(|output| !out.is_open(row, output)));
+        let lost: std::collections::BTreeSet<usize> = out.errors().map(|(row, ..)| row).collect();
+        self.run = self.run.and(&RunSummary {
+            evaluations: (answered as u64).saturating_add_signed(out.extra()),
+            cached: out.count_reused() as u64,
+            retried: out.count_retried() as u64,
+            failed: lost.len() as u64,
+            stages: 1,
+            in_model: begun.elapsed(),
+            stopped: (!whole).then(|| run.why_open()),
+            ..RunSummary::default()
+        });
+        for (_, output, error) in out.errors() {
+            let (count, first) = &mut self.failed[output];
+            *count += 1;
+            first.get_or_insert_with(|| error.clone());
+        }
+        self.non_repeatable.extend(out.non_repeatable().iter().cloned());
+        let u = self.problem.standardised(&points, self.outcome.plan.varying());
+        let y = (0..out.outputs()).map(|output| out.column(output).to_vec()).collect();
+        self.strides.push(Stride { rows, u, y });
+        self.answers.keep(&points, out);
+        whole
+    }
+
+    /// Nothing yet, of one characteristic: its surface as it is, a regression on products, and one with powers of the surface too.
+    pub(super) fn beside(&self, c: usize) -> Vec<Beside<'p>> {
+        let kinds = [Basis::Surface, Basis::Products, Basis::Powers].map(|kind| self.kind(c, kind));
+        kinds.into_iter().filter(|beside| beside.kind == Basis::Products || beside.surface.is_some()).collect()
+    }
+
+    fn kind(&self, c: usize, kind: Basis) -> Beside<'p> {
+        let plan = &self.outcome.plan;
+        let fitted = self.outcome.fitted[c].surrogate.as_ref();
+        let surface = fitted.and_then(|surrogate| {
+            let found = surrogate.contributions(plan.inputs())?;
+            (found.moments.sigma() > 0.0).then_some((surrogate, found))
+        });
+        let share = |j: usize| surface.as_ref().map_or(0.0, |(_, found)| found.linear[j] + found.curvature[j]);
+        let mut order: Vec<usize> = (0..plan.varying().len()).filter(|&j| plan.depends(c, plan.varying()[j])).collect();
+        order.sort_by(|&a, &b| share(b).total_cmp(&share(a)).then(a.cmp(&b)));
+        let exact = surface.as_ref().is_some_and(|(_, found)| found.sampled.is_none());
+        let surface = surface.map(|(surrogate, found)| (surrogate, found.moments));
+        let chaos = Chaos::new(plan.inputs().shapes(), &order, surface.as_ref().map(|_| kind == Basis::Powers));
+        Beside { kind, chaos, surface, exact, parts: Vec::new(), rows: 0, far: 0.0 }
+    }
+
+    /// What the points say, the regressions fitted anew while they are few.
+    pub(super) fn found(&self, c: usize, beside: &mut Vec<Beside<'_>>, left: f64) -> Option<StridedFigures> {
+        for beside in beside.iter_mut().filter(|beside| beside.rows < self.rows()) {
+            if REPLICATES * self.rows() <= FITTED {
+                self.fit(c, beside);
+            }
+        }
+        let values: Vec<f64> = self.strides.iter().flat_map(|stride| &stride.y[c]).copied().collect();
+        let valid: Vec<f64> = values.iter().copied().filter(|y| y.is_finite()).collect();
+        let n = valid.len() as f64;
+        let origin = valid.iter().sum::<f64>() / n;
+        let spread = (valid.iter().map(|y| (y - origin).powi(2)).sum::<f64>() / n).sqrt();
+        if valid.len() < REPLICATES / 2 || spread.is_nan() {
+            return None;
+        }
+        let unit = [origin, if spread > 0.0 { spread } else { 1.0 }];
+        let plain = self.figures(c, None, unit)?;
+        let error = |of: &Option<Figures>| of.as_ref().map_or(f64::INFINITY, |of| of.errors[1]);
+        let each: Vec<Option<Figures>> = beside.iter().map(|beside| self.figures(c, Some(beside), unit)).collect();
+        let best = (0..each.len()).min_by(|&a, &b| error(&each[a]).total_cmp(&error(&each[b])));
+        let with = best.and_then(|best| each[best].as_ref());
+        let found = with.map_or_else(|| plain.clone(), |with| chosen(&plain, with));
+        if REPLICATES * self.rows() >= FITTED {
+            // None is fitted any more: the best stays, where it is of use.
+            let useful = best.filter(|&best| error(&each[best]) < plain.errors[1]);
+            *beside = useful.map(|best| beside.swap_remove(best)).into_iter().collect();
+        }
+        let best = found;
+        let estimate = |i: usize| Estimate { value: best.values[i], standard_error: Some(best.errors[i]) };
+        let limits = self.problem.characteristics()[c].limits();
+        let share = |i: usize| best.values[i].clamp(0.0, 1.0);
+        let around = |i: usize| [-2.0, 2.0].map(|times| (best.values[i] + times * best.errors[i]).clamp(0.0, 1.0));
+        let (failed, error) = &self.failed[c];
+        Some(StridedFigures {
+            moments: [0, 1, 2, 3].map(estimate),
+            sampled: SampledModel {
+                samples: valid.len() as u64,
+                failed: *failed as u64,
+                error: error.as_ref().map(ToString::to_string),
+                left,
+                standard_errors: [0, 1, 2, 3].map(|i| Some(best.errors[i])),
+                yield_: limits.exist().then(|| (share(MOMENTS + 2), around(MOMENTS + 2))),
+                beyond: [limits.lower().map(|_| share(MOMENTS)), limits.upper().map(|_| share(MOMENTS + 1))],
+                histogram: histogram(&valid),
+            },
+        })
+    }
+
+    /// Fits the regression of every part to the points of the others, and to those that were evaluated before.
+    fn fit(&self, c: usize, beside: &mut Beside<'_>) {
+        let plan = &self.outcome.plan;
+        let known = &self.outcome.evaluated.known;
+        let n = plan.varying().len();
+        let place = |point: &Point| {
+            let mut u = vec![0.0; n];
+            for at in point.at() {
+                if let Ok(position) = plan.varying().binary_search(&(at.dimension as usize)) {
+                    u[position] = plan.axis(at.dimension as usize).nodes[at.node as usize].u;
+                }
+            }
+            u
+        };
+        // A difference plan is right where it stands: what it has on its axes is no point of the distribution.
+        let off_axes = |point: &&Point| point.at().len() > 2 || n <= 2 && point.at().len() == n;
+        let looked = self.outcome.climbed.iter().flat_map(|climbed| &climbed.far);
+        let far: Vec<&Point> = looked.filter(|(of, _)| *of == c).flat_map(|(_, points)| points).collect();
+        let paid: Vec<(Vec<f64>, f64)> = (known.points().iter().filter(off_axes).filter(|point| !far.contains(point)))
+            .filter_map(|point| Some((place(point), known.value(point, c)?)))
+            .take(FITTED)
+            .collect();
+        beside.parts = (0..PARTS)
+            .map(|part| {
+                if let Some((_, moments)) = beside.surface.as_ref().filter(|_| beside.kind == Basis::Surface) {
+                    return Sparse::surface(moments.mean(), moments.sigma());
+                }
+                let mut u: Vec<Vec<f64>> = (0..n).map(|j| paid.iter().map(|(u, _)| u[j]).collect()).collect();
+                let mut y: Vec<f64> = paid.iter().map(|(_, y)| *y).collect();
+                for stride in &self.strides {
+                    let own = |row: &usize| (row / stride.rows) % PARTS != part && stride.y[c][*row].is_finite();
+                    for row in (0..REPLICATES * stride.rows).filter(own) {
+                        u.iter_mut().zip(&stride.u).for_each(|(all, column)| all.push(column[row]));
+                        y.push(stride.y[c][row]);
+                    }
+                }
+                let surface = beside.surface(&u, y.len());
+                beside.chaos.fit(Places { u: &u, surface: &surface }, &y)
+            })
+            .collect();
+        beside.rows = self.rows();
+        let seen: Vec<(Vec<f64>, f64)> =
+            far.iter().filter_map(|point| Some((place(point), known.value(point, c)?))).collect();
+        let columns: Vec<Vec<f64>> = (0..n).map(|j| seen.iter().map(|(u, _)| u[j]).collect()).collect();
+        let surface = beside.surface(&columns, seen.len());
+        let places = Places { u: &columns, surface: &surface };
+        let off = |sparse: &Sparse| {
+            let values = beside.chaos.values(sparse, places, seen.len());
+            values.iter().zip(&seen).map(|(s, (_, y))| (y - s).abs()).fold(0.0, f64::max)
+        };
+        let off = beside.parts.iter().map(off).sum::<f64>() / PARTS as f64;
+        // No value there: nothing follows it.
+        beside.far = if seen.len() < far.len() { f64::INFINITY } else { off };
+    }
+
+    /// The figures, in a unit of origin and scale; None where none is known.
+    fn figures(&self, c: usize, beside: Option<&Beside<'_>>, [origin, scale]: [f64; 2]) -> Option<Figures> {
+        let limits = self.problem.characteristics()[c].limits();
+        let sides = |y: f64| {
+            [limits.lower().is_some_and(|lower| y < lower), limits.upper().is_some_and(|upper| y > upper)]
+                .map(|side| f64::from(u8::from(side)))
+        };
+        const TERMS: usize = MOMENTS + 2;
+        let terms = |y: f64| {
+            let v = (y - origin) / scale;
+            let [below, above] = sides(y);
+            [v, v * v, v.powi(3), v.powi(4), below, above]
+        };
+        let rows = self.rows() as f64;
+        // Of the valid, and of every term.
+        let mut sums = vec![vec![0.0; REPLICATES]; 1 + TERMS];
+        let mut carried: Vec<Vec<f64>> = vec![Vec::new(); MOMENTS];
+        let (mut square, mut count) = (0.0, 0.0);
+        for stride in &self.strides {
+            let surface = beside.map(|beside| beside.values(stride));
+            for (row, &y) in stride.y[c].iter().enumerate() {
+                let replicate = row / stride.rows;
+                let valid = y.is_finite();
+                let model = if valid { terms(y) } else { [0.0; TERMS] };
+                let control = surface.as_ref().map_or([0.0; TERMS], |surface| terms(surface[row]));
+                sums[0][replicate] += f64::from(u8::from(valid)) / rows;
+                for (term, (own, control)) in model.iter().zip(control).enumerate() {
+                    sums[1 + term][replicate] += (own - control) / rows;
+                    if term < MOMENTS {
+                        carried[term].push(own - control);
+                    }
+                }
+                if let Some(surface) = surface.as_ref().filter(|_| valid) {
+                    square += ((y - surface[row]) / scale).powi(2);
+                    count += 1.0;
+                }
+            }
+        }
+        let knots = beside.map(|beside| beside.values(&self.knots));
+        if let (Some(beside), Some(knots)) = (beside, &knots) {
+            self.integrate(beside, knots, [origin, scale], &terms, &mut sums[1..]);
+        }
+        let of = |total: &[f64]| {
+            let raw: Vec<f64> = total[1..].iter().map(|sum| sum / total[0]).collect();
+            let mut figures = standard(&raw, origin, scale);
+            figures.push(1.0 - raw[MOMENTS] - raw[MOMENTS + 1]);
+            figures
+        };
+        let values = of(&totals(&sums));
+        let mut errors = jackknife(of, &sums);
+        let all = self.rows() * REPLICATES;
+        let floor = FLOOR * CHECKS.sqrt() / all as f64;
+        let units = [scale, scale, 1.0, 1.0];
+        for (moment, error) in errors.iter_mut().enumerate().take(MOMENTS) {
+            *error *= student(REPLICATES) * carried_by(effective(carried[moment].iter().copied()));
+            *error = error.hypot(floor * INFLUENCE[moment] * units[moment]);
+        }
+        // That no point was seen does not mean that there is none: the weight of one, or what limits that are off by the difference
+        // change, whichever is less.
+        let rho = SMALL * (square / f64::max(count, 1.0)).sqrt() + FLOOR * (CHECKS / all as f64).sqrt();
+        let moved = |side: usize| {
+            let limit = [limits.lower(), limits.upper()][side];
+            let (Some(limit), Some(knots)) = (limit, &knots) else { return limit.map(|_| f64::INFINITY) };
+            let by = rho * scale.max((limit - values[0]).abs());
+            let share = |limit: f64| knots.iter().filter(|&&s| s < limit).count() as f64 / knots.len() as f64;
+            Some((share(limit + by) - share(limit)).abs().max((share(limit) - share(limit - by)).abs()))
+        };
+        let one = [0, 1].map(|side| moved(side).map_or(0.0, |moved| moved.min(1.0 / all as f64)));
+        for (error, one) in errors[MOMENTS..].iter_mut().zip([one[0], one[1], one[0].hypot(one[1])]) {
+            *error = (*error * student(REPLICATES)).hypot(one);
+        }
+        if let Some(beside) = beside.filter(|_| all < TELL) {
+            let far = Climbed::far_out(beside.far / scale);
+            let grown = [far * scale, far * scale, 6.0 * far, 20.0 * far];
+            errors.iter_mut().zip(grown).for_each(|(error, far)| *error = error.hypot(far));
+        }
+        let whole = values.iter().chain(&errors).all(|value| value.is_finite());
+        whole.then_some(Figures { values, errors })
+    }
+
+    /// Adds the means of the regressions' terms: of the powers from the exact moments of the regression, or of the surface and what
+    /// the regression differs by at its points.
+    fn integrate<const TERMS: usize>(
+        &self,
+        beside: &Beside<'_>,
+        knots: &[f64],
+        [origin, scale]: [f64; 2],
+        terms: &dyn Fn(f64) -> [f64; TERMS],
+        sums: &mut [Vec<f64>],
+    ) {
+        let rows = self.knots.rows as f64;
+        let anchor = beside.surface.as_ref().filter(|_| beside.exact).map(|(_, moments)| {
+            let (m, s) = ((moments.mean() - origin) / scale, moments.sigma() / scale);
+            let (skewness, kurtosis) = (moments.skewness().unwrap_or(0.0), moments.kurtosis().unwrap_or(0.0));
+            let (second, third, fourth) = (s * s, skewness * s.powi(3), kurtosis * s.powi(4));
+            let raw = [
+                m,
+                m * m + second,
+                m.powi(3) + 3.0 * m * second + third,
+                m.powi(4) + 6.0 * m * m * second + 4.0 * m * third + fourth,
+            ];
+            (m, s, raw)
+        });
+        let surface = beside.surface(&self.knots.u, knots.len());
+        // Of the terms as they are, and of their differences from those of the surface.
+        let mut plain = vec![vec![0.0; REPLICATES]; TERMS];
+        let mut differences = plain.clone();
+        for (row, &value) in knots.iter().enumerate() {
+            let replicate = row / self.knots.rows;
+            let own = terms(value);
+            let v = (anchor.as_ref()).map_or(0.0, |(m, s, _)| m + s * surface[row]);
+            for (index, term) in own.iter().enumerate() {
+                plain[index][replicate] += term / rows;
+                let other = if index < MOMENTS { v.powi(index as i32 + 1) } else { 0.0 };
+                differences[index][replicate] += (term - other) / rows;
+            }
+        }
+        let spread = |values: &[f64]| {
+            let mean = values.iter().sum::<f64>() / REPLICATES as f64;
+            let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+            (mean, (square / (REPLICATES * (REPLICATES - 1)) as f64).sqrt())
+        };
+        let squares: Option<Vec<[f64; 2]>> = match self.problem.correlation() {
+            None => {
+                let surface = beside.surface.as_ref().map(|(surrogate, moments)| (*surrogate, moments.sigma()));
+                let shapes = self.outcome.plan.inputs().shapes();
+                beside.parts.iter().map(|sparse| beside.chaos.squares(sparse, shapes, surface)).collect()
+            }
+            Some(_) => None,
+        };
+        for index in 0..TERMS {
+            let exact = squares.as_ref().filter(|_| index < 2).map(|squares| {
+                let of = |&[mean, square]: &[f64; 2]| match index {
+                    0 => (mean - origin) / scale,
+                    _ => (square - 2.0 * origin * mean + origin * origin) / (scale * scale),
+                };
+                squares.iter().map(of).collect::<Vec<f64>>()
+            });
+            let (mean, error) = spread(&plain[index]);
+            let believed =
+                exact.filter(|exact| (exact.iter().sum::<f64>() / PARTS as f64 - mean).abs() <= EXACT * error + 1e-9);
+            let anchored = anchor.as_ref().filter(|_| index < MOMENTS && spread(&differences[index]).1 < error);
+            for replicate in 0..REPLICATES {
+                sums[index][replicate] += match (&believed, anchored) {
+                    (Some(exact), _) => exact[replicate % PARTS],
+                    (None, Some((.., raw))) => raw[index] + differences[index][replicate],
+                    (None, None) => plain[index][replicate],
+                };
+            }
+        }
+    }
+}
+
+impl Beside<'_> {
+    /// The known surface in its sigmas.
+    fn surface(&self, u: &[Vec<f64>], rows: usize) -> Vec<f64> {
+        let Some((surrogate, moments)) = &self.surface else { return Vec::new() };
+        let rises = surrogate.rises(u).unwrap_or_else(|| vec![0.0; rows]);
+        rises.into_iter().map(|rise| (surrogate.centre + rise - moments.mean()) / moments.sigma()).collect()
+    }
+
+    /// At every point the regression that has not seen it.
+    fn values(&self, stride: &Stride) -> Vec<f64> {
+        let rows = REPLICATES * stride.rows;
+        let surface = self.surface(&stride.u, rows);
+        let places = Places { u: &stride.u, surface: &surface };
+        let each: Vec<Vec<f64>> = self.parts.iter().map(|sparse| self.chaos.values(sparse, places, rows)).collect();
+        (0..rows).map(|row| each[(row / stride.rows) % PARTS][row]).collect()
+    }
+}
+
+/// Figure by figure those with the smaller error, where such moments are possible; else those of the smaller error of sigma.
+fn chosen(plain: &Figures, with: &Figures) -> Figures {
+    let pick = |better: &dyn Fn(usize) -> bool| {
+        let of = |i: usize| if better(i) { with } else { plain };
+        Figures {
+            values: (0..plain.values.len()).map(|i| of(i).values[i]).collect(),
+            errors: (0..plain.errors.len()).map(|i| CHOICE * of(i).errors[i]).collect(),
+        }
+    };
+    let shares = |i: usize| i >= MOMENTS;
+    // All shares are of one origin, so that they add up.
+    let within = with.errors[MOMENTS + 2] < plain.errors[MOMENTS + 2];
+    let each = pick(&|i| if shares(i) { within } else { with.errors[i] < plain.errors[i] });
+    let [.., skewness, kurtosis] = [each.values[0], each.values[1], each.values[2], each.values[3]];
+    if kurtosis >= skewness * skewness + 1.0 && each.values[1] > 0.0 {
+        return each;
+    }
+    let sigma = with.errors[1] < plain.errors[1];
+    pick(&|i| if shares(i) { within } else { sigma })
+}
+
+/// `rows` points of every scrambling from `first` on, one scrambling after the other.
+fn points(draws: &Draws<'_>, first: usize, rows: usize) -> Points {
+    let portion = |replicate: usize| draws.points(Portion { replicate: replicate as u64, first: first as u64, rows });
+    let each: Vec<Points> = (0..REPLICATES).map(portion).collect();
+    let dimensions = each[0].dimensions();
+    Points::written(REPLICATES * rows, dimensions, |d, column| {
+        column.chunks_mut(rows).zip(&each).for_each(|(own, points)| own.copy_from_slice(points.column(d)));
+    })
+}
+
+fn histogram(values: &[f64]) -> Option<Histogram> {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let at = |share: f64| sorted[((sorted.len() - 1) as f64 * share) as usize];
+    let [least, greatest] = [*sorted.first()?, *sorted.last()?];
+    let mut fine = Fine::new(Scale::about(at(0.5), at(0.75) - at(0.25)));
+    Scale::about(at(0.5), at(0.75) - at(0.25)).bins(values).into_iter().for_each(|bin| fine.count(bin));
+    let (edges, counts) = fine.histogram([least, greatest], [at(0.001), at(0.999)], BINS);
+    Some(Histogram { edges, counts })
+}
