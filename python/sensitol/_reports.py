@@ -336,6 +336,8 @@ class AnalysisResult(Result):
     """Points that lost at least one characteristic."""
     in_model_s: float
     """Time within the model, of all threads together."""
+    joint_requirement: Optional[Judged]
+    """Whether that share reaches the target for all characteristics at once; None without such a target."""
     joint_yield: Optional[Verified]
     """The share of assemblies that keep the limits of all characteristics at once, and its error; None with fewer
     than two that have limits, and where it is not known.
@@ -1598,7 +1600,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "AllocationResult": {"attainable": AllocationResultAttainable, "characteristics": AllocatedCharacteristic, "confirmation": Confirmation, "evaluator": EvaluatorSummary, "front": FrontPoint, "goal": Goal, "joint_yield": AllocationResultJointYield, "loosest_scaling": AllocationResultLoosestScaling, "proof": Proof, "recentred": AllocationResultRecentred, "requirements": AllocationResultRequirements, "shadow_prices": AllocationResultShadowPrices, "tolerances": AllocatedTolerance, "warnings": ReportedWarning},
     "AllocationResultJointYield": {"after": JointYield, "before": JointYield},
     "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
-    "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_yield": Verified, "warnings": ReportedWarning},
+    "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": Verified, "warnings": ReportedWarning},
     "Beyond": {"design_point": DesignPoint},
     "CharacteristicResult": {"distribution": Law, "error_estimate": ErrorEstimate, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
     "ComparedCharacteristic": {"methods": ComparedMethod, "reference": SimulatedCharacteristic},
