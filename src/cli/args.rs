@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
+use super::shared_args::OUTPUT;
+pub(super) use super::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 pub(super) use super::values::{
     CostArg, DerivativesArg, MaximiseArg, MethodArg, MinimiseArg, Over, SamplerArg, SensitivitiesArg, StackArg,
     StencilArg,
@@ -11,9 +13,6 @@ pub(super) use super::values::{
 use super::values::{
     Movable, count, finite, movable, over, part, positive, probability, samples, samples_or_none, whole,
 };
-
-/// The heading of the options that say what is printed, and where.
-const OUTPUT: &str = "Output";
 
 /// The open, CAD-agnostic parametric tolerance engine.
 #[derive(Debug, Parser)]
@@ -125,87 +124,6 @@ pub(super) enum Command {
 }
 
 /// A study and how it is to be analysed.
-#[derive(Debug, Args)]
-pub(super) struct StudyArgs {
-    /// The study, a .toml or .json file
-    pub(super) study: PathBuf,
-
-    #[command(flatten)]
-    pub(super) how: HowArgs,
-}
-
-/// How a study is to be analysed.
-#[derive(Debug, Args)]
-pub(super) struct HowArgs {
-    /// The method [default: that of the study, or auto]
-    #[arg(short, long, value_name = "METHOD")]
-    pub(super) method: Option<MethodArg>,
-
-    /// Ask for this characteristic only (repeatable)
-    #[arg(long = "kc", value_name = "NAME")]
-    pub(super) characteristics: Vec<String>,
-
-    /// The nominal values and constants of this one of the study's [configurations]; analyze knows `all` too
-    #[arg(long, value_name = "NAME")]
-    pub(super) configuration: Option<String>,
-
-    /// Wanted relative error of sigma, for auto [default: that of the study, or 0.01]
-    #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
-    pub(super) accuracy: Option<f64>,
-
-    /// Wanted error of the skewness, for auto
-    #[arg(long, value_name = "E", value_parser = positive)]
-    pub(super) accuracy_skewness: Option<f64>,
-
-    /// Wanted error of the kurtosis, for auto
-    #[arg(long, value_name = "E", value_parser = positive)]
-    pub(super) accuracy_kurtosis: Option<f64>,
-
-    /// Wanted error of the yield, a share such as 1e-5, for auto
-    #[arg(long, value_name = "E", value_parser = part, allow_negative_numbers = true)]
-    pub(super) accuracy_yield: Option<f64>,
-
-    /// Most evaluations that may be spent; without it a method that needs more than 1000000 is refused
-    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
-    pub(super) budget: Option<usize>,
-
-    /// Evaluate at K sigma on either side instead of at the nodes that suit each distribution
-    #[arg(long, value_name = "K", value_parser = positive)]
-    pub(super) step: Option<f64>,
-
-    /// The interactions that six-n examines: strongest, adjacent, or A:B,C:D (names with : or , in backquotes)
-    #[arg(long, value_name = "PAIRS")]
-    pub(super) pairs: Option<String>,
-
-    /// How six-n evaluates an interaction: two-point, or four-point as the papers do
-    #[arg(long, value_name = "STENCIL")]
-    pub(super) stencil: Option<StencilArg>,
-
-    /// Nodes of the quadrature rules of dimension-reduction, univariate or bivariate: 3, 5 or 7 [default: 5]
-    #[arg(long, value_name = "M")]
-    pub(super) nodes: Option<usize>,
-
-    /// Sensitivities of varying dimensions, or of all: two evaluations each for those without tolerance
-    #[arg(long, value_name = "WHICH")]
-    pub(super) sensitivities: Option<SensitivitiesArg>,
-
-    /// Where derivatives come from [default: exact sensitivities where formulas give them, moments by differences]
-    #[arg(long, value_name = "SOURCE")]
-    pub(super) derivatives: Option<DerivativesArg>,
-}
-
-/// How long to work, and where what it costs is kept.
-#[derive(Debug, Args)]
-pub(super) struct WorkArgs {
-    /// Stop after S seconds and report what is known
-    #[arg(long, value_name = "S", value_parser = positive)]
-    pub(super) time: Option<f64>,
-
-    /// Keep the answers of an external model in FILE, or nowhere with `none` [default: STUDY.journal.sqlite beside the study]
-    #[arg(long, value_name = "FILE")]
-    pub(super) journal: Option<PathBuf>,
-}
-
 #[derive(Debug, Args)]
 pub(super) struct AnalyzeArgs {
     /// The study, a .toml or .json file; several are analysed one after another
@@ -643,15 +561,4 @@ pub(super) struct PearsonArgs {
 
     #[command(flatten)]
     pub(super) output: OutputArgs,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct OutputArgs {
-    /// Print JSON
-    #[arg(long, help_heading = OUTPUT)]
-    pub(super) json: bool,
-
-    /// Write to a file instead of stdout
-    #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
-    pub(super) output: Option<PathBuf>,
 }

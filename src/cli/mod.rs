@@ -30,6 +30,7 @@ mod running;
 mod sampling;
 mod schema;
 mod several;
+mod shared_args;
 mod simulate;
 mod study;
 mod sweep;

@@ -365,20 +365,23 @@ mod tests {
         }
     }
 
-    /// `x^2 + z` with an exponential x of mean 1 and a normal z: mean 2, mean square 4! + 1, from forty points.
+    /// `x^2 + z` with an exponential x of mean 1 and a normal z: mean 2, mean square 4! + 1. With Laguerre's polynomials `p_1 = x - 1` and
+    /// `p_2 = (x^2 - 4 x + 2)/2` it is `2 p_2 + 4 p_1 + 2 + z`.
     #[test]
     fn squares_are_those_of_the_distributions() {
         let shapes = shapes([&Exponential::new(0.0, 1.0).unwrap() as _, &Normal::new(0.0, 1.0).unwrap() as _]);
-        let u = [
-            numbers(40, 1).iter().map(|p| -p.ln() - 1.0).collect::<Vec<f64>>(),
-            numbers(40, 2).iter().map(|p| 4.0 * p - 2.0).collect(),
-        ];
-        let y: Vec<f64> = u[0].iter().zip(&u[1]).map(|(u, z)| (1.0 + u).powi(2) + z).collect();
         let chaos = Chaos::new(&shapes, &[0, 1], None);
-        let found = chaos.fit(Places { u: &u, surface: &[] }, &y);
+        let product = |j: usize, degree: usize| Term::Product(vec![(j, degree)]);
+        let terms = vec![(product(0, 2), 2.0), (product(0, 1), 4.0), (product(1, 1), 1.0)];
+        let found = Sparse { constant: 2.0, terms };
+        let u = [vec![-1.0, -0.3, 0.0, 2.5], vec![0.2, -1.0, 0.0, 1.5]];
+        let values = chaos.values(&found, Places { u: &u, surface: &[] }, 4);
+        for (value, (u, z)) in values.iter().zip(u[0].iter().zip(&u[1])) {
+            assert!((value - ((1.0 + u).powi(2) + z)).abs() < 1e-9, "{value} at {u} and {z}");
+        }
         let [mean, square] = chaos.squares(&found, &shapes, None).unwrap();
-        // A polynomial of degree 2 is found exactly, as far as least squares of 40 rows round.
-        assert!((mean - 2.0).abs() < 1e-8 && (square - 25.0).abs() < 1e-7, "{mean} {square}");
+        assert_eq!(mean, 2.0);
+        assert!((square - 25.0).abs() < 1e-12, "{square}");
     }
 
     /// The known surface is made of the same products: its part in the mean square is the same whether it is taken by itself or as they.

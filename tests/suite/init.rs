@@ -29,7 +29,7 @@ fn every_first_study_runs() {
     // The tutorial shows why.
     assert!(done(&within(folder.path(), &["analyze", "study.toml"])).contains("target 99.730 %: MISSED"));
     assert_eq!(within(folder.path(), &["analyze", "study.toml", "--check"]).status.code(), Some(1));
-    assert!(done(&within(folder.path(), &["allocate", "study.toml"])).starts_with("optimal: cost"));
+    assert!(done(&within(folder.path(), &["allocate", "study.toml"])).starts_with("local-optimum: cost"));
     // The example and the tutorial show the same study.
     let example = std::fs::read_to_string(repository("examples/first-study/study.toml")).unwrap();
     assert_eq!(std::fs::read_to_string(folder.path().join("study.toml")).unwrap(), example);
