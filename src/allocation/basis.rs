@@ -14,6 +14,7 @@ use super::cost::{Curve, Offer, Priced};
 use crate::dimension::Dimension;
 use crate::fits::tolerance_unit;
 use crate::problem::Problem;
+use crate::unit::Unit;
 
 /// Where costs come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -34,25 +35,14 @@ pub enum CostBasis {
 
 /// Half bands by the present ones between which a tolerance without a cost is sought.
 const RANGE: f64 = 10.0;
-/// Millimetres in the units of length that have a tolerance unit.
-const LENGTHS: [(&str, f64); 10] = [
-    ("mm", 1.0),
-    ("cm", 10.0),
-    ("m", 1000.0),
-    ("um", 1e-3),
-    ("µm", 1e-3),
-    ("μm", 1e-3),
-    ("micron", 1e-3),
-    ("in", 25.4),
-    ("inch", 25.4),
-    ("mil", 0.0254),
-];
-
 /// The unit of cost of a dimension in its own unit: that of its size, or the half band as written.
 pub(super) fn unit(dimension: &Dimension) -> f64 {
+    let metre = Unit::parse("m");
     let length = match dimension.unit() {
         None => Some(1.0),
-        Some(name) => LENGTHS.iter().find(|(unit, _)| *unit == name).map(|(_, millimetres)| *millimetres),
+        Some(name) => Unit::parse(name)
+            .filter(|unit| metre.as_ref().is_some_and(|metre| unit.same_kind(metre)))
+            .map(|unit| 1e3 * unit.scale),
     };
     match length {
         Some(millimetres) if dimension.nominal() != 0.0 => {
