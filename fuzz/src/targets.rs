@@ -178,7 +178,7 @@ fn command_line(bytes: &[u8]) {
     let study = folder.path().join("study.toml");
     let written = "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\nb = { nominal = 9, tolerance = 0.2 }\n\
                    [characteristics]\ngap = { formula = \"a - b + 0.1*a*b\", lower = 9, target_yield = 0.9 }\n\
-                   [costs]\na = { reciprocal = 1, bounds = [0.01, 1] }\n";
+                   [costs]\na = { model = \"reciprocal\", b = 0.1, min = 0.01, max = 1 }\n";
     std::fs::write(&study, written).expect("a file");
     let place = study.display().to_string();
     let words: Vec<&str> = text.lines().filter(|word| harmless(word)).take(24).collect();
