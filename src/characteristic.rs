@@ -34,6 +34,12 @@ impl Characteristic {
         Self { name: name.into(), unit: None, limits: SpecLimits::default(), target_yield: None, requirement: None }
     }
 
+    /// Under another name.
+    #[cfg(feature = "study")]
+    pub(crate) fn renamed(self, name: String) -> Self {
+        Self { name, ..self }
+    }
+
     /// With a unit, which is shown and never converted.
     pub fn with_unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = Some(unit.into());

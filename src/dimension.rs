@@ -199,7 +199,7 @@ impl Dimension {
     /// nominal, as measured values and those with an origin do not.
     ///
     /// # Errors
-    /// When the nominal is no finite number, or so large that the tolerance vanishes beside it.
+    /// When the nominal is not a finite number, or so large that the tolerance vanishes beside it.
     ///
     /// ```
     /// use sensitol::Dimension;

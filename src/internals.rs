@@ -1,5 +1,7 @@
 //! What the tests and the benchmarks of this repository reach inside: not part of the public interface, and no promise.
 
+pub use crate::allocation::knapsack::cheapest;
+pub use crate::allocation::lists::{ListChoice, ListOption};
 pub use crate::analysis::law_at::law_at;
 pub use crate::analysis::surface_law::QUANTILES;
 pub use crate::assembly::formula::interval::Interval;

@@ -1,4 +1,79 @@
-#![doc = include_str!("../README.md")]
+//! Statistical tolerance analysis of any assembly function.
+//!
+//! An [`AssemblyFunction`] gives the key characteristics of an assembly from its dimensions: a formula, a closed-form model, a Rust function, an
+//! external program. [`analyze`] evaluates it at the points of a [`Method`] and returns an [`Analysis`]: for each characteristic the first four
+//! moments, yield and capability, sensitivities and contributions, each with an error estimate, and the number of evaluations.
+//!
+//! ```
+//! use sensitol::{Characteristic, Closure, Dimension, Method, Problem, SpecLimits, analyze};
+//! // Nominal values with tolerances, by default normal with three sigma in half a band.
+//! let dimensions = [Dimension::normal("bore", 25.02, 0.01)?, Dimension::normal("shaft", 24.98, 0.01)?];
+//! let limits = SpecLimits::new(Some(0.025), Some(0.055))?;
+//! let problem = Problem::new(dimensions, Closure::scalar("clearance", |x| x[0] - x[1]))?
+//!     .asking([Characteristic::new("clearance").with_limits(limits)])?;
+//! let found = analyze(&problem, &Method::SecondOrder.into())?;
+//! let clearance = &found.characteristics[0];
+//! // 2N + 1 evaluations; the variance of a difference is the sum of the variances.
+//! assert_eq!(found.run.evaluations, 5);
+//! assert!((clearance.moments.unwrap().sigma() - 0.01 * 2f64.sqrt() / 3.0).abs() < 1e-12);
+//! // The share within the limits: 3.18 sigmas on either side.
+//! assert!((clearance.capability.unwrap().yield_().unwrap() - 0.998537).abs() < 1e-6);
+//! # Ok::<(), sensitol::Error>(())
+//! ```
+//!
+//! # A model of your own
+//!
+//! Implement [`AssemblyFunction`] where a closure is not enough: where evaluations fail, run in parallel, or cost something. Points come in
+//! batches; a point without a result gets an [`EvaluationError`](assembly::EvaluationError), and the analysis goes on without it.
+//!
+//! ```
+//! use sensitol::assembly::{EvaluationError, Input, Output, Request, Responses, Run, Signature};
+//! use sensitol::{AssemblyFunction, Dimension, Method, Problem, analyze};
+//!
+//! /// The height of a rod that leans by an offset.
+//! struct Rod(Signature);
+//!
+//! impl AssemblyFunction for Rod {
+//!     fn signature(&self) -> &Signature {
+//!         &self.0
+//!     }
+//!
+//!     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+//!         for row in 0..request.points.rows() {
+//!             if run.stopped() {
+//!                 return; // The rest stays unanswered, which is no error.
+//!             }
+//!             let [length, offset] = [0, 1].map(|input| request.points.column(input)[row]);
+//!             match offset.abs() <= length {
+//!                 true => out.set(row, 0, (length * length - offset * offset).sqrt()),
+//!                 false => out.fail(row, 0, EvaluationError::Refused { message: "the offset is longer than the rod".into() }),
+//!             }
+//!         }
+//!     }
+//! }
+//!
+//! let named = |name: &str| Input { name: name.into(), ..Input::default() };
+//! let mut signature = Signature::default();
+//! signature.inputs = vec![named("length"), named("offset")];
+//! signature.outputs = vec![Output { name: "height".into(), ..Output::default() }];
+//! let dimensions = [Dimension::normal("length", 10.0, 0.1)?, Dimension::normal("offset", 0.0, 0.6)?];
+//! let found = analyze(&Problem::new(dimensions, Rod(signature))?, &Method::SecondOrder.into())?;
+//! // The mean of 10 - offset^2/20 with a sigma of 0.2: 2e-3 below the nominal height.
+//! assert!((found.characteristics[0].moments.unwrap().mean() - 9.998).abs() < 1e-5);
+//! # Ok::<(), sensitol::Error>(())
+//! ```
+//!
+//! # Reading a result
+//!
+//! Unknown values are `None`. [`CharacteristicAnalysis::error_estimate`] has the error of each figure, [`CharacteristicAnalysis::requirements`]
+//! the verdict on each requirement (met, missed or inconclusive), [`Analysis::warnings`] every assumption that fails, as data with advice.
+//!
+//! # Features
+//!
+//! Without default features the library has the numbers only, needs 67 other crates, and builds for browsers (`wasm32-unknown-unknown`), where
+//! it runs on one thread. `study` reads TOML, JSON and CSV, `report` writes text, JSON, CSV, Markdown and SVG, `html` pages; `process` runs
+//! external programs, `journal` keeps their answers, `cli` is the command with all of them.
+
 // What the command line and the reports alone use is dead without them; with all features the compiler looks again.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::assembly::{AssemblyFunction, Points};
+use crate::assembly::{AssemblyFunction, Points, State, States};
 use crate::characteristic::Characteristic;
-use crate::correlation::{Correlation, CorrelationError, Pair};
+use crate::correlation::{Block, Correlation, CorrelationError, Pair};
 use crate::dimension::Dimension;
 use crate::names::nearest;
 use crate::summary::EvaluatorSummary;
@@ -54,6 +54,19 @@ pub enum ProblemError {
         /// What there is.
         known: Vec<String>,
     },
+    /// A dimension varies otherwise in a state.
+    #[error(
+        "the tolerance of `{dimension}` is another one in `{state}`, and one tolerance must do for all: write it as a number, not as percent"
+    )]
+    StateTolerance {
+        /// The dimension.
+        dimension: String,
+        /// The state.
+        state: String,
+    },
+    /// A program in several states at once.
+    #[error("an external program answers for one configuration at a time: name one of them")]
+    StatesOfProgram,
 }
 
 fn list(names: &[String]) -> String {
@@ -107,10 +120,15 @@ impl Problem {
     ///
     /// # Errors
     /// When these dimensions cannot be correlated so: see [`CorrelationError`].
-    pub fn correlated(mut self, pairs: &[Pair]) -> Result<Self, CorrelationError> {
-        self.correlation = match pairs {
-            [] => None,
-            pairs => Some(Correlation::new(&self.dimensions, pairs)?),
+    pub fn correlated(self, pairs: &[Pair]) -> Result<Self, CorrelationError> {
+        self.jointly(pairs, Vec::new())
+    }
+
+    /// The same beside blocks of dimensions that vary together by rows or within a zone.
+    pub(crate) fn jointly(mut self, pairs: &[Pair], blocks: Vec<Block>) -> Result<Self, CorrelationError> {
+        self.correlation = match (pairs, &blocks[..]) {
+            ([], []) => None,
+            _ => Some(Correlation::with_blocks(&self.dimensions, pairs, blocks)?),
         };
         Ok(self)
     }
@@ -157,6 +175,11 @@ impl Problem {
         problem
     }
 
+    /// With another function of the same signature.
+    pub(crate) fn with_function(&self, function: Arc<dyn AssemblyFunction>) -> Self {
+        Self { function, ..self.clone() }
+    }
+
     /// With other dimensions of the same names: other tolerances, other nominal values; what is correlated stays so.
     ///
     /// # Errors
@@ -174,10 +197,57 @@ impl Problem {
                 between: [a, b].map(|d| dimensions[d].name().to_owned()),
                 value: correlation.of(a, b),
             };
-            all.map(pair).filter(|pair| pair.value != 0.0).collect()
+            let of_blocks =
+                |&(a, b): &(usize, usize)| correlation.block_of(a).is_some() || correlation.block_of(b).is_some();
+            all.filter(|ends| !of_blocks(ends)).map(pair).filter(|pair| pair.value != 0.0).collect()
         });
+        let blocks = self.correlation.as_ref().map_or(Vec::new(), |correlation| correlation.blocks().to_vec());
         self.dimensions = dimensions;
-        self.correlated(&pairs)
+        self.jointly(&pairs, blocks)
+    }
+
+    /// The name of a characteristic in a state.
+    #[cfg(feature = "study")]
+    pub(crate) fn in_state(characteristic: &str, state: &str) -> String {
+        States::name(characteristic, state)
+    }
+
+    /// With every characteristic once in each state: problems of the same dimensions with other nominal values, or other functions.
+    ///
+    /// # Errors
+    /// When a dimension varies otherwise about its nominal value in a state, or an external program answers.
+    #[cfg(feature = "study")]
+    pub(crate) fn in_states(&self, states: &[(&str, &Self)]) -> Result<Self, ProblemError> {
+        /// What decimal numbers leave, relative to the half band and to the nominal value.
+        const SAME: [f64; 2] = [1e-9, 1e-13];
+        let mut all = Vec::new();
+        let mut characteristics = Vec::new();
+        for &(name, problem) in states {
+            if problem.function.signature().costly {
+                return Err(ProblemError::StatesOfProgram);
+            }
+            let mut moved = Vec::new();
+            for (own, there) in self.dimensions.iter().zip(&problem.dimensions) {
+                let by = there.nominal() - own.nominal();
+                let near = SAME[0] * own.half_band() + SAME[1] * own.nominal().abs().max(there.nominal().abs());
+                let apart = |a: f64, b: f64| (a - b).abs() > near;
+                if apart(own.half_band(), there.half_band())
+                    || apart(own.sigma(), there.sigma())
+                    || apart(own.mean() + by, there.mean())
+                {
+                    let (dimension, state) = (own.name().to_owned(), name.to_owned());
+                    return Err(ProblemError::StateTolerance { dimension, state });
+                }
+                moved.push(by);
+            }
+            let (function, outputs) = (Arc::clone(&problem.function), problem.outputs.clone());
+            all.push(State { name: name.to_owned(), function, moved, outputs });
+            let renamed = |one: &Characteristic| one.clone().renamed(Self::in_state(one.name(), name));
+            characteristics.extend(problem.characteristics.iter().map(renamed));
+        }
+        let outputs = (0..characteristics.len()).collect();
+        let function = Arc::new(States::new(all));
+        Self { characteristics, outputs, function, ..self.clone() }.checked()
     }
 
     fn checked(self) -> Result<Self, ProblemError> {

@@ -56,7 +56,14 @@ pub(crate) struct Required {
 
 impl From<&Requirement> for Required {
     fn from(of: &Requirement) -> Self {
-        Self { requirement: of.key(), required: of.amount() }
+        Self::of(of, of.amount())
+    }
+}
+
+impl Required {
+    /// So much of it.
+    pub(crate) fn of(requirement: &Requirement, amount: f64) -> Self {
+        Self { requirement: requirement.key(), required: amount }
     }
 }
 

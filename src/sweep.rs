@@ -57,7 +57,7 @@ pub enum SweepError {
     /// No value.
     #[error("a sweep needs at least one value")]
     NoValue,
-    /// A value that is no number.
+    /// A value that is not a number.
     #[error("a sweep goes over finite numbers, not {value}")]
     NotFinite {
         /// The value given.

@@ -7,6 +7,7 @@
 //! over the rows `c_i <= 0` and the bounds alike. Source: M. R. Hestenes, "Multiplier and gradient methods", J. Optimization Theory and
 //! Applications 4 (1969); R. T. Rockafellar, same journal 12 (1973), for inequalities.
 
+use super::cost::Priced;
 use super::minimise::minimised;
 use super::separable::Separable;
 
@@ -131,10 +132,10 @@ pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Ve
     const NEAR: Near = Near { by: 1e-5, updates: 12 };
     let bounds: Vec<[f64; 2]> =
         problem.priced.iter().map(|group| [group.offers[0].min.ln(), group.offers[0].max.ln()]).collect();
-    let scale = cost(problem, start).0.abs().max(f64::MIN_POSITIVE);
+    let scale = with_losses(problem, start).0.abs().max(f64::MIN_POSITIVE);
     let tolerances = |x: &[f64]| x.iter().map(|x| x.exp()).collect::<Vec<f64>>();
     let objective = |x: &[f64]| {
-        let (value, slopes) = cost(problem, &tolerances(x));
+        let (value, slopes) = with_losses(problem, &tolerances(x));
         (value / scale, slopes.into_iter().map(|slope| slope / scale).collect())
     };
     let rows = |x: &[f64]| {
@@ -155,9 +156,20 @@ pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Ve
     }
 }
 
-/// Cost of all groups and its derivatives by `ln T`.
-fn cost(problem: &Separable<'_>, at: &[f64]) -> Slope {
-    let of = problem.priced.iter().zip(at).map(|(group, &t)| {
+/// Cost of all groups and losses, with the derivatives by `ln T`.
+fn with_losses(problem: &Separable<'_>, at: &[f64]) -> Slope {
+    let (mut value, mut slopes) = cost(problem.priced, at);
+    for row in problem.losses {
+        value += row.value(at);
+        let terms = row.terms.iter().zip(at).map(|(term, &t)| term.power * term.value(t));
+        slopes.iter_mut().zip(terms).for_each(|(slope, term)| *slope += term);
+    }
+    (value, slopes)
+}
+
+/// Cost of all groups, by the first offer of each, and its derivatives by `ln T`.
+pub(super) fn cost(priced: &[Priced], at: &[f64]) -> Slope {
+    let of = priced.iter().zip(at).map(|(group, &t)| {
         let curve = &group.offers[0].curve;
         (group.parts * curve.cost(t), group.parts * curve.log_derivatives(t)[0])
     });

@@ -33,8 +33,16 @@ pub enum CostBasis {
     EqualShares,
 }
 
+impl CostBasis {
+    /// Whether the proportions of the tolerances are fixed, so that one factor is sought.
+    pub(super) fn is_proportion(self) -> bool {
+        matches!(self, Self::ConstantPrecision | Self::EqualShares)
+    }
+}
+
 /// Half bands by the present ones between which a tolerance without a cost is sought.
 const RANGE: f64 = 10.0;
+
 /// The unit of cost of a dimension in its own unit: that of its size, or the half band as written.
 pub(super) fn unit(dimension: &Dimension) -> f64 {
     let metre = Unit::parse("m");
@@ -72,7 +80,7 @@ pub(super) fn relative(problem: &Problem) -> Vec<Priced> {
         let offer = Curve::reciprocal(0.0, unit(dimension))
             .and_then(|curve| Offer::between(curve, present / RANGE, present * RANGE));
         if let Ok(offer) = offer {
-            groups.push(Priced { members: vec![d], parts: 1.0, offers: vec![offer] });
+            groups.push(Priced { members: vec![d], parts: 1.0, offers: vec![offer], rounded: None });
         }
     }
     groups

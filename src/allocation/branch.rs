@@ -6,6 +6,8 @@
 //! priced value is split between them. Source of the relaxation: A. M. Geoffrion, "Lagrangean relaxation for integer programming",
 //! Mathematical Programming Study 2 (1974).
 //!
+//! Lists of single half bands under such sums are a problem of their own ([`knapsack`](super::knapsack)).
+//!
 //! Bounds are exact for worst cases and sums of squares. Where second-order moments are more than that, the sums stand for
 //! them with a reserve: by how much they were too strict on random choices, twice; then optimality rests on that sample, and is
 //! not called proven.
@@ -18,7 +20,10 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::constraint::{KEPT, kept};
-use super::cost::Priced;
+use super::cost::{Offer, Priced};
+use super::knapsack::cheapest;
+use super::lists::ListOption;
+use super::loss::losses_at;
 use super::separable::{Best, Row, Separable};
 use super::solve::{Setting, Solved, Starts};
 
@@ -77,6 +82,7 @@ const SAME: f64 = 1e-12;
 struct Search<'a> {
     setting: Setting<'a>,
     rows: Vec<Row>,
+    losses: Vec<Row>,
     incumbent: Option<(Solved, Vec<usize>)>,
     nodes: usize,
 }
@@ -87,7 +93,8 @@ pub(super) fn branch(setting: Setting<'_>, start: &[f64]) -> Option<Chosen> {
     let reference = reference(&setting, start)?;
     let mut rows: Vec<Row> = setting.linearised(&reference)?.iter().map(|one| one.row(&reference)).collect();
     rows.iter_mut().for_each(|row| row.constant -= KEPT);
-    let mut search = Search { setting, rows, incumbent: None, nodes: 0 };
+    let losses = setting.loss_rows(&reference)?;
+    let mut search = Search { setting, rows, losses, incumbent: None, nodes: 0 };
     let discrete = setting.priced.iter().all(|group| group.offers.iter().all(|offer| offer.min == offer.max));
     let choices = setting.priced.iter().fold(1usize, |count, group| count.saturating_mul(group.offers.len()));
     if !exact && discrete && choices <= ALL {
@@ -95,6 +102,9 @@ pub(super) fn branch(setting: Setting<'_>, start: &[f64]) -> Option<Chosen> {
     }
     if !exact {
         search.relax();
+    }
+    if let Some(lists) = search.lists().filter(|_| exact && discrete) {
+        return search.chosen_of(&lists);
     }
     search.run(exact)
 }
@@ -114,6 +124,34 @@ fn reference(setting: &Setting<'_>, start: &[f64]) -> Option<Vec<f64>> {
 }
 
 impl Search<'_> {
+    /// Lists of single half bands with what each uses of every row; None where a row gives room or has none.
+    fn lists(&self) -> Option<Vec<Vec<ListOption>>> {
+        let room: Vec<f64> = self.rows.iter().map(|row| 1.0 - row.constant).collect();
+        if room.iter().any(|&room| room <= 0.0) {
+            return None;
+        }
+        let list = |(g, group): (usize, &Priced)| {
+            let option = |(place, offer): (usize, &Offer)| {
+                let t = offer.min;
+                let lost: f64 = self.losses.iter().map(|row| row.terms[g].value(t)).sum();
+                let uses = self.rows.iter().zip(&room).map(|(row, room)| row.terms[g].value(t) / room).collect();
+                ListOption { cost: group.parts * offer.curve.cost(t) + lost, uses, place }
+            };
+            group.offers.iter().enumerate().map(option).collect()
+        };
+        let lists: Vec<Vec<ListOption>> = self.setting.priced.iter().enumerate().map(list).collect();
+        lists.iter().flatten().all(|one| one.uses.iter().all(|&use_| use_ >= 0.0)).then_some(lists)
+    }
+
+    /// The cheapest choice from lists.
+    fn chosen_of(&self, lists: &[Vec<ListOption>]) -> Option<Chosen> {
+        let found = cheapest(lists, self.setting.stopped)?;
+        let (solved, value) = self.judged(&found.places)?;
+        let lost: f64 = self.losses.iter().map(|row| row.constant).sum();
+        let bound = (found.bound + lost).min(solved.cost);
+        kept(value).then_some(Chosen { solved, offers: found.places, bound, nodes: found.nodes, rigorous: true })
+    }
+
     fn run(mut self, rigorous: bool) -> Option<Chosen> {
         let whole: Vec<Range<usize>> = self.setting.priced.iter().map(|group| 0..group.offers.len()).collect();
         let mut open = BinaryHeap::new();
@@ -135,12 +173,12 @@ impl Search<'_> {
                 continue;
             }
             let priced = self.setting.priced;
-            let rows = std::mem::take(&mut self.rows);
-            let problem = Separable { priced, rows: &rows };
+            let (rows, losses) = (std::mem::take(&mut self.rows), std::mem::take(&mut self.losses));
+            let problem = Separable { priced, rows: &rows, losses: &losses };
             let (value, best) = problem.bounded(&node.ranges, &mut node.multipliers, known, steps);
             node.bound = node.bound.max(value);
             let split = split(&problem, &node, &best);
-            self.rows = rows;
+            (self.rows, self.losses) = (rows, losses);
             self.try_from(&best);
             if node.bound >= self.known() * (1.0 - SAME) {
                 continue;
@@ -279,9 +317,12 @@ impl Search<'_> {
         let mut offers = vec![0; counts.len()];
         loop {
             self.nodes += 1;
-            let cost: f64 = (self.setting.priced.iter().zip(&offers))
+            let held: f64 = (self.setting.priced.iter().zip(&offers))
                 .map(|(group, &offer)| group.parts * group.offers[offer].curve.cost(group.offers[offer].min))
                 .sum();
+            let at: Vec<f64> =
+                offers.iter().zip(self.setting.priced).map(|(&offer, group)| group.offers[offer].min).collect();
+            let cost = held + losses_at(self.setting.losses, self.setting.responses, self.setting.priced, &at);
             if cost < self.known() * (1.0 - SAME) && kept(self.quick(&offers)) {
                 let (solved, _) = self.judged(&offers)?;
                 self.incumbent = Some((solved, offers.clone()));

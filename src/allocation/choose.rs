@@ -16,8 +16,8 @@ pub(super) enum Choice {
     Stopped,
 }
 
-/// The cheapest tolerances at fixed derivatives.
-pub(super) fn choose(setting: &Setting<'_>, start: &[f64]) -> Choice {
+/// The cheapest tolerances at fixed derivatives, without set-ups.
+pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
     let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
     let free = setting.priced.iter().all(|group| group.offers.len() == 1);
     // What the start keeps can be kept: means that move with tolerances may make the tightest ones the worst.
@@ -101,6 +101,7 @@ fn unattainable(setting: &Setting<'_>, constraint: &Constraint, at: &[f64]) -> A
         characteristic: constraint.characteristic,
         unit: None,
         requirement: constraint.requirement,
+        joint: constraint.is_joint(),
         best: constraint.measured(responses, setting.priced, at),
         because: constraint.without_the_priced(responses, setting.priced, &factors),
         together: false,

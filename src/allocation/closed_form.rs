@@ -12,8 +12,11 @@
 use super::constraint;
 use super::separable::Separable;
 
-/// Tolerances and multipliers; None where costs differ in kind, several constraints bind, or a bound is met.
+/// Tolerances and multipliers; None where costs differ in kind, there are losses, several constraints bind, or a bound is met.
 pub(super) fn closed_form(problem: &Separable<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
+    if !problem.losses.is_empty() {
+        return None;
+    }
     (0..problem.rows.len()).find_map(|k| {
         let at = bound_by(problem, k)?;
         let kept = |(other, row): (usize, &super::separable::Row)| other == k || constraint::kept(row.value(&at));

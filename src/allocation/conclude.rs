@@ -1,15 +1,19 @@
 //! What follows from the tolerances that a search ended at: status, prices, the front, and what a sample of the model says.
 
+use super::box_sample::worst_in_box;
+use super::choose::Choice;
 use super::constraint::Constraint;
-use super::cost::Priced;
+use super::cost::{Offer, Priced};
 use super::driver::{Chosen, Driver, Ended, cost, kept_within, unit, with_tolerances};
 use super::front::front;
 use super::joint::joint;
+use super::machines::choose;
 use super::result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, Status};
 use super::scaling::loosest;
+use super::setup::needed;
 use super::solve::{Setting, Solved};
 use super::station::{Station, prices};
-use super::task::AllocateError;
+use super::task::{AllocateError, Goal};
 use crate::analysis::TRUSTED;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
@@ -49,21 +53,30 @@ impl Driver<'_> {
         let met = values.iter().all(|&value| kept_within(value, self.task.goal));
         let solved = last.as_ref().map(|(solved, ..)| solved);
         if let Some((solved, offers, proof)) = &last {
-            let cost = cost(&self.task.priced, &solved.at, offers);
+            let loss = self.loss_at(&station);
+            let cost = cost(&self.task.priced, &solved.at, offers)
+                + loss.unwrap_or(f64::NAN)
+                + self.set_up(allocation, offers);
             let gap = |bound: f64| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0);
             allocation.proof = Proof { gap: proof.bound.map(gap), ..proof.clone() };
-            allocation.cost_after = Some(cost);
+            allocation.cost_after = Some(cost).filter(|cost| cost.is_finite());
+            allocation.loss[1] = loss.filter(|_| !self.task.losses.is_empty());
             allocation.tolerances = self.allocated(original, &solved.at, offers);
             let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
-            if free {
+            // Of a level that is sought, and of proportions that are fixed, multipliers are not what a limit costs.
+            if free && self.task.goal == Goal::LeastCost && !self.task.basis.is_proportion() {
                 let (responses, priced) = (&station.responses, &self.task.priced);
-                let setting = Setting { responses, priced, constraints, stopped: &stopped, anywhere: false };
+                let (losses, setups) = (&self.task.losses, &self.task.setups);
+                let setting =
+                    Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
                 allocation.prices = prices(&setting, solved);
+                self.price_bounds(allocation, &setting, solved);
             }
         }
         let judged = |one: &Kept| station.analysis.characteristics[one.characteristic].judge(one.requirement);
         let judged: Vec<Judged> = allocation.requirements.iter().map(judged).collect();
-        let missed = judged.iter().any(|judged| judged.verdict == Verdict::Missed);
+        let joint_now = allocation.joint_requirement.as_ref().and(station.analysis.joint_requirement);
+        let missed = judged.iter().chain(&joint_now).any(|judged| judged.verdict == Verdict::Missed);
         let reached = ended.within_budget && !self.spent.stopped;
         allocation.confirmed = reached;
         allocation.status = match &last {
@@ -75,12 +88,14 @@ impl Driver<'_> {
             None => Status::AlmostOptimal,
             Some((solved, _, proof)) => {
                 // Slopes of a surface that the model refutes, and those of samples, prove nothing.
-                let trusted = constraints.iter().all(|one| {
-                    let c = one.characteristic;
+                let followed = |c: usize| {
                     let left = station.analysis.characteristics[c].verification.as_ref().and_then(|of| of.left);
                     !station.responses.is_sampled(c) && left.is_none_or(|left| left <= TRUSTED)
+                };
+                let trusted = constraints.iter().all(|one| {
+                    one.characteristics(&station.responses).into_iter().all(followed)
                         || one.requirement == Requirement::WorstCase
-                });
+                }) && self.task.losses.iter().all(|loss| followed(loss.characteristic));
                 let proven = trusted
                     && proof.residual.is_none_or(|residual| residual <= OPTIMAL)
                     && proof.bound.is_none_or(|bound| {
@@ -104,7 +119,11 @@ impl Driver<'_> {
                     characteristic: one.characteristic,
                     unit: unit(original, one.characteristic),
                     requirement: one.requirement,
-                    best: station.analysis.characteristics[one.characteristic].judge(one.requirement).value,
+                    joint: one.is_joint(),
+                    best: match one.is_joint() {
+                        true => joint_now.and_then(|joint| joint.value),
+                        false => station.analysis.characteristics[one.characteristic].judge(one.requirement).value,
+                    },
                     because: Vec::new(),
                     together: false,
                 }
@@ -116,12 +135,23 @@ impl Driver<'_> {
             return Ok(());
         }
         allocation.requirements.iter_mut().zip(judged).for_each(|(one, judged)| one.after = Some(judged));
+        allocation.joint_requirement.iter_mut().for_each(|one| one.after = joint_now);
+        if let (Some(solved), false) = (solved, self.spent.stopped) {
+            let (losses, setups) = (&self.task.losses, &self.task.setups);
+            let (responses, priced) = (&station.responses, &self.task.priced);
+            let setting =
+                Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
+            allocation.cost_unrounded = unrounded(&setting, solved);
+        }
         allocation.loosest_after = loosest(&station.responses, constraints);
         allocation.joint[1] = joint(&station.problem, &station.responses, self.options.seed);
         if let (Some(points), Some(solved), false) = (self.options.front, solved, self.spent.stopped) {
             let (responses, priced) = (&station.responses, &self.task.priced);
-            let setting = Setting { responses, priced, constraints, stopped: &stopped, anywhere: false };
-            allocation.front = front(&setting, original, &self.task.requirements, points, &solved.at);
+            let (losses, setups) = (&self.task.losses, &self.task.setups);
+            let setting =
+                Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
+            let joint = self.task.joint_target(original, self.options);
+            allocation.front = front(&setting, original, &self.task.requirements, joint, points, &solved.at);
             let group = |d: usize| self.task.priced.iter().position(|group| group.members.contains(&d));
             for point in &mut allocation.front {
                 let of_groups = point.tolerances.take();
@@ -131,7 +161,8 @@ impl Driver<'_> {
             }
         }
         if let (Some(samples), false) = (self.options.confirm, self.spent.stopped) {
-            self.confirm(allocation, &station.problem, samples)?;
+            let nominal: Vec<Option<f64>> = station.analysis.characteristics.iter().map(|one| one.nominal).collect();
+            self.confirm(allocation, &station.problem, &nominal, samples)?;
         }
         allocation.after = Some(station.analysis);
         allocation.problem = station.problem;
@@ -139,8 +170,8 @@ impl Driver<'_> {
     }
 
     /// Whether what keeps the conditions of an optimum is one: nothing can cost less than every tolerance at its loosest, or no choice does;
-    /// or the problem is convex. Linear worst cases, and sums of squares about means that stay, are convex in the tolerances, and so are all
-    /// costs; with the room that a moving mean leaves they are convex in both, but for a yield.
+    /// or the problem is convex. Linear worst cases, and roots of sums of squares about means that stay, are convex in the tolerances, and so
+    /// are costs but for some formulas and tables; with the room that a moving mean leaves they are convex in both, but for a yield.
     fn is_certified(
         &self,
         station: &Station,
@@ -150,16 +181,25 @@ impl Driver<'_> {
     ) -> bool {
         let priced = &self.task.priced;
         let free = priced.iter().all(|group| group.offers.len() == 1);
-        let loosest = priced.iter().zip(&solved.at).all(|(group, &t)| t >= group.loosest());
+        let loosest =
+            self.task.losses.is_empty() && priced.iter().zip(&solved.at).all(|(group, &t)| t >= group.loosest());
         let stopped = || false;
-        let setting =
-            Setting { responses: &station.responses, priced, constraints, stopped: &stopped, anywhere: false };
+        let (responses, losses, setups) = (&station.responses, &self.task.losses, &self.task.setups);
+        let setting = Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
         let bilinear = recentred && constraints.iter().any(|one| matches!(one.requirement, Requirement::Yield(_)));
-        free && loosest || free && setting.is_exact() && !bilinear || !free && proof.rigorous && !recentred
+        free && loosest
+            || free && setting.is_convex() && !bilinear
+            || !free && proof.rigorous && !recentred && setting.costs_are_convex()
     }
 
     /// Asks the model itself at the tolerances found: as many points as the budget leaves.
-    fn confirm(&mut self, allocation: &mut Allocation, problem: &Problem, samples: u64) -> Result<(), AllocateError> {
+    fn confirm(
+        &mut self,
+        allocation: &mut Allocation,
+        problem: &Problem,
+        nominal: &[Option<f64>],
+        samples: u64,
+    ) -> Result<(), AllocateError> {
         let budget = self.options.analysis.budget.map_or(u64::MAX, |budget| budget as u64);
         let samples = samples.min(budget.saturating_sub(self.spent.run.evaluations));
         if samples < FEWEST_CONFIRM {
@@ -169,18 +209,57 @@ impl Driver<'_> {
         let options = SimulationOptions { samples, seed: self.options.seed, ..SimulationOptions::default() };
         let simulation = simulate_with(problem, &options, self.run, &|_| {})?;
         self.spent.run = self.spent.run.and(&simulation.run);
+        let cheap = !problem.function().signature().costly && self.options.analysis.budget.is_none();
+        let worst = allocation.requirements.iter().any(|one| one.requirement == Requirement::WorstCase) && cheap;
+        let in_box = match worst {
+            true => worst_in_box(problem, nominal, self.options.seed, self.run),
+            false => vec![None; nominal.len()],
+        };
         for one in &mut allocation.requirements {
-            let sampled = !matches!(one.requirement, Requirement::Rss | Requirement::WorstCase);
             let found = &simulation.characteristics[one.characteristic];
-            one.sampled = sampled.then(|| found.judge_widely(one.requirement));
+            one.sampled = match one.requirement {
+                Requirement::Rss => None,
+                Requirement::WorstCase => in_box[one.characteristic],
+                _ => Some(found.judge_widely(one.requirement)),
+            };
         }
         allocation.confirmation = Some(simulation);
         Ok(())
     }
 
+    /// Quality loss and scrap at a station, 0 without any; None where they are unknown.
+    pub(super) fn loss_at(&self, station: &Station) -> Option<f64> {
+        let ones = vec![1.0; station.problem.dimensions().len()];
+        self.task.losses.iter().map(|loss| loss.at(&station.responses, &ones, None)).sum()
+    }
+
+    /// The machines that a choice needs, and what it costs to set them up.
+    fn set_up(&self, allocation: &mut Allocation, offers: &[usize]) -> f64 {
+        let chosen: Vec<&Offer> =
+            self.task.priced.iter().zip(offers).map(|(group, &offer)| &group.offers[offer]).collect();
+        allocation.setups = needed(&self.task.setups, &chosen).into_iter().cloned().collect();
+        allocation.setups.iter().map(|setup| setup.cost).sum()
+    }
+
+    /// What the bounds cost that tolerances have met.
+    fn price_bounds(&self, allocation: &mut Allocation, setting: &Setting<'_>, solved: &Solved) {
+        // Of limits that hold the cost up alike no one multiplier tells anything.
+        if allocation.prices.iter().any(|price| price.widen != price.narrow) {
+            return;
+        }
+        let prices = setting.bound_prices(&solved.at, &solved.multipliers);
+        for one in &mut allocation.tolerances {
+            let group = setting.priced.iter().position(|group| group.members.contains(&one.dimension));
+            one.bound_price = group.and_then(|g| prices[g]).filter(|_| one.bound.is_some());
+        }
+    }
+
     pub(super) fn cost_to_hold(&self, problem: &Problem) -> Option<f64> {
-        let of = |group: &Priced| group.cost_to_hold(group.tightest_member(problem));
-        self.task.priced.iter().map(of).sum()
+        let of = |group| Priced::holding(group, group.tightest_member(problem));
+        let held: Vec<(f64, &Offer)> = self.task.priced.iter().map(of).collect::<Option<_>>()?;
+        let offers: Vec<&Offer> = held.iter().map(|(_, offer)| *offer).collect();
+        let setups: f64 = needed(&self.task.setups, &offers).iter().map(|setup| setup.cost).sum();
+        Some(held.iter().map(|(cost, _)| cost).sum::<f64>() + setups)
     }
 
     pub(super) fn unchanged(&self, problem: &Problem) -> Vec<Allocated> {
@@ -195,6 +274,7 @@ impl Driver<'_> {
                 cost_after: None,
                 process: None,
                 bound: None,
+                bound_price: None,
             }
         };
         self.task.priced.iter().flat_map(|group| group.members.iter().map(move |&d| of(group, d))).collect()
@@ -223,6 +303,7 @@ impl Driver<'_> {
                     cost_after: Some(each * offer.curve.cost(t)),
                     process: offer.process.clone(),
                     bound,
+                    bound_price: None,
                 });
             }
         }
@@ -231,17 +312,42 @@ impl Driver<'_> {
     }
 }
 
+/// What the cheapest tolerances cost that need be no steps or grades; None where none need be, or they are not found.
+fn unrounded(setting: &Setting<'_>, solved: &Solved) -> Option<f64> {
+    if setting.priced.iter().all(|group| group.rounded.is_none()) {
+        return None;
+    }
+    let free = |group: &Priced| match &group.rounded {
+        Some(offer) => Priced { offers: vec![offer.clone()], ..group.clone() },
+        None => group.clone(),
+    };
+    let priced: Vec<Priced> = setting.priced.iter().map(free).collect();
+    match choose(&Setting { priced: &priced, ..*setting }, &solved.at) {
+        Choice::Found { solved: found, .. } if found.cost <= solved.cost * (1.0 + NO_GAP) => Some(found.cost),
+        _ => None,
+    }
+}
+
 /// Where what was found is in doubt.
-pub(super) fn doubts(problem: &Problem, allocation: &Allocation) -> Vec<Warning> {
+pub(super) fn doubts(problem: &Problem, priced: &[Priced], allocation: &Allocation) -> Vec<Warning> {
+    let is_bent = |group: &&Priced| {
+        let mut offers = group.offers.iter().chain(&group.rounded);
+        offers.any(|offer| !offer.curve.is_convex(offer.min, offer.max))
+    };
+    let name = |group: &Priced| problem.dimensions()[group.members[0]].name().to_owned();
+    let bent: Vec<String> = priced.iter().filter(is_bent).map(name).collect();
     let found = matches!(allocation.status, Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal);
     let not_confirmed = (!allocation.confirmed && found).then_some(Warning::NotConfirmed);
     let refuted = |kept: &Kept| {
         let Judged { interval: Some(interval), verdict: Verdict::Missed, .. } = kept.sampled? else { return None };
         let characteristic = problem.characteristics()[kept.characteristic].name().to_owned();
         let (requirement, required) = (kept.requirement.key(), kept.requirement.amount());
+        // Of a worst case the points say how much it takes at the least.
+        let interval = if interval[1].is_finite() { interval } else { [interval[0]; 2] };
         Some(Warning::ConfirmationMisses { characteristic, requirement, required, interval })
     };
-    not_confirmed.into_iter().chain(allocation.requirements.iter().filter_map(refuted)).collect()
+    let bent = (!bent.is_empty()).then_some(Warning::CostNotConvex { dimensions: bent });
+    not_confirmed.into_iter().chain(bent).chain(allocation.requirements.iter().filter_map(refuted)).collect()
 }
 
 /// Nominal values that differ.

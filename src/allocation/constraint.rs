@@ -5,6 +5,7 @@
 //! rss              (R/s)^2 with R the rss and s the room that the middle of the linear model leaves
 //! Cpk, sigma       (R/s)^2 with R sigma and s the room that the mean leaves
 //! yield            (sigma/s)^2 with s the sigma at which mean and shape give just that yield, corrected by the surface law
+//! joint yield      (b*/b)^2 with b the normal score of what all limits reject, b* that of what may be rejected
 //! ```
 //!
 //! The squares are exact sums of squares of tolerances for a linear characteristic; for any other the slopes are those of the
@@ -15,8 +16,10 @@ use std::sync::Arc;
 
 use super::correction::Correction;
 use super::cost::Priced;
-use super::response::{Responses, Unknown};
+use super::rejects::of_scores;
+use super::response::Responses;
 use super::separable::{Row, Term};
+use super::unknown::Unknown;
 use crate::capability::{self, Capability, Law};
 use crate::characteristic::SpecLimits;
 use crate::moments::Moments;
@@ -38,6 +41,8 @@ pub(super) struct Constraint {
     pub(super) requirement: Requirement,
     limits: SpecLimits,
     side: Side,
+    /// The part of the room that rss and worst case may take.
+    part: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,6 +50,8 @@ enum Side {
     Below,
     Above,
     Both,
+    /// Of all characteristics with limits together.
+    Joint,
 }
 
 /// A requirement at some tolerances: kept where `value` is at most 1.
@@ -60,7 +67,7 @@ pub(super) struct Linearised {
 impl Constraint {
     /// The sides of a requirement.
     pub(super) fn of(characteristic: usize, requirement: Requirement, limits: SpecLimits) -> Vec<Self> {
-        let one = |side| Self { characteristic, requirement, limits, side };
+        let one = |side| Self { characteristic, requirement, limits, side, part: 1.0 };
         match requirement {
             Requirement::Yield(_) | Requirement::Sigma(_) => vec![one(Side::Both)],
             _ => {
@@ -68,6 +75,27 @@ impl Constraint {
                 below.into_iter().chain(limits.upper().map(|_| one(Side::Above))).collect()
             }
         }
+    }
+
+    /// A yield of all characteristics with limits together, of which the first is named.
+    pub(super) fn joint(first: usize, least: f64, limits: SpecLimits) -> Self {
+        let requirement = Requirement::Yield(least);
+        Self { characteristic: first, requirement, limits, side: Side::Joint, part: 1.0 }
+    }
+
+    /// With this part of the room for rss and worst case.
+    pub(super) fn taking(self, part: f64) -> Self {
+        Self { part, ..self }
+    }
+
+    /// Whether it is of all characteristics with limits together.
+    pub(super) fn is_joint(&self) -> bool {
+        self.side == Side::Joint
+    }
+
+    /// The characteristics that it speaks of.
+    pub(super) fn characteristics(&self, responses: &Responses) -> Vec<usize> {
+        if self.is_joint() { responses.limited() } else { vec![self.characteristic] }
     }
 
     /// Its value alone; infinite where it cannot be kept so, or is unknown.
@@ -83,6 +111,9 @@ impl Constraint {
     pub(super) fn linearised(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
         if self.requirement == Requirement::WorstCase {
             return self.worst_case(responses, priced, at);
+        }
+        if self.is_joint() {
+            return self.joint_linearised(responses, priced, at);
         }
         let k = self.characteristic;
         let factors = responses.factors(priced, at);
@@ -127,6 +158,25 @@ impl Constraint {
         Some(by.iter().zip(priced).map(|(by, group)| of(by) - corrected(group)).collect())
     }
 
+    /// The same of a joint yield, with slopes by differences.
+    fn joint_linearised(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
+        /// Half a difference in `ln T`: truncation and rounding both near 1e-9.
+        const STEP: f64 = 3e-5;
+        let value = self.ratio(responses, priced, at).filter(|ratio| ratio.is_finite())?.powi(2);
+        let mut slopes = Vec::with_capacity(priced.len());
+        let mut trial = at.to_vec();
+        for g in 0..at.len() {
+            let mut of = |step: f64| {
+                trial[g] = at[g] * step.exp();
+                Some(self.ratio(responses, priced, &trial)?.powi(2))
+            };
+            let (up, down) = (of(STEP)?, of(-STEP)?);
+            trial[g] = at[g];
+            slopes.push((up - down) / (2.0 * STEP));
+        }
+        slopes.iter().all(|slope| slope.is_finite()).then(|| Linearised::of_squares(value, slopes))
+    }
+
     /// The reach beyond the nominal by the room that the limit leaves.
     fn worst_case(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
         let above = self.side == Side::Above;
@@ -151,7 +201,7 @@ impl Constraint {
         };
         // A nominal value beyond the limit leaves no room to divide by.
         let scale = if room > 0.0 { room } else { room.abs().max(reach.abs()).max(f64::MIN_POSITIVE) };
-        let value = 1.0 + (reach - room) / scale;
+        let value = 1.0 + (reach - room * self.part) / scale;
         Some(Linearised { value, slopes: slopes.into_iter().map(|slope| slope / scale).collect(), linear })
     }
 
@@ -169,11 +219,15 @@ impl Constraint {
         factors: &[f64],
         shifts: Option<&[f64]>,
     ) -> Option<f64> {
+        if self.is_joint() {
+            let share = responses.rejects(&responses.limited()).share(responses, factors, shifts)?;
+            return Some(of_scores(share, 1.0 - self.target(responses)));
+        }
         let moments = responses.moments_shifted(self.characteristic, factors, shifts)?;
         let (own, room) = match self.requirement {
             Requirement::Rss => {
                 let rss = responses.rss_squared(self.characteristic, priced, factors)?.0.sqrt();
-                (rss, self.room_about(responses.middle(self.characteristic, factors, shifts)?)?)
+                (rss, self.part * self.room_about(responses.middle(self.characteristic, factors, shifts)?)?)
             }
             _ => {
                 let factor = self.correction(responses).map_or(1.0, |of| of.factor(factors));
@@ -268,7 +322,7 @@ impl Constraint {
         let room = match self.side {
             Side::Below => value - self.limits.lower()?,
             Side::Above => self.limits.upper()? - value,
-            Side::Both => return None,
+            Side::Both | Side::Joint => return None,
         };
         (room > 0.0).then_some(room)
     }
@@ -277,6 +331,7 @@ impl Constraint {
     fn target(&self, responses: &Responses) -> f64 {
         let reach = |of: fn(&Unknown) -> f64| of(&responses.of[self.characteristic].unknown);
         match self.requirement {
+            Requirement::Yield(least) if self.is_joint() => 1.0 - Correction::allowed(least, responses.joint_unknown),
             Requirement::Yield(least) => 1.0 - Correction::allowed(least, reach(|of| of.yield_)),
             Requirement::Cpk(least) => least + reach(|of| of.cpk),
             Requirement::Sigma(most) => (most - reach(|of| of.sigma)).max(0.5 * most),
@@ -287,7 +342,9 @@ impl Constraint {
     /// What the law of the surface makes of the room for a yield.
     fn correction(&self, responses: &Responses) -> Option<Arc<Correction>> {
         let Requirement::Yield(least) = self.requirement else { return None };
-        responses.correction(self.characteristic, least, &|moments| self.room(moments, self.target(responses)))
+        let target = self.target(responses);
+        let room = |moments: &Moments| self.room(moments, target);
+        responses.correction(self.characteristic, least, &room, &|moments| self.room_slopes(moments, target))
     }
 
     /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it is no matter of the mean.
@@ -297,7 +354,7 @@ impl Constraint {
         let side = match self.side {
             Side::Below => below,
             Side::Above => above,
-            Side::Both => None,
+            Side::Both | Side::Joint => None,
         };
         let positive = |room: f64| (room > 0.0).then_some(room);
         match self.requirement {
@@ -360,7 +417,7 @@ impl Constraint {
         match self.side {
             Side::Above => Some(self.limits.upper()? - nominal),
             Side::Below => Some(nominal - self.limits.lower()?),
-            Side::Both => None,
+            Side::Both | Side::Joint => None,
         }
     }
 }
@@ -439,6 +496,11 @@ pub(super) fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 }
 
 impl Linearised {
+    /// Of something that grows as the squares of the tolerances.
+    pub(super) fn of_squares(value: f64, slopes: Vec<f64>) -> Self {
+        Self { value, slopes, linear: false }
+    }
+
     /// As a sum of powers of the tolerances with the same value and slopes here: exact for worst cases and for sums of
     /// squares. What grows as a tolerance shrinks goes with its inverse square, so that the sum is convex.
     pub(super) fn row(&self, at: &[f64]) -> Row {
@@ -469,6 +531,9 @@ impl Constraint {
             Requirement::Cpk(_) => {
                 let moments = responses.moments(self.characteristic, &factors)?;
                 capability::cpk(moments.mean(), moments.sigma(), self.limits)
+            }
+            Requirement::Yield(_) if self.is_joint() => {
+                Some(1.0 - responses.rejects(&responses.limited()).share(responses, &factors, None)?)
             }
             Requirement::Yield(_) => {
                 let moments = responses.moments(self.characteristic, &factors)?;

@@ -51,6 +51,10 @@ pub(super) struct About<'r> {
     pub(super) law_at: &'r dyn Fn(&[f64]) -> Option<SurfaceLaw>,
     /// The room by four moments.
     pub(super) room: &'r dyn Fn(&Moments) -> Option<f64>,
+    /// How its logarithm grows with mean, skewness and excess.
+    pub(super) room_slopes: &'r dyn Fn(&Moments) -> Option<[f64; 3]>,
+    /// How mean, `ln sigma`, skewness and excess grow with `ln T` of every dimension, where that is exact: then every shape stays.
+    pub(super) slopes: Option<Vec<[f64; 4]>>,
 }
 
 /// The room by the law in place of the room by four moments.
@@ -124,8 +128,24 @@ impl Correction {
                 Some(found.iter().map(|figure| figure.value).collect())
             })
             .collect();
+        let partial = about.slopes.as_ref().and_then(|_| (about.room_slopes)(&moments));
         let moving = about.varying.iter().enumerate().filter(|(_, (_, follows))| *follows != Follows::Still);
         for (position, &(d, follows)) in moving {
+            // What the law's own derivatives leave to the moments, without a difference where their slopes are exact.
+            if let (Some(all), Some(partial)) = (&about.slopes, partial) {
+                let [by_mean, by_sigma, by_skewness, by_excess] = all[d];
+                let by_law = sides.iter().zip(&own).map(|((tail, distance, _), own)| {
+                    let sign = if *tail == LawTail::Lower { 1.0 } else { -1.0 };
+                    let moved = sign * law.density(mean + r * distance).value * (1.0 - r) * by_mean;
+                    Some(own.as_ref()?.get(position)? + moved)
+                });
+                let by_law: Option<f64> = by_law.sum();
+                if let Some(by_law) = by_law.filter(|slope| slope.is_finite() && density < 0.0) {
+                    let by_room = partial[0] * by_mean + partial[1] * by_skewness + partial[2] * by_excess;
+                    slopes[d] = by_sigma + by_law / density - by_room;
+                    continue;
+                }
+            }
             let mut trial = ones.clone();
             let mut at = |step: f64| {
                 trial[d] = step.exp();

@@ -1,5 +1,10 @@
 //! What a tolerance costs to hold.
 
+use std::sync::Arc;
+
+use super::cost_error::CostError;
+use super::written_cost::WrittenCost;
+use crate::assembly::formula::{Formula, FormulaError};
 use crate::problem::Problem;
 
 /// Cost of one part over its half band `T`, falling as the tolerance opens.
@@ -9,19 +14,23 @@ use crate::problem::Problem;
 /// reciprocal         a + b/T
 /// reciprocal power   a + b/T^k
 /// exponential        a + b exp(-T/c)
+/// formula            of T, as it is written
+/// table              points (T, cost), straight lines in 1/T between them
 /// ```
 ///
-/// All of them are convex in `T`. Units: `a` and the cost in money, `T` and `c` in the unit of the dimension.
+/// The first four are convex in `T`; a formula or a table is where it bends so. Units: `a` and the cost in money, `T` and `c` in the unit of the dimension.
 ///
 /// Sources: K. W. Chase, W. H. Greenwood, B. G. Loosli, L. F. Hauglund, "Least cost tolerance allocation for mechanical assemblies with
 /// automated process selection", Manufacturing Review 3 (1990), for reciprocal powers fitted to process data; F. H. Speckhart,
 /// "Calculation of tolerance based on a minimum cost approach", J. Eng. Industry 94 (1972), for the exponential.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     kind: CurveKind,
     a: f64,
     b: f64,
     shape: f64,
+    /// Of a formula or a table.
+    written: Option<Arc<WrittenCost>>,
 }
 
 /// The kinds of [`Curve`].
@@ -35,6 +44,8 @@ pub enum CurveKind {
     ReciprocalPower,
     /// `a + b exp(-T/c)`.
     Exponential,
+    /// A formula or a table.
+    Written,
 }
 
 impl CurveKind {
@@ -44,58 +55,6 @@ impl CurveKind {
         ("reciprocal-power", Self::ReciprocalPower),
         ("exponential", Self::Exponential),
     ];
-}
-
-/// Why a cost cannot be.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CostError {
-    /// A constant that must not be negative is, or is no number.
-    #[error("{} must be 0 or above, but is {value}", if *name == "cost" { "a cost".to_owned() } else { format!("the cost constant {name}") })]
-    Negative {
-        /// The constant.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// A constant that must be above 0 is not.
-    #[error("the cost constant {name} must be above 0, but is {value}{}", if *value < 0.0 { ": the cost would rise with the tolerance" } else { "" })]
-    NotPositive {
-        /// The constant.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// A tolerance that is no positive number.
-    #[error("a tolerance must be above 0, but {name} is {value}")]
-    Tolerance {
-        /// Which: `min`, `max` or `tolerance`.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// The least tolerance is above the greatest.
-    #[error("min {min} is above max {max}")]
-    Swapped {
-        /// The least.
-        min: f64,
-        /// The greatest.
-        max: f64,
-    },
-    /// A tighter process that costs no more: the cost would rise with the tolerance.
-    #[error("the cost rises with the tolerance: {loose} costs more than the tighter {tight}")]
-    Rising {
-        /// The looser tolerance.
-        loose: f64,
-        /// The tighter one.
-        tight: f64,
-    },
-    /// A list without a process.
-    #[error("the list of processes is empty")]
-    NoProcess,
-    /// Nothing bears the cost.
-    #[error("a cost needs at least one dimension")]
-    NoMember,
 }
 
 impl Curve {
@@ -137,7 +96,63 @@ impl Curve {
             let name = if kind == CurveKind::Exponential { "c" } else { "k" };
             return Err(CostError::NotPositive { name, value: shape });
         }
-        Ok(Self { kind, a, b, shape })
+        Ok(Self { kind, a, b, shape, written: None })
+    }
+
+    /// A formula of `T`, the half band in the unit of the dimension.
+    ///
+    /// That it is positive and falls is checked where its bounds are known, by [`Offer::between`].
+    ///
+    /// # Errors
+    /// When the formula has another name than `T`.
+    ///
+    /// ```
+    /// use sensitol::allocation::Curve;
+    /// use sensitol::assembly::formula::Formula;
+    /// let curve = Curve::formula(Formula::parse("0.02/T + 0.0004/T^2")?)?;
+    /// assert!((curve.cost(0.1) - 0.24).abs() < 1e-15);
+    /// # Ok::<(), sensitol::assembly::formula::FormulaError>(())
+    /// ```
+    pub fn formula(formula: Formula) -> Result<Self, FormulaError> {
+        Ok(Self::written(WrittenCost::formula(formula)?))
+    }
+
+    /// Points of half band and cost, in any order; between two of them the cost is a straight line in `1/T`, so that
+    /// `a + b/T` is reproduced. Corners are rounded over a thousandth of the shorter neighbouring piece.
+    ///
+    /// # Errors
+    /// With fewer than two points, a half band that is not positive or is there twice, a negative cost, or a cost that rises with
+    /// the tolerance.
+    ///
+    /// ```
+    /// use sensitol::allocation::Curve;
+    /// let curve = Curve::table(&[[0.01, 5.0], [0.02, 3.0], [0.05, 2.0]])?;
+    /// // Half way in 1/T between 0.01 and 0.02.
+    /// assert!((curve.cost(1.0 / 75.0) - 4.0).abs() < 1e-12);
+    /// # Ok::<(), sensitol::allocation::CostError>(())
+    /// ```
+    pub fn table(points: &[[f64; 2]]) -> Result<Self, CostError> {
+        Ok(Self::written(WrittenCost::table(points)?))
+    }
+
+    fn written(written: WrittenCost) -> Self {
+        let written = Some(Arc::new(written));
+        Self { kind: CurveKind::Written, a: 0.0, b: 0.0, shape: 1.0, written }
+    }
+
+    /// The half bands between which it has a value: those of a table.
+    pub(crate) fn range(&self) -> Option<[f64; 2]> {
+        self.written.as_ref()?.range()
+    }
+
+    /// Whether it is convex in the half band between two of them.
+    pub(crate) fn is_convex(&self, min: f64, max: f64) -> bool {
+        self.written.as_ref().is_none_or(|written| written.is_convex(min, max))
+    }
+
+    /// Points between which straight lines in `1/T` are the cost, or nearly so: of a formula or a table.
+    pub(crate) fn points(&self, min: f64, max: f64) -> Option<Vec<[f64; 2]>> {
+        self.written.as_ref().map(|written| written.points(min, max))
     }
 
     /// Its kind.
@@ -166,14 +181,18 @@ impl Curve {
             CurveKind::Reciprocal => self.b / t,
             CurveKind::ReciprocalPower => self.b * t.powf(-self.shape),
             CurveKind::Exponential => self.b * (-t / self.shape).exp(),
+            CurveKind::Written => self.written.as_ref().map_or(f64::NAN, |written| written.cost(t)),
         }
     }
 
     /// First and second derivative of the cost by `ln t`.
     pub(crate) fn log_derivatives(&self, t: f64) -> [f64; 2] {
+        if let Some(written) = &self.written {
+            return written.log_derivatives(t);
+        }
         let cost = self.varying(t);
         match self.kind {
-            CurveKind::Fixed => [0.0, 0.0],
+            CurveKind::Fixed | CurveKind::Written => [0.0, 0.0],
             CurveKind::Reciprocal | CurveKind::ReciprocalPower => [-self.shape * cost, self.shape * self.shape * cost],
             CurveKind::Exponential => {
                 let x = t / self.shape;
@@ -195,6 +214,8 @@ pub struct Offer {
     pub min: f64,
     /// Greatest half band.
     pub max: f64,
+    /// The machine that it needs, which has a set-up cost of its own.
+    pub machine: Option<String>,
 }
 
 impl Offer {
@@ -208,7 +229,10 @@ impl Offer {
         if min > max {
             return Err(CostError::Swapped { min, max });
         }
-        Ok(Self { process: None, curve, min, max })
+        if let Some(written) = &curve.written {
+            written.check(min, max)?;
+        }
+        Ok(Self { process: None, curve, min, max, machine: None })
     }
 
     /// A process that holds one half band at one cost.
@@ -218,6 +242,12 @@ impl Offer {
         }
         let curve = Curve::fixed(cost).map_err(|_| CostError::Negative { name: "cost", value: cost })?;
         Ok(Self { process: Some(name.into()), ..Self::between(curve, tolerance, tolerance)? })
+    }
+
+    /// On a machine, whose set-up cost all dimensions share that need it.
+    #[must_use]
+    pub fn on(self, machine: impl Into<String>) -> Self {
+        Self { machine: Some(machine.into()), ..self }
     }
 
     /// With a name, where several compete.
@@ -235,6 +265,8 @@ pub struct Priced {
     pub parts: f64,
     /// The ways of making each part; with one of them the tolerance is free within it.
     pub offers: Vec<Offer>,
+    /// The free tolerance of which the offers are steps or standard grades.
+    pub(crate) rounded: Option<Offer>,
 }
 
 impl Priced {
@@ -255,15 +287,32 @@ impl Priced {
         if let Some(pair) = points.windows(2).find(|pair| pair[0].0 < pair[1].0 && pair[1].1 > pair[0].1) {
             return Err(CostError::Rising { loose: pair[1].0, tight: pair[0].0 });
         }
-        Ok(Self { parts: members.len() as f64, members, offers })
+        Ok(Self { parts: members.len() as f64, members, offers, rounded: None })
+    }
+
+    /// With the free tolerance of which the offers are steps or standard grades.
+    #[cfg(feature = "study")]
+    pub(crate) fn rounding(self, rounded: Option<Offer>) -> Self {
+        Self { rounded, ..self }
     }
 
     /// What it costs to hold this half band, which no offer need name: a process costs what it costs at any tolerance that it
     /// holds, and a curve goes on beyond its bounds.
     pub(crate) fn cost_to_hold(&self, t: f64) -> Option<f64> {
-        let holds = |offer: &&Offer| self.offers.len() == 1 && offer.min < offer.max || offer.min <= t * (1.0 + 1e-12);
+        self.holding(t).map(|(cost, _)| cost)
+    }
+
+    /// The same with the offer that holds it at the least cost.
+    pub(super) fn holding(&self, t: f64) -> Option<(f64, &Offer)> {
+        let known = |curve: &Curve| curve.range().is_none_or(|[least, most]| (least..=most).contains(&t));
+        let alone = self.offers.len() == 1;
+        let holds = |offer: &&Offer| match alone && offer.min < offer.max {
+            true => known(&offer.curve),
+            false => offer.min <= t * (1.0 + 1e-12),
+        };
         let at = |offer: &Offer| offer.curve.cost(if self.offers.len() == 1 { t } else { t.min(offer.max) });
-        self.offers.iter().filter(holds).map(|offer| self.parts * at(offer)).reduce(f64::min)
+        let costs = self.offers.iter().filter(holds).map(|offer| (self.parts * at(offer), offer));
+        costs.reduce(|best, other| if other.0 < best.0 { other } else { best })
     }
 
     /// The tightest half band among its members as they stand in a problem, which the process that they share has to hold.

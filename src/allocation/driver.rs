@@ -78,7 +78,15 @@ impl Driver<'_> {
         let of = |(c, one): (usize, &Option<Requirement>)| {
             Some(Constraint::of(c, (*one)?, problem.characteristics()[c].limits()))
         };
-        requirements.iter().enumerate().filter_map(of).flatten().collect()
+        let all: Vec<Constraint> = requirements.iter().enumerate().filter_map(of).flatten().collect();
+        all.into_iter().chain(self.joint_constraint(problem)).collect()
+    }
+
+    /// The joint yield that is required, of the first characteristic with limits by name.
+    fn joint_constraint(&self, problem: &Problem) -> Option<Constraint> {
+        let least = self.task.joint_target(problem, self.options)?;
+        let mut limited = problem.characteristics().iter().enumerate().filter(|(_, one)| one.limits().exist());
+        limited.next().map(|(c, one)| Constraint::joint(c, least, one.limits()))
     }
 
     /// The model asked at a problem; an error only the first time.

@@ -1,8 +1,10 @@
-//! Cost against yield.
+//! Cost against what is required.
 
-use super::choose::{Choice, choose};
+use super::choose::Choice;
 use super::constraint::Constraint;
+use super::machines::choose;
 use super::result::FrontPoint;
+use super::shape::FrontRequirement;
 use super::solve::Setting;
 use crate::distribution::standard_normal;
 use crate::problem::Problem;
@@ -10,37 +12,46 @@ use crate::requirement::Requirement;
 
 /// From one sigma less to one and a half more than what is required, and for Cpk a third of that.
 const SPAN: [f64; 2] = [-1.0, 1.5];
+/// How a sigma, or the part of the room that may be taken, falls over the same span: from 1.5 times to 0.55 times what is required.
+const FALLS: f64 = 0.4;
 
-/// This many points, the loosest requirement first, at fixed derivatives; other requirements than yield and Cpk stay.
+/// This many points, the loosest requirement first, at fixed derivatives.
 pub(super) fn front(
     setting: &Setting<'_>,
     problem: &Problem,
     requirements: &[Option<Requirement>],
+    joint: Option<f64>,
     points: usize,
     start: &[f64],
 ) -> Vec<FrontPoint> {
+    let characteristics = problem.characteristics();
+    let limited = || characteristics.iter().enumerate().filter(|(_, one)| one.limits().exist());
     let mut found = Vec::with_capacity(points);
     for point in 0..points {
         if (setting.stopped)() {
             break;
         }
         let more = SPAN[0] + (SPAN[1] - SPAN[0]) * point as f64 / (points - 1) as f64;
-        let wanted: Vec<Option<Requirement>> =
-            requirements.iter().map(|one| one.map(|one| stricter(one, more))).collect();
-        let constraints: Vec<Constraint> = (wanted.iter().enumerate())
-            .filter_map(|(c, one)| Some(Constraint::of(c, (*one)?, problem.characteristics()[c].limits())))
-            .flatten()
-            .collect();
-        let setting = Setting { constraints: &constraints, ..*setting };
-        let choice = choose(&setting, start);
-        let of_front = |(c, one): (usize, &Option<Requirement>)| match one {
-            Some(one @ (Requirement::Yield(_) | Requirement::Cpk(_))) => {
-                Some((problem.characteristics()[c].name().to_owned(), *one))
-            }
-            _ => None,
-        };
-        let required = wanted.iter().enumerate().filter_map(of_front).collect();
-        let (cost, tolerances) = match choice {
+        let (mut constraints, mut required) = (Vec::new(), Vec::new());
+        for (c, one) in requirements.iter().enumerate().filter_map(|(c, one)| Some((c, (*one)?))) {
+            let (requirement, part) = stricter(one, more);
+            let sides = Constraint::of(c, requirement, characteristics[c].limits());
+            constraints.extend(sides.into_iter().map(|side| side.taking(part)));
+            let amount = requirement.value().unwrap_or(part);
+            required.push(FrontRequirement {
+                characteristic: characteristics[c].name().to_owned(),
+                requirement,
+                amount,
+            });
+        }
+        if let Some((least, (first, one))) = joint.zip(limited().next()) {
+            let (requirement, _) = stricter(Requirement::Yield(least), more);
+            let amount = requirement.amount();
+            constraints.push(Constraint::joint(first, amount, one.limits()));
+            let names: Vec<&str> = limited().map(|(_, one)| one.name()).collect();
+            required.push(FrontRequirement { characteristic: names.join(", "), requirement, amount });
+        }
+        let (cost, tolerances) = match choose(&Setting { constraints: &constraints, ..*setting }, start) {
             Choice::Found { solved, .. } => (Some(solved.cost), Some(solved.at)),
             _ => (None, None),
         };
@@ -49,14 +60,16 @@ pub(super) fn front(
     found
 }
 
-/// The requirement with this many sigmas more.
-fn stricter(requirement: Requirement, more: f64) -> Requirement {
+/// The requirement with this many sigmas more, and the part of the room that rss and worst case may take.
+fn stricter(requirement: Requirement, more: f64) -> (Requirement, f64) {
+    let part = (-FALLS * more).exp();
     match requirement {
         Requirement::Yield(least) => {
             let level = standard_normal::upper_quantile(0.5 * (1.0 - least)) + more;
-            Requirement::Yield(1.0 - 2.0 * standard_normal::sf(level.max(0.1)))
+            (Requirement::Yield(1.0 - 2.0 * standard_normal::sf(level.max(0.1))), 1.0)
         }
-        Requirement::Cpk(least) => Requirement::Cpk((least + more / 3.0).max(0.05)),
-        other => other,
+        Requirement::Cpk(least) => (Requirement::Cpk((least + more / 3.0).max(0.05)), 1.0),
+        Requirement::Sigma(most) => (Requirement::Sigma(part * most), 1.0),
+        Requirement::Rss | Requirement::WorstCase => (requirement, part),
     }
 }

@@ -7,9 +7,10 @@
 //! The least cost of a level grows with it, so that the level is a root, found between one that costs less and one that costs more or
 //! cannot be kept. The greatest of the least Cpk of several characteristics is that of one level for all of them.
 
-use super::choose::{Choice, choose};
+use super::choose::Choice;
 use super::constraint::{Constraint, root};
 use super::driver::Driver;
+use super::machines::choose;
 use super::solve::Setting;
 use super::task::Goal;
 use crate::distribution::standard_normal;

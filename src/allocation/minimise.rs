@@ -1,6 +1,6 @@
 //! Smooth unconstrained minimisation: L-BFGS with the line search of Moré and Thuente, of the crate argmin.
 //!
-//! The best point seen is kept here: a line search that gives up loses nothing. What is no number, or cannot be computed, is
+//! The best point seen is kept here: a line search that gives up loses nothing. What is not a number, or cannot be computed, is
 //! infinite before argmin sees it.
 
 use std::cell::RefCell;

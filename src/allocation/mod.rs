@@ -1,12 +1,14 @@
 //! Tolerance allocation: the cheapest tolerances with which every characteristic keeps what is required of it.
 //!
 //! ```text
-//! min  sum_g parts_g C_g(T_g)      over half bands T_g of G groups of dimensions
+//! min  sum_g parts_g C_g(T_g) + sum_c [k_c (sigma_c^2 + (mean_c - target_c)^2) + price_c (share beyond limits)]
+//!                                  over half bands T_g of G groups of dimensions
 //! subject to, for every characteristic with a requirement,
 //!      yield >= Y      four moments of the second-order surface at T, and the Pearson distribution that has them
 //!      Cpk >= c        min(U - mean, mean - L) / 3 sigma
 //!      sigma <= s
 //!      mean ± rss within [L, U]
+//!      joint yield >= J     of all characteristics with limits
 //!      worst case within [L, U]: linear, and where the surface is curved that of the surface, corrected by the true one
 //! and  min_g <= T_g <= max_g,  or T_g one of a list of processes
 //! ```
@@ -20,7 +22,9 @@
 //! choice can undercut for processes, and what every limit costs.
 
 mod augmented;
+mod bands;
 mod basis;
+mod box_sample;
 mod branch;
 mod choose;
 mod closed_form;
@@ -28,35 +32,53 @@ mod conclude;
 mod constraint;
 mod correction;
 mod cost;
+mod cost_error;
 mod driver;
 mod front;
 mod goal;
 mod joint;
+pub(crate) mod knapsack;
+pub(crate) mod lists;
+mod loss;
+mod machines;
 mod minimise;
+mod one_row;
 mod proportion;
 mod recentre;
+mod reject_fit;
+mod rejects;
 mod response;
 mod result;
 mod run;
 mod sampled;
 mod scaling;
 mod separable;
+mod setup;
+mod several_rows;
 mod shape;
 mod solve;
 mod station;
 mod steps;
 mod task;
 mod together;
+mod unknown;
 mod vector;
 mod worst;
+mod written_cost;
 
 pub use basis::CostBasis;
 pub(crate) use cost::CurveKind;
-pub use cost::{CostError, Curve, Offer, Priced};
+pub use cost::{Curve, Offer, Priced};
+pub use cost_error::CostError;
 pub use joint::JointYield;
+pub use loss::QualityLoss;
 #[cfg(feature = "cli")]
 pub(crate) use result::ProofShape;
 
-pub use result::{Allocated, Allocation, Attainable, Bound, FrontPoint, Kept, Moved, Proof, ShadowPrice, Status};
+pub use result::{
+    Allocated, Allocation, Attainable, Bound, FrontPoint, JointKept, Kept, Moved, Proof, ShadowPrice, Status,
+};
 pub use run::{allocate, allocate_with};
+pub use setup::SetUp;
+pub use shape::FrontRequirement;
 pub use task::{AllocateError, AllocationOptions, AllocationTask, Goal};

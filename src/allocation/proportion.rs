@@ -1,7 +1,7 @@
 //! Tolerances in fixed proportions: one factor is chosen.
 
 use super::basis::{CostBasis, unit};
-use super::constraint::Constraint;
+use super::constraint::{Constraint, kept};
 use super::driver::{Driver, Ended, Near, ROUNDS, cost, with_tolerances};
 use super::result::{Allocation, Proof, Status};
 use super::scaling::loosest_of;
@@ -32,6 +32,11 @@ impl Driver<'_> {
                 break;
             }
             let Some(factor) = loosest_of(&station.responses, constraints, &members) else {
+                let ones = vec![1.0; station.problem.dimensions().len()];
+                // Kept however loose: these are kept, and how much looser they could be is not known.
+                if constraints.iter().all(|one| kept(one.value_at(&station.responses, &ones))) {
+                    break;
+                }
                 allocation.status = Status::NoFeasiblePointFound;
                 return Ok(());
             };

@@ -6,7 +6,7 @@ use super::minimise::minimised;
 use super::response::Responses;
 use super::solve::Setting;
 use super::station::Station;
-use super::task::AllocateError;
+use super::task::{AllocateError, Goal};
 use super::together::{Together, together};
 use crate::capability::Law;
 use crate::characteristic::SpecLimits;
@@ -51,9 +51,11 @@ impl Driver<'_> {
         let bounds: Vec<[f64; 2]> = of.iter().map(|&d| self.bounds_of(&problem.dimensions()[d])).collect();
         let stopped = || self.run.stopped();
         let priced = &self.task.priced;
-        let setting =
-            Setting { responses: &station.responses, priced, constraints, stopped: &stopped, anywhere: false };
-        let both = (!priced.is_empty()).then(|| together(&setting, &of, &bounds, at)).flatten();
+        let (responses, losses, setups) = (&station.responses, &self.task.losses, &self.task.setups);
+        let setting = Setting { responses, priced, constraints, losses, setups, stopped: &stopped, anywhere: false };
+        // Without a requirement nothing holds the nominal values: what is sought for a cost is best where the fewest are rejected.
+        let required = !priced.is_empty() && self.task.goal == Goal::LeastCost;
+        let both = required.then(|| together(&setting, &of, &bounds, at)).flatten();
         let none = Recentred { problem: problem.clone(), far: 0.0, rest: REST_ALONE, at: None, residual: None };
         let (shifts, found) = match both {
             Some(Together { shifts, at, residual }) => {

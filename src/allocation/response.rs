@@ -8,9 +8,12 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::bands::{Reach, Scaling};
 use super::correction::{About, Correction, Follows};
 use super::cost::Priced;
+use super::reject_fit::RejectFit;
 use super::sampled::SampledCorrection;
+use super::unknown::Unknown;
 use super::worst::WorstCase;
 use crate::analysis::{Analysis, CharacteristicAnalysis, law_over, surface_law};
 use crate::characteristic::SpecLimits;
@@ -38,6 +41,10 @@ pub(super) struct Responses {
     laws: Option<Vec<Arc<dyn Distribution>>>,
     /// What was found for a characteristic and a required yield, by its bits.
     corrections: Mutex<BTreeMap<(usize, u64), Arc<Correction>>>,
+    /// What characteristics reject together, by their indices.
+    pub(super) reject_fits: Mutex<BTreeMap<Vec<usize>, Arc<RejectFit>>>,
+    /// By how much more may be rejected of all limits together than their laws say.
+    pub(super) joint_unknown: f64,
 }
 
 /// One characteristic.
@@ -49,7 +56,7 @@ pub(super) struct Response {
     slopes: Option<Vec<f64>>,
     /// Whether it can depend on each dimension.
     depends: Vec<bool>,
-    limits: SpecLimits,
+    pub(super) limits: SpecLimits,
     /// The law of the surface, where a yield comes from one.
     law: Option<SurfaceLaw>,
     pub(super) unknown: Unknown,
@@ -57,35 +64,6 @@ pub(super) struct Response {
     pub(super) sampled: Option<SampledCorrection>,
     /// The worst case, where it is required; None where the slopes tell all of it.
     pub(super) worst: Option<WorstCase>,
-}
-
-/// How far the bad ends of the intervals lie from the figures by which trial tolerances are judged; 0 where nothing is known of an
-/// error.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Unknown {
-    /// From the share that the surface law keeps, or the Pearson fit.
-    pub(super) yield_: f64,
-    pub(super) cpk: f64,
-    pub(super) sigma: f64,
-}
-
-/// How a varying dimension follows its tolerance.
-#[derive(Clone, Copy)]
-enum Scaling {
-    /// The same shape, sigma in proportion, the mean moved by `alpha` sigma for every further old half band.
-    Similar { alpha: f64 },
-    /// Another shape at every tolerance.
-    Reshaped,
-    /// It does not.
-    Still,
-}
-
-/// The band about the nominal at a factor of 1: its middle and half width, and by how many half widths the middle moves where they grow.
-#[derive(Clone, Copy)]
-struct Reach {
-    middle: f64,
-    half: f64,
-    lean: f64,
 }
 
 /// Differences smaller than this part are rounding.
@@ -139,8 +117,41 @@ impl Responses {
             .collect();
         let laws = varying.iter().map(|&d| dimensions[d].law().cloned()).collect();
         let inputs = outcome.plan.inputs().clone();
-        let corrections = Mutex::default();
-        Self { dimensions, varying, inputs, scaling, reach, correlated, of, laws, corrections }
+        let (corrections, reject_fits) = (Mutex::default(), Mutex::default());
+        let mut all = Self {
+            dimensions,
+            varying,
+            inputs,
+            scaling,
+            reach,
+            correlated,
+            of,
+            laws,
+            corrections,
+            reject_fits,
+            joint_unknown: 0.0,
+        };
+        if let Some([low, _]) = analysis.joint_requirement.and_then(|of| of.interval) {
+            let ones = vec![1.0; n];
+            let own = all.rejects(&all.limited()).share(&all, &ones, None);
+            all.joint_unknown = own.map_or(0.0, |own| (1.0 - low - own).max(0.0));
+        }
+        all
+    }
+
+    /// The characteristics with limits.
+    pub(super) fn limited(&self) -> Vec<usize> {
+        (0..self.of.len()).filter(|&c| self.of[c].limits.exist()).collect()
+    }
+
+    /// The law of the surface of a characteristic, where a yield comes from one.
+    pub(super) fn law(&self, c: usize) -> Option<&SurfaceLaw> {
+        self.of[c].law.as_ref()
+    }
+
+    /// Whether the varying dimension at this place keeps mean and shape when its tolerance changes.
+    pub(super) fn keeps_mean_and_shape(&self, position: usize) -> bool {
+        matches!(self.scaling[position], Scaling::Similar { alpha } if alpha == 0.0)
     }
 
     /// What the law of the surface makes of the room for a yield that `room` finds by four moments; None where that is unknown.
@@ -149,6 +160,7 @@ impl Responses {
         c: usize,
         required: f64,
         room: &dyn Fn(&Moments) -> Option<f64>,
+        room_slopes: &dyn Fn(&Moments) -> Option<[f64; 3]>,
     ) -> Option<Arc<Correction>> {
         let one = &self.of[c];
         let law = one.law.as_ref().filter(|_| !self.is_plain(c))?;
@@ -172,6 +184,8 @@ impl Responses {
             moments: &|factors| self.moments(c, factors),
             law_at: &|factors| self.law_at(c, factors),
             room,
+            room_slopes,
+            slopes: self.exact_slopes(c, &vec![1.0; self.dimensions.len()]),
         };
         let found = Correction::of(&about, rejected).unwrap_or_else(|| Correction::none(self.dimensions.len()));
         let found = Arc::new(found);
@@ -180,7 +194,7 @@ impl Responses {
     }
 
     /// The law of a characteristic at other tolerances.
-    fn law_at(&self, c: usize, factors: &[f64]) -> Option<SurfaceLaw> {
+    pub(super) fn law_at(&self, c: usize, factors: &[f64]) -> Option<SurfaceLaw> {
         let (surrogate, inputs) = self.relocated(c, factors, None)?;
         let mut laws = self.laws.clone()?;
         for (position, (&d, law)) in self.varying.iter().zip(&mut laws).enumerate() {
@@ -269,6 +283,9 @@ impl Responses {
         priced: &[Priced],
         factors: &[f64],
     ) -> Option<Vec<[f64; 4]>> {
+        if let Some(slopes) = self.exact_moment_slopes(characteristic, priced, factors) {
+            return Some(slopes);
+        }
         let mut slopes = vec![[0.0; 4]; priced.len()];
         let mut trial = factors.to_vec();
         for (group, slope) in priced.iter().zip(&mut slopes) {
@@ -284,6 +301,35 @@ impl Responses {
             group.members.iter().for_each(|&d| trial[d] = factors[d]);
             for (slope, (up, down)) in slope.iter_mut().zip(up.into_iter().zip(down)) {
                 *slope = (up - down) / (2.0 * STEP);
+            }
+        }
+        Some(slopes)
+    }
+
+    /// The same of normal inputs whose means stay, without a difference.
+    fn exact_moment_slopes(&self, characteristic: usize, priced: &[Priced], factors: &[f64]) -> Option<Vec<[f64; 4]>> {
+        let by_dimension = self.exact_slopes(characteristic, factors)?;
+        let of = |group: &Priced| {
+            let mut slope = [0.0; 4];
+            for &d in &group.members {
+                slope.iter_mut().zip(&by_dimension[d]).for_each(|(all, own)| *all += own);
+            }
+            slope
+        };
+        Some(priced.iter().map(of).collect())
+    }
+
+    /// The same by every dimension, 0 of one that does not follow its tolerance.
+    fn exact_slopes(&self, characteristic: usize, factors: &[f64]) -> Option<Vec<[f64; 4]>> {
+        if self.is_sampled(characteristic) || !self.means_stay() {
+            return None;
+        }
+        let (surrogate, inputs) = self.relocated(characteristic, factors, None)?;
+        let by_position = surrogate.normal_slopes(&inputs)?;
+        let mut slopes = vec![[0.0; 4]; self.dimensions.len()];
+        for ((&d, scaling), slope) in self.varying.iter().zip(&self.scaling).zip(by_position) {
+            if !matches!(scaling, Scaling::Still) {
+                slopes[d] = slope;
             }
         }
         Some(slopes)
@@ -439,30 +485,30 @@ impl Responses {
         else {
             return false;
         };
-        let straight = is_straight(surrogate);
-        let normal =
-            self.inputs.shapes().iter().all(|shape| shape.moments == crate::distribution::StandardMoments::NORMAL);
-        let still = self.scaling.iter().all(|scaling| {
-            matches!(scaling, Scaling::Similar { alpha } if *alpha == 0.0) || matches!(scaling, Scaling::Still)
-        });
-        straight && normal && still && self.correlated.is_empty()
+        is_straight(surrogate) && self.are_normal() && self.means_stay() && self.correlated.is_empty()
     }
-}
 
-impl Unknown {
-    fn of(found: &CharacteristicAnalysis, by_law: bool) -> Self {
-        let law = found.surface_law.as_ref().filter(|_| by_law).and_then(|law| law.yield_());
-        let judged = law.or_else(|| found.pearson?.yield_());
-        let yield_ = judged.zip(found.yield_interval()).map(|(value, [low, _])| value - low);
-        // The target of a requirement does not change its interval.
-        let cpk = found.judge(Requirement::Cpk(1.0));
-        let sigma = found.judge(Requirement::Sigma(1.0));
-        let of = |value: Option<f64>, end: Option<f64>| value.zip(end).map_or(0.0, |(value, end)| (value - end).abs());
-        Self {
-            yield_: yield_.unwrap_or(0.0),
-            cpk: of(cpk.value, cpk.interval.map(|[low, _]| low)),
-            sigma: of(sigma.value, sigma.interval.map(|[_, high]| high)),
-        }
+    /// Whether sigma says everything and is a norm of the tolerances, convex in them: as [`is_plain`](Self::is_plain), with correlation.
+    pub(super) fn is_norm(&self, characteristic: usize) -> bool {
+        let surrogate = self.of[characteristic].surrogate.as_ref().filter(|_| !self.is_sampled(characteristic));
+        surrogate.is_some_and(is_straight) && self.are_normal() && self.means_stay()
+    }
+
+    /// Whether the characteristic is a sum of independent dimensions of any distribution whose means stay: its mean stays, and its variance is
+    /// a sum of squares of the tolerances.
+    pub(super) fn is_still_sum(&self, characteristic: usize) -> bool {
+        let surrogate = self.of[characteristic].surrogate.as_ref().filter(|_| !self.is_sampled(characteristic));
+        surrogate.is_some_and(is_straight) && self.means_stay() && self.correlated.is_empty()
+    }
+
+    fn are_normal(&self) -> bool {
+        self.inputs.shapes().iter().all(|shape| shape.moments == crate::distribution::StandardMoments::NORMAL)
+    }
+
+    fn means_stay(&self) -> bool {
+        self.scaling.iter().all(|scaling| {
+            matches!(scaling, Scaling::Similar { alpha } if *alpha == 0.0) || matches!(scaling, Scaling::Still)
+        })
     }
 }
 
@@ -506,40 +552,6 @@ fn shapes_of(dimension: &Dimension) -> Option<InputShape> {
     shapes(dimension.distribution()).pop()
 }
 
-impl Scaling {
-    fn of(dimension: &Dimension) -> Self {
-        let (mean, sigma) = (dimension.mean(), dimension.sigma());
-        let Some(law) = dimension.distribution() else { return Self::Still };
-        let scaled = |factor: f64| dimension.scaled(factor).and_then(Result::ok);
-        let (Some(half), Some(double)) = (scaled(0.5), scaled(2.0)) else {
-            return if dimension.scaled(1.0).is_some() { Self::Reshaped } else { Self::Still };
-        };
-        let alpha = (double.mean() - mean) / sigma;
-        // Rounding of the mean, seen in sigmas.
-        let blur = 8.0 * f64::EPSILON * (mean.abs() + double.mean().abs()) / sigma;
-        let affine = ((half.mean() - mean) / sigma + 0.5 * alpha).abs() <= blur + SAME * alpha.abs();
-        let wide = (double.sigma() / sigma - 2.0).abs() < SAME && (half.sigma() / sigma - 0.5).abs() < SAME;
-        let shape = law.standard_moments();
-        let same = [&half, &double].iter().all(|other| {
-            other.distribution().is_some_and(|law| {
-                let other = law.standard_moments().raw();
-                other.iter().zip(shape.raw()).all(|(a, b)| (a - b).abs() <= SAME * b.abs().max(1.0))
-            })
-        });
-        match affine && wide && same {
-            true => Self::Similar { alpha: if alpha.abs() <= blur { 0.0 } else { alpha } },
-            false => Self::Reshaped,
-        }
-    }
-}
-
-impl Reach {
-    fn of(dimension: &Dimension) -> Self {
-        let [lower, upper] = dimension.reach();
-        Self { middle: 0.5 * (lower + upper), half: 0.5 * (upper - lower), lean: dimension.lean() }
-    }
-}
-
 impl Responses {
     /// Every dimension that varies, or every zone, as a group of its own: as if all tolerances were free.
     pub(super) fn every_dimension(&self) -> Vec<Priced> {
@@ -550,7 +562,7 @@ impl Responses {
                 groups.iter_mut().find(|group| zone.is_some() && self.dimensions[group.members[0]].zone() == zone);
             match known {
                 Some(group) => group.members.push(d),
-                None => groups.push(Priced { members: vec![d], parts: 1.0, offers: Vec::new() }),
+                None => groups.push(Priced { members: vec![d], parts: 1.0, offers: Vec::new(), rounded: None }),
             }
         }
         groups

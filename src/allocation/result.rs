@@ -4,11 +4,12 @@ use serde::{Serialize, Serializer};
 
 use super::basis::CostBasis;
 use super::joint::JointYield;
+use super::setup::SetUp;
 #[cfg(feature = "cli")]
 use super::shape::RequiredOf;
 #[cfg(feature = "cli")]
 use super::shape::Sampled;
-use super::shape::{After, Before, required, sampled};
+use super::shape::{After, Before, FrontRequirement, required, sampled};
 use super::task::Goal;
 use crate::analysis::Analysis;
 use crate::problem::Problem;
@@ -87,6 +88,8 @@ pub struct Allocated {
     /// The bound that it has met.
     #[serde(rename = "at_bound")]
     pub bound: Option<Bound>,
+    /// What it saves per unit by which that bound gives way, and all else stays; None within the bounds, and where that is not known.
+    pub bound_price: Option<f64>,
 }
 
 /// A nominal value that has moved.
@@ -123,10 +126,30 @@ pub struct Kept {
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "After"))]
     pub after: Option<Judged>,
-    /// What a sample of the model says of it there; None without one, and of rss and worst case, of which samples know nothing.
+    /// What a sample of the model says of it there, of a worst case points in the box of the bands; None without one, and of rss, of which
+    /// samples know nothing.
     #[serde(serialize_with = "sampled")]
     #[cfg_attr(feature = "cli", schemars(with = "Option<Sampled>"))]
     pub sampled: Option<Judged>,
+}
+
+/// The joint yield that all characteristics with limits must keep, and what there is of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct JointKept {
+    /// What is required.
+    #[serde(flatten, serialize_with = "through::<Required, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "Required"))]
+    pub requirement: Requirement,
+    /// What there was, by the analysis at the tolerances before.
+    #[serde(flatten, serialize_with = "through::<Before, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "Before"))]
+    pub before: Judged,
+    /// What there is, by the analysis at those found; None where none were.
+    #[serde(flatten, serialize_with = "through::<After, _, _>")]
+    #[cfg_attr(feature = "cli", schemars(with = "After"))]
+    pub after: Option<Judged>,
 }
 
 /// What a requirement costs: by how much the cost falls per unit by which something gives way.
@@ -170,6 +193,8 @@ pub struct Attainable {
     pub requirement: Requirement,
     /// The best that the bounds of the tolerances allow, in the requirement's own measure.
     pub best: Option<f64>,
+    /// Whether it is the joint yield of all characteristics with limits.
+    pub joint: bool,
     /// Whether it could be kept if it were the only one.
     pub together: bool,
     /// The dimensions without cost that alone break the requirement, most harmful first; empty where the others are to blame too.
@@ -224,6 +249,14 @@ pub struct Allocation {
     pub cost_before: Option<f64>,
     /// All costs after.
     pub cost_after: Option<f64>,
+    /// What of these costs is quality loss and scrap, before and after; None without losses, and where it is unknown.
+    #[serde(rename = "loss")]
+    pub loss: [Option<f64>; 2],
+    /// What the cheapest tolerances cost that are not rounded to steps or standard grades, by the derivatives at those found; None where
+    /// there is no such rounding.
+    pub cost_unrounded: Option<f64>,
+    /// The machines that the processes need, and what it costs to set them up.
+    pub setups: Vec<SetUp>,
     /// What was sought.
     pub goal: Goal,
     /// Where the costs come from.
@@ -235,6 +268,8 @@ pub struct Allocation {
     pub moved: Vec<Moved>,
     /// Every requirement.
     pub requirements: Vec<Kept>,
+    /// The joint yield, where one is required.
+    pub joint_requirement: Option<JointKept>,
     /// What a requirement that holds the cost up costs; empty where everything is chosen from lists.
     #[serde(rename = "shadow_prices")]
     pub prices: Vec<ShadowPrice>,
@@ -268,10 +303,10 @@ pub struct Allocation {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FrontPoint {
-    /// What was required of every characteristic of which a yield or a Cpk is, in the order of the problem.
+    /// What was required of every characteristic of which something is, in the order of the problem; of all together last.
     #[serde(serialize_with = "required")]
     #[cfg_attr(feature = "cli", schemars(with = "Vec<RequiredOf>"))]
-    pub required: Vec<(String, Requirement)>,
+    pub required: Vec<FrontRequirement>,
     /// What that costs; None where it cannot be kept.
     pub cost: Option<f64>,
     /// Half bands, in the order of [`Allocation::tolerances`].

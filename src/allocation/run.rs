@@ -1,13 +1,13 @@
 //! From a problem with costs to tolerances that the model confirms.
 
-use super::basis::CostBasis;
-use super::choose::{Choice, choose, within_bounds};
+use super::choose::{Choice, within_bounds};
 use super::conclude::doubts;
 use super::constraint::Constraint;
 use super::cost::Priced;
 use super::driver::{Chosen, Driver, Ended, Near, ROUNDS, Spent, kept_within, unit, with_tolerances};
 use super::joint::joint;
-use super::result::{Allocation, Attainable, Proof, Status};
+use super::machines::choose;
+use super::result::{Allocation, Attainable, JointKept, Proof, Status};
 use super::scaling::loosest;
 use super::solve::{Setting, Solved, tightened};
 use super::station::{Station, required};
@@ -23,6 +23,8 @@ use crate::time::Instant;
 /// The factor up to which derivatives are trusted when they say that nothing is possible, and by which tolerances may move in a
 /// step after the model has failed farther out.
 const REACH: f64 = 1.5;
+/// A cost that is higher by a smaller part is rounding, or what the margin of tolerances makes of it.
+const DEARER: f64 = 1e-8;
 
 /// Allocates tolerances.
 ///
@@ -93,13 +95,20 @@ impl Driver<'_> {
             before: first.analysis.clone(),
             after: None,
             confirmed: false,
-            cost_before: self.cost_to_hold(problem),
+            cost_before: self.cost_to_hold(problem).and_then(|held| Some(held + self.loss_at(&first)?)),
             cost_after: None,
+            loss: [self.loss_at(&first).filter(|_| !self.task.losses.is_empty()), None],
+            cost_unrounded: None,
+            setups: Vec::new(),
             goal: self.task.goal,
             cost_basis: self.task.basis,
             tolerances: self.unchanged(problem),
             moved: Vec::new(),
             requirements: required(&self.task.requirements, &first),
+            joint_requirement: self.task.joint_target(problem, self.options).and_then(|_| {
+                let before = first.analysis.joint_requirement?;
+                Some(JointKept { requirement: before.requirement, before, after: None })
+            }),
             prices: Vec::new(),
             proof: Proof::default(),
             attainable: None,
@@ -121,7 +130,7 @@ impl Driver<'_> {
         allocation.run =
             RunSummary { wall, seed, stopped: stopped.or(budget), evaluator: problem.evaluator(), ..self.spent.run };
         allocation.rounds = self.spent.rounds;
-        allocation.warnings = doubts(problem, &allocation);
+        allocation.warnings = doubts(problem, &self.task.priced, &allocation);
         Ok(allocation)
     }
 
@@ -132,15 +141,16 @@ impl Driver<'_> {
         constraints: &[Constraint],
         before: &[f64],
     ) -> Result<(), AllocateError> {
+        if self.task.basis.is_proportion() {
+            return self.in_proportion(allocation, first, constraints);
+        }
         let original = allocation.problem.clone();
         let near = Near::of(&original);
         let mut station = first;
         let mut at = before.to_vec();
         let mut last: Option<Chosen> = None;
-        if matches!(self.task.basis, CostBasis::ConstantPrecision | CostBasis::EqualShares) {
-            return self.in_proportion(allocation, station, constraints);
-        }
         let mut haven: Option<(Station, Vec<f64>, Option<Chosen>)> = None;
+        let mut haven_cost = f64::INFINITY;
         let mut steps = Steps::default();
         let free = self.task.priced.iter().all(|group| group.offers.len() == 1);
         let (mut agreed, mut within_budget, mut at_tightest, mut reach) = (false, true, false, f64::INFINITY);
@@ -179,7 +189,9 @@ impl Driver<'_> {
             let stopped = || self.run.stopped();
             let priced = within_reach(&self.task.priced, &at, reach);
             let (responses, anywhere) = (&station.responses, last.is_none() && haven.is_none());
-            let setting = Setting { responses, priced: &priced, constraints, stopped: &stopped, anywhere };
+            let (losses, setups) = (&self.task.losses, &self.task.setups);
+            let setting =
+                Setting { responses, priced: &priced, constraints, losses, setups, stopped: &stopped, anywhere };
             let levels = match self.task.goal {
                 Goal::LeastCost => None,
                 _ => match self.levelled(&setting, &original, &at) {
@@ -195,6 +207,13 @@ impl Driver<'_> {
             // Kept, by the model and within the bounds: a place to come back to.
             let here = kept_within(setting.value(&at), self.task.goal);
             let safe = here && within_bounds(&self.task.priced, &at);
+            // Losses may be greater than the derivatives foretold: shorter steps from where all together was cheaper.
+            let cost_here = if self.task.losses.is_empty() { 0.0 } else { setting.cost(&at) };
+            if last.is_some() && haven.is_some() && cost_here > haven_cost * (1.0 + DEARER) {
+                (station, at, last) = haven.take().unwrap_or((station, at, last));
+                (reach, steps) = (shorter(reach), Steps::default());
+                continue;
+            }
             let (mut solved, offers, mut proof) = match choose(&setting, &at) {
                 Choice::Found { solved, offers, proof } => (solved, offers, proof),
                 // Derivatives led astray: shorter steps from where everything was kept.
@@ -256,7 +275,7 @@ impl Driver<'_> {
             match self.station(with_tolerances(next, &self.task.priced, &at)?)? {
                 Some(there) if self.spent.stopped || there.answers(constraints) => {
                     let left = (std::mem::replace(&mut station, there), from, last.take());
-                    haven = if safe { Some(left) } else { haven };
+                    (haven, haven_cost) = if safe { (Some(left), cost_here) } else { (haven, haven_cost) };
                     last = Some((solved, offers, proof));
                 }
                 // The model fails so far out: shorter steps from where it did not.

@@ -5,7 +5,8 @@
 //! D(lambda) = sum_k lambda_k (constant_k - 1) + sum_g min over offers and T of [ parts_g C_g(T) + sum_k lambda_k p_kg (T/at_kg)^q_kg ]
 //! ```
 //!
-//! with costs that are convex in `T` and `q` of 1, 2 or -2, the coefficient above 0 unless `q = 1`. For one offer a group the problem is
+//! Losses are more such sums, which the cost has as they are.
+//! With costs that are convex in `T` and `q` of 1, 2 or -2, the coefficient above 0 unless `q = 1`. For one offer a group the problem is
 //! convex: the greatest `D` over `lambda >= 0` is the least cost. For several, `D` of any `lambda` is a bound that no choice of
 //! processes can beat (weak duality), and the greatest one is the bound of the convex relaxation.
 
@@ -53,6 +54,8 @@ impl Row {
 pub(super) struct Separable<'a> {
     pub(super) priced: &'a [Priced],
     pub(super) rows: &'a [Row],
+    /// Sums that the cost has too.
+    pub(super) losses: &'a [Row],
 }
 
 /// The best of a group for given multipliers.
@@ -87,7 +90,7 @@ impl Separable<'_> {
         let slope = |t: f64| {
             let [first, second] = offer.curve.log_derivatives(t);
             let (mut first, mut second) = (parts * first, parts * second);
-            for (row, &multiplier) in self.rows.iter().zip(multipliers).filter(|(_, multiplier)| **multiplier > 0.0) {
+            for (row, multiplier) in self.weighted(multipliers) {
                 let term = &row.terms[g];
                 if term.coefficient != 0.0 {
                     let use_ = multiplier * term.power * term.value(t);
@@ -99,9 +102,14 @@ impl Separable<'_> {
         };
         let (t, curvature) =
             if offer.min == offer.max { (offer.min, 0.0) } else { least(&slope, offer.min, offer.max) };
-        let uses = self.rows.iter().zip(multipliers).filter(|(_, multiplier)| **multiplier > 0.0);
-        let used: f64 = uses.map(|(row, multiplier)| multiplier * row.terms[g].value(t)).sum();
+        let used: f64 = self.weighted(multipliers).map(|(row, multiplier)| multiplier * row.terms[g].value(t)).sum();
         Best { offer: index, t, value: parts * offer.curve.cost(t) + used, curvature }
+    }
+
+    /// The rows that count, each with its price: 1 of a loss.
+    fn weighted<'m>(&'m self, multipliers: &'m [f64]) -> impl Iterator<Item = (&'m Row, f64)> {
+        let priced = self.rows.iter().zip(multipliers.iter().copied()).filter(|(_, multiplier)| *multiplier > 0.0);
+        priced.chain(self.losses.iter().map(|row| (row, 1.0)))
     }
 
     fn all(&self, multipliers: &[f64]) -> Vec<Best> {
@@ -110,7 +118,8 @@ impl Separable<'_> {
 
     fn bound(&self, multipliers: &[f64], best: &[Best]) -> f64 {
         let constants = self.rows.iter().zip(multipliers).map(|(row, multiplier)| multiplier * (row.constant - 1.0));
-        constants.sum::<f64>() + best.iter().map(|best| best.value).sum::<f64>()
+        let lost: f64 = self.losses.iter().map(|row| row.constant).sum();
+        lost + constants.sum::<f64>() + best.iter().map(|best| best.value).sum::<f64>()
     }
 
     /// Multipliers with the greatest dual value, and the tolerances that belong to them: the optimum, where every group has one offer

@@ -81,9 +81,22 @@ pub(super) struct RequiredOf<'r> {
     required: Required,
 }
 
+/// What a point of the front requires of a characteristic.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FrontRequirement {
+    /// The characteristic; all with limits where a joint yield is required.
+    pub characteristic: String,
+    /// What is required.
+    pub requirement: Requirement,
+    /// How much of it; of rss and worst case the part of the room that they may take.
+    pub amount: f64,
+}
+
 /// What is required of every characteristic.
-pub(super) fn required<S: Serializer>(all: &[(String, Requirement)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(
-        all.iter().map(|(name, requirement)| RequiredOf { characteristic: name, required: requirement.into() }),
-    )
+pub(super) fn required<S: Serializer>(all: &[FrontRequirement], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(all.iter().map(|wanted| RequiredOf {
+        characteristic: &wanted.characteristic,
+        required: Required::of(&wanted.requirement, wanted.amount),
+    }))
 }

@@ -13,8 +13,10 @@ use super::augmented::augmented;
 use super::closed_form::closed_form;
 use super::constraint::{Constraint, Linearised, kept};
 use super::cost::Priced;
+use super::loss::{QualityLoss, losses_at};
 use super::response::Responses;
 use super::separable::{Row, Separable};
+use super::setup::SetUp;
 use crate::requirement::Requirement;
 
 /// What is required of which tolerances.
@@ -23,6 +25,10 @@ pub(super) struct Setting<'a> {
     pub(super) responses: &'a Responses,
     pub(super) priced: &'a [Priced],
     pub(super) constraints: &'a [Constraint],
+    /// What deviations and rejects cost beside the tolerances.
+    pub(super) losses: &'a [QualityLoss],
+    /// What machines cost to set up.
+    pub(super) setups: &'a [SetUp],
     pub(super) stopped: &'a dyn Fn() -> bool,
     /// Whether optima are sought from everywhere, where there may be several, rather than from the start alone.
     pub(super) anywhere: bool,
@@ -88,9 +94,16 @@ impl Setting<'_> {
         self.constraints.iter().map(value).fold(0.0, f64::max)
     }
 
-    /// Cost of the groups at half bands that the first offer of each holds.
+    /// Cost of the groups at half bands that the first offer of each holds, and the losses there.
     pub(super) fn cost(&self, at: &[f64]) -> f64 {
-        self.priced.iter().zip(at).map(|(group, &t)| group.parts * group.offers[0].curve.cost(t)).sum()
+        let held: f64 = self.priced.iter().zip(at).map(|(group, &t)| group.parts * group.offers[0].curve.cost(t)).sum();
+        held + losses_at(self.losses, self.responses, self.priced, at)
+    }
+
+    /// The losses as sums of powers that have their values and slopes at these half bands; None where one is unknown.
+    pub(super) fn loss_rows(&self, at: &[f64]) -> Option<Vec<Row>> {
+        let row = |loss: &QualityLoss| Some(loss.linearised(self.responses, self.priced, at)?.row(at));
+        self.losses.iter().map(row).collect()
     }
 
     pub(super) fn linearised(&self, at: &[f64]) -> Option<Vec<Linearised>> {
@@ -100,10 +113,27 @@ impl Setting<'_> {
 
     /// Whether sums of powers are exactly what is required.
     pub(super) fn is_exact(&self) -> bool {
-        self.constraints.iter().all(|one| match one.requirement {
+        let exact = |one: &Constraint| match one.requirement {
             Requirement::WorstCase => self.responses.of[one.characteristic].worst.is_none(),
-            _ => self.responses.is_plain(one.characteristic),
-        })
+            _ => !one.is_joint() && self.responses.is_plain(one.characteristic),
+        };
+        self.constraints.iter().all(exact) && self.losses.iter().all(|loss| loss.is_exact(self.responses))
+    }
+
+    /// Whether cost and requirements are convex in the tolerances, so that what keeps the conditions of an optimum is one: worst cases of
+    /// straight surfaces, roots of sums of squares with any correlation, and squares of deviations about means that stay.
+    pub(super) fn is_convex(&self) -> bool {
+        let rows = self.constraints.iter().all(|one| match one.requirement {
+            Requirement::WorstCase => self.responses.of[one.characteristic].worst.is_none(),
+            _ => !one.is_joint() && self.responses.is_norm(one.characteristic),
+        });
+        rows && self.losses.iter().all(|loss| loss.is_exact(self.responses)) && self.costs_are_convex()
+    }
+
+    /// Whether every cost is convex in its tolerance.
+    pub(super) fn costs_are_convex(&self) -> bool {
+        let mut offers = self.priced.iter().flat_map(|group| &group.offers);
+        offers.all(|offer| offer.curve.is_convex(offer.min, offer.max))
     }
 
     /// The tightest that there is, and the loosest.
@@ -117,10 +147,11 @@ impl Setting<'_> {
         let bounds = self.bounds();
         let tight: Vec<f64> = bounds.iter().map(|&[low, _]| low).collect();
         let mut starts = vec![self.within(start)];
-        if !self.is_exact() {
+        let one_start = self.is_exact() && self.costs_are_convex();
+        if !one_start {
             let loose: Vec<f64> = bounds.iter().map(|&[_, high]| high).collect();
             // Where the loosest of all keep everything, nothing is cheaper: a place that no slope need lead to.
-            if kept(self.value(&loose)) {
+            if self.losses.is_empty() && kept(self.value(&loose)) {
                 let nothing = vec![0.0; self.constraints.len()];
                 let solved = self.judged(&loose, &self.linearised(&loose)?, &nothing, false);
                 return Some(Solved { converged: true, ..solved });
@@ -134,7 +165,7 @@ impl Setting<'_> {
         for start in starts {
             // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
             let done = best.as_ref().is_some_and(|best| best.converged && kept(best.value));
-            if done && (!self.anywhere || self.is_exact()) {
+            if done && (!self.anywhere || one_start) {
                 break;
             }
             begun += 1;
@@ -240,7 +271,8 @@ impl Setting<'_> {
                 break;
             }
             let rows: Vec<Row> = linearised.iter().map(|one| one.row(&at)).collect();
-            let problem = Separable { priced: self.priced, rows: &rows };
+            let Some(losses) = self.loss_rows(&at) else { break };
+            let problem = Separable { priced: self.priced, rows: &rows, losses: &losses };
             if step == 0 {
                 let direct = closed_form(&problem);
                 closed = direct.is_some() && exact;
@@ -272,7 +304,7 @@ impl Setting<'_> {
         self.tighten(&mut best);
         if closed {
             let rows: Vec<Row> = self.linearised(&best.at)?.iter().map(|one| one.row(&best.at)).collect();
-            let direct = closed_form(&Separable { priced: self.priced, rows: &rows });
+            let direct = closed_form(&Separable { priced: self.priced, rows: &rows, losses: &[] });
             let same = |direct: &Vec<f64>| direct.iter().zip(&best.at).all(|(a, b)| (a / b - 1.0).abs() <= SAME);
             best.closed = direct.is_some_and(|(direct, _)| same(&direct));
         }
@@ -303,14 +335,19 @@ impl Setting<'_> {
 
     /// How far these tolerances are from an optimum, with these multipliers.
     fn judged(&self, at: &[f64], linearised: &[Linearised], multipliers: &[f64], closed: bool) -> Solved {
-        let slopes: Vec<f64> = (self.priced.iter().zip(at))
+        let mut slopes: Vec<f64> = (self.priced.iter().zip(at))
             .map(|(group, &t)| group.parts * group.offers[0].curve.log_derivatives(t)[0])
             .collect();
         let scale = slopes.iter().fold(f64::MIN_POSITIVE, |scale, slope| scale.max(slope.abs()));
-        let mut residual: f64 = 0.0;
+        for loss in self.losses {
+            match loss.linearised(self.responses, self.priced, at) {
+                Some(of) => slopes.iter_mut().zip(&of.slopes).for_each(|(slope, of)| *slope += of),
+                None => slopes.fill(f64::NAN),
+            }
+        }
+        let mut residual: f64 = if slopes.iter().any(|slope| slope.is_nan()) { f64::INFINITY } else { 0.0 };
         for (g, (group, &t)) in self.priced.iter().zip(at).enumerate() {
-            let uses = linearised.iter().zip(multipliers).map(|(one, multiplier)| multiplier * one.slopes[g]);
-            let slope = slopes[g] + uses.sum::<f64>();
+            let slope = slopes[g] + uses_of(linearised, multipliers, g);
             let offer = &group.offers[0];
             let violation = match (t <= offer.min * (1.0 + AT_BOUND), t >= offer.max * (1.0 - AT_BOUND)) {
                 (true, true) => 0.0,
@@ -347,6 +384,26 @@ impl Setting<'_> {
         Some(self.judged(at, &linearised, multipliers, false).residual)
     }
 
+    /// What it saves, per unit of half band, that the bound which a tolerance has met gives way; None within the bounds, and where processes
+    /// compete or slopes are unknown.
+    pub(super) fn bound_prices(&self, at: &[f64], multipliers: &[f64]) -> Vec<Option<f64>> {
+        let nothing = vec![None; at.len()];
+        let (Some(linearised), Some(losses)) = (self.linearised(at), self.loss_rows(at)) else { return nothing };
+        let price = |g: usize| {
+            let [offer] = &self.priced[g].offers[..] else { return None };
+            let t = at[g];
+            let lost: f64 = losses.iter().map(|row| row.terms[g].power * row.terms[g].value(t)).sum();
+            let slope = self.priced[g].parts * offer.curve.log_derivatives(t)[0] + lost;
+            let price = (slope + uses_of(&linearised, multipliers, g)) / t;
+            match (t <= offer.min * (1.0 + AT_BOUND), t >= offer.max * (1.0 - AT_BOUND)) {
+                (true, false) => Some(price.max(0.0)),
+                (false, true) => Some((-price).max(0.0)),
+                _ => None,
+            }
+        };
+        (0..at.len()).map(price).collect()
+    }
+
     /// The least value that a constraint can have by itself within the bounds, and where.
     pub(super) fn attainable(&self, constraint: &Constraint) -> (f64, Vec<f64>) {
         let bounds = self.bounds();
@@ -370,6 +427,11 @@ impl Setting<'_> {
         }
         (least, at)
     }
+}
+
+/// What one more of a group's tolerance, in `ln T`, uses of the constraints by their multipliers.
+fn uses_of(linearised: &[Linearised], multipliers: &[f64], g: usize) -> f64 {
+    linearised.iter().zip(multipliers).map(|(one, multiplier)| multiplier * one.slopes[g]).sum()
 }
 
 /// The best: kept constraints first, then the smallest residual.

@@ -45,7 +45,9 @@ pub(super) fn prices(setting: &Setting<'_>, solved: &Solved) -> Vec<ShadowPrice>
     let (responses, priced) = (setting.responses, setting.priced);
     let mut prices: Vec<ShadowPrice> = Vec::new();
     let binds = |one: &Constraint| one.value(responses, priced, &solved.at) >= 1.0 - BINDING;
-    for (constraint, &multiplier) in setting.constraints.iter().zip(&solved.multipliers).filter(|(_, m)| **m > 0.0) {
+    for (constraint, &multiplier) in
+        setting.constraints.iter().zip(&solved.multipliers).filter(|(one, m)| **m > 0.0 && !one.is_joint())
+    {
         let c = constraint.characteristic;
         let Some([lower, upper, sigma]) = constraint.prices(responses, priced, &solved.at, multiplier) else {
             continue;
@@ -75,14 +77,20 @@ pub(super) fn prices(setting: &Setting<'_>, solved: &Solved) -> Vec<ShadowPrice>
 
 /// The characteristics that hold the cost up, where their slopes depend on each other: then multipliers are not unique.
 fn alike(setting: &Setting<'_>, solved: &Solved) -> Option<Vec<usize>> {
+    let binds = |one: &&Constraint| one.value(setting.responses, setting.priced, &solved.at) >= 1.0 - BINDING;
+    let binding: Vec<&Constraint> = setting.constraints.iter().filter(|one| !one.is_joint()).filter(binds).collect();
+    // One characteristic alone has one price; slopes take longer than values.
+    if binding.windows(2).all(|pair| pair[0].characteristic == pair[1].characteristic) {
+        return None;
+    }
     let mut characteristics: Vec<usize> = Vec::new();
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let mut dependent = false;
-    for one in setting.constraints {
-        let linearised = one.linearised(setting.responses, setting.priced, &solved.at)?;
-        if linearised.value < 1.0 - BINDING || characteristics.contains(&one.characteristic) {
+    for one in binding {
+        if characteristics.contains(&one.characteristic) {
             continue;
         }
+        let linearised = one.linearised(setting.responses, setting.priced, &solved.at)?;
         characteristics.push(one.characteristic);
         let is_free = |g: usize| {
             let (t, group) = (solved.at[g], &setting.priced[g]);
@@ -102,7 +110,7 @@ fn alike(setting: &Setting<'_>, solved: &Solved) -> Option<Vec<usize>> {
             basis.push(slopes.into_iter().map(|slope| slope / left).collect());
         }
     }
-    (dependent && characteristics.len() > 1).then_some(characteristics)
+    dependent.then_some(characteristics)
 }
 
 /// What it saves to widen the limits of one characteristic alone, and costs to narrow them: by solving again with limits moved, extrapolated

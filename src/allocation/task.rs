@@ -2,6 +2,8 @@
 
 use super::basis::{CostBasis, relative, unscalable};
 use super::cost::Priced;
+use super::loss::QualityLoss;
+use super::setup::{MOST as MOST_MACHINES, SetUp};
 use serde::Serialize;
 
 use crate::dimension::Dimension;
@@ -9,8 +11,12 @@ use crate::method::{Method, MethodError, Options};
 use crate::names::nearest;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
+use crate::sampling::{Draws, Sampler};
 use crate::simulation::{SimulationError, chosen};
 use crate::warning::Advice;
+
+/// Points that confirm what was found for a cheap model, where nothing is said.
+const CONFIRM: u64 = 100_000;
 
 /// Costs and requirements beside a problem.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -24,6 +30,10 @@ pub struct AllocationTask {
     pub basis: CostBasis,
     /// What is sought.
     pub goal: Goal,
+    /// What deviations and rejects cost.
+    pub losses: Vec<QualityLoss>,
+    /// What machines cost to set up that processes need.
+    pub setups: Vec<SetUp>,
 }
 
 /// What is sought.
@@ -50,7 +60,50 @@ pub enum Goal {
 impl AllocationTask {
     /// These costs, and for every characteristic of the problem what it must keep.
     pub fn new(priced: Vec<Priced>, requirements: Vec<Option<Requirement>>) -> Self {
-        Self { priced, requirements, basis: CostBasis::Given, goal: Goal::LeastCost }
+        Self {
+            priced,
+            requirements,
+            basis: CostBasis::Given,
+            goal: Goal::LeastCost,
+            losses: Vec::new(),
+            setups: Vec::new(),
+        }
+    }
+
+    /// With quality losses and scrap as parts of the cost.
+    ///
+    /// ```
+    /// use sensitol::allocation::{AllocationOptions, AllocationTask, Curve, Offer, Priced, QualityLoss, allocate};
+    /// use sensitol::{Characteristic, Closure, Dimension, Problem};
+    /// let dimensions = [Dimension::normal("a", 10.0, 0.1)?, Dimension::normal("b", 6.0, 0.1)?];
+    /// let problem = Problem::new(dimensions, Closure::scalar("gap", |x| x[0] - x[1]))?.asking([Characteristic::new("gap")])?;
+    /// let cost = |d| Priced::new(vec![d], vec![Offer::between(Curve::reciprocal(0.0, 0.1)?, 0.01, 1.0)?]);
+    /// let task = AllocationTask::new(vec![cost(0)?, cost(1)?], vec![None]).with_losses(vec![QualityLoss::new(0, 40.0, 4.0)?]);
+    /// let found = allocate(&problem, &task, &AllocationOptions::default())?;
+    /// // b/T + k (T/3)^2 is least at T = (9 b/2 k)^(1/3).
+    /// assert!((found.tolerances[0].after - (9.0f64 * 0.1 / 80.0).cbrt()).abs() < 1e-7);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_losses(mut self, losses: Vec<QualityLoss>) -> Self {
+        self.losses = losses;
+        self
+    }
+
+    /// With what machines cost to set up, each once for all dimensions whose processes need it.
+    #[must_use]
+    pub fn with_setups(mut self, setups: Vec<SetUp>) -> Self {
+        self.setups = setups;
+        self
+    }
+
+    /// With costs as a front end has them: of this basis, or where nothing is said those that are given, and relative ones where there are none
+    /// and nominal values alone are not what is to move.
+    #[must_use]
+    pub fn relative_or_default(self, problem: &Problem, asked: Option<CostBasis>, recentring: bool) -> Self {
+        let without = self.priced.is_empty() && !recentring;
+        let default = if without { CostBasis::ToleranceUnit } else { CostBasis::Given };
+        self.relative(problem, asked.unwrap_or(default))
     }
 
     /// With something else sought than the least cost: yields, Cpk and rss that are required of characteristics give way to it.
@@ -170,6 +223,16 @@ impl AllocationOptions {
         self
     }
 
+    /// Confirmed as a front end has it: at so many points, at none where that is 0, and at 100,000 of a cheap model that can be sampled and has
+    /// no budget where nothing is said.
+    #[must_use]
+    pub fn with_confirm_or_default(mut self, problem: &Problem, asked: Option<u64>) -> Self {
+        let drawn = || Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, self.seed).is_ok();
+        let cheap = !problem.function().signature().costly && self.analysis.budget.is_none() && drawn();
+        self.confirm = asked.or(cheap.then_some(CONFIRM)).filter(|&points| points > 0);
+        self
+    }
+
     /// Confirmed by Monte Carlo at so many points of the model.
     #[must_use]
     pub fn with_confirm(mut self, points: u64) -> Self {
@@ -235,6 +298,45 @@ pub enum AllocateError {
         /// Why not.
         why: &'static str,
     },
+    /// Losses beside costs that are no money.
+    #[error("a loss is in the unit of the costs, and relative costs have none: give the tolerances costs")]
+    LossWithoutCosts,
+    /// A process on a machine of which nothing is known.
+    #[error(
+        "a process of `{dimension}` needs the machine `{machine}`, which has no set-up cost: write 0 where it has none"
+    )]
+    UnknownMachine {
+        /// The dimension.
+        dimension: String,
+        /// The machine.
+        machine: String,
+    },
+    /// Too many machines for every set of them to be looked at.
+    #[error("there are {count} machines with set-up costs, and {most} are the most")]
+    TooManyMachines {
+        /// How many.
+        count: usize,
+        /// The most.
+        most: usize,
+    },
+    /// Scrap of what cannot be rejected.
+    #[error("scrap of `{characteristic}` has a cost, but it has no limit: give it lower or upper")]
+    ScrapWithoutLimits {
+        /// The characteristic.
+        characteristic: String,
+    },
+    /// Bounds of a nominal value that hold nothing.
+    #[error(
+        "the bounds of the nominal value of `{name}` must be two numbers, the lower first, of a dimension that may move, not {low} and {high}"
+    )]
+    NominalBounds {
+        /// The dimension.
+        name: String,
+        /// The lower.
+        low: f64,
+        /// The upper.
+        high: f64,
+    },
     /// No limits to be in the middle of.
     #[error("recentring needs a characteristic with limits")]
     NoLimits,
@@ -259,10 +361,12 @@ pub enum AllocateError {
         least: f64,
     },
     /// A front of what is not required.
-    #[error("a front of cost against yield needs costs, and a characteristic with a required yield or Cpk")]
+    #[error(
+        "a front of cost against what is required needs costs, and a characteristic of which something is required"
+    )]
     NoFront,
     /// As many points make no front.
-    #[error("a front of cost against yield takes 2 to 200 points, not {points}")]
+    #[error("a front takes 2 to 200 points, not {points}")]
     FrontPoints {
         /// As given.
         points: usize,
@@ -318,11 +422,15 @@ impl AllocationTask {
         if self.priced.is_empty() && options.recentre.is_empty() {
             return Err(AllocateError::NothingToChoose);
         }
-        let nothing = self.requirements.iter().all(Option::is_none);
+        let nothing = self.requirements.iter().all(Option::is_none)
+            && self.losses.is_empty()
+            && self.joint_target(problem, options).is_none();
         if !self.priced.is_empty() && nothing && self.goal == Goal::LeastCost {
             return Err(AllocateError::NothingRequired);
         }
         self.check_goal(problem)?;
+        self.check_losses(problem)?;
+        self.check_setups(problem)?;
         let mut seen = vec![false; dimensions.len()];
         for &d in self.priced.iter().flat_map(|group| &group.members) {
             let dimension = dimensions[d].name().to_owned();
@@ -338,12 +446,47 @@ impl AllocationTask {
         }
         self.check_recentre(problem, options)?;
         if let Some(points) = options.front {
-            let wanted = |one: &Option<Requirement>| matches!(one, Some(Requirement::Yield(_) | Requirement::Cpk(_)));
-            if self.priced.is_empty() || !self.requirements.iter().any(wanted) {
+            let required =
+                self.requirements.iter().any(Option::is_some) || self.joint_target(problem, options).is_some();
+            if self.priced.is_empty() || !required {
                 return Err(AllocateError::NoFront);
             }
             if !(2..=200).contains(&points) {
                 return Err(AllocateError::FrontPoints { points });
+            }
+        }
+        Ok(())
+    }
+
+    /// The share of assemblies that must keep the limits of all characteristics at once; what is sought for a cost takes its place.
+    pub(super) fn joint_target(&self, problem: &Problem, options: &AllocationOptions) -> Option<f64> {
+        let several = problem.characteristics().iter().filter(|one| one.limits().exist()).count() > 1;
+        options.analysis.target_joint_yield.filter(|_| several && self.goal == Goal::LeastCost)
+    }
+
+    fn check_losses(&self, problem: &Problem) -> Result<(), AllocateError> {
+        if !self.losses.is_empty() && self.basis != CostBasis::Given {
+            return Err(AllocateError::LossWithoutCosts);
+        }
+        for loss in self.losses.iter().filter(|loss| loss.scrap > 0.0) {
+            let one = &problem.characteristics()[loss.characteristic];
+            if !one.limits().exist() {
+                return Err(AllocateError::ScrapWithoutLimits { characteristic: one.name().to_owned() });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_setups(&self, problem: &Problem) -> Result<(), AllocateError> {
+        if self.setups.len() > MOST_MACHINES {
+            return Err(AllocateError::TooManyMachines { count: self.setups.len(), most: MOST_MACHINES });
+        }
+        for group in &self.priced {
+            let known = |machine: &&String| self.setups.iter().any(|setup| setup.machine == **machine);
+            let mut machines = group.offers.iter().filter_map(|offer| offer.machine.as_ref());
+            if let Some(machine) = machines.find(|machine| !known(machine)) {
+                let dimension = problem.dimensions()[group.members[0]].name().to_owned();
+                return Err(AllocateError::UnknownMachine { dimension, machine: machine.clone() });
             }
         }
         Ok(())
@@ -388,7 +531,13 @@ impl AllocationTask {
                 return Err(cannot("a position is moved by hand"));
             }
         }
-        let limits = problem.characteristics().iter().any(|one| one.limits().exist());
+        for (name, [low, high]) in &options.nominal_bounds {
+            let ordered = low.is_finite() && high.is_finite() && low < high;
+            if !ordered || !options.recentre.contains(name) {
+                return Err(AllocateError::NominalBounds { name: name.clone(), low: *low, high: *high });
+            }
+        }
+        let limits = problem.characteristics().iter().any(|one| one.limits().exist()) || !self.losses.is_empty();
         if !options.recentre.is_empty() && !limits {
             return Err(AllocateError::NoLimits);
         }

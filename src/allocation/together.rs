@@ -10,9 +10,10 @@
 //! ```
 //!
 //! A Cpk is a ratio with a pole where the mean passes a limit; as written it is linear in the mean and convex. Derivatives are central
-//! differences; the augmented Lagrangian ends at 1e-8, and the tolerances are then chosen about the nominal values by the exact search.
+//! differences; the augmented Lagrangian keeps rows to 1e-9, and the tolerances are then chosen about the nominal values by the exact search.
 
-use super::augmented::{Ended, Near, Slope, Smooth};
+use super::augmented::{Ended, Near, Slope, Smooth, cost};
+use super::constraint::Constraint;
 use super::cost::Priced;
 use super::solve::Setting;
 
@@ -21,7 +22,7 @@ const STEP: f64 = 1e-5;
 const NEAR: Near = Near { by: 1e-9, updates: 40 };
 /// Unknowns times rows beyond which differences take too long: nominal values then move to where the fewest are rejected.
 const MOST: usize = 2000;
-/// A violation with which an end is no answer.
+/// A violation with which an end is not an answer.
 const KEPT: f64 = 1e-6;
 
 /// Nominal values and tolerances that were found together.
@@ -55,8 +56,7 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
     };
     let values = |x: &[f64]| -> Option<Vec<f64>> {
         let (factors, shifts) = places(x);
-        let of =
-            |(one, width): (&super::constraint::Constraint, &f64)| one.excess(responses, &factors, &shifts, *width);
+        let of = |(one, width): (&Constraint, &f64)| one.excess(responses, &factors, &shifts, *width);
         setting.constraints.iter().zip(&widths).map(of).collect()
     };
     let rows = |x: &[f64]| -> Option<Vec<Slope>> {
@@ -79,14 +79,27 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
         clamped.chain(bounds.iter().map(|&[low, high]| 0.0f64.clamp(low, high))).collect()
     };
     let scale = setting.cost(at).abs().max(f64::MIN_POSITIVE);
+    let lost = |x: &[f64]| -> f64 {
+        let (factors, shifts) = places(x);
+        setting.losses.iter().map(|loss| loss.at(responses, &factors, Some(&shifts)).unwrap_or(f64::NAN)).sum()
+    };
     let objective = |x: &[f64]| {
-        let mut slopes = vec![0.0; x.len()];
-        let of = |((group, slope), x): ((&Priced, &mut f64), &f64)| {
-            let curve = &group.offers[0].curve;
-            *slope = group.parts * curve.log_derivatives(x.exp())[0] / scale;
-            group.parts * curve.cost(x.exp()) / scale
-        };
-        (setting.priced.iter().zip(&mut slopes).zip(x).map(of).sum::<f64>(), slopes)
+        let t: Vec<f64> = x[..groups].iter().map(|x| x.exp()).collect();
+        let (value, mut slopes) = cost(setting.priced, &t);
+        slopes.resize(x.len(), 0.0);
+        slopes.iter_mut().for_each(|slope| *slope /= scale);
+        if setting.losses.is_empty() {
+            return (value / scale, slopes);
+        }
+        let mut moved = x.to_vec();
+        for (j, slope) in slopes.iter_mut().enumerate() {
+            moved[j] = x[j] + STEP;
+            let up = lost(&moved);
+            moved[j] = x[j] - STEP;
+            *slope += (up - lost(&moved)) / (2.0 * STEP * scale);
+            moved[j] = x[j];
+        }
+        ((value + lost(x)) / scale, slopes)
     };
     let all: Vec<[f64; 2]> = (setting.priced.iter().map(|group| [group.tightest().ln(), group.loosest().ln()]))
         .chain(bounds.iter().copied())

@@ -2,11 +2,11 @@
 //!
 //! Every measured sample is drawn anew from itself, many times. Each time the surrogate stays the function of the
 //! dimensions that it is, and its moments are computed exactly for the law that the resample makes: no point is
-//! evaluated. What the resamples scatter by is what other samples of the same size would. Dimensions are drawn apart from
-//! one another, columns of one file too, as they are taken for independent everywhere.
+//! evaluated. What the resamples scatter by is what other samples of the same size would. Rows of one file are drawn as a whole, and
+//! everything else apart from one another.
 
-use rand::SeedableRng;
 use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
@@ -14,11 +14,12 @@ use super::interval::{acceleration, bca};
 use super::{CharacteristicAnalysis, SamplingInterval};
 use crate::capability::{Capability, Law, cpk};
 use crate::characteristic::SpecLimits;
+use crate::correlation::JointLaw;
 use crate::distribution::{Distribution, Resample, Reweighted, StandardMoments};
 use crate::method::Outcome;
 use crate::moments::Moments;
 use crate::problem::Problem;
-use crate::surrogate::{InputShape, Inputs, Relocation, Surrogate};
+use crate::surrogate::{InputShape, Inputs, Pooled, Relocation, Surrogate};
 use crate::verdict::including;
 
 /// The probability with which an interval covers the truth.
@@ -42,16 +43,72 @@ const STRAIGHT: f64 = 1e-9;
 const FIGURES: usize = 6;
 type Figures = [f64; FIGURES];
 
-/// A dimension that was measured.
+/// A dimension that was measured, or several by rows.
 struct Measurement<'p> {
     /// Among the varying dimensions.
-    position: usize,
-    name: &'p str,
-    law: &'p dyn Resample,
+    positions: Vec<usize>,
+    names: Vec<&'p str>,
+    kind: MeasurementKind<'p>,
+}
+
+enum MeasurementKind<'p> {
+    One(&'p dyn Resample),
+    /// The block of this number, of so many rows.
+    Rows {
+        block: usize,
+        rows: usize,
+    },
+}
+
+/// A sample that was drawn anew.
+enum Redrawn {
+    Law(Reweighted),
+    /// Weights of the rows.
+    Rows(Vec<f64>),
+}
+
+impl Measurement<'_> {
+    /// How many values or rows there are.
+    fn len(&self) -> usize {
+        match &self.kind {
+            MeasurementKind::One(law) => law.sample().len(),
+            MeasurementKind::Rows { rows, .. } => *rows,
+        }
+    }
+
+    /// How often each distinct value, or each row, was measured.
+    fn counts(&self) -> Vec<u32> {
+        match &self.kind {
+            MeasurementKind::One(law) => law.sample().counts().to_vec(),
+            MeasurementKind::Rows { rows, .. } => vec![1; *rows],
+        }
+    }
+
+    fn drawn(&self, rng: &mut Xoshiro256PlusPlus) -> Redrawn {
+        let mut counts = Vec::new();
+        match &self.kind {
+            MeasurementKind::One(law) => law.sample().draw(rng, &mut counts),
+            MeasurementKind::Rows { rows, .. } => {
+                counts.resize(*rows, 0);
+                (0..*rows).for_each(|_| counts[rng.random_range(0..*rows)] += 1);
+            }
+        }
+        self.reweighted(&counts)
+    }
+
+    fn reweighted(&self, counts: &[u32]) -> Redrawn {
+        match &self.kind {
+            MeasurementKind::One(law) => Redrawn::Law(law.reweighted(counts)),
+            MeasurementKind::Rows { .. } => {
+                let all: f64 = counts.iter().map(|&count| f64::from(count)).sum();
+                Redrawn::Rows(counts.iter().map(|&count| f64::from(count) / all).collect())
+            }
+        }
+    }
 }
 
 /// Fills in the intervals of every characteristic that depends on a measured dimension; whether there is one. Not where
-/// dimensions are correlated.
+/// dimensions are correlated otherwise than by rows and zones.
 ///
 /// The numbers depend on the seed alone, not on the number of threads.
 pub(super) fn intervals(
@@ -61,29 +118,47 @@ pub(super) fn intervals(
     seed: u64,
 ) -> bool {
     let plan = &outcome.plan;
-    if plan.inputs().correlation().is_some() {
+    let correlation = plan.inputs().correlation();
+    if correlation.is_some_and(|correlation| correlation.without_blocks().is_some()) {
         // A resample of one dimension would leave those that vary with it where they are; `warnings` tells of it.
         return false;
     }
-    let measured: Vec<Measurement<'_>> = (plan.varying().iter().enumerate())
-        .filter_map(|(position, &d)| {
-            let dimension = &problem.dimensions()[d];
-            let law = dimension.distribution().and_then(Distribution::measured)?;
-            Some(Measurement { position, name: dimension.name(), law })
-        })
-        .collect();
-    let concerned = |c: usize| measured.iter().any(|one| plan.depends(c, plan.varying()[one.position]));
+    let name = |position: usize| problem.dimensions()[plan.varying()[position]].name();
+    let of_blocks = correlation.iter().flat_map(|correlation| correlation.blocks().iter().enumerate());
+    let of_blocks = of_blocks.filter_map(|(index, block)| {
+        let JointLaw::Rows(rows) = &block.law else { return None };
+        let names = block.members.iter().map(|&position| name(position)).collect();
+        let kind = MeasurementKind::Rows { block: index, rows: rows.len() };
+        Some(Measurement { positions: block.members.clone(), names, kind })
+    });
+    let alone = plan.varying().iter().enumerate().filter_map(|(position, &d)| {
+        let in_block = correlation.is_some_and(|correlation| correlation.block_of(position).is_some());
+        let law = problem.dimensions()[d].distribution().filter(|_| !in_block).and_then(Distribution::measured)?;
+        let kind = MeasurementKind::One(law);
+        Some(Measurement { positions: vec![position], names: vec![name(position)], kind })
+    });
+    let measured: Vec<Measurement<'_>> = of_blocks.chain(alone).collect();
+    let depends_on = |c: usize, one: &Measurement<'_>| {
+        one.positions.iter().any(|&position| plan.depends(c, plan.varying()[position]))
+    };
+    let concerned = |c: usize| measured.iter().any(|one| depends_on(c, one));
     let targets: Vec<Target<'_>> = (characteristics.iter().enumerate())
         .filter(|&(c, analysis)| analysis.moments.is_some() && concerned(c))
         .filter_map(|(index, analysis)| {
             let surrogate = outcome.fitted[index].surrogate.as_ref()?;
-            Some(Target { index, surrogate, limits: analysis.characteristic.limits() })
+            let pooled = surrogate.pooled(plan.inputs());
+            (correlation.is_none() || pooled.is_some()).then(|| Target {
+                index,
+                surrogate,
+                pooled,
+                limits: analysis.characteristic.limits(),
+            })
         })
         .collect();
     if targets.is_empty() {
         return false;
     }
-    let setting = Setting { shapes: plan.inputs().shapes(), measured: &measured, targets: &targets };
+    let setting = Setting { inputs: plan.inputs(), measured: &measured, targets: &targets };
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
     let groups = setting.groups(&mut rng);
     let resampled = setting.resampled(&mut rng);
@@ -102,8 +177,9 @@ pub(super) fn intervals(
                 .collect();
             bca(estimate[figure], &mut values, acceleration(&influences), LEVEL)
         };
-        let depends = |one: &&Measurement<'_>| plan.depends(target.index, plan.varying()[one.position]);
-        let samples = measured.iter().filter(depends).map(|one| (one.name.to_owned(), one.law.sample().len()));
+        let depends = |one: &&Measurement<'_>| depends_on(target.index, one);
+        let samples = (measured.iter().filter(depends))
+            .flat_map(|one| one.names.iter().map(|name| ((*name).to_owned(), one.len())));
         analysis.sampling = Some(SamplingInterval {
             mean: interval(0),
             sigma: interval(1),
@@ -136,11 +212,13 @@ fn in_proportion([low, high]: [f64; 2], fit: f64, reported: f64) -> [f64; 2] {
 struct Target<'o> {
     index: usize,
     surrogate: &'o Surrogate,
+    /// At the places of its blocks.
+    pooled: Option<Pooled>,
     limits: SpecLimits,
 }
 
 struct Setting<'s> {
-    shapes: &'s [InputShape],
+    inputs: &'s Inputs,
     measured: &'s [Measurement<'s>],
     targets: &'s [Target<'s>],
 }
@@ -158,23 +236,20 @@ impl Setting<'_> {
             })
             .collect();
         let one = |mut rng: Xoshiro256PlusPlus| {
-            let mut counts = Vec::new();
-            let mut draw = |one: &Measurement<'_>| {
-                one.law.sample().draw(&mut rng, &mut counts);
-                Some(one.law.reweighted(&counts))
-            };
-            let laws: Vec<Option<Reweighted>> = self.measured.iter().map(&mut draw).collect();
-            self.figures(&laws)
+            let drawn: Vec<Option<Redrawn>> = self.measured.iter().map(|one| Some(one.drawn(&mut rng))).collect();
+            self.figures(&drawn)
         };
         streams.into_par_iter().map(one).collect()
     }
 
     /// As many as there is time for.
     fn resamples(&self) -> usize {
-        let values: usize = self.measured.iter().map(|one| one.law.sample().len()).sum();
+        let values: usize = self.measured.iter().map(Measurement::len).sum();
         let target = |target: &Target<'_>| {
             let fit = if target.limits.exist() { FIT } else { 0 };
-            VALUE.saturating_mul(values).saturating_add(fit).saturating_add(target.surrogate.interactions.work())
+            let pooled = target.pooled.as_ref().map_or(0, Pooled::work);
+            let own = target.surrogate.interactions.work().saturating_add(pooled);
+            VALUE.saturating_mul(values).saturating_add(fit).saturating_add(own)
         };
         let work = self.targets.iter().map(target).fold(1usize, usize::saturating_add);
         (WORK / work).clamp(LEAST, RESAMPLES)
@@ -184,13 +259,13 @@ impl Setting<'_> {
     fn groups(&self, rng: &mut Xoshiro256PlusPlus) -> Vec<Groups> {
         let most = (GROUPS / self.measured.len()).max(LEAST_GROUPS);
         let of = |one: &Measurement<'_>| {
-            let sample = one.law.sample();
-            let counts = sample.counts().iter().enumerate();
-            let mut atoms: Vec<usize> =
-                counts.flat_map(|(atom, &count)| std::iter::repeat_n(atom, count as usize)).collect();
+            let counts = one.counts();
+            let mut atoms: Vec<usize> = (counts.iter().enumerate())
+                .flat_map(|(atom, &count)| std::iter::repeat_n(atom, count as usize))
+                .collect();
             atoms.shuffle(rng);
             let groups = most.min(atoms.len());
-            let mut counted = vec![vec![0; sample.counts().len()]; groups];
+            let mut counted = vec![vec![0; counts.len()]; groups];
             atoms.iter().enumerate().for_each(|(i, &atom)| counted[i % groups][atom] += 1);
             counted
         };
@@ -200,38 +275,58 @@ impl Setting<'_> {
     /// For every measured dimension and group of its values, the figures of every target without them.
     fn left_out(&self, groups: &[Groups]) -> Vec<Vec<Vec<Figures>>> {
         let without = |m: usize, group: &Vec<u32>| {
-            let law = self.measured[m].law;
-            let counts: Vec<u32> = law.sample().counts().iter().zip(group).map(|(all, out)| all - out).collect();
-            let laws: Vec<Option<Reweighted>> =
-                (0..self.measured.len()).map(|other| (other == m).then(|| law.reweighted(&counts))).collect();
-            self.figures(&laws)
+            let one = &self.measured[m];
+            let counts: Vec<u32> = one.counts().iter().zip(group).map(|(all, out)| all - out).collect();
+            let drawn: Vec<Option<Redrawn>> =
+                (0..self.measured.len()).map(|other| (other == m).then(|| one.reweighted(&counts))).collect();
+            self.figures(&drawn)
         };
         let of = |(m, groups): (usize, &Groups)| groups.par_iter().map(|group| without(m, group)).collect();
         groups.iter().enumerate().map(of).collect()
     }
 
-    /// The figures of every target where the measured dimensions have these laws; None for one that stays as it is.
-    fn figures(&self, laws: &[Option<Reweighted>]) -> Vec<Figures> {
-        let mut moved = vec![Relocation::NONE; self.shapes.len()];
-        let mut shapes = self.shapes.to_vec();
-        for (one, law) in self.measured.iter().zip(laws) {
-            if let Some(Reweighted { shift, stretch, moments, rule }) = law {
-                moved[one.position] = Relocation { shift: *shift, stretch: *stretch };
-                shapes[one.position] = InputShape { moments: *moments, rule: rule.clone().into() };
+    /// The figures of every target where the samples are these; None for one that stays as it is.
+    fn figures(&self, drawn: &[Option<Redrawn>]) -> Vec<Figures> {
+        let mut moved = vec![Relocation::NONE; self.inputs.shapes().len()];
+        let mut shapes = self.inputs.shapes().to_vec();
+        let mut weights: Vec<(usize, &[f64])> = Vec::new();
+        let mut alone: Vec<usize> = Vec::new();
+        for (one, drawn) in self.measured.iter().zip(drawn) {
+            match (&one.kind, drawn) {
+                (MeasurementKind::Rows { block, .. }, Some(Redrawn::Rows(own))) => weights.push((*block, own)),
+                (MeasurementKind::One(_), Some(Redrawn::Law(Reweighted { shift, stretch, moments, rule }))) => {
+                    let position = one.positions[0];
+                    moved[position] = Relocation { shift: *shift, stretch: *stretch };
+                    shapes[position] = InputShape { moments: *moments, rule: rule.clone().into() };
+                    alone.push(position);
+                }
+                _ => {}
             }
         }
+        let weight = |block: usize, place: usize| {
+            weights.iter().find(|(own, _)| *own == block).map(|(_, weights)| weights[place])
+        };
         let of = |target: &Target<'_>| {
-            let surrogate = target.surrogate.relocated(&moved);
-            let mut shapes = shapes.clone();
-            for one in self.measured {
-                let part = surrogate.parts[one.position].as_ref();
-                // An infinite moment does no harm to a straight line, which has no use for it.
-                if shapes[one.position].moments.m8.is_nan() && part.is_some_and(|part| part.is_straight(STRAIGHT)) {
-                    shapes[one.position].moments = of_a_line(&shapes[one.position].moments);
+            let moments = match &target.pooled {
+                Some(pooled) if alone.is_empty() => Some(pooled.moments(&weight)),
+                _ => {
+                    let surrogate = target.surrogate.relocated(&moved);
+                    let mut shapes = shapes.clone();
+                    for &position in &alone {
+                        let part = surrogate.parts[position].as_ref();
+                        // An infinite moment does no harm to a straight line, which has no use for it.
+                        if shapes[position].moments.m8.is_nan() && part.is_some_and(|part| part.is_straight(STRAIGHT)) {
+                            shapes[position].moments = of_a_line(&shapes[position].moments);
+                        }
+                    }
+                    let inputs = Inputs::new(shapes, self.inputs.correlation().cloned());
+                    match &target.pooled {
+                        Some(_) => surrogate.pooled(&inputs).map(|pooled| pooled.moments(&weight)),
+                        None => surrogate.contributions(&inputs).map(|contributions| contributions.moments),
+                    }
                 }
-            }
-            let contributions = surrogate.contributions(&Inputs::independent(shapes));
-            let Some(moments) = contributions.map(|contributions| contributions.moments) else {
+            };
+            let Some(moments) = moments else {
                 return [f64::NAN; FIGURES];
             };
             let law = target.limits.exist().then(|| Law::fit(&moments).ok()).flatten();
@@ -263,7 +358,7 @@ fn figures(moments: &Moments, capability: Option<&Capability>, limits: SpecLimit
 /// What each group of values adds to a figure, from the figure without it: for a mean of `n` values the sum of the
 /// deviations in the group, by `n`.
 fn influences(without: impl Iterator<Item = f64>, one: &Measurement<'_>, groups: &Groups) -> Vec<f64> {
-    let n = one.law.sample().len() as f64;
+    let n = one.len() as f64;
     let left = |group: &Vec<u32>| n - group.iter().map(|&count| f64::from(count)).sum::<f64>();
     without.zip(groups).map(|(figure, group)| -left(group) / n * figure).collect()
 }

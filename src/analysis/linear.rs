@@ -8,7 +8,8 @@
 //! ```
 //!
 //! about the value at the middles of all bands, in one linear model. Coordinates of one circular zone reach `T sqrt(b_x^2 + b_y^2)`
-//! together in the worst case, not `T (|b_x| + |b_y|)`: no point of the zone is at both ends at once. The root of the sum
+//! together in the worst case, not `T (|b_x| + |b_y|)`: no point of the zone is at both ends at once. Those of a diamond reach
+//! the larger of the two. The root of the sum
 //! of squares is the same for zone and box.
 //!
 //! Sources: A. Bender, "Benderizing tolerances", Graphic Science, December 1962, and SAE paper 680490 (1968): processes are not as
@@ -20,6 +21,7 @@
 //! sigma in every half band, all `m_i` are 0.5. That shift is of the band and not of a dimension's own sigma, as RSS and worst
 //! case are of the bands: a process that is better than its tolerance asks is rewarded by the moments.
 
+use crate::correlation::JointLaw;
 use crate::problem::Problem;
 
 /// The factor of the inflated RSS.
@@ -47,6 +49,7 @@ impl Linear {
     pub(super) fn of(problem: &Problem, slopes: &[(f64, usize)]) -> Self {
         let (mut middle, mut worst_case, mut rss) = (0.0, 0.0, 0.0f64);
         let mut zones: Vec<(&str, f64)> = Vec::new();
+        let mut diamonds: Vec<(usize, f64)> = Vec::new();
         for &(slope, d) in slopes {
             let dimension = &problem.dimensions()[d];
             let [lower, upper] = dimension.reach();
@@ -54,7 +57,13 @@ impl Linear {
             middle += slope * 0.5 * (lower + upper);
             rss = rss.hypot(reach);
             match dimension.zone() {
-                None => worst_case += reach,
+                None => match diamond(problem, d) {
+                    None => worst_case += reach,
+                    Some(block) => match diamonds.iter_mut().find(|(own, _)| *own == block) {
+                        Some((_, most)) => *most = most.max(reach),
+                        None => diamonds.push((block, reach)),
+                    },
+                },
                 Some(zone) => match zones.iter_mut().find(|(name, _)| *name == zone) {
                     Some((_, radius)) => *radius = radius.hypot(reach),
                     None => zones.push((zone, reach)),
@@ -62,6 +71,7 @@ impl Linear {
             }
         }
         rss *= together(problem, slopes, rss);
+        worst_case += diamonds.iter().map(|(_, most)| most).sum::<f64>();
         worst_case += zones.iter().map(|(_, radius)| radius).sum::<f64>();
         Self {
             middle,
@@ -71,6 +81,13 @@ impl Linear {
             mean_shift_rss: MEAN_SHIFT * worst_case + (1.0 - MEAN_SHIFT) * rss,
         }
     }
+}
+
+/// The block of a dimension that shares a diamond with another: at an end of one the other is in its middle.
+fn diamond(problem: &Problem, dimension: usize) -> Option<usize> {
+    let correlation = problem.correlation()?;
+    let (block, _) = correlation.block_of(dimension)?;
+    (correlation.blocks()[block].law == JointLaw::Diamond).then_some(block)
 }
 
 /// By what correlation widens or narrows the RSS: `sqrt(t'R t)/|t|`.

@@ -36,10 +36,9 @@ pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::law::{Branch, LawError, LawFigure};
 pub use crate::moments::{Contributions, Sampled};
 pub use crate::surrogate::Relocation;
-pub use crate::verification::{Crossing, FoundSwitch, Share, Verified};
+pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use account::Account;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
-pub use outputs::OutputCorrelation;
 pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
 pub use sampling_interval::SamplingInterval;
@@ -56,7 +55,7 @@ use serde::Serialize;
 
 use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, enclose, search};
-use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Options, Outcome, climb_until};
+use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Narrow, Options, Outcome, climb_until};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::shape::through;
@@ -237,6 +236,12 @@ fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
 
 /// Runs the method, `auto` until the errors of other results than sigma are what is wanted too.
 fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
+    let narrow = if options.accuracies.any() { None } else { Narrow::of(problem, options) };
+    if let Some(narrow) = narrow
+        && let Some(outcome) = narrow.run(problem, options, run)?
+    {
+        return Ok(outcome);
+    }
     let climbs = options.method == Method::Auto && options.derivatives != Some(DerivativeSource::Exact);
     if !climbs || !options.accuracies.any() {
         return options.method.procedure().run(problem, options, run);

@@ -10,30 +10,12 @@
 //! hardly correlates with its own surface, so that with the other one it correlates by `sqrt(1 - rho^2)` at most:
 //! `error = sqrt((1 - rho^2)(U_1 + U_2) + U_1 U_2)`.
 
-use serde::Serialize;
-
 use super::CharacteristicAnalysis;
 use super::verified::VerificationKind;
 use crate::method::{Options, Outcome};
 use crate::problem::Problem;
 use crate::surrogate::Surrogate;
-use crate::verification::{Verified, output_correlations};
-
-/// More characteristics than this have no table of correlations: its cells grow with their square.
-const MOST: usize = 40;
-
-/// How two characteristics vary together.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub struct OutputCorrelation {
-    /// The two characteristics.
-    pub between: [String; 2],
-    /// Their coefficient of correlation; null where one of them does not vary, or is not known.
-    pub value: Option<f64>,
-    /// The error of the coefficient; null where the model was not asked.
-    pub error: Option<f64>,
-}
+use crate::verification::{OutputCorrelation, Verified, output_correlations};
 
 /// The correlation of every pair of characteristics; empty with one characteristic, and with more than 40.
 ///
@@ -45,7 +27,7 @@ pub(super) fn correlations(
     characteristics: &[CharacteristicAnalysis],
 ) -> Vec<OutputCorrelation> {
     let count = characteristics.len();
-    if !(2..=MOST).contains(&count) {
+    if !(2..=OutputCorrelation::MOST).contains(&count) {
         return Vec::new();
     }
     let sampled =

@@ -315,6 +315,7 @@ impl<'p> Strides<'p> {
             [limits.lower().is_some_and(|lower| y < lower), limits.upper().is_some_and(|upper| y > upper)]
                 .map(|side| f64::from(u8::from(side)))
         };
+        // The powers of a value, and the two sides of the limits.
         const TERMS: usize = MOMENTS + 2;
         let terms = |y: f64| {
             let v = (y - origin) / scale;

@@ -66,8 +66,8 @@ pub struct SurfaceShares {
     pub below: Option<LawFigure>,
     /// The share above the upper limit; None without one.
     pub above: Option<LawFigure>,
-    /// At the [`PROBABILITIES`](crate::capability::PROBABILITIES); None where one of them is unknown, and without limits where products
-    /// of inputs that are not parabolas of normal ones form a tree: those of the Pearson fit are then reported.
+    /// At the [`PROBABILITIES`](crate::capability::PROBABILITIES); None where one of them is unknown: those of the Pearson fit are then
+    /// reported.
     pub quantiles: Option<[LawFigure; 7]>,
 }
 
@@ -90,19 +90,20 @@ impl SurfaceShares {
         }
         let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
         let (surrogate, inputs) = surface(problem, outcome, c, unexplained.filter(|_| !beside))?;
-        if has_too_many_atoms(&surrogate, &inputs) {
+        let correlation = outcome.plan.inputs().correlation();
+        if has_too_many_atoms(&surrogate, &inputs, correlation) {
             return Some((Self::counted(problem, outcome, c, seed)?, None));
         }
-        let correlation = outcome.plan.inputs().correlation();
         let points = points(&surrogate);
-        let whole = match law(&surrogate, &inputs, correlation, points) {
+        // Without limits a tail has no call for twelve digits: quantiles of trees of products are those of points.
+        let limits = problem.characteristics()[c].limits();
+        let whole = match law(&surrogate, &inputs, correlation, (points, limits.exist())) {
             Ok(law) => law,
             Err(LawError::NoVariance | LawError::NoEigenvalues) => {
                 return Some((Self::counted(problem, outcome, c, seed)?, None));
             }
             Err(_) => return None,
         };
-        let limits = problem.characteristics()[c].limits();
         let (below, above) = (limits.lower().map(|y| whole.below(y)), limits.upper().map(|y| whole.above(y)));
         let known = |figure: &LawFigure| figure.value.is_finite() && figure.error.is_finite();
         if ![below, above].iter().flatten().all(known) {
@@ -111,17 +112,12 @@ impl SurfaceShares {
         let full = match unexplained.filter(|_| beside) {
             Some(_) => {
                 let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
-                law(&surrogate, &inputs, correlation, points).ok()
+                law(&surrogate, &inputs, correlation, (points, limits.exist())).ok()
             }
             None => None,
         };
         let of_quantiles = full.as_ref().unwrap_or(&whole);
-        // Every point of a contour through a tree of products is a sum over tables, half a second for quartics of several inputs:
-        // without limits the Pearson fit does.
-        let quantiles = match limits.exist() || !of_quantiles.has_trees() {
-            true => quantiles(of_quantiles, fit),
-            false => None,
-        };
+        let quantiles = quantiles(of_quantiles, fit);
         Some((
             Self { branch: whole.branch(), counted: None, steps: whole.is_step_function(), below, above, quantiles },
             Some(whole),
@@ -168,12 +164,22 @@ impl SurfaceShares {
 }
 
 /// Whether measured values make the points of a contour sums that are too long, and more of them than a list.
-fn has_too_many_atoms(surrogate: &Surrogate, inputs: &[Arc<dyn Distribution>]) -> bool {
-    let atoms: Vec<usize> = inputs.iter().map(|law| law.probability().map_or(0, |law| law.atoms().len())).collect();
+fn has_too_many_atoms(
+    surrogate: &Surrogate,
+    inputs: &[Arc<dyn Distribution>],
+    correlation: Option<&Correlation>,
+) -> bool {
+    // Rows of a block are listed, or drawn: no contour sums over them.
+    let drawn = |j: usize| correlation.is_some_and(|correlation| correlation.block_of(j).is_some());
+    let of = |(j, law): (usize, &Arc<dyn Distribution>)| match law.probability() {
+        Some(law) if !drawn(j) => law.atoms().len(),
+        _ => 0,
+    };
+    let atoms: Vec<usize> = inputs.iter().enumerate().map(of).collect();
     if atoms.iter().all(|&count| count <= ATOMS) {
         return false;
     }
-    let counts = |j: &usize| surrogate.parts[*j].is_some_and(|part| part.largest() > 0.0);
+    let counts = |j: &usize| !drawn(*j) && surrogate.parts[*j].is_some_and(|part| part.largest() > 0.0);
     let counting = || (0..inputs.len()).filter(counts);
     let listed =
         counting().try_fold(1usize, |all, j| all.checked_mul(atoms[j]).filter(|&all| (1..=STEPS).contains(&all)));
@@ -207,7 +213,7 @@ pub(crate) fn law_over(
     inputs: &[Arc<dyn Distribution>],
     correlation: Option<&Correlation>,
 ) -> Result<SurfaceLaw, LawError> {
-    law(surrogate, inputs, correlation, points(surrogate))
+    law(surrogate, inputs, correlation, (points(surrogate), true))
 }
 
 /// A surface and the distributions of its inputs, beside a variance that it leaves out.
@@ -248,9 +254,9 @@ fn law(
     surrogate: &Surrogate,
     inputs: &[Arc<dyn Distribution>],
     correlation: Option<&Correlation>,
-    points: usize,
+    (points, trees): (usize, bool),
 ) -> Result<SurfaceLaw, LawError> {
-    SurfaceLaw::of(surrogate, inputs, correlation, &LawOptions { points, ..LawOptions::default() })
+    SurfaceLaw::of(surrogate, inputs, correlation, &LawOptions { points, trees, ..LawOptions::default() })
 }
 
 /// The density at places from one far quantile to the other, `[y, density, error]`; None where its values are steps, and where points are
@@ -320,7 +326,7 @@ pub(super) struct SurfaceLawShape {
     ppm_above: Option<f64>,
     /// The numerical error of the share within the limits: of the law of this surface, not of the surface.
     yield_error: Option<f64>,
-    /// Quantiles; null where one of them is unknown, and without limits where products form a tree that has no closed form.
+    /// Quantiles; null where one of them is unknown.
     quantiles: Option<Quantiles>,
 }
 

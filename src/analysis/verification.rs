@@ -15,8 +15,8 @@ use crate::problem::Problem;
 use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::verification::{
-    Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, unexplained, variance_shares_during,
-    verify_by_checks, verify_characteristic,
+    CORE, Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, most_points, most_points_of_shares,
+    unexplained, variance_shares_during, verify_by_checks, verify_characteristic,
 };
 use crate::warning::{Change, Warning};
 
@@ -61,14 +61,16 @@ pub(super) fn verify(
     if open.is_empty() {
         return Default::default();
     }
-    if costly {
+    // A budget that does not reach for a sample of each characteristic reaches for check points.
+    let each = left.map(|left| left / open.len());
+    if costly || each.is_some_and(|each| each < most_points(CORE)) {
         return check(problem, outcome, options, most.min(left.unwrap_or(usize::MAX)), (&open, characteristics), run);
     }
     let seed = options.seed.unwrap_or(Options::SEED);
     let mut stopped = None;
     for c in open {
         // A long formula takes a while for each of some 45 000 points: what is left has no verification, and the report says so.
-        if !sample(problem, outcome, options, c, &mut characteristics[c], (seed, run)) {
+        if !sample(problem, outcome, (options, each), c, &mut characteristics[c], (seed, run)) {
             stopped = Some(run.why_open());
             break;
         }
@@ -125,16 +127,17 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
     true
 }
 
-/// Verifies one characteristic by a sample; false where the run was stopped before there was one.
+/// Verifies one characteristic by a sample, with no more evaluations than are left for it; false where the run was stopped before there
+/// was one.
 fn sample(
     problem: &Problem,
     outcome: &Outcome,
-    options: &Options,
+    (options, left): (&Options, Option<usize>),
     c: usize,
     one: &mut CharacteristicAnalysis,
     (seed, run): (u64, &Run<'_>),
 ) -> bool {
-    let mut core = crate::verification::CORE;
+    let mut core = CORE;
     let surrogate = outcome.fitted[c].surrogate.as_ref();
     let beside = surrogate.map(|surrogate| (outcome.plan.varying(), surrogate));
     let Some(mut found) = verify_characteristic(problem, c, (seed, core), beside, run) else { return false };
@@ -147,20 +150,25 @@ fn sample(
         let error = found.difference.map(|[within, ..]| within.error).or(found.yield_.map(|share| share.error));
         sigma || rejected.zip(error).is_some_and(|(rejected, error)| error > TARGET * rejected)
     };
-    while core < MOST && coarse(&found) && !run.stopped() {
+    let mut spent = found.points;
+    let affords = |spent: usize, more: usize| left.is_none_or(|left| spent + more <= left);
+    while core < MOST && coarse(&found) && !run.stopped() && affords(spent, most_points(MORE * core)) {
         core *= MORE;
         // What is known stays known where there is no time for more.
         let Some(more) = verify_characteristic(problem, c, (seed, core), beside, run) else { break };
         found = more;
+        spent += found.points;
     }
-    let left = beside.and_then(|beside| unexplained(problem, c, beside, seed, run));
-    let shares = left
-        .filter(|&left| left > UNTRUSTED && !run.stopped())
+    let open = beside.and_then(|beside| unexplained(problem, c, beside, seed, run));
+    let shares = open
+        .filter(|&share| {
+            share > UNTRUSTED && !run.stopped() && affords(spent, most_points_of_shares(outcome.plan.varying().len()))
+        })
         .and_then(|_| variance_shares_during(problem, c, seed, run));
     let dimension = |d: usize| problem.dimensions()[d].name().to_owned();
     let share = |(d, [first, total]): (usize, [Verified; 2])| VarianceShare { dimension: dimension(d), first, total };
     let shares = shares.map(|shares| shares.into_iter().map(share).collect());
-    let refuted = options.model_figures && left.is_none_or(|left| left > TRUSTED);
+    let refuted = options.model_figures && open.is_none_or(|share| share > TRUSTED);
     let replaced = (options.method == Method::Auto || refuted) && replace(one, &found);
     let Some(moments) = one.moments else { return true };
     let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
@@ -177,7 +185,7 @@ fn sample(
         kind: VerificationKind::Sample,
         points: found.points,
         valid: Some(found.valid),
-        left,
+        left: open,
         figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
         yield_: found.yield_,
         beyond: found.beyond,

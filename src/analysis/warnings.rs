@@ -79,7 +79,8 @@ pub(super) fn of(
 
 /// Measured dimensions whose sample was not drawn anew.
 fn not_resampled(problem: &Problem, outcome: &Outcome) -> Option<Warning> {
-    let correlated = outcome.plan.inputs().correlation().is_some();
+    // Rows of measured parts are drawn anew as a whole.
+    let correlated = outcome.plan.inputs().correlation().is_some_and(|of| of.without_blocks().is_some());
     let integrated = outcome.basis == Basis::Quadrature;
     let measured = |d: &&usize| {
         let law = problem.dimensions()[**d].distribution();

@@ -75,10 +75,10 @@ pub enum CompositeError {
 pub struct Composite {
     signature: Signature,
     /// The named formulas, then those of the conditions.
-    formulas: FormulaSet,
+    formulas: Arc<FormulaSet>,
     named: usize,
     model: Option<Inner>,
-    assembler: Option<Assembler>,
+    assembler: Option<Arc<Assembler>>,
     /// For every output, the formula, the model's output or the unknown that it is.
     outputs: Vec<Origin>,
 }
@@ -155,12 +155,14 @@ impl Composite {
         let meanings = answers.chain(found).chain(constants).chain(dimensions);
         let formulas = FormulaSet::with_unnamed(formulas, named, meanings)
             .map_err(|(index, error)| CompositeError::Formula { name: names[index].clone(), index, error })?;
+        let formulas = Arc::new(formulas);
         if let Some(conditions) = &conditions {
             conditions.check(&formulas, named, given)?;
         }
 
         let mut composite = Self {
-            assembler: conditions.as_ref().map(|conditions| Assembler::new(conditions, &formulas, named, given)),
+            assembler: (conditions.as_ref())
+                .map(|conditions| Arc::new(Assembler::new(conditions, &formulas, named, given))),
             signature: Signature {
                 costly: model.as_ref().is_some_and(|model| model.function.signature().costly),
                 cheap: model.as_ref().is_none_or(|model| model.function.signature().cheap),
@@ -195,6 +197,13 @@ impl Composite {
         convert: bool,
     ) -> Vec<UnitFinding> {
         self.formulas.units(unit, role, convert)
+    }
+
+    /// The dimensions inside a sine or cosine of a formula, each with its radians per unit.
+    #[cfg(feature = "study")]
+    pub(crate) fn turning(&self) -> Vec<(usize, f64)> {
+        let dimensions = self.signature.inputs.len();
+        self.formulas.turning().into_iter().filter(|&(variable, _)| variable < dimensions).collect()
     }
 
     /// With every input of the model multiplied by a factor; none where there are no factors.
@@ -499,6 +508,10 @@ impl AssemblyFunction for Composite {
         self.model_points(points)
     }
 
+    fn driven(&self) -> Option<&Composite> {
+        (self.signature.costly && !self.driving().is_empty()).then_some(self)
+    }
+
     fn switches(&self, output: usize) -> Option<Switches> {
         self.switches_of(output)
     }
@@ -516,9 +529,11 @@ impl AssemblyFunction for Composite {
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
-        let unknowns = self.all_needs(&self.origins(outputs)).unknowns;
+        let Needs { unknowns, answers, .. } = self.all_needs(&self.origins(outputs));
         let singular = |assembler: &Assembler| assembler.known_anchor()?.nearly_singular(assembler);
-        let found = self.assembler.as_ref().filter(|_| unknowns).and_then(singular);
-        found.map(|(unknown, condition)| Warning::NearSingular { unknown, condition }).into_iter().collect()
+        let found = self.assembler.as_deref().filter(|_| unknowns).and_then(singular);
+        let found = found.map(|(unknown, condition)| Warning::NearSingular { unknown, condition });
+        let of_model = self.model.as_ref().map(|model| model.function.warnings(&answers)).unwrap_or_default();
+        found.into_iter().chain(of_model).collect()
     }
 }

@@ -23,6 +23,7 @@ mod request;
 mod responses;
 mod run;
 mod signature;
+mod states;
 mod switch;
 
 pub use account::{ModelInfo, NonRepeatable};
@@ -38,6 +39,7 @@ pub use request::{Points, Request};
 pub use responses::Responses;
 pub use run::{Progress, Run};
 pub use signature::{Input, Output, Signature};
+pub(crate) use states::{State, States};
 pub use switch::{Switch, SwitchKind, Switches};
 
 use crate::warning::Warning;
@@ -85,6 +87,11 @@ pub trait AssemblyFunction: Send + Sync {
     /// themselves. This is no evaluation.
     fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
         let _ = points;
+        None
+    }
+
+    /// Itself, where formulas drive a costly model: whoever analyses it may fit what the model is sent. None of anything else.
+    fn driven(&self) -> Option<&Composite> {
         None
     }
 

@@ -77,7 +77,7 @@ impl<'a> Run<'a> {
         Self { withdrawn: Some(withdrawn), ..self }
     }
 
-    /// The same, telling nobody: for a part of an answer that is no answer yet.
+    /// The same, telling nobody: for a part of an answer that is not an answer yet.
     pub(crate) fn quiet(self) -> Self {
         Self { finished: None, ..self }
     }

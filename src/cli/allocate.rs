@@ -16,12 +16,11 @@ use crate::document::terminal::text;
 use crate::method::Options;
 use crate::report::html::allocate_html;
 use crate::report::{AllocationReport, WrittenAnew, csv_tables};
-use crate::sampling::{Draws, Sampler};
 use crate::study::{NamedFile, Rewritten, Study};
 use crate::warning::{Counted, Warning};
 
 pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
-    let study = study::read(&asked.study, externals(asked.work.journal.as_deref(), look, None))?;
+    let study = study::read_for_all(&asked.study, &|| externals(asked.work.journal.as_deref(), look, None))?;
     let mut files = Files::of(&asked.study.study, &study, asked.work.journal.as_deref());
     let destination = files.output(&asked.output)?;
     let folder = files.folder(asked.csv.as_deref(), &TABLES.map(|name| format!("{name}.csv")))?;
@@ -35,9 +34,10 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
         recentre: asked.recentre.iter().map(|one| one.name.clone()).collect(),
         nominal_bounds: asked.recentre.iter().filter_map(|one| Some((one.name.clone(), one.bounds?))).collect(),
         front: asked.front.or(asked.svg.is_some().then_some(FRONT)),
-        confirm: confirm(&study, asked.confirm),
+        confirm: None,
         seed: asked.seed.or(study.seed).unwrap_or(Options::SEED),
-    };
+    }
+    .with_confirm_or_default(&study.problem, asked.confirm);
     let task = task(&study, asked);
     let allocation = allocate(&study, &task, &options, asked.threads, &clock, look)?;
     // What was stopped before the model had its say is shown and not written.
@@ -86,14 +86,6 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     Ok(confirmed(exit, &allocation.run))
 }
 
-/// Points of the model that confirm what was found: as asked, or some of a cheap model, as far as a budget leaves them.
-fn confirm(study: &Study, asked: Option<u64>) -> Option<u64> {
-    let problem = &study.problem;
-    let drawn = || Draws::new(problem.dimensions(), problem.correlation(), Sampler::Random, Options::SEED).is_ok();
-    let cheap = !problem.function().signature().costly && study.options.budget.is_none() && drawn();
-    asked.or(cheap.then_some(CONFIRM)).filter(|&points| points > 0)
-}
-
 /// Paths in a study start from its folder: in another one they would lead elsewhere.
 fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Failure> {
     let folder = |path: &Path| {
@@ -112,29 +104,23 @@ fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Fai
 /// The tables of an allocation, a file each.
 const TABLES: [&str; 3] = ["tolerances", "requirements", "front"];
 
-/// Points that confirm what was found for a cheap model.
-const CONFIRM: u64 = 100_000;
-
 /// Points of a chart when nobody said how many.
 const FRONT: usize = 12;
 
 /// What the study asks for; with relative costs where it has none, unless nominal values alone are to move.
 fn task(study: &Study, asked: &AllocateArgs) -> AllocationTask {
-    let task = study.allocation_task();
-    let without = task.priced.is_empty() && asked.recentre.is_empty();
-    let basis = match asked.cost {
-        Some(CostArg::ToleranceUnit) => CostBasis::ToleranceUnit,
-        Some(CostArg::ConstantPrecision) => CostBasis::ConstantPrecision,
-        Some(CostArg::EqualShares) => CostBasis::EqualShares,
-        None if without => CostBasis::ToleranceUnit,
-        None => CostBasis::Given,
-    };
+    let basis = asked.cost.map(|basis| match basis {
+        CostArg::ToleranceUnit => CostBasis::ToleranceUnit,
+        CostArg::ConstantPrecision => CostBasis::ConstantPrecision,
+        CostArg::EqualShares => CostBasis::EqualShares,
+    });
     let goal = match (asked.minimise, asked.maximise, asked.cost_limit) {
         (Some(MinimiseArg::Rejects), _, Some(cost_limit)) => Goal::FewestRejects { cost_limit },
         (_, Some(MaximiseArg::Cpk), Some(cost_limit)) => Goal::MostCpk { cost_limit },
         _ => Goal::LeastCost,
     };
-    task.relative(&study.problem, basis).towards(goal)
+    let task = study.allocation_task().relative_or_default(&study.problem, basis, !asked.recentre.is_empty());
+    task.towards(goal)
 }
 
 fn allocate(

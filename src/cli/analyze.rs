@@ -18,6 +18,8 @@ use crate::assembly::{Progress, Run, Table};
 use crate::characteristic::Characteristic;
 use crate::document::markdown::markdown;
 use crate::document::terminal::text;
+use crate::document::{Detail, Style};
+use crate::method::Narrow;
 use crate::report::html::{WhatIf, analyze_html};
 use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_document};
 use crate::study::Study;
@@ -83,7 +85,11 @@ pub(super) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> Strin
     match asked.stack {
         None if asked.output.json && look.verbose => json(report),
         None if asked.output.json => json(&report.clone().shortened()),
-        None => text(&report.document(), look.style(&asked.output)),
+        None => {
+            let style = look.style(&asked.output);
+            let detail = if asked.summary { Detail::Summary } else { style.detail };
+            text(&report.document(), Style { detail, ..style })
+        }
         Some(StackArg::Text) => text(&stack_document(&report.stacks()), look.style(&asked.output)),
         Some(StackArg::Csv) => stack_csv(&report.stacks()),
         Some(StackArg::Markdown) => markdown(&stack_document(&report.stacks())),
@@ -148,7 +154,9 @@ fn unmatched(given: &Table, written: Option<&Path>, look: Look) {
 fn analyze(study: &Study, threads: Option<u16>, clock: &Clock, look: Look) -> Result<Analysis, Failure> {
     let stop = || clock.stop();
     let costly = study.problem.function().signature().costly;
-    let plan = costly.then(|| study.options.method.procedure().plan(&study.problem, &study.options)).transpose()?;
+    let narrow = Narrow::of(&study.problem, &study.options);
+    let problem = narrow.as_ref().map_or(&study.problem, |narrow| &narrow.problem);
+    let plan = costly.then(|| study.options.method.procedure().plan(problem, &study.options)).transpose()?;
     let bar = plan.map(|plan| Bar::new(plan.cost().0, look.quiet));
     let show = |more: Progress| bar.iter().for_each(|bar| bar.show(more));
     let run = Run::to_the_end().stopping_when(&stop).abandoning_when(&interrupt::abandoned).showing(&show);

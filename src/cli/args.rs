@@ -14,7 +14,7 @@ use super::values::{
     Movable, count, finite, movable, over, part, positive, probability, samples, samples_or_none, whole,
 };
 
-/// The open, CAD-agnostic parametric tolerance engine.
+/// Statistical tolerance analysis for anything you can compute.
 #[derive(Debug, Parser)]
 #[command(name = "sensitol", version, about, max_term_width = 100, subcommand_required = true)]
 #[command(after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml")]
@@ -61,13 +61,13 @@ pub(super) enum Command {
     Sweep(SweepArgs),
     /// The cheapest tolerances with which every characteristic keeps what is required
     ///
-    /// What tolerances cost stands in [costs], what is required at each characteristic: a target_yield or a require. Method auto
+    /// Costs stand in [costs]; each characteristic says what it requires: a target_yield or a require. Method auto
     /// stands for full, and above twenty dimensions for six-n.
     #[command(
         after_help = "Examples:\n  sensitol allocate examples/shaft-and-housing/study.toml --write cheaper.toml\n  sensitol allocate examples/first-study/study.toml --confirm 100000"
     )]
     Allocate(AllocateArgs),
-    /// What would be evaluated, how often, and why; evaluates nothing
+    /// The evaluations that an analysis would take, and why; evaluates nothing
     #[command(after_help = "Examples:\n  sensitol plan examples/engine-balance/study.toml --write-points points.csv")]
     Plan(PlanArgs),
     /// Validates studies; neither evaluates nor executes anything
@@ -91,6 +91,14 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml\n  sensitol init balance --model engine-balance"
     )]
     Init(InitArgs),
+    /// Writes a page that edits and analyses studies in a browser, offline
+    ///
+    /// The page holds the engine: it opens from disk and sends nothing anywhere. It is not part of every build: web/build makes it, and
+    /// this command looks for it beside the program, where the variable SENSITOL_WORKBENCH says, or where --page does.
+    #[command(
+        after_help = "Examples:\n  sensitol workbench\n  sensitol workbench examples/first-study/study.toml -o first-study.html"
+    )]
+    Workbench(WorkbenchArgs),
     /// The JSON Schema of study files, or of reports
     #[command(
         after_help = "Examples:\n  sensitol schema -o study.schema.json\n  sensitol schema --report -o report.schema.json"
@@ -118,7 +126,7 @@ pub(super) enum Command {
     /// study, of a UM-Bridge client or of workers on a cluster.
     #[command(after_help = "Examples:\n  sensitol evaluate examples/stacked-blocks/study.toml")]
     Evaluate(EvaluateArgs),
-    /// What is kept of external models: show, export or forget it
+    /// Show, export or forget the kept answers of external models
     #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
     Journal(JournalArgs),
 }
@@ -153,6 +161,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, conflicts_with = "points")]
     pub(super) extremes: bool,
 
+    /// Show the table of all characteristics only
+    #[arg(long, conflicts_with_all = ["json", "stack"], help_heading = OUTPUT)]
+    pub(super) summary: bool,
+
     /// Print the stack-up table of every characteristic instead of the report: text, csv or markdown
     #[arg(long, value_name = "FORMAT", conflicts_with = "json", help_heading = OUTPUT)]
     pub(super) stack: Option<StackArg>,
@@ -165,7 +177,7 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
 
-    /// Exit with 1 when a characteristic misses its target_yield, or its yield is unknown
+    /// Exit with 1 when a requirement is missed or inconclusive
     #[arg(long)]
     pub(super) check: bool,
 
@@ -188,7 +200,7 @@ pub(super) struct SampledArgs {
     pub(super) study: PathBuf,
 
     /// Ask for this characteristic only (repeatable)
-    #[arg(long = "kc", value_name = "NAME")]
+    #[arg(long = "characteristic", alias = "kc", value_name = "NAME")]
     pub(super) characteristics: Vec<String>,
 
     /// The nominal values and constants of this one of the study's [configurations]
@@ -214,7 +226,7 @@ pub(super) struct SimulateArgs {
     #[command(flatten)]
     pub(super) of: SampledArgs,
 
-    /// Points [default: 100000, or as many as --until takes; with --rare 10000, of an external model 1000]; Sobol' takes 16 times a power of two, at least as many
+    /// Points [default: 100000, or as many as --target-error takes; with --rare 10000, of an external model 1000]; Sobol' takes 16 times a power of two, at least as many
     #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true)]
     pub(super) samples: Option<u64>,
 
@@ -222,19 +234,19 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "SAMPLER", default_value = "random")]
     pub(super) sampler: SamplerArg,
 
-    /// Go on until the standard error of every sigma (with --rare: of every probability) is below this part of it
-    #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
+    /// Draw points until the standard error of every sigma (with --rare: of every probability) is below this part of it
+    #[arg(long = "target-error", alias = "until", value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
 
-    /// Go on until half the 95 % interval of every yield is below this
-    #[arg(long, value_name = "R", value_parser = part, allow_negative_numbers = true)]
+    /// Draw points until half the 95 % interval of every yield is below this
+    #[arg(long = "target-yield-error", alias = "until-yield", value_name = "R", value_parser = part, allow_negative_numbers = true)]
     pub(super) until_yield: Option<f64>,
 
-    /// Sample only what the surrogate of an analysis leaves unexplained: the same standard errors with fewer points
-    #[arg(long)]
+    /// Sample only what the surrogate of an analysis leaves unexplained (control variate): the same standard errors with fewer points
+    #[arg(long = "control-variate", alias = "surrogate-control")]
     pub(super) surrogate_control: bool,
 
-    /// Seek what is rare: the probability beyond each limit, by importance sampling that is placed with the surrogate
+    /// The probability beyond each limit, small or not, by importance sampling that is placed with the surrogate
     #[arg(long, conflicts_with_all = ["surrogate_control", "until_yield", "sampler"])]
     pub(super) rare: bool,
 
@@ -346,12 +358,12 @@ pub(super) struct AllocateArgs {
     #[arg(long, value_name = "WHAT", requires = "cost_limit", conflicts_with_all = ["front", "svg"])]
     pub(super) maximise: Option<MaximiseArg>,
 
-    /// What all tolerances together may cost, with --minimise or --maximise
+    /// The most that all tolerances together may cost, with --minimise or --maximise
     #[arg(long, value_name = "COST", value_parser = positive, allow_negative_numbers = true)]
     pub(super) cost_limit: Option<f64>,
 
-    /// The front of cost against yield (or Cpk), in N points
-    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
+    /// The Pareto front of cost against what is required, in N points
+    #[arg(long = "pareto", alias = "front", value_name = "N", value_parser = count, allow_negative_numbers = true)]
     pub(super) front: Option<usize>,
 
     /// Confirm the tolerances found by Monte Carlo: N points of the model, 0 for none [default: 100000 of a formula or a built-in
@@ -392,16 +404,30 @@ pub(super) struct AllocateArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct InitArgs {
-    /// The file to write, .toml if nothing else is said [default: study.toml]; one that is there stays as it is
+    /// Output file; `.toml` is added if there is no extension [default: study.toml]. An existing file is never overwritten
     pub(super) name: Option<String>,
 
-    /// Of this built-in model (see sensitol models), instead of a formula
+    /// A study of this built-in model (see sensitol models), instead of a formula
     #[arg(long, value_name = "MODEL", conflicts_with = "process")]
     pub(super) model: Option<String>,
 
-    /// Of a program, which is written too: a few lines of Python to put your CAD system into
+    /// A study of a program; writes the program too, a few lines of Python to put your CAD system into
     #[arg(long)]
     pub(super) process: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct WorkbenchArgs {
+    /// The study that the page opens, .toml or .json
+    pub(super) study: Option<PathBuf>,
+
+    /// The file to write
+    #[arg(short, long, value_name = "FILE.html", default_value = "workbench.html", help_heading = OUTPUT)]
+    pub(super) output: PathBuf,
+
+    /// The page without a study, as web/build writes it
+    #[arg(long, value_name = "FILE.html")]
+    pub(super) page: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -107,9 +107,7 @@ pub(super) enum Failure {
     Journal(#[from] JournalError),
     #[error("{}; there are {known}", number.map_or("--model N says which of several models".to_owned(), |number| format!("there is no model {number} in the journal")))]
     UnknownJournalModel { number: Option<i64>, known: String },
-    #[error(
-        "{answers} answers would be forgotten, and nobody is at a terminal to be asked: --yes does it all the same"
-    )]
+    #[error("{answers} answers would be forgotten, and there is no terminal to confirm it: pass --yes")]
     NotAgreed { answers: usize },
     #[error("{path}: {reason}", path = path.display())]
     Points { path: PathBuf, reason: String },
@@ -123,6 +121,12 @@ pub(super) enum Failure {
     UnknownName(#[from] UnknownName),
     #[error("{path} cannot be written: {error}", path = path.display())]
     Unwritable { path: PathBuf, error: std::io::Error },
+    #[error("the page of the workbench is not part of this build: run web/build, or name its page by --page; it is not at {sought}", sought = sought.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", "))]
+    NoPage { sought: Vec<PathBuf> },
+    #[error("{path} is not a page for `sensitol workbench`: {reason}", path = path.display())]
+    WrongPage { path: PathBuf, reason: String },
+    #[error("{path} cannot be put into a page: {reason}", path = path.display())]
+    NotInPage { path: PathBuf, reason: String },
     #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]
     Exists { path: PathBuf },
     #[error("`{path}` is {what}, which would be lost: name another file", path = path.display())]

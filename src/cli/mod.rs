@@ -35,6 +35,7 @@ mod simulate;
 mod study;
 mod sweep;
 mod values;
+mod workbench;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -96,7 +97,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose, study: None };
     let result = match &arguments.command {
         Command::Analyze(asked) => match &asked.studies[..] {
-            [study] if asked.how.configuration.as_deref() != Some(several::ALL) => analyze::run(study, asked, style),
+            [study] if asked.how.configuration.as_deref() != Some(study::ALL) => analyze::run(study, asked, style),
             studies => several::analyze(studies, asked, style),
         },
         Command::Simulate(asked) => simulate::run(asked, style),
@@ -111,6 +112,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Evaluate(asked) => evaluate::run(asked, style),
         Command::Journal(asked) => journal::run(asked, style),
         Command::Init(asked) => init::run(asked),
+        Command::Workbench(asked) => workbench::run(asked, style),
         Command::Schema(asked) => schema::run(asked),
         Command::Completions(asked) => reference::completions(asked),
         Command::Man => reference::man(),

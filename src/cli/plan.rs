@@ -13,7 +13,7 @@ use super::{points, study};
 use crate::document::number::plural;
 use crate::document::terminal::text;
 use crate::document::{Blocks, Document};
-use crate::method::DerivativeSource;
+use crate::method::{DerivativeSource, Narrow};
 use crate::plan::{KnownAnswers, Plan, Point, Purpose, Stage};
 use crate::problem::Problem;
 use crate::study::Externals;
@@ -32,6 +32,8 @@ pub(super) struct PlanReport {
     evaluations: usize,
     /// Evaluations where the program sends derivatives (`"gradients":true`); null where these save none, and for formulas.
     with_gradients: Option<usize>,
+    /// What the surface is fitted over, where many dimensions drive few inputs of the program; null where it is the dimensions.
+    fitted_over: Option<FittedOver>,
     /// The fewest and the most, of a method that chooses as it goes.
     range: Option<[usize; 2]>,
     /// Batches that wait for each other, the fewest; with `range` or `extremes` more may follow.
@@ -45,6 +47,13 @@ pub(super) struct PlanReport {
     /// Whether a search of the extremes follows, whose points nobody knows beforehand.
     extremes: bool,
     dimensions: Vec<AxisReport>,
+}
+
+/// The inputs of the program, fewer than the dimensions that drive them.
+#[derive(Debug, Serialize, JsonSchema)]
+struct FittedOver {
+    inputs: usize,
+    dimensions: usize,
 }
 
 /// One batch; what a later one asks depends on the answers to those before.
@@ -81,7 +90,9 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     let destination = files.output(&asked.output)?;
     let written = files.file(asked.write_points.as_deref())?;
     let procedure = study.options.method.procedure();
-    let plan = procedure.plan(&study.problem, &study.options)?;
+    let narrow = Narrow::of(&study.problem, &study.options);
+    let problem = narrow.as_ref().map_or(&study.problem, |narrow| &narrow.problem);
+    let plan = procedure.plan(problem, &study.options)?;
     let (evaluations, stages) = plan.cost();
     let first = plan.next(&KnownAnswers::nothing(study.problem.characteristics().len())).unwrap_or_default();
     let mut report = PlanReport {
@@ -93,9 +104,10 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         varying: plan.varying().len(),
         evaluations,
         with_gradients: (study.problem.function().signature().costly)
-            .then(|| procedure.with_gradients(&study.problem, &study.options))
+            .then(|| procedure.with_gradients(problem, &study.options))
             .flatten(),
-        range: procedure.range(&study.problem, &study.options),
+        fitted_over: narrow.as_ref().map(|narrow| FittedOver { inputs: narrow.inputs, dimensions: narrow.dimensions }),
+        range: procedure.range(problem, &study.options),
         rounds: stages,
         largest_batch: first.points.len().max(evaluations.saturating_sub(first.points.len())),
         stages: vec![of_stage(&first)],
@@ -104,7 +116,7 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
             most => study.problem.function().signature().costly.then_some(most.min(MOST_CHECKS)),
         },
         extremes: study.options.extremes,
-        dimensions: plan.varying().iter().map(|&d| axis(&study.problem, &*plan, d)).collect(),
+        dimensions: plan.varying().iter().map(|&d| axis(problem, &*plan, d)).collect(),
     };
     if stages > 1 {
         let left = evaluations - first.points.len();
@@ -113,7 +125,7 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         report.stages.push(StageReport { evaluations: left, known_beforehand: false, purposes });
     }
     if let Some(file) = written {
-        file.write(&points::table(&study.problem, &rows(&*plan, &first)))?;
+        file.write(&points::table(problem, &rows(&*plan, &first)))?;
         if stages > 1 {
             look.warn(&Warning::FirstStageOnly);
         }
@@ -163,7 +175,14 @@ impl PlanReport {
         let mut document = Document::default();
         document.line(format!("{}: {}", self.method, self.about));
         let (evaluations, varying) = (self.evaluations, self.varying);
-        document.line(format!("{evaluations} evaluations for {varying} varying dimensions ({})", self.count));
+        match &self.fitted_over {
+            None => document.line(format!("{evaluations} evaluations for {varying} varying dimensions ({})", self.count)),
+            Some(FittedOver { inputs, dimensions }) => document.line(format!(
+                "{evaluations} evaluations over {} of the program, which {dimensions} dimensions drive ({}, N the inputs)",
+                plural(*inputs, "input", "inputs"),
+                self.count
+            )),
+        }
         if let Some(fewer) = self.with_gradients {
             document.line(format!("{fewer} where the model sends derivatives with its answers"));
         }

@@ -67,7 +67,7 @@ pub(super) fn read(path: &Path) -> Result<Table, Failure> {
                 Ok(value) if value.is_finite() => Ok(Some(value)),
                 _ if columns[column].ends_with(" error") => Ok(None),
                 _ => Err(failed(format!(
-                    "line {}, column `{}`: `{text}` is no finite number",
+                    "line {}, column `{}`: `{text}` is not a finite number",
                     index + 2,
                     columns[column]
                 ))),

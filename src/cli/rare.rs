@@ -59,6 +59,7 @@ pub(super) fn run(asked: &SimulateArgs, study: &Study, look: Look) -> Result<Exi
         return Ok(Exit::NoResult);
     }
     let judged = found.characteristics.iter().flat_map(RareCharacteristic::requirements);
+    let judged = judged.chain(found.joint_requirement);
     let exit = if asked.check { checked(found.run.unfinished(), judged) } else { Exit::Done };
     Ok(confirmed(exit, &found.run))
 }

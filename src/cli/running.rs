@@ -52,7 +52,12 @@ impl Clock {
 
     /// What a report says of the study beside the results.
     pub(super) fn about(&self, study: &Study) -> About {
-        About { title: study.title.clone(), sha256: study.sha256.clone(), warnings: study.warnings.clone() }
+        About {
+            title: study.title.clone(),
+            sha256: study.sha256.clone(),
+            warnings: study.warnings.clone(),
+            block: study.about.clone(),
+        }
     }
 }
 

@@ -13,6 +13,8 @@ use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::interrupt;
 use super::output::{Destination, Look, error, json};
+use super::study::ALL;
+use crate::document::terminal::text;
 use crate::report::{Report, Stack, stack_csv_of_studies};
 use crate::study::{Externals, Study};
 use crate::summary::StopReason;
@@ -35,9 +37,6 @@ fn tell(study: &str, failure: &Failure) {
         error(&message);
     }
 }
-
-/// The word for every configuration of a study.
-pub(super) const ALL: &str = "all";
 
 /// A study, or one of its configurations.
 struct Asked<'a> {
@@ -105,7 +104,8 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
     let mut printer = Printer::open(asked, look, &mut files)?;
     let studies = open(&stems, studies, asked, &mut files)?;
     let mut exit = Exit::Done;
-    for (name, study) in names.iter().zip(studies) {
+    for ((name, one), study) in names.iter().zip(&all).zip(studies) {
+        let row = one.configuration.as_deref().filter(|_| asked.how.configuration.as_deref() == Some(ALL));
         let (study, beside) = match study {
             Ok(ready) => ready,
             Err(failure) => {
@@ -122,7 +122,10 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
             continue;
         }
         let shown = printer.shown;
-        let result = analyzed(&study, asked, beside, None, look.of(name), |report| printer.show(name, report));
+        let result = analyzed(&study, asked, beside, None, look.of(name), |report| {
+            printer.keep(row, report);
+            printer.show(name, report)
+        });
         // Who has a report whose files could not be written has it all the same.
         if let (Err(failure), false) = (&result, printer.shown > shown) {
             printer.failed(name, failure.to_string());
@@ -221,6 +224,8 @@ struct Printer<'a> {
     text: String,
     entries: Vec<Entry>,
     stacks: Vec<(String, Vec<Stack>)>,
+    /// Every configuration with its report, for the rows in the end.
+    rows: Vec<(String, Report)>,
     shown: usize,
 }
 
@@ -228,8 +233,8 @@ impl<'a> Printer<'a> {
     fn open(asked: &'a AnalyzeArgs, look: Look<'a>, files: &mut Files) -> Result<Self, Failure> {
         let whole = asked.output.json || asked.output.output.is_some() || asked.stack == Some(StackArg::Csv);
         let destination = whole.then(|| files.output(&asked.output)).transpose()?;
-        let (text, entries, stacks) = (String::new(), Vec::new(), Vec::new());
-        Ok(Self { asked, look, destination, text, entries, stacks, shown: 0 })
+        let (text, entries, stacks, rows) = (String::new(), Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { asked, look, destination, text, entries, stacks, rows, shown: 0 })
     }
 
     fn show(&mut self, name: &str, report: &Report) -> Result<(), Failure> {
@@ -260,6 +265,12 @@ impl<'a> Printer<'a> {
         }
     }
 
+    /// Keeps the report of a configuration for its row.
+    fn keep(&mut self, configuration: Option<&str>, report: &Report) {
+        let shown = !self.asked.output.json && self.asked.stack.is_none();
+        self.rows.extend(configuration.filter(|_| shown).map(|name| (name.to_owned(), report.clone())));
+    }
+
     /// A study without report.
     fn failed(&mut self, name: &str, error: String) {
         let entry = Entry { study: name.to_owned(), outcome: Outcome::Failed { error } };
@@ -267,7 +278,15 @@ impl<'a> Printer<'a> {
     }
 
     /// Writes what was kept; where there is no report, what stands there stays.
-    fn finish(self) -> Result<(), Failure> {
+    fn finish(mut self) -> Result<(), Failure> {
+        if self.rows.len() > 1 {
+            let rows = text(&Report::rows_of_all(&self.rows), self.look.style(&self.asked.output));
+            let rows = format!("\n==> all configurations <==\n{rows}");
+            match self.destination {
+                None => Destination::Stdout.write(&rows)?,
+                Some(_) => self.text += &rows,
+            }
+        }
         let Some(destination) = self.destination.filter(|_| self.shown > 0) else { return Ok(()) };
         destination.write(&match self.asked.stack {
             Some(StackArg::Csv) => stack_csv_of_studies(&self.stacks),

@@ -26,10 +26,11 @@ pub(super) struct HowArgs {
     pub(super) method: Option<MethodArg>,
 
     /// Ask for this characteristic only (repeatable)
-    #[arg(long = "kc", value_name = "NAME")]
+    #[arg(long = "characteristic", alias = "kc", value_name = "NAME")]
     pub(super) characteristics: Vec<String>,
 
-    /// The nominal values and constants of this one of the study's [configurations]; analyze knows `all` too
+    /// The nominal values and constants of this one of the study's [configurations]; `all` stands for every one in analyze, and for all at once in
+    /// allocate
     #[arg(long, value_name = "NAME")]
     pub(super) configuration: Option<String>,
 
@@ -81,7 +82,7 @@ pub(super) struct HowArgs {
 /// How long to work, and where what it costs is kept.
 #[derive(Debug, Args)]
 pub(super) struct WorkArgs {
-    /// Stop after S seconds and report what is known
+    /// Stop after S seconds and report the results so far
     #[arg(long, value_name = "S", value_parser = positive)]
     pub(super) time: Option<f64>,
 

@@ -24,7 +24,8 @@ const TABLES: [&str; 2] = ["estimates", "histogram"];
 
 pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
-    if asked.check && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
+    let joint = study.options.target_joint_yield.is_some();
+    if asked.check && !joint && study.problem.characteristics().iter().all(|one| one.requirements().is_empty()) {
         return Err(Failure::NothingToCheck);
     }
     if asked.rare {
@@ -46,6 +47,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         until: asked.until,
         until_yield: asked.until_yield,
         control: asked.surrogate_control.then(|| surrogate(&study, asked)),
+        target_joint_yield: study.options.target_joint_yield,
     };
     let clock = Clock::start(asked.of.work.time);
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look);
@@ -72,6 +74,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         return Ok(Exit::NoResult);
     }
     let judged = simulation.characteristics.iter().flat_map(SimulatedCharacteristic::requirements);
+    let judged = judged.chain(simulation.joint_requirement);
     let exit = if asked.check { checked(simulation.run.unfinished(), judged) } else { Exit::Done };
     Ok(confirmed(exit, &simulation.run))
 }

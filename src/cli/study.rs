@@ -11,6 +11,9 @@ use crate::method::{DerivativeSource, Method};
 use crate::plan::Stencil;
 use crate::study::{Externals, Study};
 
+/// The word for every configuration of a study.
+pub(super) const ALL: &str = "all";
+
 /// Reads the study of which points are drawn.
 pub(super) fn read_sampled(asked: &SampledArgs, look: Look) -> Result<Study, Failure> {
     let externals = externals(asked.work.journal.as_deref(), look, None);
@@ -37,6 +40,22 @@ fn asking(mut study: Study, characteristics: &[String]) -> Result<Study, Failure
 /// Reads the study; what the command line says wins over its `[analysis]`.
 pub(super) fn read(asked: &StudyArgs, externals: Externals) -> Result<Study, Failure> {
     read_file(&asked.study, &asked.how, configured(externals, asked.how.configuration.as_deref()))
+}
+
+/// The same, in all configurations at once where `all` of them are asked for.
+pub(super) fn read_for_all(asked: &StudyArgs, externals: &dyn Fn() -> Externals) -> Result<Study, Failure> {
+    if asked.how.configuration.as_deref() != Some(ALL) {
+        return read(asked, externals());
+    }
+    let study = Study::read_with(&asked.study, externals())?;
+    let names = study.configurations.clone();
+    if names.is_empty() {
+        // The study's own error says that there is none.
+        Study::read_with(&asked.study, externals().with_configuration(ALL))?;
+    }
+    let of = |name: String| Ok((name.clone(), Study::read_with(&asked.study, externals().with_configuration(name))?));
+    let all: Vec<(String, Study)> = names.into_iter().map(of).collect::<Result<_, Failure>>()?;
+    changed(study.in_configurations(&all)?, &asked.how)
 }
 
 /// The same of a file that stands for itself.

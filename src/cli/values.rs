@@ -86,7 +86,7 @@ fn number(text: &str, holds: fn(f64) -> bool, must: &str) -> Result<f64, String>
     match text.trim().parse::<f64>() {
         Ok(value) if holds(value) => Ok(value),
         Ok(_) => Err(must.to_owned()),
-        Err(_) => Err("it is no number".to_owned()),
+        Err(_) => Err("it is not a number".to_owned()),
     }
 }
 

@@ -10,12 +10,16 @@
 //! ```
 //!
 //! which is solved for `r_jk` pair by pair. What the marginals allow lies between its values at -1 and 1.
+//!
+//! Rows of measured parts and zones are blocks beside them: each vector is independent of everything else.
 
+mod block;
 mod error;
 mod matrix;
 mod together;
 pub(crate) mod transform;
 
+pub(crate) use block::{Atom, Block, JointLaw, Rows};
 pub use error::{CorrelationError, Refusal};
 pub(crate) use together::Together;
 pub(crate) use transform::Transform;
@@ -58,17 +62,32 @@ pub struct Correlation {
     /// Of the normal variables behind them.
     normal: Mat<f64>,
     transforms: Vec<Arc<Transform>>,
+    /// Members that vary together by rows or a zone, whose normal variables are uncorrelated in `normal`.
+    blocks: Vec<Block>,
 }
 
 impl Correlation {
     /// Of these dimensions by these pairs; a pair that is not named is uncorrelated.
     ///
     /// # Errors
+    /// See [`with_blocks`](Self::with_blocks).
+    pub(crate) fn new(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Self, CorrelationError> {
+        Self::with_blocks(dimensions, pairs, Vec::new())
+    }
+
+    /// The same beside blocks of dimensions by their positions: each of them in one block at most, and in none of the pairs.
+    ///
+    /// # Errors
     /// When a pair names what is no dimension or does not vary, stands twice, or asks for what its distributions do not
     /// allow; and when no distribution has all of it together: the matrix must not have a negative eigenvalue.
-    pub(crate) fn new(dimensions: &[Dimension], pairs: &[Pair]) -> Result<Self, CorrelationError> {
+    pub(crate) fn with_blocks(
+        dimensions: &[Dimension],
+        pairs: &[Pair],
+        blocks: Vec<Block>,
+    ) -> Result<Self, CorrelationError> {
         let pairs = resolved(dimensions, pairs)?;
-        let mut members: Vec<usize> = pairs.iter().flat_map(|&(ends, _)| ends).collect();
+        let of_blocks = blocks.iter().flat_map(|block| block.members.iter().copied());
+        let mut members: Vec<usize> = pairs.iter().flat_map(|&(ends, _)| ends).chain(of_blocks).collect();
         members.sort_unstable();
         members.dedup();
         let place = |d: usize| members.binary_search(&d).expect("an end of a pair is a member");
@@ -109,7 +128,54 @@ impl Correlation {
                 &seen,
             ));
         }
-        Ok(Self { members, target, normal, transforms })
+        for Block { members, law } in &blocks {
+            for (a, &d) in members.iter().enumerate() {
+                for (b, &e) in members.iter().enumerate().filter(|&(b, _)| b != a) {
+                    target[(place(d), place(e))] = law.correlation(a, b);
+                }
+            }
+        }
+        Ok(Self { members, target, normal, transforms, blocks })
+    }
+
+    /// The blocks, by positions as those of the members.
+    pub(crate) fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    /// The block that a dimension belongs to, and its coordinate there.
+    pub(crate) fn block_of(&self, dimension: usize) -> Option<(usize, usize)> {
+        let coordinate = |block: &Block| block.members.iter().position(|&member| member == dimension);
+        self.blocks.iter().enumerate().find_map(|(index, block)| Some((index, coordinate(block)?)))
+    }
+
+    /// Whether two dimensions vary together, be it without being correlated.
+    pub(crate) fn linked(&self, a: usize, b: usize) -> bool {
+        let by_block = || self.block_of(a).zip(self.block_of(b)).is_some_and(|((one, _), (other, _))| one == other);
+        match (self.members.binary_search(&a), self.members.binary_search(&b)) {
+            (Ok(j), Ok(k)) => self.normal[(j, k)] != 0.0 || by_block(),
+            _ => false,
+        }
+    }
+
+    /// The same without its blocks; None where nothing is left.
+    pub(crate) fn without_blocks(&self) -> Option<Self> {
+        self.without(&|_| true)
+    }
+
+    /// The same without these blocks, by their numbers.
+    pub(crate) fn without(&self, left_out: &dyn Fn(usize) -> bool) -> Option<Self> {
+        let kept = |&d: &usize| self.block_of(d).is_none_or(|(block, _)| !left_out(block));
+        let others: Vec<usize> = self.members.iter().copied().filter(kept).collect();
+        let places: Vec<usize> = others.iter().filter_map(|d| self.members.binary_search(d).ok()).collect();
+        let part = |of: &Mat<f64>| Mat::from_fn(places.len(), places.len(), |j, k| of[(places[j], places[k])]);
+        (!others.is_empty()).then(|| Self {
+            members: others,
+            target: part(&self.target),
+            normal: part(&self.normal),
+            transforms: places.iter().map(|&j| Arc::clone(&self.transforms[j])).collect(),
+            blocks: self.blocks.iter().enumerate().filter(|(b, _)| !left_out(*b)).map(|(_, of)| of.clone()).collect(),
+        })
     }
 
     /// The dimensions that are correlated with some other, ascending.
@@ -156,19 +222,22 @@ impl Correlation {
         let kept: Vec<(usize, usize)> = (dimensions.iter().enumerate())
             .filter_map(|(position, d)| Some((position, self.members.binary_search(d).ok()?)))
             .filter(|&(_, j)| {
-                (0..self.members.len())
-                    .any(|k| k != j && self.normal[(j, k)] != 0.0 && dimensions.contains(&self.members[k]))
+                let linked = |&k: &usize| k != self.members[j] && self.linked(self.members[j], k);
+                self.members.iter().filter(|k| linked(k)).any(|k| dimensions.contains(k))
             })
             .collect();
         if kept.is_empty() {
             return None;
         }
+        let place = |member: usize| dimensions.iter().position(|&d| d == member);
+        let blocks = self.blocks.iter().filter_map(|block| block.among(&place)).collect();
         let part = |of: &Mat<f64>| Mat::from_fn(kept.len(), kept.len(), |j, k| of[(kept[j].1, kept[k].1)]);
         Some(Self {
             members: kept.iter().map(|&(position, _)| position).collect(),
             target: part(&self.target),
             normal: part(&self.normal),
             transforms: kept.iter().map(|&(_, j)| Arc::clone(&self.transforms[j])).collect(),
+            blocks,
         })
     }
 }

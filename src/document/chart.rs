@@ -71,6 +71,12 @@ pub struct SpreadChart {
     pub sampled: bool,
     /// Lower and upper limit.
     pub limits: [Option<f64>; 2],
+    /// What is rejected beyond each limit, in words.
+    pub rejects: [Option<String>; 2],
+    /// Ranges below the axis of a page, by name.
+    pub ranges: Vec<(String, [f64; 2])>,
+    /// Its value at the nominal dimensions.
+    pub nominal: Option<f64>,
     /// Places that are marked on pages: value, kind (`mean` or `quantile`), name.
     pub places: Vec<(f64, &'static str, &'static str)>,
     /// The standard deviation, by which numbers are rounded.

@@ -96,6 +96,8 @@ fn block(block: &Element) -> String {
             let class = if one.indent > 0 { " class=\"note\"" } else { "" };
             format!("<p{class}>{}</p>\n", toned(&one.line))
         }
+        Element::Detail(inner) => blocks(inner),
+        Element::Brief(_) => String::new(),
         Element::Aside(aside) if aside.title.is_empty() => blocks(&aside.blocks),
         Element::Aside(aside) => format!("<h3>{}</h3>\n{}", aside.title, blocks(&aside.blocks)),
         Element::List(list) => {
@@ -138,7 +140,8 @@ pub fn table(table: &DataTable) -> String {
         return String::new();
     }
     let class = |place: usize| if table.right(place) { " class=\"n\"" } else { "" };
-    let mut text = "<div class=\"wide\"><table>\n".to_owned();
+    // What is wider than the window can be moved by keys.
+    let mut text = "<div class=\"wide\" tabindex=\"0\"><table>\n".to_owned();
     if places.iter().any(|&place| !table.columns[place].heading.is_empty()) {
         let title = |&place: &usize| {
             format!("<th scope=\"col\"{}>{}</th>", class(place), escaped(table.columns[place].heading))
@@ -151,7 +154,7 @@ pub fn table(table: &DataTable) -> String {
             let of: &Cell = &table.rows[index][place];
             let text = toned(&of.on_page());
             let text = of.leads_to.map_or(text.clone(), |section| format!("<a href=\"#kc-{section}\">{text}</a>"));
-            match rank == 0 && !table.right(place) {
+            match rank == 0 && !table.right(place) && !text.is_empty() {
                 true => format!("<th scope=\"row\">{text}</th>"),
                 false => format!("<td{}>{text}</td>", class(place)),
             }

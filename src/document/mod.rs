@@ -18,6 +18,7 @@ pub mod terminal;
 
 pub use chart::{Bar, Bars, Chart, Fill, Layer, Plot, PlotAxis, PlotPoint, PlotScale, SpreadChart, Stroke};
 pub(crate) use spread::Extent;
+pub(crate) use table::Column;
 pub use table::{Cell, Columns, DataTable, Value};
 pub use terminal::{Detail, Style};
 
@@ -51,9 +52,9 @@ pub struct Line(pub Vec<Span>);
 /// How a line that is too long for the page goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
-    /// In the next line, on pages narrower than [`Style::WIDTH`].
+    /// In the next line, indented by four, where a space allows it.
     Folded,
-    /// In the next line, on every page.
+    /// In the next line; a percent sign stays with its number.
     Wrapped,
     /// It stays as it is, to be copied.
     Verbatim,
@@ -110,6 +111,10 @@ pub enum Element {
     Paragraph(Paragraph),
     /// What pages say beside, for which a terminal has no room.
     Aside(Aside),
+    /// What pages say, and a terminal where everything is asked for.
+    Detail(Vec<Element>),
+    /// What a terminal says in place of the details.
+    Brief(Vec<Element>),
     /// Words after a title.
     List(List),
     /// A table.
@@ -142,6 +147,13 @@ pub struct Document {
     pub head: Vec<Element>,
     /// Its sections; the first may be about everything, without a name.
     pub sections: Vec<Section>,
+}
+
+impl Paragraph {
+    /// A line below what it belongs to.
+    pub(crate) fn note(line: impl Into<Line>) -> Self {
+        Self { line: line.into(), indent: 2, flow: Flow::Folded }
+    }
 }
 
 impl Line {
@@ -189,7 +201,7 @@ pub trait Blocks {
 
     /// A line below what it belongs to.
     fn note(&mut self, line: impl Into<Line>) {
-        self.blocks().push(Element::Paragraph(Paragraph { line: line.into(), indent: 2, flow: Flow::Folded }));
+        self.blocks().push(Element::Paragraph(Paragraph::note(line)));
     }
 
     /// Text of any length, this far from the margin.
@@ -205,6 +217,16 @@ pub trait Blocks {
     /// Blocks for pages only, below a heading unless that is empty.
     fn aside(&mut self, title: &'static str, blocks: Vec<Element>) {
         self.blocks().push(Element::Aside(Aside { title, blocks }));
+    }
+
+    /// Blocks for pages, and for terminals where everything is asked for.
+    fn detail(&mut self, blocks: Vec<Element>) {
+        self.blocks().push(Element::Detail(blocks));
+    }
+
+    /// Blocks for a terminal where not everything is asked for.
+    fn brief(&mut self, blocks: Vec<Element>) {
+        self.blocks().push(Element::Brief(blocks));
     }
 
     /// A line for pages only.
@@ -256,8 +278,12 @@ impl Document {
         Self { title: title.map(str::to_owned), ..Self::default() }
     }
 
-    /// All blocks, in order.
+    /// All blocks, in order, with those of the details.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Element> {
-        self.head.iter().chain(self.sections.iter().flat_map(|section| &section.blocks))
+        let blocks = self.head.iter().chain(self.sections.iter().flat_map(|section| &section.blocks));
+        blocks.flat_map(|block| match block {
+            Element::Detail(inner) => inner.as_slice(),
+            other => std::slice::from_ref(other),
+        })
     }
 }

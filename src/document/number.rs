@@ -121,7 +121,18 @@ pub(crate) fn known(value: Option<f64>, show: impl FnOnce(f64) -> String) -> Str
 
 /// Skewness and kurtosis.
 pub(crate) fn shape(value: f64) -> String {
-    unsigned_zero(format!("{value:.4}"))
+    shape_with(value, None)
+}
+
+/// As many decimals as show two digits of an error; None where it is unknown, or none.
+fn of_error(error: Option<f64>) -> Option<usize> {
+    decimals(error.filter(|error| *error > 0.0 && error.is_finite())?, 2)
+}
+
+/// Skewness and kurtosis with no more decimals than their error carries.
+pub(crate) fn shape_with(value: f64, error: Option<f64>) -> String {
+    let decimals = of_error(error).map_or(4, |of_error| of_error.min(4));
+    unsigned_zero(format!("{value:.decimals$}"))
 }
 
 /// Cp, Cpk and the like.
@@ -141,6 +152,16 @@ pub(crate) fn limits(lower: Option<f64>, upper: Option<f64>) -> String {
         (Some(lower), None) => format!("above {}", plain(lower)),
         (None, Some(upper)) => format!("below {}", plain(upper)),
         (Some(lower), Some(upper)) => format!("{} .. {}", plain(lower), plain(upper)),
+    }
+}
+
+/// A value beside its sigma with no more decimals than its error carries: the error's second digit is the last one.
+pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
+    match (decimals(sigma, 5), of_error(error)) {
+        (Some(of_sigma), Some(of_error)) if of_error < of_sigma && value.abs() < 1e9 => {
+            unsigned_zero(format!("{value:.of_error$}"))
+        }
+        _ => beside(value, sigma),
     }
 }
 

@@ -62,6 +62,15 @@ impl Rejects {
         Some(if shorter.len() < exact.len() { shorter } else { exact })
     }
 
+    /// The yield with its error, or as a bound. An error that the printed digits do not show is left out.
+    pub(crate) fn with_error(self) -> Option<String> {
+        let (rejected, text) = (self.total()?, self.yield_text()?);
+        let decimals = text.trim_end_matches(" %").split_once('.').map_or(0, |(_, decimals)| decimals.len());
+        let seen = |error: &f64| 1e3 * error >= 10_f64.powi(-(decimals as i32));
+        let error = self.error.filter(|_| self.bound(rejected).is_none()).filter(seen);
+        Some(error.map_or(text.clone(), |error| format!("{text} ± {}", significant(100.0 * error, 1))))
+    }
+
     /// The yield with the rejects on either side in brackets.
     pub(crate) fn text(self) -> Option<String> {
         let yield_ = self.yield_text()?;
@@ -71,6 +80,16 @@ impl Rejects {
             None => self.sides(),
         };
         Some(format!("{yield_} ({sides})"))
+    }
+
+    /// The rejects below and above, each where there is a limit.
+    pub(crate) fn by_side(self) -> [Option<String>; 2] {
+        [self.below, self.above].map(|share| Some(format!("{} ppm", self.ppm(share?))))
+    }
+
+    /// All rejects, in parts per million; None without any limit.
+    pub(crate) fn all_ppm(self) -> Option<String> {
+        self.total().map(|rejected| self.ppm(rejected))
     }
 
     /// The rejects on either side, in parts per million.

@@ -45,7 +45,7 @@ pub(super) fn drawn(plots: &[&Plot], title: &str) -> String {
 }
 
 /// Names come from studies: nothing in them is markup, and characters that XML 1.0 does not have are left out.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let allowed =
         |c: &char| !matches!(c, '\0'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}');
     let text: String = text.chars().filter(allowed).collect();

@@ -106,6 +106,11 @@ impl<'a, T> Columns<'a, T> {
         self.with(["", title, title], [true, true], cell)
     }
 
+    /// A column for people, for which a terminal has no room.
+    pub fn page(self, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
+        self.with(["", title, title], [false, true], cell)
+    }
+
     /// A column for programs.
     pub fn data(self, key: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with([key, "", ""], [false, false], cell)

@@ -7,7 +7,9 @@ use crate::names::{clean, shortened_to};
 /// How much is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detail {
-    /// The strongest contributions.
+    /// The table of all results, without sections.
+    Summary,
+    /// Sections in brief, with the strongest contributions.
     Short,
     /// Everything.
     Full,
@@ -28,7 +30,7 @@ pub struct Style {
 
 impl Style {
     /// The width of what is written to no terminal.
-    pub(crate) const WIDTH: usize = 100;
+    pub(crate) const WIDTH: usize = 80;
 }
 
 /// Before every column.
@@ -58,7 +60,8 @@ pub fn text(document: &Document, style: Style) -> String {
         page.folded(&title.as_str().into());
     }
     document.head.iter().for_each(|block| page.block(block));
-    for (index, section) in document.sections.iter().enumerate() {
+    let sections = document.sections.iter().filter(|_| style.detail != Detail::Summary);
+    for (index, section) in sections.enumerate() {
         if index > 0 || !page.text.is_empty() {
             page.text.push('\n');
         }
@@ -99,6 +102,9 @@ impl Page {
                     picture.into_iter().for_each(|line| self.folded(&line.into()));
                 }
             }
+            Element::Detail(inner) if self.style.detail == Detail::Full => inner.iter().for_each(|one| self.block(one)),
+            Element::Brief(inner) if self.style.detail == Detail::Short => inner.iter().for_each(|one| self.block(one)),
+            Element::Detail(_) | Element::Brief(_) => {}
             Element::Chart(Chart::Plot(_) | Chart::Bars(_)) | Element::Aside(_) | Element::Finding(_) => {}
         }
     }
@@ -141,11 +147,11 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// A line; on a narrow page what is too long for it goes on in the next one.
+    /// A line; what is too long for the page goes on in the next one.
     fn folded(&mut self, line: &Line) {
         let mut rest = self.letters(line);
         let width = self.style.width;
-        while width < Style::WIDTH && trimmed(&rest) > width {
+        while trimmed(&rest) > width {
             let words = rest.iter().take_while(|letter| letter.0 == ' ').count();
             let Some(space) = (words + 1..=width).rev().find(|&at| rest[at].0 == ' ') else { break };
             self.put(&rest[..space]);

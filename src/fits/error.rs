@@ -9,7 +9,7 @@ use crate::names::nearest;
 #[non_exhaustive]
 pub enum FitError {
     /// Not letters followed by one number.
-    #[error("`{found}` is no tolerance class")]
+    #[error("`{found}` is not a tolerance class")]
     NoClass {
         /// As written.
         found: String,

@@ -40,7 +40,7 @@ const LARGEST: f64 = 500.0;
 /// standard has them. A size range contains its upper end. Accuracy: the doubles nearest to the printed values.
 ///
 /// # Errors
-/// When `class` is no tolerance class, or the standard has no value for it at this size: the error says what there is.
+/// When `class` is not a tolerance class, or the standard has no value for it at this size: the error says what there is.
 ///
 /// ```
 /// use sensitol::fits::deviations;
@@ -76,6 +76,16 @@ pub fn deviations(nominal_mm: f64, class: &str) -> Result<[f64; 2], FitError> {
         });
     }
     Ok(limits(letter, side, grade, nominal_mm))
+}
+
+/// The width in mm of a standard grade, such as `7` of IT7, at this nominal size.
+///
+/// # Errors
+/// When the standard has no value for it.
+#[cfg(feature = "study")]
+pub(crate) fn grade_width(nominal_mm: f64, grade: &str) -> Result<f64, FitError> {
+    let [lower, upper] = deviations(nominal_mm, &format!("js{grade}"))?;
+    Ok(upper - lower)
 }
 
 /// The first and the last grade that the standard has for this letter at this size, with all between them.

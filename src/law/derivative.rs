@@ -27,7 +27,10 @@ pub(super) fn tail_derivatives(law: &SurfaceLaw, y: f64, tail: LawTail) -> Optio
         Kind::Single(single) => single.derivatives(y, tail),
         Kind::Sampled(sampled) => sampled.derivatives(y, tail, law.mean),
     };
-    Some(law.surface.places.iter().map(|place| place.map_or(nothing, |place| own[place])).collect())
+    let mut all: Vec<LawFigure> =
+        law.surface.places.iter().map(|place| place.map_or(nothing, |place| own[place])).collect();
+    law.zones.iter().for_each(|zone| zone.distribute(&mut all));
+    Some(all)
 }
 
 /// Of all inputs of a surface that an exact law has taken; 0 for the others.

@@ -46,7 +46,7 @@ impl Direction {
             while let Some(j) = open.pop() {
                 if !behind.contains(&j) {
                     behind.push(j);
-                    open.extend(correlated.members.iter().copied().filter(|&k| correlated.between(j, k) != 0.0));
+                    open.extend(correlated.members.iter().copied().filter(|&k| correlated.linked(j, k)));
                 }
             }
             behind.sort_unstable();
@@ -179,6 +179,10 @@ impl Direction {
             for (a, &j) in members.iter().enumerate() {
                 v[j] = scratch.iter().enumerate().map(|(b, v)| axes[(a, b)] * v).sum();
             }
+        }
+        if let Some(correlated) = &self.surface.correlated {
+            let own = correlated.blocks.iter().filter(|block| self.behind.contains(&block.members[0]));
+            own.for_each(|block| block.apply(v, scratch));
         }
         for &j in &self.behind {
             let input = &self.surface.inputs[j];

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The tails are those of each law; only the second term is sampled. Where failures are rare or far apart it is small, and so
-//! is its error.
+//! is its error. Of two sums of normal inputs it is exact too.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,8 +15,10 @@ use rayon::prelude::*;
 
 use super::input::Input;
 use super::points::{REPLICATES, mixed};
+use super::quadrant::both_broken;
 use super::{LawFigure, SurfaceLaw};
 use crate::characteristic::SpecLimits;
+use crate::correlation::Block;
 use crate::distribution::standard_normal;
 use crate::sampling::{SOBOL_DIMENSIONS, Sobol};
 
@@ -62,16 +64,40 @@ pub fn joint_yield(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> LawFigure {
     if limited.len() < 2 {
         return LawFigure::new((1.0 - tails.value).clamp(0.0, 1.0), tails.error);
     }
-    let inputs = Inputs::of(&limited);
+    let common = overlap(&limited, tails.value);
+    LawFigure::new((1.0 - tails.value + common.value).clamp(0.0, 1.0), tails.error + common.error)
+}
+
+/// The mean of the broken limits beyond the first: exact of two sums of normal inputs, sampled of all others. `tails` is what all limits
+/// reject together.
+fn overlap(limited: &[&(&SurfaceLaw, SpecLimits)], tails: f64) -> LawFigure {
+    if let [first, second] = limited
+        && let Some(both) = both_broken([**first, **second])
+    {
+        return both;
+    }
+    let inputs = Inputs::of(limited);
     let several: Vec<f64> =
-        (0..REPLICATES).into_par_iter().map(|replicate| inputs.several(&limited, replicate)).collect();
+        (0..REPLICATES).into_par_iter().map(|replicate| inputs.several(limited, replicate)).collect();
     let n = REPLICATES as f64;
     let mean = several.iter().sum::<f64>() / n;
     let variance = several.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (n - 1.0);
     // As for every other sampled figure; and no point with two broken limits is no proof that there is none.
-    let fewest = if mean == 0.0 { (3.0 / (n * POINTS as f64)).min(tails.value) } else { 0.0 };
+    let fewest = if mean == 0.0 { (3.0 / (n * POINTS as f64)).min(tails) } else { 0.0 };
     let error = 2.95 * (variance / n).sqrt();
-    LawFigure::new((1.0 - tails.value + mean).clamp(0.0, 1.0), tails.error + error.max(fewest))
+    LawFigure::new(mean, error.max(fewest))
+}
+
+/// What the limits of several characteristics reject: the sum of the tails, and by how much that counts assemblies twice.
+pub(crate) fn rejected(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> (f64, LawFigure) {
+    let sides = |law: &SurfaceLaw, limits: SpecLimits| {
+        [limits.lower().map(|y| law.below(y).value), limits.upper().map(|y| law.above(y).value)]
+    };
+    let tails: f64 = characteristics.iter().flat_map(|(law, limits)| sides(law, *limits)).flatten().sum();
+    let limited: Vec<&(&SurfaceLaw, SpecLimits)> =
+        characteristics.iter().filter(|(_, limits)| limits.exist()).collect();
+    let twice = if limited.len() < 2 { LawFigure::new(0.0, 0.0) } else { overlap(&limited, tails) };
+    (tails, twice)
 }
 
 /// All inputs that count for any of the laws, by their positions.
@@ -80,20 +106,22 @@ struct Inputs {
     /// Places in `laws` of correlated inputs, and the factor of their normal variables.
     members: Vec<usize>,
     factor: Mat<f64>,
+    /// Those of them that vary together as a whole.
+    blocks: Vec<Block>,
 }
 
 impl Inputs {
     fn of(characteristics: &[&(&SurfaceLaw, SpecLimits)]) -> Self {
         let mut by_position: BTreeMap<usize, Arc<Input>> = BTreeMap::new();
         for (law, _) in characteristics {
-            for (position, place) in law.surface.places.iter().enumerate() {
+            for (position, place) in law.given.places.iter().enumerate() {
                 if let Some(place) = *place {
-                    by_position.entry(position).or_insert_with(|| Arc::clone(&law.surface.inputs[place]));
+                    by_position.entry(position).or_insert_with(|| Arc::clone(&law.given.inputs[place]));
                 }
             }
         }
         let laws: Vec<(usize, Arc<Input>)> = by_position.into_iter().collect();
-        let (mut members, mut factor) = (Vec::new(), Mat::zeros(0, 0));
+        let (mut members, mut factor, mut blocks) = (Vec::new(), Mat::zeros(0, 0), Vec::new());
         if let Some(correlation) = characteristics.iter().find_map(|(law, _)| law.correlation.as_ref()) {
             let place = |position: usize| laws.binary_search_by_key(&position, |&(position, _)| position).ok();
             let known: Vec<(usize, usize)> = (correlation.members().iter().enumerate())
@@ -105,8 +133,9 @@ impl Inputs {
                 factor = Mat::from_fn(m, m, |a, b| eigen.U()[(a, b)] * eigen.S()[b].max(0.0).sqrt());
                 members = known.into_iter().map(|(place, _)| place).collect();
             }
+            blocks = correlation.blocks().iter().filter_map(|block| block.among(&place)).collect();
         }
-        Self { laws, members, factor }
+        Self { laws, members, factor, blocks }
     }
 
     /// The mean of the broken limits beyond the first over the points of a replicate.
@@ -126,8 +155,8 @@ impl Inputs {
                 column
             })
             .collect();
-        let mut z = vec![0.0; self.laws.len()];
-        let mut own: Vec<Vec<f64>> = characteristics.iter().map(|(law, _)| vec![0.0; law.surface.len()]).collect();
+        let (mut z, mut scratch) = (vec![0.0; self.laws.len()], Vec::new());
+        let mut own: Vec<Vec<f64>> = characteristics.iter().map(|(law, _)| vec![0.0; law.given.len()]).collect();
         let mut sum = 0usize;
         for point in 0..POINTS {
             let u = |place: usize| columns[place][point] + 0.5f64.powi(53);
@@ -141,8 +170,11 @@ impl Inputs {
             }
             let normals: Vec<f64> = self.members.iter().map(|&place| z[place]).collect();
             for (a, &place) in self.members.iter().enumerate() {
-                let normal: f64 = normals.iter().enumerate().map(|(b, v)| self.factor[(a, b)] * v).sum();
-                let law = &self.laws[place].1;
+                z[place] = normals.iter().enumerate().map(|(b, v)| self.factor[(a, b)] * v).sum();
+            }
+            self.blocks.iter().for_each(|block| block.apply(&mut z, &mut scratch));
+            for &place in &self.members {
+                let (law, normal) = (&self.laws[place].1, z[place]);
                 z[place] = match (law.is_normal(), normal < 0.0) {
                     (true, _) => normal,
                     (_, true) => law.at_tail(standard_normal::cdf(normal)),
@@ -152,11 +184,11 @@ impl Inputs {
             let mut broken = 0usize;
             for ((law, limits), own) in characteristics.iter().zip(&mut own) {
                 for (place, (position, _)) in self.laws.iter().enumerate() {
-                    if let Some(at) = law.surface.places.get(*position).copied().flatten() {
+                    if let Some(at) = law.given.places.get(*position).copied().flatten() {
                         own[at] = z[place];
                     }
                 }
-                broken += usize::from(!limits.contains(law.surface.value(own)));
+                broken += usize::from(!limits.contains(law.given.value(own)));
             }
             sum += broken.saturating_sub(1);
         }

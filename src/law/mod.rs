@@ -30,6 +30,7 @@ mod joint;
 mod panels;
 mod points;
 mod polynomial;
+mod quadrant;
 mod quantile;
 mod sampled;
 mod single;
@@ -42,9 +43,11 @@ mod tabulated;
 mod tilt;
 mod transform;
 mod tree;
+mod zones;
 
 pub use held::HeldTail;
 pub use joint::joint_yield;
+pub(crate) use joint::rejected;
 pub(crate) use quantile::Sought;
 #[cfg(feature = "html")]
 pub(crate) use tabulated::TabulatedInput;
@@ -62,6 +65,7 @@ use single::Single;
 use steps::Steps;
 use surface::Surface;
 use transform::Transform;
+use zones::{Straightened, Zone, straightened};
 
 /// A number and what its computation leaves uncertain.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -179,12 +183,15 @@ pub struct LawOptions {
     pub points: usize,
     /// Seed of its points.
     pub seed: u64,
+    /// Whether products that form a tree are computed: a limit takes milliseconds, quantiles of quartics of several inputs half a second.
+    /// Otherwise they belong to the sampled branch.
+    pub trees: bool,
 }
 
 impl Default for LawOptions {
-    /// 2^13 points.
+    /// 2^13 points, and trees.
     fn default() -> Self {
-        Self { points: 1 << 13, seed: 1 }
+        Self { points: 1 << 13, seed: 1, trees: true }
     }
 }
 
@@ -209,6 +216,10 @@ impl Default for LawOptions {
 #[derive(Debug)]
 pub struct SurfaceLaw {
     surface: Arc<Surface>,
+    /// The surface over its own inputs, where the coordinates of a zone have been replaced.
+    given: Arc<Surface>,
+    zones: Vec<Zone>,
+    /// Of the own inputs.
     correlation: Option<Correlation>,
     kind: Kind,
     range: [f64; 2],
@@ -240,24 +251,33 @@ impl SurfaceLaw {
         correlation: Option<&Correlation>,
         options: &LawOptions,
     ) -> Result<Self, LawError> {
+        if let Some(Straightened { surrogate: plain, inputs: others, correlation: left, zones }) =
+            straightened(surrogate, inputs, correlation)
+        {
+            let given = Arc::new(Surface::of(surrogate, inputs, correlation)?);
+            let law = Self::of(&plain, &others, left.as_ref(), options)?;
+            return Ok(Self { given, zones, correlation: correlation.cloned(), ..law });
+        }
         let surface = Arc::new(Surface::of(surrogate, inputs, correlation)?);
+        let (given, zones) = (Arc::clone(&surface), Vec::new());
         let correlation = correlation.cloned();
         if surface.len() == 0 {
             let at = surface.centre;
             let (kind, range) = (Kind::Point(at), [at; 2]);
-            return Ok(Self { surface, correlation, kind, range, mean: at, sigma: 0.0, step: true });
+            return Ok(Self { surface, given, zones, correlation, kind, range, mean: at, sigma: 0.0, step: true });
         }
         let step = surface.inputs.iter().all(|input| input.is_discrete());
         if let Some(steps) = Steps::of(&surface) {
             let ([mean, sigma], range) = (steps.moments(), steps.range());
-            return Ok(Self { surface, correlation, kind: Kind::Steps(steps), range, mean, sigma, step });
+            let kind = Kind::Steps(steps);
+            return Ok(Self { surface, given, zones, correlation, kind, range, mean, sigma, step });
         }
         let range = surface.range();
         let own = Arc::clone(&surface);
-        let given = correlation.clone();
+        let correlated = correlation.clone();
         let with = move |kind: Kind, [mean, sigma]: [f64; 2]| match sigma > 0.0 && sigma.is_finite() && mean.is_finite()
         {
-            true => Ok(Self { surface: own, correlation: given, kind, range, mean, sigma, step }),
+            true => Ok(Self { surface: own, given, zones, correlation: correlated, kind, range, mean, sigma, step }),
             false => Err(LawError::NoVariance),
         };
         let parabolas = (0..surface.len()).all(|j| surface.is_normal_parabola(j));
@@ -267,7 +287,7 @@ impl SurfaceLaw {
                 return with(Kind::Single(Box::new(single)), moments(surrogate, inputs, correlation.as_ref())?);
             }
         }
-        let (transform, left) = Transform::of(&surface, &surface.components());
+        let (transform, left) = Transform::of(&surface, &surface.components(), options.trees);
         if left.is_empty() {
             let inversion = Inversion::new(transform, surface.centre);
             let moments = [inversion.mean(), inversion.sigma()];
@@ -396,11 +416,6 @@ impl SurfaceLaw {
             Kind::Single(_) => Branch::Single,
             Kind::Sampled(_) => Branch::Sampled,
         }
-    }
-
-    /// Whether products form a tree that has no closed form, so that every point of a contour is a sum over tables.
-    pub(crate) fn has_trees(&self) -> bool {
-        matches!(&self.kind, Kind::Exact(inversion) if !inversion.transform.trees.is_empty())
     }
 
     /// Whether all inputs consist of atoms, so that probabilities jump from value to value and there is no density.

@@ -91,7 +91,7 @@ impl Sampled {
             }
         };
         let simple = surface.with_products(|j, k| surface.is_normal_parabola(j) && surface.is_normal_parabola(k));
-        let (exact, rest) = Transform::of(&simple, &simple.components());
+        let (exact, rest) = Transform::of(&simple, &simple.components(), options.trees);
         let control = rest.is_empty().then(|| (direction.terms(&simple), Inversion::new(exact, surface.centre)));
         let (full, tilts) = (direction.terms(surface), Arc::new(Tilts::of(&direction, surface, sigma)));
         let points = options.points.div_ceil(REPLICATES).next_power_of_two();

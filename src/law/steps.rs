@@ -2,11 +2,15 @@
 
 use super::surface::Surface;
 use super::{LawFigure, LawTail};
+use crate::correlation::{Atom, JointLaw};
 
 /// Combinations that are listed at most.
 const MOST: usize = 1 << 20;
 /// What the values have lost by rounding, relative to the largest term: values nearer to each other are one.
 const SAME: f64 = 1e-13;
+
+/// A place of one or several inputs: its probability, and where each of them is.
+type Place = (f64, Vec<(usize, f64)>);
 
 /// Values in ascending order with the probabilities on either side.
 #[derive(Debug)]
@@ -22,30 +26,45 @@ pub(super) struct Steps {
 impl Steps {
     /// None where an input has a density, or there are too many combinations.
     pub(super) fn of(surface: &Surface) -> Option<Self> {
-        let mut count = 1usize;
-        for input in &surface.inputs {
+        // Inputs of one group take their places together.
+        let mut groups: Vec<Vec<Place>> = Vec::new();
+        let mut grouped = vec![false; surface.len()];
+        if let Some(correlated) = &surface.correlated {
+            for block in &correlated.blocks {
+                if !matches!(block.law, JointLaw::Rows(_)) {
+                    return None;
+                }
+                let row = |atom: Atom| (atom.weight, block.members.iter().copied().zip(atom.u).collect());
+                groups.push(block.law.atoms(1).into_iter().map(row).collect());
+                block.members.iter().for_each(|&member| grouped[member] = true);
+            }
+            if correlated.members.iter().any(|&member| !grouped[member]) {
+                return None;
+            }
+        }
+        for (j, input) in surface.inputs.iter().enumerate().filter(|&(j, _)| !grouped[j]) {
             if !input.is_discrete() {
                 return None;
             }
-            count = count.checked_mul(input.atoms.len()).filter(|&count| count <= MOST)?;
+            groups.push(input.atoms.iter().map(|&(at, share)| (share, vec![(j, at)])).collect());
         }
-        if surface.correlated.is_some() {
-            return None;
-        }
+        let count = groups
+            .iter()
+            .try_fold(1usize, |count, group| count.checked_mul(group.len()).filter(|&count| count <= MOST))?;
         let mut found = Vec::with_capacity(count);
-        let mut places = vec![0; surface.len()];
+        let mut places = vec![0; groups.len()];
         let mut z = vec![0.0; surface.len()];
         for _ in 0..count {
             let mut weight = 1.0;
-            for (j, &place) in places.iter().enumerate() {
-                let (at, share) = surface.inputs[j].atoms[place];
-                z[j] = at;
+            for (group, &place) in groups.iter().zip(&places) {
+                let (share, at) = &group[place];
+                at.iter().for_each(|&(j, at)| z[j] = at);
                 weight *= share;
             }
             found.push((surface.value(&z), weight));
-            for (place, input) in places.iter_mut().zip(&surface.inputs) {
+            for (place, group) in places.iter_mut().zip(&groups) {
                 *place += 1;
-                if *place < input.atoms.len() {
+                if *place < group.len() {
                     break;
                 }
                 *place = 0;

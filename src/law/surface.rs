@@ -7,7 +7,7 @@ use faer::Mat;
 use super::LawError;
 use super::input::Input;
 use super::polynomial::{Quartic, range, value};
-use crate::correlation::Correlation;
+use crate::correlation::{Block, Correlation};
 use crate::distribution::Distribution;
 use crate::surrogate::Surrogate;
 
@@ -32,6 +32,8 @@ pub(super) struct Correlated {
     pub(super) members: Vec<usize>,
     /// Correlation of the normal variables behind them.
     pub(super) normal: Mat<f64>,
+    /// Members that vary together as a whole, by places in the surface.
+    pub(super) blocks: Vec<Block>,
 }
 
 impl Correlated {
@@ -46,6 +48,11 @@ impl Correlated {
             (Some(a), Some(b)) => self.normal[(a, b)],
             _ => 0.0,
         }
+    }
+
+    /// Whether two inputs vary together.
+    pub(super) fn linked(&self, a: usize, b: usize) -> bool {
+        self.between(a, b) != 0.0 || self.blocks.iter().any(|block| [a, b].iter().all(|j| block.members.contains(j)))
     }
 }
 
@@ -152,7 +159,7 @@ impl Surface {
                 let products = self.neighbours[j].iter().map(|&(k, _)| k);
                 let together = self.correlated.iter().flat_map(|correlated| {
                     let own = correlated.place(j).is_some();
-                    correlated.members.iter().copied().filter(move |&k| own && correlated.between(j, k) != 0.0)
+                    correlated.members.iter().copied().filter(move |&k| own && correlated.linked(j, k))
                 });
                 for k in products.chain(together) {
                     if of[k].is_none() {
@@ -226,12 +233,17 @@ impl Correlated {
             .filter_map(|(member, &position)| Some((places.get(position).copied().flatten()?, member)))
             .collect();
         let normal = correlation.normal();
-        let linked = |&&(_, a): &&(usize, usize)| kept.iter().any(|&(_, b)| a != b && normal[(a, b)] != 0.0);
+        let members = correlation.members();
+        let linked = |&&(_, a): &&(usize, usize)| {
+            kept.iter().any(|&(_, b)| a != b && correlation.linked(members[a], members[b]))
+        };
         let kept: Vec<(usize, usize)> = kept.iter().filter(linked).copied().collect();
         if kept.is_empty() {
             return None;
         }
         let normal = Mat::from_fn(kept.len(), kept.len(), |a, b| normal[(kept[a].1, kept[b].1)]);
-        Some(Self { members: kept.iter().map(|&(place, _)| place).collect(), normal })
+        let place = |member: usize| places.get(member).copied().flatten();
+        let blocks = correlation.blocks().iter().filter_map(|block| block.among(&place)).collect();
+        Some(Self { members: kept.iter().map(|&(place, _)| place).collect(), normal, blocks })
     }
 }

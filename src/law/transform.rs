@@ -53,8 +53,9 @@ impl Kind {
 }
 
 impl Transform {
-    /// Of a surface's components, and the components that it does not take: neither tree nor form, or too heavy a tail.
-    pub(super) fn of(surface: &Surface, components: &[Vec<usize>]) -> (Self, Vec<Vec<usize>>) {
+    /// Of a surface's components, and the components that it does not take: neither tree nor form, or too heavy a tail, or a tree where
+    /// there are to be none.
+    pub(super) fn of(surface: &Surface, components: &[Vec<usize>], trees: bool) -> (Self, Vec<Vec<usize>>) {
         let mut transform = Self {
             forms: Forms::default(),
             hats: Hats::default(),
@@ -71,8 +72,8 @@ impl Transform {
                 Some(Kind::Form(block)) => transform.forms.push(block),
                 Some(Kind::Hat(hat)) => transform.hats.push(hat),
                 Some(Kind::Single(single)) => transform.singles.push(single),
-                Some(Kind::Tree(tree)) => transform.trees.push(tree),
-                None => left.push(members.clone()),
+                Some(Kind::Tree(tree)) if trees => transform.trees.push(tree),
+                Some(Kind::Tree(_)) | None => left.push(members.clone()),
             }
         }
         transform.measure();

@@ -47,8 +47,8 @@ impl Procedure for DimensionReduction {
         "4N+1 with 5 nodes"
     }
 
-    fn check(&self, _: &Problem, options: &Options) -> Result<(), MethodError> {
-        check(self.name(), options, true)
+    fn check(&self, problem: &Problem, options: &Options) -> Result<(), MethodError> {
+        check(self.name(), problem, options, true)
     }
 
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {

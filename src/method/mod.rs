@@ -17,6 +17,7 @@ mod full;
 mod gradients;
 mod hidden;
 mod ladder;
+mod narrow;
 mod options;
 mod order;
 mod outcome;
@@ -39,6 +40,7 @@ pub use cost::Cost;
 pub(crate) use estimate::estimate;
 pub use estimate::{ErrorEstimate, ErrorSource};
 pub(crate) use exact::ExactDerivatives;
+pub(crate) use narrow::Narrow;
 pub use options::{Accuracies, DerivativeSource, Options, Pairs};
 pub use order::Basis;
 pub(crate) use order::Order;
@@ -71,6 +73,14 @@ pub enum MethodError {
     Model {
         /// Why not.
         error: EvaluationError,
+    },
+    /// Inputs that vary together as a whole, where the method integrates over each by itself.
+    #[error("{method} integrates over one input after the other, and {} vary together as a whole: use full or auto", dimensions.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))]
+    JointInputs {
+        /// The method's name.
+        method: &'static str,
+        /// The dimensions of the first block.
+        dimensions: Vec<String>,
     },
     /// An option that the method does not have.
     #[error("{method} has no choice of {option}; only {only} has one")]

@@ -216,8 +216,23 @@ fn directions(correlation: &Mat<f64>) -> Mat<f64> {
     })
 }
 
-/// What the options of a method that integrates come to: no step, no stencil, no pairs.
-pub(super) fn check(method: &'static str, options: &Options, nodes: bool) -> Result<(), MethodError> {
+/// What the options of a method that integrates come to: no step, no stencil, no pairs; and no blocks of inputs.
+pub(super) fn check(
+    method: &'static str,
+    problem: &Problem,
+    options: &Options,
+    nodes: bool,
+) -> Result<(), MethodError> {
+    check_options(method, options, nodes)?;
+    if let Some(block) = problem.correlation().and_then(|correlation| correlation.blocks().first()) {
+        let dimensions = block.members.iter().map(|&d| problem.dimensions()[d].name().to_owned()).collect();
+        return Err(MethodError::JointInputs { method, dimensions });
+    }
+    Ok(())
+}
+
+/// What the options of a method without steps, stencil and pairs come to.
+pub(super) fn check_options(method: &'static str, options: &Options, nodes: bool) -> Result<(), MethodError> {
     let derivatives = "a method of derivatives";
     let given = [
         (options.step.is_some(), "step", derivatives),

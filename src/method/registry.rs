@@ -1,6 +1,6 @@
 //! All methods.
 
-use super::{Cost, Method, MethodError, Options, Procedure};
+use super::{Cost, Method, MethodError, Narrow, Options, Procedure};
 use crate::problem::Problem;
 
 /// Every method, in the order in which they are listed.
@@ -36,6 +36,7 @@ impl Options {
     /// # Errors
     /// When the options do not fit the problem, and when the method needs more evaluations than the budget allows.
     pub fn cost(&self, problem: &Problem) -> Result<Cost, MethodError> {
-        self.method.procedure().fits(problem, self)
+        let narrow = Narrow::of(problem, self);
+        self.method.procedure().fits(narrow.as_ref().map_or(problem, |narrow| &narrow.problem), self)
     }
 }

@@ -63,7 +63,7 @@ impl Procedure for ResponseSurface {
             return Err(MethodError::BadStep { step });
         }
         let step = Options { step: None, ..options.clone() };
-        super::quadrature::check(self.name(), &step, false)
+        super::quadrature::check_options(self.name(), &step, false)
     }
 
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {

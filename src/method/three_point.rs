@@ -49,8 +49,8 @@ impl Procedure for ThreePoint {
         "3^N"
     }
 
-    fn check(&self, _: &Problem, options: &Options) -> Result<(), MethodError> {
-        check(self.name(), options, false)
+    fn check(&self, problem: &Problem, options: &Options) -> Result<(), MethodError> {
+        check(self.name(), problem, options, false)
     }
 
     fn fits(&self, problem: &Problem, options: &Options) -> Result<Cost, MethodError> {

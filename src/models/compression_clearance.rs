@@ -33,6 +33,7 @@ pub static COMPRESSION_CLEARANCE: Model = Model {
         depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11],
     }],
     evaluate,
+    bounds: &[],
 };
 
 /// Coefficients of the inputs.

@@ -20,7 +20,7 @@ use crate::elementary::{Cos, Elementary, Exp, Sin};
 /// n_crit = (30/pi)/1.5 sqrt(k (1/J1 + 1/J2))
 /// T_g = sum_k (pi D^2 r/4)(p(th_k) - patm)(sin th_k + (r/l)/2 sin 2 th_k),  th_k = th + (k-1) 4 pi/3
 /// T_i = -(9/4)(r/l)(m_p + m_A) r^2 w^2 sin 3 th
-/// dW2_multi = half the range over th of sum_m Re c_m H2(1.5 m w) exp(1.5 i m th),  m = 1 .. 8,  c_m those of T_g + T_i
+/// dW_at(th) = sum_m Re c_m H(1.5 m w) exp(1.5 i m th),  m = 1 .. 8,  c_m those of T_g + T_i;  dW_half half its range over th
 /// ```
 ///
 /// The single-mass flywheel is the same with `J_f`, `J_c`, `k_c` and `c_c`. The gas trace is ours (the paper shows a picture) and
@@ -50,7 +50,18 @@ pub static DUAL_MASS_FLYWHEEL: Model = Model {
             nominal: 7_886_200.0,
             about: "pressure after combustion at the least volume",
         },
-        ModelInput { name: "n", unit: "rpm", nominal: 1500.0, about: "speed of the engine, for A_DMF and A_SMF" },
+        ModelInput {
+            name: "n",
+            unit: "rpm",
+            nominal: 1500.0,
+            about: "speed of the engine, for the outputs without one in their name",
+        },
+        ModelInput {
+            name: "theta",
+            unit: "deg",
+            nominal: 0.0,
+            about: "crank angle from the firing dead centre of cylinder 1, for pressure to dWc_at",
+        },
     ],
     outputs: &[
         ModelOutput {
@@ -120,10 +131,92 @@ pub static DUAL_MASS_FLYWHEEL: Model = Model {
             about: "amplitude of acceleration, single mass, at n",
             depends_on: &[4, 5, 6, 7, 8, 15],
         },
+        ModelOutput { name: "pressure", unit: "Pa", about: "pressure in cylinder 1 at theta", depends_on: &[14, 16] },
+        ModelOutput {
+            name: "T_gas",
+            unit: "N.m",
+            about: "torque of the gas in three cylinders at theta",
+            depends_on: &[9, 10, 11, 14, 16],
+        },
+        ModelOutput {
+            name: "T_inertia",
+            unit: "N.m",
+            about: "torque of their inertia at theta",
+            depends_on: &[9, 10, 12, 13, 15, 16],
+        },
+        ModelOutput {
+            name: "T_engine",
+            unit: "N.m",
+            about: "sum of both",
+            depends_on: &[9, 10, 11, 12, 13, 14, 15, 16],
+        },
+        ModelOutput { name: "time", unit: "s", about: "time from theta = 0 at the speed n", depends_on: &[15, 16] },
+        ModelOutput {
+            name: "dW1_at",
+            unit: "rad/s",
+            about: "speed before the dual mass less its mean, at theta, eight orders",
+            depends_on: &[0, 1, 2, 3, 9, 10, 11, 12, 13, 14, 15, 16],
+        },
+        ModelOutput {
+            name: "dW2_at",
+            unit: "rad/s",
+            about: "the same behind it",
+            depends_on: &[0, 1, 2, 3, 9, 10, 11, 12, 13, 14, 15, 16],
+        },
+        ModelOutput {
+            name: "dWf_at",
+            unit: "rad/s",
+            about: "single mass: the same of the flywheel",
+            depends_on: &[4, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15, 16],
+        },
+        ModelOutput {
+            name: "dWc_at",
+            unit: "rad/s",
+            about: "single mass: the same behind the clutch's damper",
+            depends_on: &[4, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15, 16],
+        },
+        ModelOutput {
+            name: "dW1_half",
+            unit: "rad/s",
+            about: "half the range of dW1_at over theta",
+            depends_on: &[0, 1, 2, 3, 9, 10, 11, 12, 13, 14, 15],
+        },
+        ModelOutput {
+            name: "dW2_half",
+            unit: "rad/s",
+            about: "half the range of dW2_at",
+            depends_on: &[0, 1, 2, 3, 9, 10, 11, 12, 13, 14, 15],
+        },
+        ModelOutput {
+            name: "dWf_half",
+            unit: "rad/s",
+            about: "half the range of dWf_at",
+            depends_on: &[4, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15],
+        },
+        ModelOutput {
+            name: "dWc_half",
+            unit: "rad/s",
+            about: "half the range of dWc_at",
+            depends_on: &[4, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15],
+        },
+        ModelOutput {
+            name: "dWf_1000",
+            unit: "rad/s",
+            about: "amplitude of speed of the single-mass flywheel at 1000 rpm, order 1.5",
+            depends_on: &[4, 5, 6, 7, 8],
+        },
+        ModelOutput {
+            name: "dWc_1000",
+            unit: "rad/s",
+            about: "the same behind the clutch's damper",
+            depends_on: &[4, 5, 6, 7, 8],
+        },
     ],
     evaluate,
+    bounds: &[],
 };
 
+const INPUTS: usize = 17;
 /// Vibrations of this order of the crankshaft are the first of three cylinders.
 const ORDER: f64 = 1.5;
 /// Orders that `dW2_1000_multi` takes in.
@@ -134,8 +227,8 @@ const PLACES: usize = 96;
 fn evaluate(block: &Block<'_>, out: &mut Responses) {
     for (output, model) in DUAL_MASS_FLYWHEEL.outputs.iter().enumerate() {
         let Some(column) = block.column(output) else { continue };
-        // Of the sixteen columns only those that it depends on are read.
-        let mut x = [0.0; 16];
+        // Of the columns only those that it depends on are read.
+        let mut x = [0.0; INPUTS];
         let columns: Vec<(usize, &[f64])> = model.depends_on.iter().map(|&at| (at, block.input(at))).collect();
         for row in 0..block.rows() {
             columns.iter().for_each(|&(at, values)| x[at] = values[row]);
@@ -150,8 +243,9 @@ fn evaluate(block: &Block<'_>, out: &mut Responses) {
 const NO_CROSSING: &str = "the accelerations behind the two flywheels do not cross between their critical speeds";
 
 /// One output at one point; None where it is a crossing that does not exist.
-fn value(output: usize, x: &[f64; 16]) -> Option<f64> {
+fn value(output: usize, x: &[f64; INPUTS]) -> Option<f64> {
     let (dual, single) = (|| Shaft::new(x[0], x[1], x[2], x[3]), || Shaft::new(x[4], x[5], x[6], x[7]));
+    let crank = Crank { r: x[9], l: x[10], bore: x[11], mass: x[12] + x[13], p3: x[14] };
     let acceleration = |shaft: Shaft, n: f64| x[8] * circular(n) * shaft.second(circular(n));
     Some(match output {
         0 => dual().critical(),
@@ -163,9 +257,24 @@ fn value(output: usize, x: &[f64; 16]) -> Option<f64> {
         6 => dual().second(circular(1500.0)) / single().second(circular(1500.0)),
         7 => return crossing(&dual(), &single()),
         8 => x[8] * dual().largest_acceleration(),
-        9 => fluctuation(&dual(), &Crank { r: x[9], l: x[10], bore: x[11], mass: x[12] + x[13], p3: x[14] }),
+        9 => half_range(&crank.speeds(&dual(), Mass::Last, 1000.0)),
         10 => acceleration(dual(), x[15]),
-        _ => acceleration(single(), x[15]),
+        11 => acceleration(single(), x[15]),
+        12 => gas::pressure(wrapped(x[16]), x[14], IGNITION, ROD_BY_CRANK),
+        13 => crank.gas(x[16]),
+        14 => crank.inertia(x[16], x[15]),
+        15 => crank.gas(x[16]) + crank.inertia(x[16], x[15]),
+        16 => x[16] / (6.0 * x[15]),
+        17 => wave(&crank.speeds(&dual(), Mass::First, x[15]), ORDER * x[16] * PI / 180.0).0[0],
+        18 => wave(&crank.speeds(&dual(), Mass::Last, x[15]), ORDER * x[16] * PI / 180.0).0[0],
+        19 => wave(&crank.speeds(&single(), Mass::First, x[15]), ORDER * x[16] * PI / 180.0).0[0],
+        20 => wave(&crank.speeds(&single(), Mass::Last, x[15]), ORDER * x[16] * PI / 180.0).0[0],
+        21 => half_range(&crank.speeds(&dual(), Mass::First, x[15])),
+        22 => half_range(&crank.speeds(&dual(), Mass::Last, x[15])),
+        23 => half_range(&crank.speeds(&single(), Mass::First, x[15])),
+        24 => half_range(&crank.speeds(&single(), Mass::Last, x[15])),
+        25 => x[8] * single().first(circular(1000.0)),
+        _ => x[8] * single().second(circular(1000.0)),
     })
 }
 
@@ -274,37 +383,78 @@ struct Crank {
     p3: f64,
 }
 
-/// Half the range of the speed behind the spring over the crank angle, at 1000 rpm.
-fn fluctuation(shaft: &Shaft, crank: &Crank) -> f64 {
-    let w = 1000.0 * PI / 30.0;
-    let (area, ratio) = (0.25 * PI * crank.bore * crank.bore * crank.r, crank.r / crank.l);
-    let speeds: [Complex; HARMONICS] = std::array::from_fn(|harmonic| {
-        let order = harmonic + 1;
-        let [fresh, burnt, fresh_twice, burnt_twice] = TORQUES[harmonic];
-        let single = fresh + burnt * crank.p3;
-        let twice = fresh_twice + burnt_twice * crank.p3;
-        let mut torque = (single + twice * (0.5 * ratio)) * area;
-        if order == 2 {
-            torque.im += 2.25 * ratio * crank.mass * crank.r * crank.r * w * w;
-        }
-        // H2 = (k + icW)/(iWD), D its denominator.
-        let frequency = ORDER * order as f64 * w;
-        let spring = Complex { re: shaft.stiffness, im: shaft.damping * frequency };
-        let denominator = spring * shaft.sum + Complex { re: -shaft.product * frequency * frequency, im: 0.0 };
-        torque * spring * (Complex { re: 0.0, im: frequency } * denominator).inverse()
-    });
-    let wave = |x: f64, sign: f64| {
-        let turn = Complex { re: Cos::of(x), im: Sin::of(x) };
-        let (mut power, mut jet) = (turn, [0.0; 3]);
-        for (harmonic, speed) in speeds.iter().enumerate() {
-            let (term, m) = (*speed * power, (harmonic + 1) as f64);
-            jet[0] += sign * term.re;
-            jet[1] -= sign * m * term.im;
-            jet[2] -= sign * m * m * term.re;
-            power = power * turn;
-        }
-        Jet(jet)
-    };
+/// Either end of a shaft.
+#[derive(Clone, Copy)]
+enum Mass {
+    First,
+    Last,
+}
+
+/// An angle of the cycle, -360 to 360 degrees.
+fn wrapped(degrees: f64) -> f64 {
+    (degrees + 360.0).rem_euclid(720.0) - 360.0
+}
+
+impl Crank {
+    /// Torque of the gas in three cylinders.
+    fn gas(&self, degrees: f64) -> f64 {
+        let (area, ratio) = (0.25 * PI * self.bore * self.bore * self.r, self.r / self.l);
+        let cylinder = |behind: f64| {
+            let at = wrapped(degrees + behind);
+            let (theta, pressure) = (at * PI / 180.0, gas::pressure(at, self.p3, IGNITION, ROD_BY_CRANK));
+            (pressure - gas::ATMOSPHERE) * (Sin::of(theta) + 0.5 * ratio * Sin::of(2.0 * theta))
+        };
+        area * [0.0, 240.0, 480.0].map(cylinder).iter().sum::<f64>()
+    }
+
+    /// Torque of the inertia of three cylinders, of which order 3 alone remains.
+    fn inertia(&self, degrees: f64, n: f64) -> f64 {
+        let (w, theta) = (n * PI / 30.0, wrapped(degrees) * PI / 180.0);
+        -2.25 * self.r / self.l * self.mass * self.r * self.r * w * w * Sin::of(3.0 * theta)
+    }
+
+    /// Orders of the speed at either end of a shaft.
+    fn speeds(&self, shaft: &Shaft, mass: Mass, n: f64) -> [Complex; HARMONICS] {
+        let w = n * PI / 30.0;
+        let (area, ratio) = (0.25 * PI * self.bore * self.bore * self.r, self.r / self.l);
+        std::array::from_fn(|harmonic| {
+            let order = harmonic + 1;
+            let [fresh, burnt, fresh_twice, burnt_twice] = TORQUES[harmonic];
+            let single = fresh + burnt * self.p3;
+            let twice = fresh_twice + burnt_twice * self.p3;
+            let mut torque = (single + twice * (0.5 * ratio)) * area;
+            if order == 2 {
+                torque.im += 2.25 * ratio * self.mass * self.r * self.r * w * w;
+            }
+            // H2 = (k + icW)/(iWD), D its denominator; H1 has k - J2 W^2 for k.
+            let frequency = ORDER * order as f64 * w;
+            let spring = Complex { re: shaft.stiffness, im: shaft.damping * frequency };
+            let denominator = spring * shaft.sum + Complex { re: -shaft.product * frequency * frequency, im: 0.0 };
+            let passes = match mass {
+                Mass::First => Complex { re: spring.re - shaft.last * frequency * frequency, im: spring.im },
+                Mass::Last => spring,
+            };
+            torque * passes * (Complex { re: 0.0, im: frequency } * denominator).inverse()
+        })
+    }
+}
+
+/// The sum of orders at 1.5 times the crank angle, with derivatives.
+fn wave(speeds: &[Complex; HARMONICS], x: f64) -> Jet {
+    let turn = Complex { re: Cos::of(x), im: Sin::of(x) };
+    let (mut power, mut jet) = (turn, [0.0; 3]);
+    for (harmonic, speed) in speeds.iter().enumerate() {
+        let (term, m) = (*speed * power, (harmonic + 1) as f64);
+        jet[0] += term.re;
+        jet[1] -= m * term.im;
+        jet[2] -= m * m * term.re;
+        power = power * turn;
+    }
+    Jet(jet)
+}
+
+/// Half the range of the sum of orders over the crank angle.
+fn half_range(speeds: &[Complex; HARMONICS]) -> f64 {
     let place = 2.0 * PI / PLACES as f64;
     let mut values = [0.0; PLACES];
     for (value, turns) in values.iter_mut().zip(TURNS.iter()) {
@@ -313,7 +463,7 @@ fn fluctuation(shaft: &Shaft, crank: &Crank) -> f64 {
     let extreme = |sign: f64| {
         let best = (0..PLACES).max_by(|&a, &b| (sign * values[a]).total_cmp(&(sign * values[b]))).unwrap_or(0);
         let at = best as f64 * place;
-        climb(|x| wave(x, sign), at, [at - place, at + place]).value
+        climb(|x| Jet(wave(speeds, x).0.map(|part| sign * part)), at, [at - place, at + place]).value
     };
     0.5 * (extreme(1.0) + extreme(-1.0))
 }
@@ -364,6 +514,8 @@ static TURNS: LazyLock<Vec<[Complex; HARMONICS]>> = LazyLock::new(|| {
     (0..PLACES).map(|place| std::array::from_fn(|harmonic| turn(place, harmonic + 1))).collect()
 });
 
+/// Crank angle of ignition, degrees.
+const IGNITION: f64 = -15.0;
 /// The rod by the crank of the gas trace.
 const ROD_BY_CRANK: f64 = 143.0 / 45.0;
 
@@ -372,7 +524,6 @@ const ROD_BY_CRANK: f64 = 143.0 / 45.0;
 /// The trace is smooth between -360, -180, the ignition at -15, 180 and 360 degrees; between them, Gauss's rule on parts of at
 /// most 15 degrees leaves 1e-15.
 static TORQUES: LazyLock<[[Complex; 4]; HARMONICS]> = LazyLock::new(|| {
-    const IGNITION: f64 = -15.0;
     const PARTS: [(f64, f64, usize); 4] =
         [(-360.0, -180.0, 12), (-180.0, IGNITION, 11), (IGNITION, 180.0, 13), (180.0, 360.0, 12)];
     let mut sums = [[Complex { re: 0.0, im: 0.0 }; 4]; HARMONICS];

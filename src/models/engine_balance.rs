@@ -62,6 +62,7 @@ pub static ENGINE_BALANCE: Model = Model {
         },
     ],
     evaluate,
+    bounds: &[],
 };
 
 /// Rows whose angles and sums stay in the nearest cache.

@@ -13,7 +13,7 @@
 //! with th in degrees from the top dead centre of the firing stroke, pressures in Pa.
 
 use super::jet::Real;
-use crate::elementary::{Elementary, Exp, Ln};
+use crate::elementary::{Cos, Elementary, Exp, Ln, Sin};
 
 /// The pressure around the engine, Pa.
 pub(super) const ATMOSPHERE: f64 = 1.01325e5;
@@ -29,6 +29,19 @@ const POWERS: [f64; 2] = [1.32, 1.28];
 const BURNING: f64 = 55.0;
 /// Degrees in which the pressure of the exhaust falls by e.
 const BLOW_DOWN: f64 = 20.0;
+
+/// The pressure at any angle from -360 to 360 degrees, Pa.
+pub(super) fn pressure(degrees: f64, p3: f64, start: f64, rod_by_crank: f64) -> f64 {
+    if degrees < -180.0 {
+        return SUCTION;
+    }
+    if degrees > 180.0 {
+        let [own, by_p3] = exhaust(degrees);
+        return own + by_p3 * p3;
+    }
+    let theta = degrees * std::f64::consts::PI / 180.0;
+    working(strokes(Sin::of(theta), Cos::of(theta), rod_by_crank), Exp::of(unburnt_log(degrees, start)), p3)
+}
 
 /// What the volume makes of the pressure: of the charge that is not burnt, Pa, and of the burnt one by p3.
 #[inline]
@@ -52,6 +65,13 @@ pub(super) fn unburnt_log<T: Real>(degrees: T, start: f64) -> T {
 #[inline]
 pub(super) fn working<T: Real>([fresh, burnt]: [T; 2], unburnt: T, p3: f64) -> T {
     unburnt * fresh + (-unburnt + 1.0) * burnt * p3
+}
+
+/// The pressure between 180 and 360 degrees.
+#[inline]
+pub(super) fn blow_down<T: Real>(degrees: T, p3: f64) -> T {
+    let left = ((degrees + -180.0) * (-1.0 / BLOW_DOWN)).exp();
+    left * (p3 * Exp::of(-POWERS[1] * Ln::of(COMPRESSION)) - EXHAUST) + EXHAUST
 }
 
 /// What the exhaust's pressure has to do with p3: Pa, and by p3. Between 180 and 360 degrees.

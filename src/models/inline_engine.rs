@@ -86,6 +86,7 @@ pub static INLINE_ENGINE: Model = Model {
         ModelOutput { name: "M2", unit: "N.m", about: "part of M at twice that", depends_on: MOMENT },
     ],
     evaluate,
+    bounds: &[],
 };
 
 const FORCE: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20];

@@ -16,9 +16,11 @@ mod spot_weld;
 
 use std::ops::Range;
 use std::str::FromStr;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::assembly::{AssemblyFunction, Input, Output, Points, Request, Responses, Run, Signature, in_blocks};
 use crate::names::UnknownName;
+use crate::warning::Warning;
 
 /// Every built-in model, in the order in which they are listed.
 pub static ALL: &[&Model] = &[
@@ -47,6 +49,19 @@ pub struct Model {
     pub outputs: &'static [ModelOutput],
     /// Evaluates a block of rows.
     pub(crate) evaluate: fn(&Block<'_>, &mut Responses),
+    /// Outputs that can leave what the formulas describe.
+    pub(crate) bounds: &'static [Validity],
+}
+
+/// A bound of an output beyond which the formulas describe nothing real.
+#[derive(Debug)]
+pub(crate) struct Validity {
+    /// The output's place.
+    output: usize,
+    /// Whether a value at a row is beyond.
+    beyond: fn(&Block<'_>, usize, f64) -> bool,
+    /// The bound, and what does not hold beyond.
+    reason: &'static str,
 }
 
 /// An input of a built-in model.
@@ -126,7 +141,7 @@ impl Model {
             cheap: true,
             ..Signature::default()
         };
-        BuiltIn { model: self, signature }
+        BuiltIn { model: self, signature, passed: self.bounds.iter().map(|_| AtomicBool::new(false)).collect() }
     }
 }
 
@@ -134,6 +149,8 @@ impl Model {
 struct BuiltIn {
     model: &'static Model,
     signature: Signature,
+    /// Which of the model's bounds some evaluated value has passed.
+    passed: Vec<AtomicBool>,
 }
 
 impl AssemblyFunction for BuiltIn {
@@ -143,8 +160,26 @@ impl AssemblyFunction for BuiltIn {
 
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         in_blocks(request, run, out, |points, rows, out| {
-            (self.model.evaluate)(&Block { points, rows, outputs: request.outputs }, out);
+            let block = Block { points, rows, outputs: request.outputs };
+            (self.model.evaluate)(&block, out);
+            for (bound, passed) in self.model.bounds.iter().zip(&self.passed) {
+                let Some(column) = block.column(bound.output) else { continue };
+                let beyond = |row| out.value(row, column).is_some_and(|value| (bound.beyond)(&block, row, value));
+                if (0..block.rows()).any(beyond) {
+                    passed.store(true, Ordering::Relaxed);
+                }
+            }
         });
+    }
+
+    fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
+        let bounds = self.model.bounds.iter().zip(&self.passed);
+        let passed = bounds.filter(|(bound, passed)| outputs.contains(&bound.output) && passed.load(Ordering::Relaxed));
+        let warning = |(bound, _): (&Validity, _)| Warning::OutsideModel {
+            output: self.model.outputs[bound.output].name.to_owned(),
+            reason: bound.reason.to_owned(),
+        };
+        passed.map(warning).collect()
     }
 }
 

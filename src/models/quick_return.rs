@@ -32,6 +32,7 @@ pub static QUICK_RETURN: Model = Model {
         ModelOutput { name: "ratio", unit: "-", about: "time ratio", depends_on: &[0, 1, 2, 6] },
     ],
     evaluate,
+    bounds: &[],
 };
 
 /// Rows whose sums stay in the nearest cache.

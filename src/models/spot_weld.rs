@@ -67,6 +67,7 @@ pub static SPOT_WELD: Model = Model {
         ModelOutput { name: "flush2", unit: "mm", about: "the same, sideways", depends_on: FLUSH2 },
     ],
     evaluate,
+    bounds: &[],
 };
 
 /// Inputs of one arm.

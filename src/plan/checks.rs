@@ -109,9 +109,16 @@ fn values(
     if let Some(correlation) = correlation {
         let members = correlation.members();
         let factor = correlation.factor();
-        let normal: Vec<f64> = members.iter().map(|&position| standard_normal::quantile(levels[position])).collect();
-        for (j, (&position, transform)) in members.iter().zip(correlation.transforms()).enumerate() {
-            let z: f64 = normal.iter().enumerate().map(|(k, z)| factor[(j, k)] * z).sum();
+        let mut normal = vec![0.0; levels.len()];
+        members.iter().for_each(|&position| normal[position] = standard_normal::quantile(levels[position]));
+        let mixed: Vec<f64> = (0..members.len())
+            .map(|j| members.iter().enumerate().map(|(k, &position)| factor[(j, k)] * normal[position]).sum())
+            .collect();
+        members.iter().zip(mixed).for_each(|(&position, z)| normal[position] = z);
+        let mut scratch = Vec::new();
+        correlation.blocks().iter().for_each(|block| block.apply(&mut normal, &mut scratch));
+        for (&position, transform) in members.iter().zip(correlation.transforms()) {
+            let z = normal[position];
             x[position] = match (transform.is_normal(), law(position)) {
                 (false, Some(law)) => at_level(law, standard_normal::cdf(z)),
                 _ => sigmas(position, z),

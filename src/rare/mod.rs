@@ -37,11 +37,13 @@ use crate::characteristic::Characteristic;
 use crate::evaluation::history;
 use crate::method::{Method, MethodError, Options};
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 use crate::sampling::{Estimate, SamplingError};
 use crate::shape::{text, through};
 use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
 use crate::time::Instant;
+use crate::verdict::Judged;
 use crate::warning::Warning;
 #[cfg(feature = "cli")]
 pub(crate) use shape::RareShape;
@@ -127,6 +129,16 @@ pub struct RareEvents {
     // Told of as warnings.
     #[serde(skip)]
     pub non_repeatable: Vec<NonRepeatable>,
+    /// The share of assemblies within the limits of all characteristics at once; None with fewer than two that have limits, where the
+    /// means lie beyond one of them, and where no point lies beyond any.
+    #[serde(rename = "joint_yield")]
+    pub joint: Option<f64>,
+    /// 95 % interval of that.
+    #[serde(rename = "joint_yield_interval")]
+    pub joint_interval: Option<[f64; 2]>,
+    /// Whether that share reaches the target for all characteristics at once; None without such a target.
+    #[cfg_attr(feature = "cli", schemars(with = "Option<crate::verdict::JudgedShape>"))]
+    pub joint_requirement: Option<Judged>,
     /// What is known of every characteristic, in the problem's order.
     #[cfg_attr(feature = "cli", schemars(with = "Vec<RareShape>"))]
     pub characteristics: Vec<RareCharacteristic>,
@@ -339,6 +351,11 @@ pub fn rare_with(
     let non_repeatable: Vec<NonRepeatable> =
         surrogate.non_repeatable.iter().chain(&model.non_repeatable).cloned().collect();
     let samples = search.points;
+    let (joint, joint_interval) = search.within_all(problem).unzip();
+    let joint = joint.flatten();
+    let joint_requirement = options.surrogate.target_joint_yield.filter(|_| joint_interval.is_some());
+    let joint_requirement = joint_requirement
+        .map(|target| Judged::of(Requirement::Yield(target), joint, joint_interval).unless(stopped.is_some()));
     let characteristics = search.characteristics(&model, stopped.is_some());
     let run = RunSummary { stopped, evaluator: problem.evaluator(), ..drawn.and(&spent) };
     let warnings = warnings::of(&characteristics, samples, run.evaluations);
@@ -350,6 +367,9 @@ pub fn rare_with(
         reached,
         warnings: warnings.into_iter().chain(history(problem, &non_repeatable)).collect(),
         non_repeatable,
+        joint,
+        joint_interval,
+        joint_requirement,
         characteristics,
     })
 }

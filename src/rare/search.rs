@@ -11,6 +11,7 @@ use super::within::within;
 use super::{Beyond, DesignPoint, RareCharacteristic, border, correct};
 use crate::characteristic::Characteristic;
 use crate::distribution::standard_normal;
+use crate::problem::Problem;
 use crate::sampling::Estimate;
 
 /// Rejects by which the parts of the components are chosen, at most.
@@ -38,6 +39,8 @@ pub(super) struct Search<'a> {
     targets: &'a [Target<'a>],
     mixture: Mixture<'a>,
     weighed: Vec<Weighed>,
+    /// Of what lies beyond any limit; None with fewer than two characteristics that have limits, and where the means lie beyond one.
+    joint: Option<Weighed>,
     /// For every target some rejects: the logarithms of their weights, and their normal variables.
     guides: Vec<Vec<(f64, Vec<f64>)>>,
     /// Points drawn and answered.
@@ -61,7 +64,11 @@ impl<'a> Search<'a> {
     pub(super) fn new(targets: &'a [Target<'a>], places: Vec<Place>, expected: u64) -> Self {
         let mixture = Mixture::new(targets, places, expected);
         let (weighed, guides) = (vec![Weighed::default(); targets.len()], vec![Vec::new(); targets.len()]);
-        Self { targets, mixture, weighed, guides, points: 0, stages: 0, expected }
+        let mut characteristics: Vec<usize> = targets.iter().map(|target| target.characteristic).collect();
+        characteristics.dedup();
+        let several = characteristics.len() > 1 && !targets.iter().any(|target| target.kept);
+        let joint = several.then(Weighed::default);
+        Self { targets, mixture, weighed, joint, guides, points: 0, stages: 0, expected }
     }
 
     /// Whether some place of each target crosses its limit.
@@ -190,6 +197,7 @@ impl<'a> Search<'a> {
             let logarithms = self.guides[index].iter().filter(part).map(|guide| guide.0);
             if self.weighed[index].part(logarithms) > STRAYED {
                 self.weighed[index].forget();
+                self.joint.iter_mut().for_each(Weighed::forget);
             }
         }
         self.take(found.into_iter().flatten().collect());
@@ -254,6 +262,17 @@ impl<'a> Search<'a> {
         };
         let weights: Vec<f64> = rows.iter().map(weight).collect();
         self.points += rows.len() as u64;
+        if let Some(joint) = &mut self.joint {
+            // A limit that is broken decides, whatever is unknown of the others.
+            let beyond = |row: usize| {
+                let each =
+                    |target: &Target<'_>| answers.value(row, target.characteristic).map(|value| target.sought(value));
+                let all: Vec<Option<bool>> = self.targets.iter().map(each).collect();
+                if all.contains(&Some(true)) { Some(true) } else { all.iter().all(Option::is_some).then_some(false) }
+            };
+            let points = rows.iter().zip(&weights).map(|(&row, &weight)| (drawn.from[row], weight, beyond(row)));
+            joint.add(self.mixture.len(), &points.collect::<Vec<_>>());
+        }
         for (target, (weighed, guides)) in self.targets.iter().zip(self.weighed.iter_mut().zip(&mut self.guides)) {
             let beyond = |row: usize| answers.value(row, target.characteristic).map(|value| target.sought(value));
             let points = rows.iter().zip(&weights).map(|(&row, &weight)| (drawn.from[row], weight, beyond(row)));
@@ -281,6 +300,17 @@ impl<'a> Search<'a> {
     /// Whether the last stage by itself confirms the standard errors of all: it is independent of the moment at which these were small.
     pub(super) fn confirmed(&self, wanted: f64) -> bool {
         self.weighed.iter().all(|weighed| weighed.confirmed(wanted))
+    }
+
+    /// The share within all limits at once, and its 95 % interval, where points without a value may all be rejected ones; the share is None
+    /// where no point lies beyond any limit.
+    pub(super) fn within_all(&self, problem: &Problem) -> Option<(Option<f64>, [f64; 2])> {
+        // Every limit has a target, but for one of a surrogate that does not vary.
+        let ends = |one: &Characteristic| [one.limits().lower(), one.limits().upper()].iter().flatten().count();
+        let limits: usize = problem.characteristics().iter().map(ends).sum();
+        let found = self.joint.as_ref().filter(|_| limits == self.targets.len())?.found()?;
+        let [low, high] = [found.interval[0], found.interval[1].max(found.bounds[1])];
+        Some((found.probability.map(|found| 1.0 - found.value), [1.0 - high, 1.0 - low]))
     }
 
     /// What is known of every characteristic.

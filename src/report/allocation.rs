@@ -6,7 +6,8 @@ use super::{About, Head, WarningReport};
 #[cfg(feature = "cli")]
 use crate::allocation::ProofShape;
 use crate::allocation::{
-    Allocated, Allocation, Attainable, CostBasis, FrontPoint, Goal, JointYield, Kept, Moved, Proof, ShadowPrice, Status,
+    Allocated, Allocation, Attainable, CostBasis, FrontPoint, Goal, JointKept, JointYield, Kept, Moved, Proof, SetUp,
+    ShadowPrice, Status,
 };
 #[cfg(feature = "cli")]
 use crate::analysis::CharacteristicShape;
@@ -42,6 +43,12 @@ pub struct AllocationReport {
     pub(crate) cost_before: Option<f64>,
     /// All costs after.
     pub(crate) cost_after: Option<f64>,
+    /// What of them is quality loss and scrap; null without losses.
+    pub(crate) loss: BeforeAfter<Option<f64>>,
+    /// What the cheapest tolerances cost that are not rounded to steps or standard grades; null without such rounding.
+    pub(crate) cost_unrounded: Option<f64>,
+    /// The machines that the processes need, and what it costs to set them up, which is part of the cost.
+    pub(crate) setups: Vec<SetUp>,
     /// What was sought, and what may be spent on it.
     pub(crate) goal: Goal,
     /// Where the costs come from: given, or relative to the tolerance unit of ISO 286.
@@ -52,6 +59,8 @@ pub struct AllocationReport {
     pub(crate) recentred: Vec<OfDimension<Moved>>,
     /// Every requirement.
     pub(crate) requirements: Vec<OfCharacteristic<Kept>>,
+    /// The joint yield that is required of all characteristics with limits; null where none is.
+    pub(crate) joint_requirement: Option<JointKept>,
     /// What limits and required sigmas cost.
     pub(crate) shadow_prices: Vec<OfCharacteristic<ShadowPrice>>,
     /// The requirement that cannot be kept, and the best that can be had.
@@ -180,13 +189,17 @@ impl AllocationReport {
             rounds: allocation.rounds,
             cost_before: allocation.cost_before.filter(|_| !allocation.tolerances.is_empty()),
             cost_after: allocation.cost_after,
+            loss: BeforeAfter { before: allocation.loss[0], after: allocation.loss[1] },
+            cost_unrounded: allocation.cost_unrounded,
+            setups: allocation.setups.clone(),
             goal: allocation.goal,
             cost_basis: allocation.cost_basis,
             tolerances: allocation.tolerances.iter().map(|one| named.allocated(allocation, one)).collect(),
             recentred: allocation.moved.iter().map(|one| named.dimension(one.dimension, one)).collect(),
             requirements: allocation.requirements.iter().map(|one| named.of(one.characteristic, one)).collect(),
+            joint_requirement: allocation.joint_requirement.clone(),
             shadow_prices: allocation.prices.iter().map(|one| named.of(one.characteristic, one)).collect(),
-            attainable: allocation.attainable.as_ref().map(|one| named.of(one.characteristic, one)),
+            attainable: allocation.attainable.as_ref().map(|one| named.attainable(one)),
             proof: allocation.proof.clone(),
             loosest_scaling: BeforeAfter { before: allocation.loosest_before, after: allocation.loosest_after },
             joint_yield: BeforeAfter { before: allocation.joint[0], after: allocation.joint[1] },
@@ -224,6 +237,15 @@ struct Names<'p>(&'p Problem);
 impl Names<'_> {
     fn of<T: Clone>(&self, c: usize, of: &T) -> OfCharacteristic<T> {
         OfCharacteristic { characteristic: self.0.characteristics()[c].name().to_owned(), of: of.clone() }
+    }
+
+    /// A joint yield is of all characteristics with limits.
+    fn attainable(&self, one: &Attainable) -> OfCharacteristic<Attainable> {
+        let all = self.0.characteristics().iter().filter(|one| one.limits().exist()).map(|one| one.name());
+        match one.joint {
+            true => OfCharacteristic { characteristic: all.collect::<Vec<_>>().join(", "), of: one.clone() },
+            false => self.of(one.characteristic, one),
+        }
     }
 
     fn dimension<T: Clone>(&self, d: usize, of: &T) -> OfDimension<T> {

@@ -6,7 +6,9 @@ use super::allocation::{
 use super::figures::{Figures, Named};
 use super::head;
 use super::requirement::loud;
-use crate::allocation::{Allocated, Attainable, Bound, CostBasis, Goal, JointYield, Kept, Moved, ShadowPrice, Status};
+use crate::allocation::{
+    Allocated, Attainable, Bound, CostBasis, FrontRequirement, Goal, JointYield, Kept, Moved, ShadowPrice, Status,
+};
 use crate::analysis::CharacteristicAnalysis;
 use crate::document::number::{beside, index, known, plain, share, short, significant, yielded};
 use crate::document::{
@@ -32,7 +34,7 @@ impl AllocationReport {
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         self.heading(&mut document.head);
-        self.attainable.iter().for_each(|one| unattainable(&mut document.head, one));
+        self.attainable.iter().for_each(|one| unattainable(&mut document.head, one, self.status == Status::Infeasible));
         // Without tolerances that were found there is nothing to show of them, and CSV has the header all the same.
         let mut tolerances = self.tolerances();
         if self.cost_after.is_none() {
@@ -47,7 +49,9 @@ impl AllocationReport {
                 section.aside("Costs", vec![Element::Chart(Chart::Bars(self.costs()))]);
             }
             if group == 2 {
+                self.joint_required(&mut section);
                 self.shadow_prices.iter().for_each(|price| self.prices(&mut section, price));
+                self.bound_prices(&mut section);
             }
             match shown {
                 true => document.sections.push(section),
@@ -98,6 +102,18 @@ impl AllocationReport {
             (None, None) => "nominal values moved".to_owned(),
         };
         page.line(Line::toned(self.status.name(), self.status_tone()).and(format!(": {cost}")));
+        if let Some(loss) = self.loss.after {
+            let before = self.loss.before.map(|loss| format!(", before {}", money(loss)));
+            page.line(format!("of the cost {} is quality loss and scrap{}", money(loss), before.unwrap_or_default()));
+        }
+        if !self.setups.is_empty() {
+            let named = self.setups.iter().map(|one| format!("{} {}", short(&one.machine), money(one.cost)));
+            page.line(format!("of the cost, setting up: {}", named.collect::<Vec<_>>().join(", ")));
+        }
+        if let (Some(free), Some(cost)) = (self.cost_unrounded, self.cost_after) {
+            let more = significant(100.0 * (cost / free - 1.0).max(0.0), 2);
+            page.line(format!("steps and grades cost {more} % more than free tolerances, which cost {}", money(free)));
+        }
         match self.goal {
             Goal::LeastCost => {}
             Goal::MostCpk { cost_limit } => page.line(format!("the highest Cpk for a cost of {}", money(cost_limit))),
@@ -188,11 +204,41 @@ impl AllocationReport {
             .shown("after", move |one| most(one, &|one| one.after))
             .data("process", |one| Cell::optional(one.of.of.process.as_deref()))
             .data("at_bound", |one| Cell::optional(one.of.of.bound.map(bound)))
+            .data("bound_price", |one| Cell::data(one.of.of.bound_price))
             .shown("", |one| {
                 let bound = one.of.of.bound.map(|of| format!("at its {}", bound(of)));
                 Cell::text(one.of.of.process.clone().into_iter().chain(bound).collect::<Vec<_>>().join(", "))
             })
             .table("tolerances", &self.tolerances)
+    }
+
+    /// What it saves when the bound of a tolerance gives way by a hundredth of it.
+    fn bound_prices(&self, section: &mut Section) {
+        /// As many as fit a line.
+        const MOST: usize = 3;
+        let mut priced: Vec<(&str, f64)> = (self.tolerances.iter())
+            .filter_map(|one| Some((one.of.dimension.as_str(), 0.01 * one.of.of.after * one.of.of.bound_price?)))
+            .filter(|(_, saves)| *saves > 0.0)
+            .collect();
+        priced.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let named = priced.iter().take(MOST).map(|(name, saves)| format!("{} {}", short(name), significant(*saves, 3)));
+        let named: Vec<String> = named.collect();
+        if !named.is_empty() {
+            let more = if priced.len() > MOST { ", ..." } else { "" };
+            section.note(format!("a bound that gives way by 1 % saves: {}{more}", named.join(", ")));
+        }
+    }
+
+    /// The joint yield that is required.
+    fn joint_required(&self, section: &mut Section) {
+        let Some(one) = &self.joint_requirement else { return };
+        let of = |judged: &Judged| judged.value.and_then(finite).map_or("unknown".to_owned(), yielded);
+        let said =
+            Line::from(format!("joint yield {}: {} before, ", yielded(one.requirement.amount()), of(&one.before)));
+        section.line(match &one.after {
+            Some(after) => said.and(format!("{} after, ", of(after))).and(loud(after.verdict)),
+            None => said.and(loud(one.before.verdict)),
+        });
     }
 
     /// The highest cost of a dimension.
@@ -366,13 +412,17 @@ impl AllocationReport {
 
     /// The front for people.
     fn front_table(&self) -> DataTable {
-        type Row = (Requirement, Option<f64>);
-        let rows = self.front.iter().filter_map(|point| Some((point.required.first()?.1, point.cost)));
+        type Row<'r> = (&'r FrontRequirement, Option<f64>);
+        let rows = self.front.iter().filter_map(|point| Some((point.required.first()?, point.cost)));
         Columns::default()
-            .shown("required", |(first, _): &Row| {
-                Cell::text(match first {
-                    Requirement::Yield(least) => yielded(*least),
-                    other => format!("Cpk {}", significant(other.amount(), 4)),
+            .shown("required", |(first, _): &Row<'_>| {
+                Cell::text(match first.requirement {
+                    Requirement::Yield(least) => yielded(least),
+                    Requirement::Cpk(least) => format!("Cpk {}", significant(least, 4)),
+                    Requirement::Sigma(most) => format!("sigma {}", significant(most, 4)),
+                    Requirement::Rss | Requirement::WorstCase => {
+                        format!("{} % of the room", significant(100.0 * first.amount, 4))
+                    }
                 })
             })
             .shown("cost", |(_, cost)| Cell::number(*cost, money))
@@ -382,7 +432,7 @@ impl AllocationReport {
 
     /// The front for programs: a row for every dimension at every point.
     fn front_points(&self) -> DataTable {
-        type Row<'r> = (u64, &'r (String, Requirement), Option<f64>, Option<(&'r str, f64)>);
+        type Row<'r> = (u64, &'r FrontRequirement, Option<f64>, Option<(&'r str, f64)>);
         let rows = self.front.iter().enumerate().flat_map(|(place, point)| {
             point.required.iter().flat_map(move |wanted| {
                 let names = self.tolerances.iter().map(|one| one.of.dimension.as_str());
@@ -394,9 +444,9 @@ impl AllocationReport {
         });
         Columns::default()
             .data("point", |row: &Row<'_>| Cell::count(row.0))
-            .data("characteristic", |row| Cell::text(&row.1.0))
-            .data("requirement", |row| Cell::text(row.1.1.key()))
-            .data("required", |row| Cell::data(row.1.1.amount()))
+            .data("characteristic", |row| Cell::text(&row.1.characteristic))
+            .data("requirement", |row| Cell::text(row.1.requirement.key()))
+            .data("required", |row| Cell::data(row.1.amount))
             .data("cost", |row| Cell::data(row.2))
             .data("dimension", |row| Cell::optional(row.3.map(|(name, _)| name)))
             .data("tolerance", |row| Cell::data(row.3.map(|(_, tolerance)| tolerance)))
@@ -409,13 +459,13 @@ impl AllocationReport {
         let front: Vec<(f64, f64, String)> = (self.front.iter())
             .filter_map(|point| {
                 let wanted = point.required.first()?;
-                let (place, label) = placed(wanted.1, wanted.1.amount());
+                let (place, label) = placed(wanted.requirement, wanted.amount);
                 Some((place, point.cost?, label))
             })
             .collect();
         let first = self.front.first().and_then(|point| point.required.first());
-        let before = first.and_then(|(name, first)| {
-            let one = self.requirements.iter().find(|one| one.characteristic == *name)?;
+        let before = first.and_then(|FrontRequirement { characteristic, requirement: first, .. }| {
+            let one = self.requirements.iter().find(|one| one.characteristic == *characteristic)?;
             let (had, cost) = (one.of.before.value.and_then(finite)?, self.cost_before?);
             let seen = had < 1.0 - 1e-12 || !matches!(first, Requirement::Yield(_));
             seen.then(|| [placed(*first, had).0, cost])
@@ -433,7 +483,7 @@ impl AllocationReport {
         let points = points.chain(before.map(|at| circle(at, false, "before", String::new()))).collect();
         let every = front.len().div_ceil(LABELS).max(1);
         let mut x = PlotAxis::new(
-            format!("{} required", first.map_or("yield", |wanted| wanted.1.key())),
+            format!("{} required", first.map_or("yield", |wanted| wanted.requirement.key())),
             PlotScale::Linear(0.05),
         );
         x.ticks = front.iter().step_by(every).map(|(place, _, label)| (*place, label.clone())).collect();
@@ -451,12 +501,22 @@ fn money(cost: f64) -> String {
     significant(cost, COST)
 }
 
-fn unattainable(page: &mut Vec<Element>, OfCharacteristic { characteristic, of: one }: &OfCharacteristic<Attainable>) {
+fn unattainable(
+    page: &mut Vec<Element>,
+    OfCharacteristic { characteristic, of: one }: &OfCharacteristic<Attainable>,
+    proven: bool,
+) {
     let (name, required) = (short(characteristic), required(one.requirement));
     let best = one.best.map_or("unknown".to_owned(), |best| measure(one.requirement, best));
-    page.line(format!("`{name}` cannot keep {required}: the best that there is is {best}"));
+    page.line(match proven {
+        true => format!("`{name}` cannot keep {required}: the best that there is is {best}"),
+        false => format!("no tolerances were found with which `{name}` keeps {required}: the best found is {best}"),
+    });
     if one.together {
-        page.line("it could by itself: together with the other requirements it cannot");
+        page.line(match proven {
+            true => "it could by itself: together with the other requirements it cannot",
+            false => "by itself it is kept: together with the other requirements no such tolerances were found",
+        });
     }
     if !one.because.is_empty() {
         let names: Vec<String> = one.because.iter().take(NAMED).map(|name| format!("`{}`", short(name))).collect();

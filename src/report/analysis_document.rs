@@ -2,28 +2,30 @@
 
 use super::figures::{Figures, Named};
 use super::head::{self, findings};
+use super::output_correlation::{all_limits, together, together_table};
 use super::requirement::{judged, lines};
 use super::source::source;
 use super::stack::Stack;
+use super::statistics::{derivative, matters, part};
 use super::{DimensionReport, Report, bars};
 use crate::analysis::{CharacteristicAnalysis, Interaction, Sensitivity};
 use crate::capability::{Capability, Law, Quantiles, TAIL};
 use crate::correlation::Pair;
 use crate::document::number::{
-    NEWS, UNKNOWN, beside, index, known, percent, plain, plural, shape, share, short, significant,
+    NEWS, UNKNOWN, beside, index, known, limits, percent, plain, plural, shape, share, short, significant,
 };
 use crate::document::rejects::Rejects;
 use crate::document::{
-    Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Section, SpreadChart, Style, Value, terminal,
+    Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Paragraph, Section, SpreadChart, Style, Value,
+    terminal,
 };
 use crate::extremes::{Extreme, Place};
 use crate::method::Basis;
 use crate::pearson::Pearson;
-use crate::requirement::Requirement;
 
 /// Contributions and interactions that a terminal shows unless all are asked for, and interactions that a page shows.
 const CONTRIBUTIONS: usize = 30;
-const INTERACTIONS: usize = 5;
+const INTERACTIONS: usize = 2;
 const INTERACTIONS_OF_PAGE: usize = 24;
 /// Dimensions that are named, rather than counted, in a sentence.
 const NAMED: usize = 8;
@@ -32,10 +34,6 @@ const SAMPLES: usize = 3;
 const DIFFERENT: f64 = 0.05;
 /// Parts per million below this are none.
 const LEAST_PPM: f64 = 1e-6;
-/// Of sigma: worst cases nearer than this look the same in print.
-const SAME: f64 = 1e-3;
-/// A second derivative or a slope within this many of its rounding errors is 0.
-const ROUNDINGS: f64 = 2.0;
 
 impl Report {
     /// What it says. Its tables: `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and `warnings`.
@@ -48,44 +46,53 @@ impl Report {
             self.analysis.method,
             head::beside(&self.analysis.run)
         ));
-        self.analysis.account.iter().for_each(|account| document.wrapped(0, account.to_string()));
+        let mut account = Vec::new();
+        self.analysis.account.iter().for_each(|one| account.wrapped(0, one.to_string()));
+        document.detail(account);
         document.gap();
         document.table(self.verdicts());
         if let Some(joint) = &self.analysis.joint {
             let error = significant(100.0 * joint.error, 2);
             let text = Rejects::all(1.0 - joint.value, Some(joint.error)).yield_text().unwrap_or_default();
-            let target = self.analysis.joint_requirement.map_or_else(String::new, |judged| {
-                let Requirement::Yield(target) = judged.requirement else { return String::new() };
-                // Without the digits that a product by 100 adds.
-                let percent = (1e11 * target).round() / 1e9;
-                format!("; target {percent} %: {}", judged.verdict.name())
-            });
-            document.note(format!("all limits at once: yield {text}, ± {error} %{target}"));
+            let requirement = self.analysis.joint_requirement.as_ref();
+            document.note(all_limits(&text, &format!("± {error} %"), requirement));
         }
-        if let Some(line) = self.together() {
+        if let Some(line) = together(&self.analysis.correlations) {
             document.wrapped(2, line);
         }
         let all = self.analysis.characteristics.iter().zip(self.stacks());
         document.sections = all.map(|(one, stack)| self.section(one, &stack)).collect();
-        document.head.extend([self.dimension_table(), self.together_table(), self.warning_table()].map(Element::Table));
+        document.head.extend(
+            [self.dimension_table(), together_table(&self.analysis.correlations), self.warning_table()]
+                .map(Element::Table),
+        );
         document
     }
 
     fn section(&self, one: &CharacteristicAnalysis, stack: &Stack) -> Section {
         let mut section = Section::of(one.name(), one.unit());
         section.blocks = findings(&self.warnings, |name| name == Some(one.name()));
-        one.figures(&mut section);
+        if one.limited() {
+            section.words = format!(", limits {}", limits(one.lower(), one.upper()));
+        }
+        one.statistics(&mut section);
         one.errors(&mut section);
         one.extremes(&mut section);
         one.distribution(&mut section);
         one.sampling(&mut section);
-        section.gap();
-        section.table(one.contributions(&self.dimensions));
-        section
-            .remark("Slope and curvature at the means, per unit of the dimension; ≈ marks those that are differences.");
-        if let Some(source) = self.source(one) {
-            section.note(source);
+        let concerned = self.warnings.iter().filter(|warning| warning.characteristic.as_deref() == Some(one.name()));
+        let codes: Vec<&str> = concerned.map(|warning| warning.code).collect();
+        if !codes.is_empty() {
+            section.brief(vec![Element::Paragraph(Paragraph::note(format!("warnings: {}", codes.join(", "))))]);
         }
+        section.gap();
+        section.brief(vec![Element::Table(one.contributors(&self.dimensions))]);
+        let mut all = vec![Element::Table(one.contributions(&self.dimensions))];
+        all.remark("Slope and curvature at the means, per unit of the dimension; ≈ marks those that are differences.");
+        if let Some(source) = self.source(one) {
+            all.note(source);
+        }
+        section.detail(all);
         self.correlations(one, &mut section);
         one.pairs(&mut section);
         let (pareto, rest) = bars::pareto(one);
@@ -141,62 +148,18 @@ impl Report {
 }
 
 impl CharacteristicAnalysis {
-    /// The unit by which its numbers are rounded.
-    pub(super) fn scale(&self) -> f64 {
-        self.sigma().filter(|&sigma| sigma > 0.0).or(self.rss).unwrap_or(0.0)
-    }
-
-    fn figures(&self, section: &mut Section) {
-        let scale = self.scale();
-        let number = |value: Option<f64>| Cell::number(value, |value| beside(value, scale));
-        let interval = |ends: Option<[f64; 2]>| {
-            let text = ends.map(|[low, high]| format!("{} .. {}", beside(low, scale), beside(high, scale)));
-            Cell::text(text.unwrap_or_else(|| UNKNOWN.to_owned()))
-        };
-        let around = |middle: Option<f64>, reach: Option<f64>| {
-            interval(middle.zip(reach).map(|(middle, reach)| [middle - reach, middle + reach]))
-        };
-        let shift = self.mean().zip(self.nominal).map(|(mean, nominal)| mean - nominal);
-        let shift = Cell::text(known(shift, |shift| beside(shift, scale)));
-        // Found by no search, so that the bounds are all that is known of the true worst case.
-        let proven =
-            self.bounds.as_ref().filter(|bounds| bounds.proven && self.extremes.is_none()).map(|bounds| bounds.bounds);
-        let same =
-            |[a, b]: [[f64; 2]; 2]| (0..2).all(|end| (a[end] - b[end]).abs() <= SAME * self.sigma().unwrap_or(0.0));
-        let linear = proven.zip(self.worst_case).is_some_and(|(proven, linear)| same([proven, linear]));
-        let named = if linear { "worst case" } else { "linear worst case" };
-        let proven =
-            proven.filter(|_| !linear).map(|ends| ("", Cell::empty(), "proven worst case", interval(Some(ends))));
-        section.table(DataTable::untitled(
-            [
-                ("nominal", number(self.nominal), "mean shift", shift),
-                ("mean", number(self.mean()), "3 sigma", around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma))),
-                ("sigma", number(self.sigma()), "rss", around(self.middle, self.rss)),
-                (
-                    "skewness",
-                    Cell::number(self.skewness(), shape),
-                    "inflated rss",
-                    around(self.middle, self.inflated_rss),
-                ),
-                (
-                    "kurtosis",
-                    Cell::number(self.kurtosis(), shape),
-                    "mean-shift rss",
-                    around(self.middle, self.mean_shift_rss),
-                ),
-                ("", Cell::empty(), named, interval(self.worst_case)),
-            ]
-            .into_iter()
-            .chain(proven)
-            .map(|(name, value, other, text)| [Cell::text(name), value, Cell::text(other), text]),
-        ));
-    }
-
-    /// How far all that may be off.
+    /// How the figures were verified, and what their errors rest on.
     fn errors(&self, section: &mut Section) {
         let error = |error: Option<f64>| known(error, |error| significant(error, 2));
+        match &self.verification {
+            Some(found) => section.note(found.words()),
+            // Nothing is to be verified of what has no moments, or depends on nothing that varies.
+            None if self.mean().is_some() && !self.constant => section.note("not verified by the model"),
+            None => {}
+        }
+        let mut detail = Vec::new();
         if let Some(fit) = &self.residual {
-            section.note(format!(
+            detail.note(format!(
                 "{} coefficients fitted to {} points: residual standard error {}, of the mean {}, of sigma {}",
                 fit.coefficients,
                 fit.points,
@@ -206,42 +169,24 @@ impl CharacteristicAnalysis {
             ));
         }
         if let Some(estimate) = &self.error_estimate {
-            let relative = estimate.sigma.zip(self.sigma()).filter(|(_, sigma)| *sigma > 0.0);
-            let relative = relative.map(|(error, sigma)| format!(" ({} %)", percent(error / sigma)));
-            let mut parts = vec![
-                format!("mean {}", error(estimate.mean)),
-                format!("sigma {}{}", error(estimate.sigma), relative.unwrap_or_default()),
-                format!("skewness {}", error(estimate.skewness)),
-                format!("kurtosis {}", error(estimate.kurtosis)),
-            ];
-            if self.yield_().is_some() {
-                let percent = estimate.yield_.map(|error| format!("{} %", significant(100.0 * error, 2)));
-                parts.push(format!("yield {}", percent.unwrap_or_else(|| UNKNOWN.to_owned())));
-            }
-            section.wrapped(2, format!("estimated errors: {}", parts.join(", ")));
             let basis: Vec<String> = estimate.sources.iter().map(|source| source.words()).collect();
-            section.wrapped(2, format!("they rest on: {}", basis.join("; ")));
+            detail.wrapped(2, format!("error estimates are based on: {}", basis.join("; ")));
         }
         if let Some(sampled) = self.error_estimate.as_ref().and(self.model_sampled.as_ref()) {
             section.wrapped(2, format!(
-                "the surrogate was not trusted: mean to kurtosis from {} points of the model, with it as control variate",
+                "the surface is not trusted: mean to kurtosis from {} points of the model, with the surface as control variate",
                 sampled.samples
             ));
-        }
-        match &self.verification {
-            Some(found) => section.note(found.words()),
-            // Nothing is to be verified of what has no moments, or depends on nothing that varies.
-            None if self.mean().is_some() && !self.constant => section.note("not verified by the model"),
-            None => {}
         }
         if let Some(sampled) = &self.sampled {
             let [sigma, skewness, kurtosis] =
                 [sampled.sigma, sampled.skewness, sampled.kurtosis].map(|error| significant(error, 2));
-            section.note(format!(
-                "sampled from the surrogate, {} points: standard error of sigma {sigma}, skewness {skewness}, kurtosis {kurtosis}",
+            detail.note(format!(
+                "sampled from the surface, {} points: standard error of sigma {sigma}, skewness {skewness}, kurtosis {kurtosis}",
                 sampled.samples
             ));
         }
+        section.detail(detail);
     }
 
     /// The extremes, whether they are proven, and where they are.
@@ -266,13 +211,13 @@ impl CharacteristicAnalysis {
             Some(Law::Point { at }) => section.note(format!("every assembly has the same value: {}", plain(*at))),
             Some(Law::Pearson(law)) => {
                 let (kind, sigma) = (law.kind().name(), self.sigma().unwrap_or(0.0));
-                section.gap();
-                section.chart(Chart::Spread(Box::new(self.spread(law, kind))));
-                section.gap();
-                section.table(match self.surface_law.as_ref().and_then(|law| law.named_quantiles()) {
+                let mut detail =
+                    vec![Element::Gap, Element::Chart(Chart::Spread(Box::new(self.spread(law, kind)))), Element::Gap];
+                detail.table(match self.surface_law.as_ref().and_then(|law| law.named_quantiles()) {
                     Some(of_surface) => quantile_table("surface law", &of_surface, sigma),
                     None => quantile_table(&named(kind), &Quantiles::of(law), sigma),
                 });
+                section.detail(detail);
             }
         }
         if self.surface_law.is_some_and(|law| law.steps) && self.sigma().is_some_and(|sigma| sigma > 0.0) {
@@ -312,6 +257,9 @@ impl CharacteristicAnalysis {
             bins: sample.cloned(),
             sampled: false,
             limits: Named::limits(self),
+            rejects: self.rejects().by_side(),
+            ranges: bars::ranges(self),
+            nominal: self.nominal,
             places,
             sigma: self.sigma().unwrap_or(0.0),
             label: format!("Density of {}", self.name()),
@@ -335,22 +283,23 @@ impl CharacteristicAnalysis {
         source(self).into_iter().for_each(|line| section.note(line));
         let named = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {}", index(value)));
         let of = |figure: fn(&Capability) -> Option<f64>| self.capability.as_ref().and_then(figure);
-        let second = if of(|of| of.cp_percentile).is_some() { "Cpk" } else { "by percentiles Cpk" };
-        let indices = [
-            named("Cp", of(|of| of.cp)),
-            named("Cpk", of(|of| of.cpk)),
-            named("by percentiles Cp", of(|of| of.cp_percentile)),
-            named(second, of(|of| of.cpk_percentile)),
-            named("sigma level", of(Capability::sigma_level).filter(|_| self.rejects().are_resolved())),
-        ];
-        let indices: Vec<String> = indices.into_iter().flatten().collect();
+        let join = |indices: Vec<Option<String>>| indices.into_iter().flatten().collect::<Vec<String>>().join("  ");
+        let level = of(Capability::sigma_level).filter(|_| self.rejects().are_resolved());
+        let indices =
+            join(vec![named("Cp", of(|of| of.cp)), named("Cpk", of(|of| of.cpk)), named("sigma level", level)]);
         if !indices.is_empty() {
-            section.note(indices.join("  "));
+            section.note(indices);
         }
         lines(self.requirements()).for_each(|line| section.note(line));
-        if let Some(normal) = self.normal.as_ref().filter(|normal| self.differs(normal)) {
-            section.note(format!("a normal fit would say: {}", shown(Rejects::new(normal.below, normal.above, None))));
+        let mut detail = Vec::new();
+        let quantiles = join(vec![named("Cp", of(|of| of.cp_percentile)), named("Cpk", of(|of| of.cpk_percentile))]);
+        if !quantiles.is_empty() {
+            detail.note(format!("by quantiles (ISO 22514-2): {quantiles}"));
         }
+        if let Some(normal) = self.normal.as_ref().filter(|normal| self.differs(normal)) {
+            detail.note(format!("a normal fit would say: {}", shown(Rejects::new(normal.below, normal.above, None))));
+        }
+        section.detail(detail);
     }
 
     /// What is rejected, with its error.
@@ -428,7 +377,6 @@ impl CharacteristicAnalysis {
     /// What the dimensions do, strongest first.
     pub(super) fn contributions(&self, dimensions: &[DimensionReport]) -> DataTable {
         type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
-        let part = |row: &Sensitivity| Some(row.linear_share? + row.curvature_share.unwrap_or(0.0));
         let all: Vec<Row<'_>> = self.sensitivities.iter().zip(dimensions).collect();
         let mut view: Vec<usize> = (0..all.len()).filter(|&index| matters(all[index].0, all[index].1)).collect();
         let size = |index: usize| part(all[index].0).unwrap_or(-1.0);
@@ -438,7 +386,7 @@ impl CharacteristicAnalysis {
         let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));
         let number = |value: Option<f64>, row: &Row<'_>, order: usize| {
             let rounding = row.0.rounding.map(|rounding| rounding[order]);
-            let text = derivative(value, rounding);
+            let text = derivative(value, rounding, 6);
             let cell = Cell::both(Value::Number(value), text.as_str());
             if row.0.exact || value.is_none() { cell } else { cell.on_pages(format!("{text} ≈")) }
         };
@@ -496,7 +444,7 @@ impl CharacteristicAnalysis {
             .data("dimension_b", |pair| Cell::text(&pair.dimensions[1]))
             .named("", "pair", both)
             .column("mixed", "mixed derivative", |pair| {
-                Cell::both(Value::Number(pair.mixed), derivative(pair.mixed, pair.rounding))
+                Cell::both(Value::Number(pair.mixed), derivative(pair.mixed, pair.rounding, 6))
             })
             .column("share", "share %", |pair| Cell::number(pair.share, percent))
             .data("rounding", |pair| Cell::data(pair.rounding))
@@ -515,11 +463,6 @@ fn accuracy(table: &[[f64; 3]]) -> String {
         true => format!(" from points, within ± {} % of its peak", significant(100.0 * error / peak, 2)),
         false => String::new(),
     }
-}
-
-/// Whether a dimension varies, or does something without.
-fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
-    dimension.sigma > 0.0 || row.first.is_some_and(|first| first != 0.0)
 }
 
 /// The dimensions by the end of their bands, and the others by their values.
@@ -578,15 +521,6 @@ fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
         row(law.to_owned(), &probability),
         row("quantiles".to_owned(), &|(_, value)| Cell::number(*value, |value| beside(value, sigma))),
     ])
-}
-
-/// A derivative to six digits; what rounding alone can make is 0 as far as anybody knows.
-fn derivative(value: Option<f64>, rounding: Option<f64>) -> String {
-    match (value, rounding) {
-        (None, _) => UNKNOWN.to_owned(),
-        (Some(value), Some(rounding)) if value.abs() <= ROUNDINGS * rounding => "0".to_owned(),
-        (Some(value), _) => significant(value, 6),
-    }
 }
 
 /// Beside sigma, where nothing but zeros is 0.

@@ -5,24 +5,36 @@ use super::requirement::loud;
 use super::{DimensionReport, Report, WarningReport};
 use crate::analysis::CharacteristicAnalysis;
 use crate::capability::{Capability, Law};
-use crate::document::number::{UNKNOWN, beside, index, limits};
-use crate::document::{Cell, Columns, DataTable, Line, Value};
+use crate::document::number::{UNKNOWN, carried, index, limits};
+use crate::document::{Blocks, Cell, Column, Columns, DataTable, Document, Line, Value};
+use crate::method::ErrorEstimate;
+use crate::verdict::Verdict;
 
 impl Report {
     /// A row for every characteristic: where it lies, its limits, and how it keeps them.
     pub(super) fn verdicts(&self) -> DataTable {
         type Of<'r> = &'r CharacteristicAnalysis;
-        let scaled = |one: &Of<'_>, value: Option<f64>, unknown: &str| {
-            let text = value.zip(one.sigma()).map_or(unknown.to_owned(), |(value, sigma)| beside(value, sigma));
+        let scaled = |one: &Of<'_>, value: Option<f64>, error: Option<f64>, unknown: &str| {
+            let text = value.zip(one.sigma());
+            let text = text.map_or(unknown.to_owned(), |(value, sigma)| carried(value, sigma, error));
             Cell::both(Value::Number(value), text)
         };
-        let verdict = |one: &Of<'_>| {
+        let error = |one: &Of<'_>, of: fn(&ErrorEstimate) -> Option<f64>| one.error_estimate.as_ref().and_then(of);
+        let yield_ = |one: &Of<'_>| {
             if !one.limited() || one.mean().is_none() {
                 return Cell::empty();
             }
-            let yield_ = one.rejects().yield_text().unwrap_or_else(|| "unknown".to_owned());
-            let target = one.verdict().map_or(Line::default(), |verdict| Line::from(", target ").and(loud(verdict)));
-            Cell::both(Value::Empty, Line::from(format!("yield {yield_}")).and(target))
+            Cell::both(Value::Empty, one.rejects().with_error().unwrap_or_else(|| "unknown".to_owned()))
+        };
+        // The worst of all requirements; where there is one target yield only, that one.
+        let verdict = |one: &Of<'_>| {
+            let worst =
+                one.requirements().into_iter().map(|judged| judged.verdict).max_by_key(|verdict| match verdict {
+                    Verdict::Met => 0,
+                    Verdict::Inconclusive => 1,
+                    Verdict::Missed => 2,
+                });
+            Cell::both(Value::Empty, worst.map_or(Line::default(), loud))
         };
         let family = |one: &Of<'_>| match one.fitted() {
             None => [None, None],
@@ -36,11 +48,13 @@ impl Report {
             .named("name", "characteristic", |one: &Of<'_>| Cell::name(one.name()))
             .data("unit", |one| Cell::optional(one.unit()))
             .data("nominal", |one| Cell::data(one.nominal))
-            .column("mean", "mean", move |one| scaled(one, one.mean(), "unknown"))
-            .shown("± 3 sigma", move |one| scaled(one, one.sigma().map(|sigma| 3.0 * sigma), UNKNOWN))
+            .column("mean", "mean", move |one| scaled(one, one.mean(), error(one, |of| of.mean), "unknown"))
+            .shown("sigma", move |one| scaled(one, one.sigma(), error(one, |of| of.sigma), UNKNOWN))
             .named("", "unit", |one| Cell::optional(one.unit()))
-            .shown("limits", |one| Cell::text(limits(one.lower(), one.upper())))
-            .named("", "yield", verdict)
+            .page("limits", |one| Cell::text(limits(one.lower(), one.upper())))
+            .shown("Cpk", move |one| Cell::known(index_of(one, |of| of.cpk), index))
+            .shown("yield", yield_)
+            .shown("verdict", verdict)
             .data("sigma", |one| Cell::data(one.sigma()))
             .data("skewness", |one| Cell::data(one.skewness()))
             .data("kurtosis", |one| Cell::data(one.kurtosis()))
@@ -61,7 +75,7 @@ impl Report {
             .data("ppm_below", |one| Cell::data(one.ppm_below()))
             .data("ppm_above", |one| Cell::data(one.ppm_above()))
             .data("cp", move |one| Cell::data(index_of(one, |of| of.cp)))
-            .wide("cpk", "Cpk", move |one| Cell::known(index_of(one, |of| of.cpk), index))
+            .data("cpk", move |one| Cell::data(index_of(one, |of| of.cpk)))
             .data("cp_percentile", move |one| Cell::data(index_of(one, |of| of.cp_percentile)))
             .data("cpk_percentile", move |one| Cell::data(index_of(one, |of| of.cpk_percentile)))
             .data("sigma_level", move |one| Cell::data(index_of(one, Capability::sigma_level)))
@@ -70,6 +84,28 @@ impl Report {
             .data("normal_ppm_above", move |one| fit(one, Capability::ppm_above))
             .table("characteristics", &self.analysis.characteristics)
             .of_sections()
+    }
+
+    /// The rows of several reports below each other, each with a name before it.
+    pub(crate) fn rows_of_all(reports: &[(String, Self)]) -> Document {
+        let mut document = Document::default();
+        let mut all: Option<DataTable> = None;
+        for (name, report) in reports {
+            let own = report.verdicts();
+            let table = all.get_or_insert_with(|| {
+                let mut columns = own.columns.clone();
+                columns.insert(0, Column { key: "of", title: "", heading: "", terminal: true, page: true });
+                DataTable { columns, rows: Vec::new(), view: Vec::new(), ..own.clone() }
+            });
+            for mut row in own.rows {
+                row.iter_mut().for_each(|cell| cell.leads_to = None);
+                row.insert(0, Cell::text(name));
+                table.view.push(table.rows.len());
+                table.rows.push(row);
+            }
+        }
+        all.into_iter().for_each(|table| document.table(table));
+        document
     }
 
     pub(super) fn dimension_table(&self) -> DataTable {

@@ -60,6 +60,26 @@ pub(super) fn pareto(one: &CharacteristicAnalysis) -> (Bars, Option<String>) {
     (bars, (!words.is_empty()).then(|| words.join("; ")))
 }
 
+/// The ranges below a density: mean \u{b1} 3 sigma, RSS, and the worst case as well as it is known.
+pub(super) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2])> {
+    let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
+    let searched = one.extremes.as_ref().map(|found| [found.least.value, found.greatest.value]);
+    let proven = one.extremes.as_ref().is_some_and(Extremes::proven);
+    let worst = match searched {
+        Some(found) if proven => ("worst case, proven", Some(found)),
+        Some(found) => ("worst case found", Some(found)),
+        None => ("worst case, linear", one.worst_case),
+    };
+    [
+        ("mean \u{b1} 3\u{3c3}", around(one.mean(), one.sigma().map(|sigma| 3.0 * sigma))),
+        ("RSS", around(one.middle, one.rss)),
+        worst,
+    ]
+    .into_iter()
+    .filter_map(|(name, ends)| Some((name.to_owned(), ends.filter(|ends| ends[0] < ends[1])?)))
+    .collect()
+}
+
 /// Worst case, RSS and three sigma on one scale with the limits; None where there is no extent.
 pub(super) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
     let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);

@@ -101,7 +101,8 @@ fn samples_are_all_in_their_reports() {
     // Doubts are told of as warnings.
     complete!(of, &found => Simulation {
         sampler: "/sampler", run: "/evaluations", samples: "/samples", surrogate_evaluations: "/surrogate_evaluations",
-        reached: "/reached", non_repeatable: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
+        reached: "/reached", non_repeatable: "/warnings", joint: "/joint_yield", joint_requirement: "/joint_requirement",
+        correlations: "/characteristic_correlation", characteristics: "/characteristics/0", warnings: "/warnings",
     });
     simulated(of.pointer("/characteristics/0").unwrap(), &found.characteristics[0]);
 
@@ -110,7 +111,8 @@ fn samples_are_all_in_their_reports() {
     run_of(&of, &found.run);
     complete!(of, &found => RareEvents {
         method: "/surrogate", run: "/evaluations", samples: "/samples", surrogate_evaluations: "/surrogate_evaluations",
-        reached: "/reached", non_repeatable: "/warnings", characteristics: "/characteristics/0", warnings: "/warnings",
+        reached: "/reached", non_repeatable: "/warnings", joint: "/joint_yield", joint_interval: "/joint_yield_interval",
+        joint_requirement: "/joint_requirement", characteristics: "/characteristics/0", warnings: "/warnings",
     });
     let one = of.pointer("/characteristics/0").unwrap();
     complete!(one, &found.characteristics[0] => RareCharacteristic {
@@ -190,6 +192,7 @@ fn an_allocation_is_all_in_its_report() {
     complete!(json, &found => Allocation {
         status: "/status", problem: "/tolerances", before: "/characteristics/0/before", after: "/characteristics/0/after",
         confirmed: "/confirmed", cost_before: "/cost_before", cost_after: "/cost_after", tolerances: "/tolerances/1",
+        loss: "/loss/after", cost_unrounded: "/cost_unrounded", setups: "/setups", joint_requirement: "/joint_requirement",
         goal: "/goal", cost_basis: "/cost_basis", moved: "/recentred", requirements: "/requirements/0", prices: "/shadow_prices", proof: "/proof",
         attainable: "/attainable", loosest_before: "/loosest_scaling/before", loosest_after: "/loosest_scaling/after",
         joint: "/joint_yield/after", front: "/front", confirmation: "/confirmation", run: "/evaluations", rounds: "/rounds",
@@ -198,7 +201,7 @@ fn an_allocation_is_all_in_its_report() {
     let one = json.pointer("/tolerances/0").unwrap();
     complete!(one, &found.tolerances[0] => Allocated {
         dimension: "/dimension", before: "/before", after: "/after", cost_before: "/cost_before", cost_after: "/cost_after",
-        process: "/process", bound: "/at_bound",
+        process: "/process", bound: "/at_bound", bound_price: "/bound_price",
     });
     let one = json.pointer("/requirements/0").unwrap();
     complete!(one, &found.requirements[0] => Kept {

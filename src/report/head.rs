@@ -21,12 +21,16 @@ pub(crate) struct Head {
     pub(crate) study_sha256: String,
     /// The command that made the report.
     pub(crate) command: &'static str,
+    /// The cells of the title block of pages.
+    #[serde(skip)]
+    pub(crate) block: Vec<(&'static str, String)>,
 }
 
 impl Head {
     pub(super) fn of(command: &'static str, about: &About) -> Self {
         let (title, study_sha256) = (about.title.clone(), about.sha256.clone());
-        Self { schema: SCHEMA, sensitol: env!("CARGO_PKG_VERSION"), title, study_sha256, command }
+        let block = about.block.clone();
+        Self { schema: SCHEMA, sensitol: env!("CARGO_PKG_VERSION"), title, study_sha256, command, block }
     }
 }
 

@@ -19,6 +19,7 @@ mod requirement;
 mod simulation;
 mod source;
 mod stack;
+mod statistics;
 mod sweep;
 mod to_document;
 
@@ -126,6 +127,8 @@ pub struct About {
     pub sha256: String,
     /// Warnings of the study itself.
     pub warnings: Vec<Warning>,
+    /// The cells of the title block of pages: name and text.
+    pub block: Vec<(&'static str, String)>,
 }
 
 impl Report {

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::figures::Named;
 use super::head::{self, seed};
+use super::output_correlation::all_limits;
 use super::requirement::{judged, lines};
 use super::{About, DimensionReport, Head, WarningReport, correlation};
 use crate::correlation::Pair;
@@ -64,6 +65,10 @@ impl RareReport {
             seed(&found.run),
             head::beside(&found.run)
         ));
+        if let Some([low, high]) = found.joint_interval {
+            let interval = format!("95 % interval {} to {}", yielded(low), yielded(high));
+            document.note(all_limits(&known(found.joint, yielded), &interval, found.joint_requirement.as_ref()));
+        }
         document.sections = found.characteristics.iter().map(|one| one.section(&self.dimensions)).collect();
         document
     }

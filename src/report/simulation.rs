@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::figures::{Figures, Named, QUANTILES};
 use super::head::{self, findings, seed};
+use super::output_correlation::{all_limits_within, together};
 use super::requirement::{judged, lines};
 use super::{About, DimensionReport, Head, WarningReport, correlation};
 use crate::capability::Law;
@@ -59,6 +60,12 @@ impl SimulationReport {
         let Simulation { sampler, run, samples, characteristics, .. } = &self.simulation;
         let (seed, rest) = (seed(run), head::beside(run));
         document.line(format!("{}: {samples} points{seed}{rest}", sampler.method()));
+        if let Some(joint) = &self.simulation.joint {
+            document.note(all_limits_within(joint, self.simulation.joint_requirement.as_ref()));
+        }
+        if let Some(line) = together(&self.simulation.correlations) {
+            document.wrapped(2, line);
+        }
         document.sections = characteristics.iter().map(|one| one.section(&self.warnings)).collect();
         document
     }
@@ -174,6 +181,9 @@ impl SimulatedCharacteristic {
             law,
             sampled: true,
             limits: Named::limits(self),
+            rejects: [None, None],
+            ranges: Vec::new(),
+            nominal: None,
             places: self.mean().map(|mean| (mean, "mean", "mean")).into_iter().collect(),
             sigma: self.sigma().unwrap_or(0.0),
             label: format!("Histogram of {} with the standard error of every bar", self.name()),

@@ -10,7 +10,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::sobol::{SOBOL_DIMENSIONS, Sobol, mixed, scrambled};
 use crate::assembly::Points;
-use crate::correlation::Correlation;
+use crate::correlation::{Block, Correlation, JointLaw};
 use crate::dimension::Dimension;
 use crate::distribution::{Probability, behind_normal, standard_normal, ziggurat};
 use crate::elementary::{Work, on_this_processor};
@@ -186,7 +186,7 @@ impl<'a> Draws<'a> {
 
     /// Normal variables, made to vary together, and the inputs that they stand for.
     fn together(&self, correlated: &Correlated<'_>, portion: Portion, digits: &mut [u64], points: &mut Points) {
-        let normals: Vec<Vec<f64>> = (correlated.places.iter())
+        let mut normals: Vec<Vec<f64>> = (correlated.places.iter())
             .map(|&place| match &self.sobol {
                 None => {
                     let mut normals = vec![0.0; portion.rows];
@@ -203,7 +203,29 @@ impl<'a> Draws<'a> {
                 }
             })
             .collect();
-        for (j, (&place, transform)) in correlated.places.iter().zip(correlated.correlation.transforms()).enumerate() {
+        let correlation = correlated.correlation;
+        let members = correlation.members();
+        for block in correlation.blocks() {
+            let places: Vec<usize> =
+                block.members.iter().map(|d| members.binary_search(d).expect("a block's member")).collect();
+            let own = Block { members: (0..places.len()).collect(), law: block.law.clone() };
+            let (mut at, mut scratch) = (vec![0.0; places.len()], Vec::new());
+            let rows = matches!(own.law, JointLaw::Rows(_));
+            #[expect(clippy::needless_range_loop, reason = "a point is a row over several columns")]
+            for row in 0..portion.rows {
+                at.iter_mut().zip(&places).for_each(|(z, &place)| *z = normals[place][row]);
+                match rows {
+                    true => own.apply(&mut at, &mut scratch),
+                    false => own.apply_standardised(&mut at, &mut scratch),
+                }
+                at.iter().zip(&places).for_each(|(z, &place)| normals[place][row] = *z);
+            }
+        }
+        for (j, (&place, transform)) in correlated.places.iter().zip(correlation.transforms()).enumerate() {
+            // A zone's points are places already.
+            let in_zone = correlation
+                .block_of(members[j])
+                .is_some_and(|(block, _)| !matches!(correlation.blocks()[block].law, JointLaw::Rows(_)));
             let (d, law) = self.varying[place];
             let (mean, sigma) = (self.dimensions[d].mean(), self.dimensions[d].sigma());
             let column = points.column_mut(d);
@@ -215,7 +237,8 @@ impl<'a> Draws<'a> {
                 }
             }
             for value in column {
-                *value = if transform.is_normal() { mean + sigma * *value } else { behind_normal(law, *value) };
+                *value =
+                    if transform.is_normal() || in_zone { mean + sigma * *value } else { behind_normal(law, *value) };
             }
         }
     }

@@ -98,7 +98,8 @@ pub struct SurrogateControl {
 }
 
 /// The share of assemblies that keep the limits.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct YieldEstimate {
     /// Among the points that have a value.
@@ -335,6 +336,7 @@ impl<'a> Evidence<'a> {
 /// Judged by the scatter of all points as if they were random. Standard errors of 16 replicates are uncertain by a fifth: the smaller
 /// of two would be too small.
 fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Option<Estimate>) -> Option<Estimate> {
+    // What the standard error of the better of two estimates grows by: it was chosen by the same points.
     const CHOICE: f64 = 1.1;
     let Some(Controlled { estimate, random: own }) = controlled else { return plain };
     // Where powers of the values overflow, only the controlled figure, in units of its own sigma, is left.

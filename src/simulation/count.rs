@@ -2,7 +2,16 @@
 
 use super::difference::Difference;
 use crate::assembly::EvaluationError;
-use crate::sampling::{Fine, Summary};
+use crate::characteristic::SpecLimits;
+use crate::sampling::{Fine, Scale, Summary};
+
+/// What a portion is looked at with.
+#[derive(Clone, Copy)]
+pub(super) struct Lens {
+    pub(super) limits: SpecLimits,
+    /// Known after the first batch.
+    pub(super) scale: Option<Scale>,
+}
 
 /// One replicate of one characteristic.
 #[derive(Clone)]

@@ -8,6 +8,7 @@ mod replicate;
 mod shape;
 mod surrogates;
 mod tally;
+mod together;
 mod written;
 
 #[cfg(feature = "cli")]
@@ -28,10 +29,13 @@ use crate::sampling::{Draws, Portion};
 use crate::shape::through;
 use crate::summary::RunSummary;
 use crate::time::Instant;
+use crate::verdict::Judged;
+use crate::verification::OutputCorrelation;
 use crate::warning::{Advice, Warning};
 use control::Control;
+use count::Lens;
 pub(crate) use surrogates::{Surrogates, chosen};
-use tally::{Block, Lens, Tally};
+use tally::{Block, Tally};
 
 /// How a problem is simulated.
 ///
@@ -61,11 +65,21 @@ pub struct SimulationOptions {
     /// from the surrogate wants more points than a plain one before its standard error is right: of a lognormal with log-sd
     /// 0.15 two of them hold 88 % at 20 000 random points and 94 % at 100 000.
     pub control: Option<Options>,
+    /// The share of assemblies that must keep the limits of all characteristics at once.
+    pub target_joint_yield: Option<f64>,
 }
 
 impl Default for SimulationOptions {
     fn default() -> Self {
-        Self { samples: 100_000, sampler: Sampler::Random, seed: 1, until: None, until_yield: None, control: None }
+        Self {
+            samples: 100_000,
+            sampler: Sampler::Random,
+            seed: 1,
+            until: None,
+            until_yield: None,
+            control: None,
+            target_joint_yield: None,
+        }
     }
 }
 
@@ -102,6 +116,13 @@ impl SimulationOptions {
     #[must_use]
     pub fn with_until_yield(mut self, half: f64) -> Self {
         self.until_yield = Some(half);
+        self
+    }
+
+    /// With this target for the share that keeps the limits of all characteristics at once.
+    #[must_use]
+    pub fn with_target_joint_yield(mut self, share: f64) -> Self {
+        self.target_joint_yield = Some(share);
         self
     }
 
@@ -146,6 +167,15 @@ pub struct Simulation {
     // Told of as warnings.
     #[serde(skip)]
     pub non_repeatable: Vec<NonRepeatable>,
+    /// The share of assemblies that keep the limits of all characteristics at once; None with fewer than two that have limits.
+    #[serde(rename = "joint_yield")]
+    pub joint: Option<YieldEstimate>,
+    /// Whether that share reaches the target for all characteristics at once; None without such a target.
+    #[cfg_attr(feature = "cli", schemars(with = "Option<crate::verdict::JudgedShape>"))]
+    pub joint_requirement: Option<Judged>,
+    /// How every two characteristics vary together; empty with one characteristic, and with more than 40.
+    #[serde(rename = "characteristic_correlation")]
+    pub correlations: Vec<OutputCorrelation>,
     /// What is known of every characteristic, in the problem's order.
     #[cfg_attr(feature = "cli", schemars(with = "Vec<SimulatedShape>"))]
     pub characteristics: Vec<SimulatedCharacteristic>,
@@ -310,7 +340,7 @@ fn drawn(
         if batch.is_empty() {
             break;
         }
-        let one = |portion: &Portion| block(problem, draws, *portion, run, (tally.lenses(), control));
+        let one = |portion: &Portion| block(problem, draws, *portion, run, (tally.lenses(), control, options.sampler));
         let blocks: Vec<Block> = match portions.costly {
             true => batch.iter().map(one).collect(),
             false => batch.par_iter().map(one).collect(),
@@ -341,7 +371,7 @@ fn block(
     draws: &Draws<'_>,
     portion: Portion,
     run: &Run<'_>,
-    (lenses, control): (&[Lens], Option<&Control<'_>>),
+    (lenses, control, sampler): (&[Lens], Option<&Control<'_>>, Sampler),
 ) -> Block {
     let points = draws.points(portion);
     let mut out = Responses::open(portion.rows, problem.outputs().len());
@@ -349,7 +379,7 @@ fn block(
     problem.function().evaluate(&Request::values(&points, problem.outputs()), run, &mut out);
     let took = begun.elapsed();
     let beside = control.map_or_else(Vec::new, |control| control.beside(&points));
-    Block::of(&out, took, lenses, &beside)
+    Block::of(&out, took, (lenses, sampler, portion.replicate), &beside)
 }
 
 /// The portions of a sample, a batch at a time, every replicate as far as the others.

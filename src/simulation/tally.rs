@@ -5,23 +5,17 @@ use std::time::Duration;
 
 use super::characteristic::{Evidence, SimulatedCharacteristic};
 use super::control::{Control, Twin};
-use super::count::{Count, Replicate};
+use super::count::{Count, Lens, Replicate};
 use super::difference::Difference;
+use super::together::{self, Together};
 use super::{REPLICATES, Simulation, SimulationOptions};
 use crate::assembly::{EvaluationError, NonRepeatable, Responses};
-use crate::characteristic::SpecLimits;
 use crate::evaluation::history;
 use crate::problem::Problem;
+use crate::requirement::Requirement;
 use crate::sampling::{Fine, Portion, Sampler, Scale, Summary};
 use crate::summary::{RunSummary, StopReason};
-
-/// What a portion is looked at with.
-#[derive(Clone, Copy)]
-pub(super) struct Lens {
-    pub(super) limits: SpecLimits,
-    /// Known after the first batch.
-    pub(super) scale: Option<Scale>,
-}
+use crate::verdict::Judged;
 
 /// The answers of one portion.
 pub(super) struct Block {
@@ -34,6 +28,7 @@ pub(super) struct Block {
     complete: bool,
     non_repeatable: Vec<NonRepeatable>,
     took: Duration,
+    together: Vec<(usize, Together)>,
 }
 
 /// The answers of one portion for one characteristic.
@@ -54,7 +49,12 @@ enum Values {
 
 impl Block {
     /// `beside` has for every output the surrogate and its rises at the same points, where there is one.
-    pub(super) fn of(out: &Responses, took: Duration, lenses: &[Lens], beside: &[Option<(&Twin, Vec<f64>)>]) -> Self {
+    pub(super) fn of(
+        out: &Responses,
+        took: Duration,
+        (lenses, sampler, replicate): (&[Lens], Sampler, u64),
+        beside: &[Option<(&Twin, Vec<f64>)>],
+    ) -> Self {
         let open = |row: usize| (0..out.outputs()).all(|output| out.is_open(row, output));
         let full = |output: usize| out.column(output).iter().fold(true, |all, value| all & !value.is_nan());
         let answered = match (0..out.outputs()).any(full) {
@@ -75,6 +75,7 @@ impl Block {
             complete: answered == out.rows(),
             non_repeatable: out.non_repeatable().to_vec(),
             took,
+            together: Together::of(out, lenses, sampler, replicate),
         }
     }
 }
@@ -112,6 +113,7 @@ pub(super) struct Tally<'a> {
     control: Option<&'a Control<'a>>,
     lenses: Vec<Lens>,
     counts: Vec<Count>,
+    together: Vec<Together>,
     answered: u64,
     extra: i64,
     /// Of the points drawn.
@@ -135,6 +137,7 @@ impl<'a> Tally<'a> {
             control,
             lenses: characteristics.iter().map(|one| Lens { limits: one.limits(), scale: None }).collect(),
             counts: characteristics.iter().map(|_| count()).collect(),
+            together: together::parts(),
             answered: 0,
             extra: 0,
             run: RunSummary::default(),
@@ -166,6 +169,7 @@ impl<'a> Tally<'a> {
             self.run.in_model += block.took;
             self.stopped |= !block.complete;
             self.non_repeatable.extend(block.non_repeatable);
+            block.together.iter().for_each(|(part, of)| self.together[*part].merge(of));
             for ((count, lens), column) in self.counts.iter_mut().zip(&self.lenses).zip(block.columns) {
                 count.failed += column.failed;
                 count.error = count.error.take().or(column.error);
@@ -240,6 +244,12 @@ impl<'a> Tally<'a> {
         let of =
             |(c, count)| SimulatedCharacteristic { unfinished: stopped.is_some(), ..self.characteristic(c, count) };
         let characteristics: Vec<SimulatedCharacteristic> = self.counts.iter().enumerate().map(of).collect();
+        let joint = together::joint(&self.together, options.sampler, self.answered);
+        let joint_requirement = options.target_joint_yield.zip(joint).map(|(target, joint)| {
+            let interval = [joint.interval[0].min(joint.bounds[0]), joint.interval[1]];
+            Judged::of(Requirement::Yield(target), Some(joint.value), Some(interval)).unless(stopped.is_some())
+        });
+        let correlations = together::correlations(self.problem, &self.together);
         let surrogate = self.control.map(|control| &control.outcome.evaluated);
         let spent = surrogate.map(|evaluated| evaluated.summary()).unwrap_or_default();
         let drawn = RunSummary {
@@ -258,6 +268,9 @@ impl<'a> Tally<'a> {
             reached,
             warnings: failures.chain(history(self.problem, &non_repeatable)).collect(),
             non_repeatable,
+            joint,
+            joint_requirement,
+            correlations,
             characteristics,
         }
     }

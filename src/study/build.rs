@@ -13,13 +13,15 @@ use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
 use super::implicit::{implicit, placed};
 use super::joint;
+use super::loss::{losses, setups};
 use super::model::{ModelOf, model, process, signature};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use super::units;
 use super::values::NominalEntry;
 use super::written::{Named, Written};
-use crate::allocation::Priced;
+use super::zone;
+use crate::allocation::{Priced, QualityLoss, SetUp};
 use crate::assembly::formula::{Formula, FormulaError, FormulaFault, is_plain, is_reserved};
 use crate::assembly::process::Greeting;
 use crate::assembly::{AssemblyFunction, Composite, CompositeError, Input, Parts, Signature};
@@ -37,6 +39,8 @@ pub(super) struct Built {
     pub(super) problem: Problem,
     pub(super) options: Options,
     pub(super) costs: Vec<Priced>,
+    pub(super) losses: Vec<QualityLoss>,
+    pub(super) setups: Vec<SetUp>,
     pub(super) requirements: Vec<(String, Requirement)>,
     pub(super) warnings: Vec<Warning>,
     /// The files that it read beside the study.
@@ -51,8 +55,10 @@ pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Re
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     let mut faults = Faults::default();
     faults.take(names(file, model));
-    let blocks = faults.take(joint::blocks(file, &mut data)).unwrap_or_default();
+    let mut blocks = faults.take(joint::blocks(file, &mut data)).unwrap_or_default();
+    blocks.extend(faults.take(zone::zones(file).map_err(Faults::from)).unwrap_or_default());
     let dimensions = faults.take(dimensions(file, model, &mut data)).unwrap_or_default();
+    let dimensions = zone::zoned(dimensions, &blocks);
     let formulas = faults.take(formulas(file, source)).unwrap_or_default();
     faults.take(characteristics(file, model, program));
     for (what, empty) in
@@ -82,6 +88,7 @@ pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Re
     let mut warnings = aggregated(std::mem::take(&mut data.warnings));
     warnings.extend(outside_limits(file));
     warnings.extend(of_units);
+    warnings.extend(full_turns(&dimensions, &composite));
     idle_formula(program, &composite, &written)?;
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
     let problem = Problem::new(holding(file, dimensions)?, composite)
@@ -90,12 +97,30 @@ pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Re
     let (problem, of_rows) = correlated(problem, &file.correlation.0, &blocks)?;
     warnings.extend(of_rows);
     let options = super::options::options(&file.analysis, &problem)?;
-    let costs = costs(file, &problem)?;
+    let costs = costs(file, source, &problem)?;
+    let (losses, setups) = (losses(file, &problem)?, setups(file)?);
     let requirements = requirements(file, &problem)?;
     let problem = requiring(problem, &requirements)?;
     let mut files = data.files();
     files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), source.place.path())));
-    Ok(Built { problem, options, costs, requirements, warnings, data: data.bytes(), files })
+    Ok(Built { problem, options, costs, losses, setups, requirements, warnings, data: data.bytes(), files })
+}
+
+/// Dimensions that are spread evenly over full turns inside a sine or cosine.
+fn full_turns(dimensions: &[Dimension], composite: &Composite) -> Option<Warning> {
+    /// What a band in degrees or a rounded pi may be off a whole number of turns.
+    const OFF: f64 = 1e-4;
+    let turns = |&(d, radians): &(usize, f64)| {
+        let law = dimensions[d].distribution().filter(|law| law.name() == "uniform")?;
+        let [low, high] = law.support();
+        let turns = ((high - low) * radians).abs() / (2.0 * std::f64::consts::PI);
+        (turns > 0.5 && (turns - turns.round()).abs() < OFF).then(|| dimensions[d].name().to_owned())
+    };
+    let mut found: Vec<String> = composite.turning().iter().filter_map(turns).collect();
+    found.dedup();
+    found.sort();
+    found.dedup();
+    (!found.is_empty()).then_some(Warning::PeriodicInput { dimensions: found })
 }
 
 /// What each characteristic must keep.

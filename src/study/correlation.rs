@@ -1,10 +1,10 @@
 //! From `[[correlation]]` to pairs of dimensions that vary together.
 
 use super::error::{Fault, StudyFault, fault};
-use super::file::CorrelationEntry;
 use super::joint::Block;
 use super::spanned::Spanned;
-use crate::correlation::{CorrelationError, Pair, Refusal};
+use super::together::CorrelationEntry;
+use crate::correlation::{self, CorrelationError, Pair, Refusal};
 use crate::problem::Problem;
 use crate::warning::Warning;
 
@@ -15,7 +15,7 @@ const TRIFLE: f64 = 0.001;
 /// What is nearest to impossible is possible only beside it.
 const INSIDE: f64 = 1.0 - 1e-9;
 
-/// The problem with its dimensions correlated: as its pairs say, and as the rows of measured files do.
+/// The problem with its dimensions correlated as its pairs say, as the rows of measured files are, and within zones.
 pub(super) fn correlated(
     problem: Problem,
     entries: &[Spanned<CorrelationEntry>],
@@ -32,7 +32,14 @@ pub(super) fn correlated(
         })?;
     }
     let mut pairs: Vec<Pair> = entries.iter().map(pair).collect();
-    pairs.extend(blocks.iter().flat_map(|block| block.pairs.clone()));
+    let (copulas, joint): (Vec<&Block>, Vec<&Block>) = blocks.iter().partition(|block| block.law.is_none());
+    pairs.extend(copulas.iter().flat_map(|block| block.pairs.clone()));
+    let place = |name: &String| problem.dimensions().iter().position(|dimension| dimension.name() == name);
+    let law = |block: &&Block| {
+        let members = block.dimensions.iter().map(place).collect::<Option<Vec<usize>>>()?;
+        Some(correlation::Block { members, law: block.law.clone()? })
+    };
+    let joint: Vec<correlation::Block> = joint.iter().filter_map(law).collect();
     let at = |error: CorrelationError| {
         let Some(index) = error.pair.filter(|&index| index < entries.len()) else {
             // All pairs together: the first of them has to stand for the whole.
@@ -47,8 +54,8 @@ pub(super) fn correlated(
         fault(span, format!("correlation[{}].{key}", index + 1), StudyFault::Correlation(error.refusal))
     };
     for _ in 0..ROUNDS {
-        match problem.clone().correlated(&pairs) {
-            Ok(problem) => return Ok((problem, moved(&pairs[entries.len()..], blocks))),
+        match problem.clone().jointly(&pairs, joint.clone()) {
+            Ok(problem) => return Ok((problem, moved(&pairs[entries.len()..], &copulas))),
             Err(error) => {
                 if !nearer(&mut pairs, entries.len(), &error) {
                     return Err(at(error));
@@ -56,12 +63,12 @@ pub(super) fn correlated(
             }
         }
     }
-    let problem = problem.correlated(&pairs).map_err(at)?;
-    Ok((problem, moved(&pairs[entries.len()..], blocks)))
+    let problem = problem.jointly(&pairs, joint).map_err(at)?;
+    Ok((problem, moved(&pairs[entries.len()..], &copulas)))
 }
 
 /// The correlation of rows that is farthest off what is taken, where that is more than a trifle.
-fn moved(taken: &[Pair], blocks: &[Block]) -> Option<Warning> {
+fn moved(taken: &[Pair], blocks: &[&Block]) -> Option<Warning> {
     let rows = blocks.iter().flat_map(|block| &block.pairs);
     let off = |(taken, rows): &(&Pair, &Pair)| (taken.value - rows.value).abs();
     let (taken, rows) = taken.iter().zip(rows).max_by(|a, b| off(a).total_cmp(&off(b)))?;
@@ -97,6 +104,9 @@ fn beside_rows(entry: &Spanned<CorrelationEntry>, blocks: &[Block]) -> Option<St
     let (a, b) = entry.get_ref().between.get_ref();
     let block = blocks.iter().find(|block| block.dimensions.iter().any(|name| name == a || name == b))?;
     let [has_a, has_b] = [a, b].map(|name| block.dimensions.contains(name));
+    if has_a && has_b && block.pairs.is_empty() && a != b {
+        return Some(StudyFault::CorrelationInZone { between: [a.clone(), b.clone()] });
+    }
     if has_a && has_b {
         let same = |pair: &&Pair| pair.between.contains(a) && pair.between.contains(b);
         let value = block.pairs.iter().find(same).filter(|_| a != b)?.value;

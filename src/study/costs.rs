@@ -5,10 +5,13 @@ use std::ops::Range;
 use super::dimension;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{CharacteristicEntry, StudyFile};
+use super::grades::graded;
 use super::price::{CostEntry, ProcessEntry, RequireEntry};
+use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use super::words::REQUIREMENTS;
 use crate::allocation::{CostError, Curve, CurveKind, Offer, Priced};
+use crate::assembly::formula::Formula;
 use crate::characteristic::Characteristic;
 use crate::dimension::Dimension;
 use crate::fits::{HeldEnd, held_end};
@@ -69,11 +72,17 @@ struct Group<'f> {
     name: &'f Spanned<String>,
     members: Vec<usize>,
     parts: f64,
-    offers: Vec<Offer>,
+    offers: Offers,
+}
+
+/// The ways of making a part, and the free tolerance of which they are steps or grades.
+struct Offers {
+    all: Vec<Offer>,
+    rounded: Option<Offer>,
 }
 
 /// The groups of dimensions that share a tolerance, each with its cost, in the order of the file.
-pub(super) fn costs(file: &StudyFile, problem: &Problem) -> Result<Vec<Priced>, Fault> {
+pub(super) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Result<Vec<Priced>, Fault> {
     let names: Vec<&str> = file.costs.0.iter().map(|(name, _)| name.get_ref().as_str()).collect();
     let mut groups: Vec<Group<'_>> = Vec::new();
     for (name, entry) in &file.costs.0 {
@@ -84,8 +93,7 @@ pub(super) fn costs(file: &StudyFile, problem: &Problem) -> Result<Vec<Priced>, 
             continue;
         }
         let (members, parts) = members(file, problem, name, &key)?;
-        let present = problem.dimensions()[members[0]].half_band();
-        let offers = offers(entry, name, &key, present)?;
+        let offers = offers(entry, source, name, &key, &problem.dimensions()[members[0]])?;
         groups.push(Group { name, members, parts, offers });
     }
     for (name, entry) in &file.costs.0 {
@@ -113,21 +121,26 @@ pub(super) fn costs(file: &StudyFile, problem: &Problem) -> Result<Vec<Priced>, 
     }
     let priced = |Group { name, members, parts, offers }: Group<'_>| {
         let at = |error| fault(name.span(), format!("costs.{}", name.get_ref()), StudyFault::Cost(error));
-        Priced::new(members, offers).map(|priced| Priced { parts, ..priced }).map_err(at)
+        let Offers { all, rounded } = offers;
+        Priced::new(members, all).map(|priced| Priced { parts, ..priced }.rounding(rounded)).map_err(at)
     };
     groups.into_iter().map(priced).collect()
 }
 
-/// Model, `same_as` and processes exclude each other.
+/// Model, formula, table, `same_as` and processes exclude each other.
 fn one_form(entry: &CostEntry, name: &Spanned<String>, key: &str) -> Result<(), Fault> {
-    let forms: [(&'static str, Option<Range<usize>>); 3] = [
+    let forms: [(&'static str, Option<Range<usize>>); 5] = [
         ("model", entry.model.as_ref().map(Spanned::span)),
+        ("formula", entry.formula.as_ref().map(Spanned::span)),
+        ("table", entry.table.as_ref().map(Spanned::span)),
         ("same_as", entry.same_as.as_ref().map(Spanned::span)),
         ("processes", entry.processes.as_ref().map(Spanned::span)),
     ];
     let mut given = forms.into_iter().filter_map(|(form, span)| Some((form, span?)));
     let Some((first, _)) = given.next() else {
-        let instead = "write model = \"reciprocal\" with a and b, same_as = another dimension, or processes".to_owned();
+        let instead =
+            "write model = \"reciprocal\" with a and b, a formula of T, a table, same_as = another dimension, or processes"
+                .to_owned();
         return Err(fault(name.span(), key, StudyFault::MissingKey { key: "model".into(), instead }));
     };
     if let Some((second, span)) = given.next() {
@@ -143,14 +156,28 @@ fn one_form(entry: &CostEntry, name: &Spanned<String>, key: &str) -> Result<(), 
         ("max", &entry.max),
         ("step", &entry.step),
     ];
-    let number = numbers.iter().find_map(|(number, value)| Some((*number, value.as_ref()?)));
-    if let Some((number, value)) = number.filter(|_| first != "model") {
+    let numbers = numbers.iter().filter_map(|(number, value)| Some((*number, value.as_ref()?.span())));
+    let grades = entry.grades.as_ref().map(|grades| ("grades", grades.span()));
+    let constant = |name: &str| ["a", "b", "k", "c"].contains(&name);
+    let idle = |(name, _): &(&'static str, Range<usize>)| match first {
+        "model" => false,
+        "formula" | "table" => constant(name),
+        _ => true,
+    };
+    if let Some((name, span)) = numbers.chain(grades).find(idle) {
         let (to, instead) = match first {
             "same_as" => ("a cost that is another's", "write it at the dimension that has the cost"),
-            _ => ("a list of processes", "write it within a process"),
+            "processes" => ("a list of processes", "write it within a process"),
+            "formula" => ("a cost that is a formula", "write the number into the formula"),
+            _ => ("a cost that is a table", "write the costs into the table"),
         };
-        let apart = StudyFault::DoesNotApply { key: number, to: to.to_owned(), instead };
-        return Err(fault(value.span(), format!("{key}.{number}"), apart));
+        let apart = StudyFault::DoesNotApply { key: name, to: to.to_owned(), instead };
+        return Err(fault(span, format!("{key}.{name}"), apart));
+    }
+    if let (Some(_), Some(grades)) = (&entry.step, &entry.grades) {
+        let why = "say two things: leave one out".to_owned();
+        let two = StudyFault::Conflict { a: "step", b: "grades", why };
+        return Err(fault(grades.span(), format!("{key}.grades"), two));
     }
     Ok(())
 }
@@ -193,17 +220,43 @@ struct Numbers<'e> {
     max: &'e Option<Spanned<f64>>,
 }
 
-fn offers(entry: &CostEntry, name: &Spanned<String>, key: &str, present: f64) -> Result<Vec<Offer>, Fault> {
+fn offers(
+    entry: &CostEntry,
+    source: &Source,
+    name: &Spanned<String>,
+    key: &str,
+    dimension: &Dimension,
+) -> Result<Offers, Fault> {
     let CostEntry { model, a, b, k, c, min, max, processes, .. } = entry;
     let Some(processes) = processes else {
         let numbers = Numbers { model, a, b, k, c, min, max };
-        let offer = numbers.offer(key, &name.span(), Some(present))?;
-        return match &entry.step {
-            Some(step) => {
-                stepped(&offer, *step.get_ref()).map_err(|error| fault(step.span(), format!("{key}.step"), error))
-            }
-            None => Ok(vec![offer]),
+        let present = dimension.half_band();
+        let offer = match written(entry, source, key)? {
+            Some(curve) => numbers.offer_of(curve, key, &name.span(), present)?,
+            None => numbers.offer(key, &name.span(), Some(present))?,
         };
+        let all = match (&entry.step, &entry.grades) {
+            (Some(step), _) => {
+                let at = |error| fault(step.span(), format!("{key}.step"), error);
+                stepped(&offer, *step.get_ref()).map_err(at)?
+            }
+            (None, Some(grades)) => {
+                let at = |error| fault(grades.span(), format!("{key}.grades"), error);
+                let bounds = [min, max].map(|bound| bound.as_ref().map(|bound| *bound.get_ref()));
+                graded(&offer.curve, grades.get_ref(), bounds, dimension).map_err(at)?
+            }
+            _ => return Ok(Offers { all: vec![offer], rounded: None }),
+        };
+        // Steps lie between the bounds; grades have bounds of their own.
+        let rounded = match entry.step {
+            Some(_) => Some(offer),
+            None => {
+                let least = all.iter().map(|one| one.min).fold(f64::INFINITY, f64::min);
+                let most = all.iter().map(|one| one.max).fold(0.0, f64::max);
+                Offer::between(offer.curve, least, most).ok()
+            }
+        };
+        return Ok(Offers { all, rounded });
     };
     if processes.get_ref().is_empty() {
         return Err(fault(processes.span(), format!("{key}.processes"), CostError::NoProcess));
@@ -249,11 +302,26 @@ fn offers(entry: &CostEntry, name: &Spanned<String>, key: &str, present: f64) ->
                 return Err(fault(span, key, StudyFault::MissingKey { key: missing.into(), instead }));
             }
         };
-        offers.push(offer);
+        offers.push(match &process.machine {
+            Some(machine) => offer.on(machine.get_ref()),
+            None => offer,
+        });
     }
     // The loosest first, so that neighbours in the list are neighbours in cost.
     offers.sort_by(|x, y| (y.max, y.min).partial_cmp(&(x.max, x.min)).unwrap_or(std::cmp::Ordering::Equal));
-    Ok(offers)
+    Ok(Offers { all: offers, rounded: None })
+}
+
+/// The cost as a formula or a table.
+fn written(entry: &CostEntry, source: &Source, key: &str) -> Result<Option<Curve>, Fault> {
+    if let Some(formula) = &entry.formula {
+        let at = |error| in_formula(source, formula.span(), format!("{key}.formula"), error);
+        return Formula::parse(formula.get_ref()).and_then(Curve::formula).map(Some).map_err(at);
+    }
+    let of_table = |table: &Spanned<Vec<[f64; 2]>>| {
+        Curve::table(table.get_ref()).map_err(|error| fault(table.span(), format!("{key}.table"), error))
+    };
+    entry.table.as_ref().map(of_table).transpose()
 }
 
 /// The most steps between the least and the greatest half band: more of them are as good as a free tolerance.
@@ -274,7 +342,7 @@ fn stepped(offer: &Offer, step: f64) -> Result<Vec<Offer>, StudyFault> {
     }
     let multiple = |index: usize| {
         let t = (last - index as f64) * step;
-        Ok(Offer { curve: Curve::fixed(offer.curve.cost(t))?, ..Offer::between(offer.curve, t, t)? })
+        Offer::between(Curve::fixed(offer.curve.cost(t))?, t, t)
     };
     (0..=(last - first) as usize).map(multiple).collect::<Result<_, CostError>>().map_err(StudyFault::from)
 }
@@ -355,6 +423,20 @@ impl Numbers<'_> {
             CurveKind::Exponential => Curve::exponential(a, b, needed("c", self.c)?),
             _ => Curve::reciprocal(a, b),
         };
+        let curve = curve.map_err(|error| self.at_number(error, key, line))?;
+        self.between(curve, key, line, present)
+    }
+
+    /// The same of a formula or a table, whose ends are its bounds unless others are given.
+    fn offer_of(&self, curve: Curve, key: &str, line: &Range<usize>, present: f64) -> Result<Offer, Fault> {
+        let Some([least, greatest]) = curve.range() else { return self.between(curve, key, line, Some(present)) };
+        let bound = |given: &Option<Spanned<f64>>, end: f64| given.as_ref().map_or(end, |given| *given.get_ref());
+        Offer::between(curve, bound(self.min, least), bound(self.max, greatest))
+            .map_err(|error| self.at_number(error, key, line))
+    }
+
+    /// A curve between the bounds that are given, or default to the present half band, where they may.
+    fn between(&self, curve: Curve, key: &str, line: &Range<usize>, present: Option<f64>) -> Result<Offer, Fault> {
         let bound = |given: &Option<Spanned<f64>>, factor: f64| {
             given.as_ref().map_or(present.unwrap_or(f64::NAN) * factor, |given| *given.get_ref())
         };
@@ -367,21 +449,27 @@ impl Numbers<'_> {
         } else if self.max.is_none() {
             max = max.max(min);
         }
-        curve.and_then(|curve| Offer::between(curve, min, max)).map_err(|error| {
-            let (name, value) = match error {
-                CostError::Negative { name, .. } | CostError::NotPositive { name, .. } => (
-                    name,
-                    match name {
-                        "a" => self.a,
-                        "b" => self.b,
-                        "k" => self.k,
-                        _ => self.c,
-                    },
-                ),
-                CostError::Tolerance { name: "min", .. } => ("min", self.min),
-                _ => ("max", self.max),
-            };
-            fault(value.as_ref().map_or(line.clone(), Spanned::span), format!("{key}.{name}"), error)
-        })
+        Offer::between(curve, min, max).map_err(|error| self.at_number(error, key, line))
+    }
+
+    /// A fault at the number that it speaks of.
+    fn at_number(&self, error: CostError, key: &str, line: &Range<usize>) -> Fault {
+        let (name, value) = match error {
+            CostError::Negative { name, .. } | CostError::NotPositive { name, .. } => (
+                name,
+                match name {
+                    "a" => self.a,
+                    "b" => self.b,
+                    "k" => self.k,
+                    _ => self.c,
+                },
+            ),
+            CostError::Tolerance { name: "min", .. } | CostError::OutsideTable { name: "min", .. } => ("min", self.min),
+            CostError::NoValue { .. } | CostError::BelowZero { .. } | CostError::Rising { .. } => {
+                return fault(line.clone(), key, error);
+            }
+            _ => ("max", self.max),
+        };
+        fault(value.as_ref().map_or(line.clone(), Spanned::span), format!("{key}.{name}"), error)
     }
 }

@@ -67,7 +67,7 @@ pub enum DataProblem {
         expected: usize,
     },
     /// A cell that is neither a number nor empty.
-    #[error("`{text}` is no number")]
+    #[error("`{text}` is not a number")]
     NoNumber {
         /// The cell.
         text: String,

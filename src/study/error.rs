@@ -4,8 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::data::DataFault;
-use super::slip::{Slip, percent};
-use super::words::CORRELATIONS;
+use super::slip::Slip;
 use crate::allocation::CostError;
 use crate::assembly::NoColumn;
 use crate::assembly::formula::FormulaFault;
@@ -13,13 +12,11 @@ use crate::assembly::implicit::ConditionsError;
 use crate::characteristic::LimitsError;
 use crate::correlation::Refusal;
 use crate::dimension::DimensionFault;
-use crate::distribution::DistributionError;
 use crate::fits::FitError;
 use crate::method::MethodError;
 use crate::names::UnknownName;
 use crate::problem::ProblemError;
 use crate::requirement::RequirementError;
-use crate::warning::Advice;
 
 /// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -269,7 +266,7 @@ pub enum StudyFault {
         path: Vec<String>,
     },
     /// A configuration of something else.
-    #[error("configuration `{configuration}` sets `{name}`, which is no dimension or constant")]
+    #[error("configuration `{configuration}` sets `{name}`, which is not a dimension or constant")]
     UnknownConfigured {
         /// The configuration.
         configuration: String,
@@ -302,9 +299,53 @@ pub enum StudyFault {
         /// The correlation of the rows.
         value: f64,
     },
+    /// A correlation of two dimensions of one zone.
+    #[error("`{}` and `{}` lie within one zone, which says how they vary together", between[0], between[1])]
+    CorrelationInZone {
+        /// The dimensions.
+        between: [String; 2],
+    },
+    /// A joint block of too few or too many dimensions.
+    #[error("{}, and `of` names {found}", match law { Some(law) => format!("a {law} is of two dimensions"), None => "rows are of two dimensions or more".to_owned() })]
+    JointCount {
+        /// The law of the zone; None of measured rows.
+        law: Option<String>,
+        /// How many dimensions there are.
+        found: usize,
+    },
+    /// A dimension of two blocks.
+    #[error("`{name}` belongs to another [[joint]] already")]
+    JointTwice {
+        /// The dimension.
+        name: String,
+    },
+    /// A dimension of a measured block whose values come from elsewhere.
+    #[error("`{name}` is not measured in {file:?}")]
+    JointFile {
+        /// The dimension.
+        name: String,
+        /// The file of the block.
+        file: String,
+    },
+    /// A dimension of a zone without a band.
+    #[error("`{name}` has no tolerance: the half width of the {law} is unknown")]
+    JointBand {
+        /// The dimension.
+        name: String,
+        /// The law of the zone.
+        law: String,
+    },
+    /// A dimension of a zone with a distribution of its own.
+    #[error("`{name}` has a distribution, and the {law} says how it varies")]
+    JointDistribution {
+        /// The dimension.
+        name: String,
+        /// The law of the zone.
+        law: String,
+    },
     /// A correlation of a measured dimension that varies with others of its file, and one beside them.
     #[error(
-        "`{inside}` varies with {others} as the rows of their file say, so that nothing else is correlated with it"
+        "`{inside}` varies with {others} as their rows or their zone say, so that nothing else is correlated with it"
     )]
     CorrelationBesideRows {
         /// The dimension.
@@ -414,6 +455,22 @@ pub enum StudyFault {
         /// The greatest.
         max: f64,
     },
+    /// Grades from a coarser to a finer one.
+    #[error("the grades go from {first} to {last}: write the finer one first")]
+    OutOfOrder {
+        /// The first.
+        first: String,
+        /// The last.
+        last: String,
+    },
+    /// No grade between the bounds.
+    #[error("no half of a grade from {first} to {last} lies between min and max")]
+    NoGrade {
+        /// The first.
+        first: String,
+        /// The last.
+        last: String,
+    },
     /// More steps than a list should have.
     #[error(
         "a step of {step} makes {count} tolerances between min and max, and {most} are the most: raise the step or leave it out"
@@ -443,109 +500,6 @@ impl From<UnknownName> for StudyFault {
     fn from(UnknownName { what, name, nearest, known }: UnknownName) -> Self {
         let known = known.into_iter().map(str::to_owned).collect();
         Self::UnknownWord { what, found: name, nearest, known }
-    }
-}
-
-impl StudyFault {
-    /// What to do about it, beside changing what is written.
-    pub(crate) fn advice(&self) -> Vec<Advice> {
-        if let Self::Method(error) = self { error.advice() } else { Vec::new() }
-    }
-
-    /// What to write instead, where that can be said.
-    pub(crate) fn help(&self) -> Option<String> {
-        let meant = |name: &String| format!("did you mean `{name}`?");
-        let one_of = |known: &[String]| format!("it is one of {}", known.join(", "));
-        match self {
-            Self::IsFolder { within: Some(study) } => Some(format!("did you mean {study}?")),
-            Self::UnknownFormat { beside: Some(study) } => Some(format!("did you mean {study}?")),
-            Self::WrongType { expected, .. } if expected == CORRELATIONS => {
-                Some("write three lines for each pair:\n[[correlation]]\nbetween = [\"a\", \"b\"]\nvalue = 0.9".into())
-            }
-            Self::Syntax { slip, .. } => slip.as_ref().map(ToString::to_string),
-            Self::WrongType { expected, found } => Slip::of_value(expected, found).map(|slip| slip.to_string()),
-            Self::IsFolder { within: None } => Some("name the study file in it".into()),
-            Self::UnknownKey { nearest: Some(name), .. } | Self::UnknownWord { nearest: Some(name), .. } => {
-                Some(meant(name))
-            }
-            Self::UnknownKey { valid, .. } if valid.is_empty() => None,
-            Self::UnknownKey { valid, .. } => Some(format!("keys are {}", valid.join(", "))),
-            Self::UnknownWord { known, .. } if known.is_empty() => None,
-            Self::UnknownWord { known, .. } => Some(one_of(known)),
-            Self::UnknownInput { nearest, known, .. } => {
-                let nearest = nearest.as_ref().map(|name| format!("did you mean `{name}`? ")).unwrap_or_default();
-                Some(format!("{nearest}its inputs are {}", known.join(", ")))
-            }
-            Self::MissingKey { instead, .. } => Some(instead.clone()),
-            Self::DoesNotApply { instead, .. } => Some((*instead).to_owned()),
-            Self::NotFinite { .. } => Some("write a finite number, or leave out a limit that does not exist".into()),
-            Self::Swapped { lower, upper } if lower > upper => Some(format!("write [{upper}, {lower}]")),
-            Self::Swapped { .. } => Some("a value that does not vary needs no tolerance".into()),
-            Self::Dimension(DimensionFault::NegativeTolerance { value }) => {
-                Some(format!("write {} for a band on both sides, [{value}, 0] for one below", -value))
-            }
-            Self::Dimension(DimensionFault::Unresolvable { .. }) => {
-                Some("measure from a nearer datum, or leave the tolerance out".into())
-            }
-            Self::Fit(error) => error.help(),
-            Self::Dimension(DimensionFault::Distribution(
-                DistributionError::InfiniteMoment { .. } | DistributionError::Pearson(_),
-            )) => Some("leave model out: the values themselves have all moments".into()),
-            Self::Data(fault) => fault.problem.help(),
-            Self::Limits(LimitsError::ImpossibleYield { value }) if *value > 1.0 && *value <= 100.0 => {
-                Some(format!("write {} for {value} %", percent(*value)))
-            }
-            Self::Limits(LimitsError::Swapped { .. }) | Self::Cost(CostError::Swapped { .. }) => {
-                Some("exchange them".into())
-            }
-            Self::SameAsItself { .. } => Some("name another dimension, or write a model or processes".into()),
-            Self::SameAsChain { end, .. } => {
-                Some(format!("write same_as = \"{end}\" where that has a cost, or give one of them a cost"))
-            }
-            Self::Cost(CostError::NoProcess) => {
-                Some("write some, such as { name = \"grind\", tolerance = 0.002, cost = 19.4 }".into())
-            }
-            Self::Cost(CostError::Rising { .. }) => {
-                Some("leave out the dearer process that holds less, or correct its cost".into())
-            }
-            Self::Requirement(RequirementError::NoLimits { .. }) => Some("write lower, upper or both".into()),
-            Self::Requirement(RequirementError::ImpossibleYield { value }) if *value >= 1.0 => {
-                Some("only a worst case promises that: require = \"worst-case\"".into())
-            }
-            Self::Conditions(ConditionsError::Unbalanced { .. }) => Some(
-                "as many equations as unknowns are needed; a loop counts for two, one along x and one along y".into(),
-            ),
-            Self::Conditions(ConditionsError::EmptyLoop { .. }) => Some(
-                "write its vectors, such as [ { length = \"a\", angle = 0 }, { length = \"b\", angle = \"phi\" } ]"
-                    .into(),
-            ),
-            Self::Conditions(ConditionsError::Undetermined { .. }) => {
-                Some("use it in an equation or a loop, or write it as a constant".into())
-            }
-            Self::Formula(fault) => fault.help(),
-            Self::ReservedName { .. } => Some("choose another name".into()),
-            Self::UnknownConfigured { nearest: Some(name), .. } => Some(format!("nearest: `{name}`")),
-            Self::UnknownConfigured { known, .. } => Some(one_of(known)),
-            Self::ConfiguredLimits { .. } => Some("write tolerance or fit in place of limits".into()),
-            Self::FromCircle { .. } => Some("measure one of them from a datum: leave out its `from`".into()),
-            Self::CorrelationOfRows { .. } => Some("leave it out, or write joint = false at one of the two".into()),
-            Self::CorrelationBesideRows { inside, .. } => {
-                Some(format!("leave the pair out, or write joint = false at `{inside}`"))
-            }
-            Self::Units { remedy, .. } => Some(remedy.clone()),
-            Self::ReservedConfiguration => Some("choose another name".into()),
-            Self::DimensionAndFormula { .. } => Some("leave one out".into()),
-            Self::DrivenByOutput { .. } => Some("use dimensions, constants and other formulas".into()),
-            Self::IdleFormula { .. } => Some("name it in [model] inputs, or leave it out".into()),
-            Self::NameTaken { .. } => Some("one of the two needs another name".into()),
-            Self::Nothing { what: "dimension" } => {
-                Some("write one a line below [dimensions], such as `a = { nominal = 10.0, tolerance = 0.3 }`".into())
-            }
-            Self::Nothing { .. } => Some(
-                "write one a line below [characteristics], such as `gap = { formula = \"a - b\", lower = 0.1 }`".into(),
-            ),
-            _ => None,
-        }
     }
 }
 

@@ -4,11 +4,11 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use super::price::{CostEntry, RequireEntry};
+use super::price::{CostEntry, LossEntry, RequireEntry};
 #[cfg(feature = "cli")]
 use super::registry;
 use super::spanned::Spanned;
-use super::words::CORRELATIONS;
+use super::together::{Correlations, Joints};
 use serde::de::{IgnoredAny, MapAccess, SeqAccess, Visitor, value};
 use serde::{Deserialize, Deserializer};
 
@@ -17,6 +17,32 @@ use super::values::{NominalEntry, ToleranceEntry};
 use crate::method::{ACCURACY, Options};
 
 /// A whole study file.
+/// The section `[about]`.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct AboutEntry {
+    /// The part or assembly.
+    part: Option<String>,
+    /// The number of the drawing.
+    drawing: Option<String>,
+    /// The revision of the drawing.
+    revision: Option<String>,
+    /// Who made the study.
+    author: Option<String>,
+    /// Anything else, in one line.
+    note: Option<String>,
+}
+
+impl AboutEntry {
+    /// The cells that have a text, in their order on a drawing.
+    pub(super) fn cells(self) -> Vec<(&'static str, String)> {
+        let Self { part, drawing, revision, author, note } = self;
+        let all = [("Part", part), ("Drawing", drawing), ("Revision", revision), ("Author", author), ("Note", note)];
+        all.into_iter().filter_map(|(name, text)| Some((name, text?))).collect()
+    }
+}
+
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "cli", schemars(title = "Study of sensitol", extend("required" = ["dimensions", "characteristics"])))]
@@ -27,6 +53,9 @@ pub(super) struct StudyFile {
     pub(super) _schema: Option<String>,
     /// What the study is about, in one line.
     pub(super) title: Option<String>,
+    /// What the title block of pages says: part, drawing, revision, author, a note.
+    #[serde(default)]
+    pub(super) about: AboutEntry,
     /// How units are held: labels (not at all), warn, check (units that do not go together are errors) or convert (every name times its
     /// factor to SI, results to their own unit).
     #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::unit_modes(), "default" = registry::unit_modes()[1])))]
@@ -58,9 +87,18 @@ pub(super) struct StudyFile {
     /// closes about its middle, so that no mean moves because a tolerance does.
     #[serde(default)]
     pub(super) costs: Entries<CostEntry>,
+    /// What machines cost to set up, by name: paid once for all dimensions whose processes need them.
+    #[serde(default)]
+    pub(super) setup: Entries<f64>,
+    /// What deviations and rejects of characteristics cost, which `sensitol allocate` adds to the tolerances' cost, per assembly.
+    #[serde(default)]
+    pub(super) loss: Entries<LossEntry>,
     /// Pairs of dimensions that vary together.
     #[serde(default)]
     pub(super) correlation: Correlations,
+    /// Blocks of dimensions that vary together as a whole: rows of a measured file, or points within a zone.
+    #[serde(default)]
+    pub(super) joint: Joints,
     /// Sizes of one assembly by name: nominal values and constants that take the place of those of the study, such as
     /// small = { L = 40, D = 8 }; or file = "sizes.csv", whose first column is the name.
     #[serde(default, rename = "configurations")]
@@ -273,21 +311,6 @@ pub(super) struct CharacteristicEntry {
     pub(super) require: Option<Spanned<RequireEntry>>,
 }
 
-/// Every `[[correlation]]`, in the order of the file.
-#[derive(Debug, Default)]
-pub(super) struct Correlations(pub(super) Vec<Spanned<CorrelationEntry>>);
-
-/// One `[[correlation]]`.
-#[derive(Debug, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, expecting = "a table such as { between = [\"a\", \"b\"], value = 0.4 }")]
-pub(super) struct CorrelationEntry {
-    /// The two dimensions.
-    pub(super) between: Spanned<(String, String)>,
-    /// Their coefficient of correlation, from -1 to 1.
-    pub(super) value: Spanned<f64>,
-}
-
 /// `[model]`.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -367,7 +390,8 @@ pub(super) struct AnalysisEntry {
     /// Seed of random numbers, for what draws some.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::SEED)))]
     pub(super) seed: Option<Spanned<u64>>,
-    /// The share of assemblies that must keep the limits of all characteristics at once, between 0 and 1; what --check looks at too.
+    /// The share of assemblies that must keep the limits of all characteristics at once, between 0 and 1; what --check looks at too, and what
+    /// allocate keeps.
     pub(super) target_joint_yield: Option<Spanned<f64>>,
     /// How many check points of a costly model verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
     /// verification.
@@ -439,24 +463,6 @@ impl<'de> Deserialize<'de> for WordOrTable {
             }
         }
         deserializer.deserialize_any(Distribution)
-    }
-}
-
-impl<'de> Deserialize<'de> for Correlations {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct List;
-        impl<'de> Visitor<'de> for List {
-            type Value = Correlations;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(CORRELATIONS)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
-                Vec::deserialize(value::SeqAccessDeserializer::new(seq)).map(Correlations)
-            }
-        }
-        deserializer.deserialize_any(List)
     }
 }
 

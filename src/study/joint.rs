@@ -1,12 +1,13 @@
 //! Columns of measured files whose rows belong together: of one file, or of several that a serial number joins.
 
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use super::data::{Data, DataFault, DataProblem};
 use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{DimensionEntry, StudyFile};
 use super::spanned::Spanned;
-use crate::correlation::Pair;
+use crate::correlation::{JointLaw, Pair, Rows};
 use crate::names::nearest;
 use crate::warning::Warning;
 
@@ -15,11 +16,13 @@ const LEAST: usize = 5;
 /// Lines that a warning names.
 const NAMED: usize = 5;
 
-/// Dimensions that are measured on the same parts.
+/// Dimensions that are measured on the same parts, or lie within one zone.
 pub(super) struct Block {
     pub(super) dimensions: Vec<String>,
-    /// The correlation of every two of them in the rows that all have.
+    /// The correlation of every two of them in the rows that all have; none of a zone.
     pub(super) pairs: Vec<Pair>,
+    /// How they vary together; None where that is by the normal copula of `pairs`.
+    pub(super) law: Option<JointLaw>,
 }
 
 /// A dimension that is measured, as the study names it.
@@ -126,7 +129,12 @@ fn block(group: &[Member<'_>], data: &mut Data<'_>) -> Result<Option<Block>, Fau
             }
         }
     }
-    Ok(Some(Block { dimensions: names, pairs }))
+    // A fitted law has no rows: they vary together by a copula.
+    let fitted =
+        group.iter().any(|member| member.entry.model.as_ref().is_some_and(|model| model.get_ref() == "pearson"));
+    let still = |column: &Vec<f64>| column.iter().all(|value| *value == column[0]);
+    let law = (!fitted && !rows.iter().any(still)).then(|| JointLaw::Rows(Arc::new(Rows::of(&rows))));
+    Ok(Some(Block { dimensions: names, pairs, law }))
 }
 
 /// The number of the part in every line.

@@ -49,28 +49,34 @@ mod expand;
 mod externals;
 mod file;
 mod files;
+mod grades;
 mod implicit;
 mod joint;
 mod lines;
+mod loss;
 mod model;
 mod options;
 mod place;
 mod price;
 #[cfg(feature = "cli")]
 mod registry;
+mod remedy;
 mod rewrite;
 #[cfg(feature = "cli")]
 pub(crate) mod schema;
 mod slip;
 mod source;
 mod spanned;
+mod states;
 mod sweep;
+mod together;
 mod tree;
 mod units;
 mod values;
 mod words;
 pub(crate) mod write;
 mod written;
+mod zone;
 
 pub use data::{DataFault, DataProblem};
 pub use error::{StudyError, StudyFault};
@@ -89,7 +95,7 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-use crate::allocation::{AllocationTask, Priced};
+use crate::allocation::{AllocationTask, Priced, QualityLoss, SetUp};
 use crate::characteristic::Characteristic;
 use crate::method::Options;
 use crate::problem::Problem;
@@ -116,6 +122,10 @@ pub struct Study {
     pub lines: Vec<(String, Vec<(String, String)>)>,
     /// What tolerances cost, by groups that share one.
     pub costs: Vec<Priced>,
+    /// What deviations and rejects cost.
+    pub losses: Vec<QualityLoss>,
+    /// What machines cost to set up.
+    pub setups: Vec<SetUp>,
     /// What characteristics must keep, by name.
     pub requirements: Vec<(String, Requirement)>,
     /// What is legal but most likely not meant.
@@ -125,6 +135,8 @@ pub struct Study {
     pub sha256: String,
     /// The files that it names, in the order of the dimensions, those of the model last.
     pub files: Vec<NamedFile>,
+    /// What the title block of pages says, from the section `[about]`: name and text of every cell.
+    pub about: Vec<(&'static str, String)>,
     /// The names of its configurations.
     pub configurations: Vec<String>,
     /// The study in plain keys, as TOML: what stands for relative dimensions is written out, each with its origin as comment, and a
@@ -150,6 +162,8 @@ impl Study {
         };
         let requirements = self.problem.characteristics().iter().map(of).collect();
         AllocationTask::new(self.costs.clone(), requirements)
+            .with_losses(self.losses.clone())
+            .with_setups(self.setups.clone())
     }
 
     /// Reads a `.toml` or `.json` file.
@@ -280,6 +294,7 @@ impl Study {
         built.data.iter().for_each(|bytes| hash.update(bytes));
         Ok(Self {
             title: file.title,
+            about: file.about.cells(),
             problem: built.problem,
             options: built.options,
             seed: file.analysis.seed.map(spanned::Spanned::into_inner),
@@ -287,6 +302,8 @@ impl Study {
             expanded: expanded.toml(text),
             configurations: expanded.configurations,
             costs: built.costs,
+            losses: built.losses,
+            setups: built.setups,
             requirements: built.requirements,
             warnings: built.warnings,
             files: built.files,

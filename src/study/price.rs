@@ -12,7 +12,7 @@ use super::spanned::Spanned;
 /// One line of `[costs]`.
 #[derive(Debug, Default, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[cfg_attr(feature = "cli", schemars(extend("oneOf" = registry::one_of(["model", "same_as", "processes"]))))]
+#[cfg_attr(feature = "cli", schemars(extend("oneOf" = registry::one_of(["model", "formula", "table", "same_as", "processes"]))))]
 #[serde(deny_unknown_fields, expecting = "a table such as { model = \"reciprocal\", a = 1.0, b = 0.1 }")]
 pub(super) struct CostEntry {
     /// The cost over the half band T: reciprocal a + b/T, reciprocal-power a + b/T^k, exponential a + b exp(-T/c).
@@ -27,12 +27,18 @@ pub(super) struct CostEntry {
     pub(super) k: Option<Spanned<f64>>,
     /// Of an exponential cost the half band over which it falls to 1/e.
     pub(super) c: Option<Spanned<f64>>,
-    /// Least half band; a tenth of the present one unless given.
+    /// The cost as a formula of T, the half band in the unit of the dimension, in place of a model: "0.02/T + 0.0004/T^2".
+    pub(super) formula: Option<Spanned<String>>,
+    /// The cost as points [half band, cost], in place of a model; between two of them it is a straight line in 1/T.
+    pub(super) table: Option<Spanned<Vec<[f64; 2]>>>,
+    /// Least half band; a tenth of the present one unless given, and the least of a table.
     pub(super) min: Option<Spanned<f64>>,
-    /// Greatest half band; ten times the present one unless given.
+    /// Greatest half band; ten times the present one unless given, and the greatest of a table.
     pub(super) max: Option<Spanned<f64>>,
     /// Tolerances are whole multiples of this half band.
     pub(super) step: Option<Spanned<f64>>,
+    /// Tolerances are standard grades of ISO 286-1 for the nominal size, from the first to the last: ["IT6", "IT10"]; half bands are half of them.
+    pub(super) grades: Option<Spanned<[String; 2]>>,
     /// The end of the band that stays where it is, `lower` or `upper`; that of a fit unless given, and the middle otherwise.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = ["lower", "upper", "middle"])))]
     pub(super) fixed_side: Option<Spanned<String>>,
@@ -40,6 +46,19 @@ pub(super) struct CostEntry {
     pub(super) same_as: Option<Spanned<String>>,
     /// The processes that compete for it.
     pub(super) processes: Option<Spanned<Vec<Spanned<ProcessEntry>>>>,
+}
+
+/// One line of `[loss]`.
+#[derive(Debug, Default, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, expecting = "a table such as { k = 40.0, target = 0.0 }")]
+pub(super) struct LossEntry {
+    /// Cost per square of the deviation from the target: k (sigma^2 + (mean - target)^2).
+    pub(super) k: Option<Spanned<f64>>,
+    /// The value from which deviations count; the middle of two limits unless given.
+    pub(super) target: Option<Spanned<f64>>,
+    /// Cost of an assembly that breaks a limit.
+    pub(super) scrap: Option<Spanned<f64>>,
 }
 
 /// A process: one half band at one cost, or a range of them with a cost that follows.
@@ -53,6 +72,8 @@ pub(super) struct ProcessEntry {
     pub(super) tolerance: Option<Spanned<f64>>,
     /// What a part costs.
     pub(super) cost: Option<Spanned<f64>>,
+    /// The machine that it needs: its cost in [setup] is paid once for all dimensions that need it.
+    pub(super) machine: Option<Spanned<String>>,
     /// The cost over a range of half bands, as of a dimension.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::cost_models())))]
     pub(super) model: Option<Spanned<String>>,

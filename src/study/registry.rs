@@ -55,6 +55,11 @@ pub(super) fn measured_models() -> Vec<&'static str> {
     MEASURED_MODELS.to_vec()
 }
 
+/// The zones of a joint block.
+pub(super) fn zones() -> Vec<&'static str> {
+    words::ZONES.to_vec()
+}
+
 /// The names of all cost models.
 pub(super) fn cost_models() -> Vec<&'static str> {
     CurveKind::NAMED.iter().map(|(name, _)| *name).collect()

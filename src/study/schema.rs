@@ -9,11 +9,9 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
-use super::file::{
-    ConstantEntry, CorrelationEntry, Correlations, Entries, FormulaEntry, PairsEntry, StudyFile, TermEntry,
-    UnknownEntry,
-};
+use super::file::{ConstantEntry, Entries, FormulaEntry, PairsEntry, StudyFile, TermEntry, UnknownEntry};
 use super::price::{RequireEntry, RequireTable};
+use super::together::{CorrelationEntry, Correlations, JointEntry, Joints};
 use super::values::{Deviation, NominalEntry, ToleranceEntry};
 use super::words::REQUIREMENTS;
 use crate::method::Pairs;
@@ -227,6 +225,20 @@ impl JsonSchema for Correlations {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": "array", "items": generator.subschema_for::<CorrelationEntry>() })
+    }
+}
+
+impl JsonSchema for Joints {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Joints".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "array", "items": generator.subschema_for::<JointEntry>() })
     }
 }
 

@@ -11,6 +11,11 @@ pub(super) const REQUIREMENTS: [&str; 2] = ["worst-case", "rss"];
 /// What `[[correlation]]` must be.
 pub(super) const CORRELATIONS: &str = "a list, each pair of dimensions below its own [[correlation]],";
 
+/// What `[[joint]]` must be.
+pub(super) const BLOCKS: &str = "a list, each block of dimensions below its own [[joint]],";
+/// The zones of `[[joint]]`.
+pub(super) const ZONES: [&str; 3] = ["disc", "rim", "diamond"];
+
 /// A kind of distribution by its name in study files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {

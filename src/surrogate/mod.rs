@@ -8,16 +8,21 @@
 
 mod chaos;
 mod correlated;
+mod drawn;
 mod inputs;
+mod normal_slopes;
 mod parabolas;
+mod pooled;
 mod relocation;
 mod sampled;
+mod setting;
 mod shape;
 mod univariate;
 mod values;
 
 pub(crate) use chaos::{Chaos, Places, Sparse};
 pub use inputs::Inputs;
+pub(crate) use pooled::Pooled;
 pub use relocation::Relocation;
 pub use shape::{InputShape, shapes};
 pub use univariate::Univariate;
@@ -38,12 +43,15 @@ pub struct Surrogate {
 impl Surrogate {
     /// Moments and contributions; None when a part is unknown.
     ///
-    /// Exact where the inputs are independent, and where those that are not are normal and their parts parabolas;
+    /// Exact where the inputs are independent, where those that are not are normal and their parts parabolas, and over blocks;
     /// sampled from the surrogate otherwise, with standard errors ([`Contributions::sampled`]).
     ///
     /// Shapes: `inputs` has length N, in the order of the parts.
     pub fn contributions(&self, inputs: &Inputs) -> Option<Contributions> {
         if let Some(correlation) = inputs.correlation() {
+            if !correlation.blocks().is_empty() {
+                return pooled::pooled(self, inputs, correlation);
+            }
             return correlated::correlated(self, inputs, correlation);
         }
         Some(contributions(self.centre, &self.terms(inputs)?, &self.interactions))

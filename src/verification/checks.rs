@@ -17,8 +17,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::space::Columns;
 use crate::distribution::standard_normal;
 
-/// Places along a line, and on an input of its own.
+/// Places along a line, in sigmas.
 pub(super) const ON_LINE: [f64; 4] = [1.5, -1.5, 3.0, -3.0];
+/// Sigmas on either side at which an input is moved by itself.
 pub(super) const ON_AXIS: f64 = 3.0;
 /// How far inputs without effect are moved together.
 const IDLE: f64 = 4.0;
@@ -33,8 +34,9 @@ const AXES: usize = 3;
 const LINES: usize = 3;
 /// Directions with this cosine are one line.
 const SAME: f64 = 0.95;
-/// Pairs of random points: the fewer where so many others are.
+/// Pairs of random points, and the fewer of them where there are many other points.
 const PAIRS: [usize; 2] = [4, 3];
+/// Other points from which on the fewer pairs are drawn.
 const MANY: usize = 8;
 
 /// What a characteristic's surface says of where to look.

@@ -22,6 +22,7 @@ mod strata;
 
 pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
 pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
+pub use outputs::OutputCorrelation;
 pub(crate) use outputs::output_correlations;
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
@@ -38,6 +39,19 @@ use sample::Sample;
 
 /// Points of the core of a sample.
 pub(crate) const CORE: usize = 1 << 15;
+
+/// Points at which the share that a surface leaves unexplained is counted.
+const BESIDE: usize = 1 << 10;
+
+/// Evaluations that a sample with so many points in its core takes at most, with those that [`unexplained`] takes beside it.
+pub(crate) const fn most_points(core: usize) -> usize {
+    sample::PILOT + (sides::MOST + 2) * sample::TAIL + core + BESIDE
+}
+
+/// Evaluations that [`unexplained`] and then [`variance_shares_during`] over so many inputs take at most.
+pub(crate) fn most_points_of_shares(inputs: usize) -> usize {
+    BESIDE + shares::most(inputs)
+}
 
 /// A figure as the model itself gives it, and its error: three of it reach the truth whenever three standard errors do.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -138,9 +152,8 @@ pub(crate) fn unexplained(
     seed: u64,
     run: &Run<'_>,
 ) -> Option<f64> {
-    const POINTS: usize = 1 << 10;
     let model = Model::over(problem, c, varying).during(run);
-    let z = Normals::new(varying.len(), seed).columns(1 << 35, POINTS);
+    let z = Normals::new(varying.len(), seed).columns(1 << 35, BESIDE);
     let rises = surrogate.rises(&model.standardised(&z))?;
     let y = model.values(&z);
     if model.stopped() {

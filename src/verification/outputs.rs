@@ -1,6 +1,7 @@
 //! How the characteristics of a cheap model vary together, by points of the model itself.
 
 use rayon::prelude::*;
+use serde::Serialize;
 
 use super::Verified;
 use super::figures::{jackknife, student, totals};
@@ -13,6 +14,24 @@ use crate::sampling::Normals;
 const ROWS: usize = 1 << 10;
 /// Sums of a pair: points, first, second, their squares, their product.
 const SUMS: usize = 6;
+
+/// How two characteristics vary together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct OutputCorrelation {
+    /// The two characteristics.
+    pub between: [String; 2],
+    /// Their coefficient of correlation; null where one of them does not vary, or is not known.
+    pub value: Option<f64>,
+    /// The error of the coefficient; null where the model was not asked.
+    pub error: Option<f64>,
+}
+
+impl OutputCorrelation {
+    /// More characteristics than this have no table of correlations: its cells grow with their square.
+    pub(crate) const MOST: usize = 40;
+}
 
 /// The coefficient of correlation of every pair of characteristics, over the points at which both have a value, in the order
 /// `(0, 1), (0, 2), ..., (1, 2), ...`; None where one of them does not vary.

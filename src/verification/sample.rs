@@ -26,11 +26,11 @@ use crate::surrogate::Surrogate;
 /// Randomisations.
 pub(super) const REPLICATES: usize = 16;
 /// Points of a half-space in all randomisations together.
-const TAIL: usize = 1 << 12;
+pub(super) const TAIL: usize = 1 << 12;
 /// Numbers that the points of one stratum may take at most.
 const NUMBERS: usize = 1_000_000;
 /// Points from which the tails' direction is taken, and how far a value counts for it, in sigmas.
-const PILOT: usize = 1 << 10;
+pub(super) const PILOT: usize = 1 << 10;
 const WINSORISED: f64 = 4.0;
 /// Where the tails begin, in sigmas along their direction.
 const FAR: f64 = 2.5;

@@ -27,6 +27,11 @@ const MOST: usize = 256;
 /// A share of the variance with its error.
 pub type Share = super::Verified;
 
+/// Evaluations over so many inputs at most.
+pub(super) fn most(inputs: usize) -> usize {
+    EVALUATIONS.max(REPLICATES * FEWEST * (inputs + 2))
+}
+
 /// First-order and total shares of every variable; None for too many of them, and where nothing varies.
 pub(super) fn shares(model: &Model<'_>, seed: u64) -> Option<Vec<[Share; 2]>> {
     let n = model.len();

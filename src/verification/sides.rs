@@ -20,7 +20,7 @@ const WIDE: [f64; 2] = [2.0, 3.0];
 const SELDOM: f64 = 1.0 / 128.0;
 /// so many places of one switch, as `abs(x) > c` has two, and of all switches.
 const PLACES: usize = 4;
-const MOST: usize = 6;
+pub(super) const MOST: usize = 6;
 /// How far a half-space begins before its design point, in sigmas.
 pub(super) const BEFORE: f64 = 0.5;
 /// Steps of Hasofer and Lind, the step of their differences, and where the line is searched about each.
@@ -186,6 +186,7 @@ impl Search<'_, '_> {
     /// The likeliest point at which the margin has this sign: steps from `z`, a search of the line about each, then bisection from
     /// the middle.
     fn design_point(&self, switch: usize, sign: f64, mut z: Vec<f64>) -> Vec<f64> {
+        // Places along the line on which the switch is looked for.
         const ON_LINE: usize = 21;
         let n = z.len();
         let mut best = z.clone();

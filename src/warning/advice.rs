@@ -66,6 +66,8 @@ pub enum Advice {
     CheckNames,
     /// Convert units within the formula, or correct them.
     CheckUnits,
+    /// Write a direction at random as two dimensions on a rim.
+    WriteDirectionAsRim,
     /// Check the nominal dimensions.
     CheckNominal,
     /// Check whether the mechanism is at a dead centre.
@@ -165,6 +167,7 @@ impl fmt::Display for Advice {
             Self::CheckUnits => {
                 "Convert in the formula (`deg` is pi/180, `25.4[mm/in]` a factor with a unit), or correct a unit."
             }
+            Self::WriteDirectionAsRim => "Write the direction as two dimensions with `[[joint]] law = \"rim\"`.",
             Self::CheckNominal => "Check the nominal dimensions.",
             Self::CheckPosition => "Check whether the mechanism is at a dead centre.",
             Self::CheckInputs => "Check that the model uses the dimensions.",

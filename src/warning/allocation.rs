@@ -53,12 +53,30 @@ pub(super) fn not_confirmed() -> Text {
         .advise(Advice::AnalyzeWrittenStudy)
 }
 
+pub(super) fn cost_not_convex(dimensions: &[String]) -> Text {
+    let (cost, tolerance) = match dimensions {
+        [_] => ("cost", "is not convex in its tolerance"),
+        _ => ("costs", "are not convex in their tolerances"),
+    };
+    say(format!(
+        "The {cost} of {} {tolerance}. Several tolerances may keep the conditions of an optimum; the cheapest one that was found is reported.",
+        names(dimensions)
+    ))
+}
+
 pub(super) fn confirmation_misses(
     characteristic: &str,
     requirement: &&'static str,
     required: &f64,
     [low, high]: &[f64; 2],
 ) -> Text {
+    if *requirement == "worst-case" {
+        return say(format!(
+            "A point of the model within the tolerance bands refutes the worst case of `{characteristic}`. It takes {:.3} % of the room that the limits leave.",
+            100.0 * low
+        ))
+        .advise(Advice::RequireMore);
+    }
     let (name, low, high, required) = match *requirement {
         "yield" => {
             let percent = |share: f64| format!("{:.4} %", 100.0 * share);

@@ -5,7 +5,6 @@
 
 #[macro_use]
 mod define;
-
 mod advice;
 pub(crate) mod aggregate;
 mod allocation;
@@ -21,14 +20,11 @@ mod terms;
 mod text;
 mod written;
 
+use crate::summary::StopReason;
 pub use advice::Advice;
 pub(crate) use aggregate::aggregated;
-pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
-
 use serde::ser::SerializeMap;
-
-use crate::summary::StopReason;
-
+pub use terms::{Change, Counted, Ended, Figure, Loss, NameKind};
 use text::Text;
 use written::WarningData;
 
@@ -62,6 +58,11 @@ warnings! {
     UnknownUnit = "unknown-unit" by study::unknown_unit {
         /// The units, each once.
         units: Vec<String>,
+    };
+    /// Dimensions that are spread evenly over a full turn inside a sine or cosine.
+    PeriodicInput = "periodic-input" by study::periodic_input {
+        /// The dimensions.
+        dimensions: Vec<String>,
     };
     /// No characteristic of the study uses these constants, formulas or unknowns.
     UnusedName = "unused-name" by study::unused_name {
@@ -197,6 +198,13 @@ warnings! {
         value: f64,
         /// The size beyond which powers overflow.
         limit: f64,
+    };
+    /// Values of a built-in model for which its formulas describe nothing real.
+    OutsideModel = "outside-model" by model::outside_model {
+        /// The output of the model.
+        output: String,
+        /// The bound that it passed, and what does not hold beyond.
+        reason: String,
     };
     /// An external model gave a slightly different answer to the nominal point later.
     NotRepeatable = "not-repeatable" by model::not_repeatable {
@@ -582,11 +590,16 @@ warnings! {
     };
     /// The model was not evaluated at the tolerances that were found.
     NotConfirmed = "not-confirmed" by allocation::not_confirmed;
+    /// A cost that bends the wrong way, so that there may be several optima.
+    CostNotConvex = "cost-not-convex" by allocation::cost_not_convex {
+        /// The dimensions.
+        dimensions: Vec<String>,
+    };
     /// Monte Carlo at the tolerances that were found misses what is required.
     ConfirmationMisses = "confirmation-misses" by allocation::confirmation_misses {
         /// The characteristic.
         characteristic: String,
-        /// `yield`, `cpk` or `sigma`.
+        /// `yield`, `cpk`, `sigma` or `worst-case`.
         requirement: &'static str,
         /// How much of it is required.
         required: f64,

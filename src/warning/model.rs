@@ -28,6 +28,12 @@ pub(super) fn overflow(characteristic: &str, value: &f64, limit: &f64) -> Text {
     .advise(Advice::LargerUnit)
 }
 
+pub(super) fn outside_model(output: &str, reason: &str) -> Text {
+    say(format!(
+        "Evaluated values of `{output}` lie outside the model: {reason}. Results that use them describe no real part."
+    ))
+}
+
 pub(super) fn not_repeatable(
     output: &str,
     expected: &Option<f64>,

@@ -59,6 +59,16 @@ pub(super) fn unknown_unit(units: &[String]) -> Text {
         .advise(Advice::CheckUnits)
 }
 
+pub(super) fn periodic_input(dimensions: &[String]) -> Text {
+    let vary = if dimensions.len() == 1 { "varies" } else { "vary" };
+    say(format!(
+        "{} {vary} evenly over a full turn inside a sine or cosine. Derivatives at one angle do not know the other angles: sigma and contributions are wrong.",
+        names(dimensions)
+    ))
+    .advise(Advice::WriteDirectionAsRim)
+    .advise(Advice::Sample { points: None })
+}
+
 pub(super) fn unused_name(kind: &NameKind, unused: &[String]) -> Text {
     let message = format!("No characteristic uses the {} {}.", kind.noun(unused.len()), names(unused));
     say(message).advise(Advice::CheckNames)

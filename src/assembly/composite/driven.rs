@@ -3,10 +3,13 @@
 //! With dimensions `x` and formulas `z(x)` a characteristic is `y(x) = F(z(x))`. By the chain rule `dy/dx = F_z z_x`, where `z_x` is exact.
 
 use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
 
 use super::{Composite, CompositeError, Inner, Origin, SolvedRows, Source};
 use crate::assembly::formula::Jet;
-use crate::assembly::{EvaluationError, Input, NonRepeatable, Points, Request, Responses, Run};
+use crate::assembly::{
+    AssemblyFunction, EvaluationError, Input, NonRepeatable, Points, Request, Responses, Run, Signature,
+};
 
 /// What a model is sent at some points.
 pub(super) struct Sent {
@@ -121,6 +124,36 @@ impl Composite {
             }
         });
         values
+    }
+
+    /// The model that formulas drive, and those of its outputs that these outputs need.
+    pub(crate) fn inner(&self, outputs: &[usize]) -> Option<(Arc<dyn AssemblyFunction>, Vec<usize>)> {
+        let needed = self.all_needs(&self.origins(outputs)).answers;
+        Some((Arc::clone(&self.model.as_ref()?.function), needed))
+    }
+
+    /// What the model would be sent at these points; None where a formula has no value at one of them.
+    pub(crate) fn drivers(&self, points: &Points) -> Option<Points> {
+        let Sent { columns, errors } = self.sent(points, &Run::to_the_end());
+        errors.iter().all(Option::is_none).then_some(columns)
+    }
+
+    /// The same formulas about another model with the same inputs and outputs, which is evaluated in no time.
+    pub(crate) fn about(&self, function: Arc<dyn AssemblyFunction>) -> Self {
+        let inner = |model: &Inner| Inner {
+            function,
+            inputs: model.inputs.clone(),
+            factors: model.factors.clone(),
+            sent: Mutex::default(),
+        };
+        Self {
+            signature: Signature { costly: false, cheap: false, ..self.signature.clone() },
+            formulas: Arc::clone(&self.formulas),
+            named: self.named,
+            model: self.model.as_ref().map(inner),
+            assembler: self.assembler.clone(),
+            outputs: self.outputs.clone(),
+        }
     }
 
     /// Names of what the model is sent, and this at some points; None where it is sent the points themselves.

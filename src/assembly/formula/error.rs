@@ -32,7 +32,7 @@ pub enum FormulaFault {
         instead: Option<&'static str>,
     },
     /// A number that no double holds.
-    #[error("`{text}` is no number that fits a double")]
+    #[error("`{text}` is not a number that fits a double")]
     BadNumber {
         /// As written.
         text: String,

@@ -24,6 +24,7 @@ mod lexer;
 mod margins;
 mod name;
 pub(crate) mod parser;
+mod periodic;
 mod program;
 mod scalar;
 pub(crate) mod set;

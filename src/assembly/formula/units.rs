@@ -263,7 +263,7 @@ impl Pass<'_> {
         let what = |unit: &str| if of == "angle" { format!("{what} in {unit}") } else { format!("{what} {unit}") };
         if !found.unit.is_plain() {
             let remedy = "its argument is an angle or a plain number".to_owned();
-            let text = format!("{}, which is no angle", what(&found.unit.to_string()));
+            let text = format!("{}, which is not an angle", what(&found.unit.to_string()));
             return self.fail(node, text, remedy, found.doubtful().is_some());
         }
         if self.convert || found.scales().iter().any(|scale| near(*scale, 1.0)) {
@@ -390,7 +390,7 @@ impl Pass<'_> {
             Some(b) => Some(a.power(b.factors.iter().product())),
             None if a.unit.is_plain() => Some(Quantity::of(Unit::one())),
             None => {
-                let what = format!("{} to a power that is no number", a.unit);
+                let what = format!("{} to a power that is not a number", a.unit);
                 self.fail(node, what, "write the exponent as a number".to_owned(), false);
                 None
             }
@@ -551,8 +551,9 @@ mod tests {
             let found = findings(text, Role::Free, false);
             assert!(found.len() == 1 && !found[0].doubtful, "{text} {found:?}");
             let words = words.as_str().unwrap();
-            let said =
-                found[0].what.contains(words) || words == "a unit in exp" && found[0].what.starts_with("`exp` of");
+            let said = found[0].what.contains(words)
+                || words == "a unit in exp" && found[0].what.starts_with("`exp` of")
+                || words == "no angle" && found[0].what.ends_with("not an angle");
             assert!(said && !found[0].remedy.is_empty(), "{text} {found:?}");
         }
         assert_eq!(findings("a*sin(th)", Role::Free, false)[0].span, 6..8);

@@ -53,7 +53,7 @@ pub enum ProcessFault {
         message: String,
     },
     /// Its first line was none of the protocol.
-    #[error("the model's first line is no `ready` of this protocol: {line}{}", hint(line))]
+    #[error("the model's first line is not a `ready` of this protocol: {line}{}", hint(line))]
     NotReady {
         /// What it wrote.
         line: Quoted,
@@ -70,8 +70,8 @@ pub enum ProcessFault {
         /// For how long it was waited for.
         after: Duration,
     },
-    /// It wrote a line that is no answer.
-    #[error("the model wrote a line that is no answer ({reason}): {line}{}", hint(line))]
+    /// It wrote a line that is not an answer.
+    #[error("the model wrote a line that is not an answer ({reason}): {line}{}", hint(line))]
     Garbage {
         /// What is wrong with it.
         reason: String,

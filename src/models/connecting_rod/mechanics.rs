@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::super::gas;
 use super::super::jet::{Jet, Real};
 use super::{DEGREE, Rows, input};
-use crate::elementary::{Cos, Elementary, Exp, Sin};
+use crate::elementary::{Cos, Elementary, Sin};
 
 /// The rod by the crank of the gas trace, which tolerances do not change.
 pub(super) const ROD_BY_CRANK: f64 = 133.6 / 41.0;
@@ -14,16 +14,25 @@ pub(super) const REFERENCE: [f64; 2] = [0.105, 0.1336];
 
 /// The pressure at any angle, Pa.
 pub(super) fn pressure(degrees: f64, p3: f64, start: f64) -> f64 {
-    if degrees < -180.0 {
-        return gas::SUCTION;
+    gas::pressure(degrees, p3, start, ROD_BY_CRANK)
+}
+
+/// The speed of the crankshaft: one for all rows in rpm, or the input `speed` of each.
+#[derive(Clone, Copy)]
+pub(super) enum Speed {
+    Rpm(f64),
+    Given,
+}
+
+impl Speed {
+    /// In rad/s.
+    #[inline(always)]
+    pub(super) fn circular(self, rows: &Rows, row: usize) -> f64 {
+        match self {
+            Self::Rpm(rpm) => rpm * PI / 30.0,
+            Self::Given => rows.x[input::SPEED][row] * PI / 30.0,
+        }
     }
-    if degrees > 180.0 {
-        let [own, by_p3] = gas::exhaust(degrees);
-        return own + by_p3 * p3;
-    }
-    let theta = degrees * DEGREE;
-    let strokes = gas::strokes(Sin::of(theta), Cos::of(theta), ROD_BY_CRANK);
-    gas::working(strokes, Exp::of(gas::unburnt_log(degrees, start)), p3)
 }
 
 /// A crank angle with the gas pressure there.
@@ -45,8 +54,16 @@ impl Angle<Jet> {
         let (s, c) = (Sin::of(theta), Cos::of(theta));
         let (sin, cos) = (Jet([s, c, -s]), Jet([c, -s, -c]));
         let pressure = gas.map_or(Jet([0.0; 3]), |(p3, start)| {
-            let unburnt = gas::unburnt_log(Jet([theta / DEGREE, 1.0 / DEGREE, 0.0]), start).exp();
-            gas::working(gas::strokes(sin, cos, ROD_BY_CRANK), unburnt, p3)
+            let degrees = Jet([theta / DEGREE, 1.0 / DEGREE, 0.0]);
+            match theta / DEGREE {
+                ..-180.0 => Jet([gas::SUCTION, 0.0, 0.0]),
+                // Exclusive of 180 itself, as in `pressure`: both sides are equal there.
+                at if at > 180.0 => gas::blow_down(degrees, p3),
+                _ => {
+                    let unburnt = gas::unburnt_log(degrees, start).exp();
+                    gas::working(gas::strokes(sin, cos, ROD_BY_CRANK), unburnt, p3)
+                }
+            }
         });
         Self { sin, cos, pressure }
     }
@@ -100,6 +117,8 @@ pub(super) enum Effect {
     /// That the rod exerts on the crank.
     Torque,
     Braking,
+    /// Compression at the big end: the small end's, less what accelerates the rod along itself.
+    BigEnd,
 }
 
 /// One effect on a rod with mass, centre of mass and inertia, with a force along the cylinder at its small end.
@@ -120,6 +139,7 @@ pub(super) fn effect<T: Real>(
         Effect::Compression => side * sin_a + along * cos_a,
         Effect::Normal => side * cos_a - along * sin_a,
         Effect::AgainstNormal => along * sin_a - side * cos_a,
+        Effect::BigEnd => side * sin_a + along * cos_a - (ax * cos_a + ay * sin_a) * mass,
         Effect::Torque | Effect::Braking => {
             let pin = angle.cos * r;
             let external = -(side * (pin - cos_a * l)) + ay * (pin - cos_a * (l - centre)) * mass
@@ -138,18 +158,36 @@ pub(super) trait Curve {
 /// Gas, piston and rod.
 pub(super) struct Loaded<'r> {
     pub(super) rows: &'r Rows,
-    pub(super) w: f64,
+    pub(super) speed: Speed,
     pub(super) effect: Effect,
+}
+
+/// Piston and rod without gas.
+pub(super) struct Unfired<'r>(pub(super) Loaded<'r>);
+
+impl Curve for Unfired<'_> {
+    #[inline(always)]
+    fn at<T: Real>(&self, row: usize, angle: &Angle<T>) -> T {
+        self.0.by(row, angle, angle.sin * 0.0)
+    }
+}
+
+impl Loaded<'_> {
+    /// With this force of the gas along the cylinder.
+    #[inline(always)]
+    fn by<T: Real>(&self, row: usize, angle: &Angle<T>, gas: T) -> T {
+        let x = |at: usize| self.rows.x[at][row];
+        let motion = Motion::of(angle, x(input::R), x(input::L), self.speed.circular(self.rows, row));
+        let along = gas + motion.piston * -x(input::M_P);
+        let body = [x(input::M_ROD), x(input::MC), x(input::I_G)];
+        effect(self.effect, angle, &motion, body, along, [x(input::R), x(input::L)])
+    }
 }
 
 impl Curve for Loaded<'_> {
     #[inline(always)]
     fn at<T: Real>(&self, row: usize, angle: &Angle<T>) -> T {
-        let x = |at: usize| self.rows.x[at][row];
-        let motion = Motion::of(angle, x(input::R), x(input::L), self.w);
-        let along = gas_force(angle, x(input::D)) + motion.piston * -x(input::M_P);
-        let body = [x(input::M_ROD), x(input::MC), x(input::I_G)];
-        effect(self.effect, angle, &motion, body, along, [x(input::R), x(input::L)])
+        self.by(row, angle, gas_force(angle, self.rows.x[input::D][row]))
     }
 }
 
@@ -171,7 +209,7 @@ pub(super) enum Centre {
 /// The rod without piston and gas.
 pub(super) struct Alone<'r> {
     pub(super) rows: &'r Rows,
-    pub(super) w: f64,
+    pub(super) speed: Speed,
     pub(super) centre: Centre,
     pub(super) effect: Effect,
 }
@@ -188,7 +226,7 @@ impl Curve for Alone<'_> {
             Centre::Optimum => (moved(input::MC_F), cubes(x(input::MC_F), eyes) / cubes(reference, eyes)),
             Centre::Tied => (moved(input::MC_T), cubes(moved(input::MC_T), l) / cubes(reference, l)),
         };
-        let motion = Motion::of(angle, x(input::R), l, self.w);
+        let motion = Motion::of(angle, x(input::R), l, self.speed.circular(self.rows, row));
         let body = [x(input::M_ROD), centre, factor * x(input::I_G)];
         effect(self.effect, angle, &motion, body, angle.sin * 0.0, [x(input::R), l])
     }

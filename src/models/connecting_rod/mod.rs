@@ -8,11 +8,11 @@ use std::f64::consts::PI;
 
 use super::gas;
 use super::jet::Peak;
-use super::{Block, Model, ModelInput, ModelOutput};
+use super::{Block, Model, ModelInput, ModelOutput, Validity};
 use crate::assembly::{EvaluationError, Responses};
-use mechanics::{Alone, Angle, Centre, Curve, Effect, Loaded, pressure};
-use search::{GAS_ANGLES, ROD_ANGLES, heights, maxima};
-use section::{Section, shank};
+use mechanics::{Alone, Angle, Centre, Curve, Effect, Loaded, Speed, Unfired, pressure};
+use search::{CYCLE, GAS_ANGLES, ROD_ANGLES, SAFETY, height_at, heights, maxima, pulled};
+use section::{Root, Section, shank};
 
 /// The inputs' places, in the order of `CONNECTING_ROD.inputs`.
 mod input {
@@ -43,8 +43,9 @@ mod input {
     pub(crate) const MC_T: usize = 24;
     pub(crate) const THETA: usize = 25;
     pub(crate) const SPEED: usize = 26;
+    pub(crate) const CUT: usize = 27;
 }
-const INPUTS: usize = 27;
+const INPUTS: usize = 28;
 
 /// A connecting rod as three lumped masses: forces at its ends over the crank angle, their largest values, the height of the
 /// section that carries them, buckling, and the mass of the shank.
@@ -64,10 +65,14 @@ const INPUTS: usize = 27;
 /// ```
 ///
 /// `H_req_3000` is the least height whose stress at the root of the shank is S_y/5 at every angle:
-/// |Fa|/A + |M| (k3 + 2) t/(2 Izz), with the shank cut off the eyes. Euler's safety is pi^2 E Izz/(L^2 F_comp) in the plane of
-/// motion and 4 pi^2 E Iyy/(L^2 F_comp) across it. [`gas`] has the pressure.
+/// |Fa|/A + |M| (k3 + 2) t/(2 Izz), with the shank cut off the eyes. `H_req` is the same at the speed and the section of the
+/// inputs. The search ends at k3 = -2, where H = 0. For k3 < 0 the flanges overlap, and the formulas count the overlap twice:
+/// below 2 t a height is a number without a section. H_margin is therefore taken against the larger of H_req_3000 and 2 t.
+/// Euler's safety is pi^2 E Izz/(L^2 F_comp) in the plane of motion and 4 pi^2 E Iyy/(L^2 F_comp) across it; `H_buckling_zz` and
+/// `H_buckling_yy` are the heights with a safety of 5 under the largest compression of the big end. [`gas`] has the pressure.
 ///
-/// Maxima are over -60 to 180 degrees with gas, over 0 to 180 of the rod alone, found to rounding: smooth in the inputs as long as
+/// Maxima of outputs at 3000 rpm are over -60 to 180 degrees with gas, over 0 to 180 of the rod alone; those at the input `speed`
+/// over both turns. They are found to rounding: smooth in the inputs as long as
 /// one lobe is the largest. `Fn_opt` is the larger of two lobes that are nearly alike, and has a kink where they are.
 pub static CONNECTING_ROD: Model = Model {
     name: "connecting-rod",
@@ -120,7 +125,18 @@ pub static CONNECTING_ROD: Model = Model {
             nominal: 20.0,
             about: "crank angle, -360 to 360, for F_axial, F_normal, T_crank",
         },
-        ModelInput { name: "speed", unit: "rpm", nominal: 3000.0, about: "speed for F_axial, F_normal, T_crank" },
+        ModelInput {
+            name: "speed",
+            unit: "rpm",
+            nominal: 3000.0,
+            about: "speed for the outputs without one in their name",
+        },
+        ModelInput {
+            name: "cut",
+            unit: "-",
+            nominal: 0.0,
+            about: "section of H_req and H_theta: 0 at the root of the shank, 1 at the big end",
+        },
     ],
     outputs: &[
         ModelOutput {
@@ -162,7 +178,7 @@ pub static CONNECTING_ROD: Model = Model {
         ModelOutput {
             name: "H_margin",
             unit: "mm",
-            about: "height above that",
+            about: "height above that, or above 2 t",
             depends_on: &[0, 1, 4, 6, 7, 8, 9, 10, 11, 12, 13, 15, 16, 17, 18, 19, 20, 21, 22],
         },
         ModelOutput {
@@ -237,18 +253,121 @@ pub static CONNECTING_ROD: Model = Model {
             about: "torque that the rod exerts on the crank at theta",
             depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 25, 26],
         },
+        ModelOutput {
+            name: "H_req",
+            unit: "mm",
+            about: "least height of the section at this speed; below 2 t flanges overlap",
+            depends_on: &[0, 1, 4, 6, 7, 8, 9, 10, 11, 13, 15, 16, 17, 18, 19, 20, 21, 22, 26, 27],
+        },
+        ModelOutput {
+            name: "theta_H",
+            unit: "deg",
+            about: "crank angle at which H_req is required",
+            depends_on: &[0, 1, 4, 6, 7, 8, 9, 10, 11, 13, 15, 16, 17, 18, 19, 20, 21, 22, 26, 27],
+        },
+        ModelOutput {
+            name: "m_shank_req",
+            unit: "g",
+            about: "mass of the shank of height H_req",
+            depends_on: &[0, 1, 4, 6, 7, 8, 9, 10, 11, 13, 15, 16, 17, 18, 19, 20, 21, 22, 26, 27],
+        },
+        ModelOutput {
+            name: "H_theta",
+            unit: "mm",
+            about: "least height of the section at theta",
+            depends_on: &[0, 1, 4, 6, 7, 8, 9, 10, 11, 13, 15, 16, 17, 18, 19, 20, 21, 22, 25, 26, 27],
+        },
+        ModelOutput {
+            name: "H_buckling_zz",
+            unit: "mm",
+            about: "height with a safety of 5 against buckling in the plane of motion",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 14, 26],
+        },
+        ModelOutput {
+            name: "H_buckling_yy",
+            unit: "mm",
+            about: "the same across it; below 0 the flanges alone are safe",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 14, 26],
+        },
+        ModelOutput {
+            name: "F_axial_big",
+            unit: "N",
+            about: "axial force of the big end at theta, tension positive",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 25, 26],
+        },
+        ModelOutput {
+            name: "theta_big_tension",
+            unit: "deg",
+            about: "crank angle after the gas exchange dead centre at which the big end's tension ends",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 26],
+        },
+        ModelOutput {
+            name: "F_comp",
+            unit: "N",
+            about: "largest compression at this speed",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 26],
+        },
+        ModelOutput {
+            name: "theta_F",
+            unit: "deg",
+            about: "crank angle of F_comp",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 26],
+        },
+        ModelOutput {
+            name: "F_tens",
+            unit: "N",
+            about: "pull of the piston at the gas exchange dead centre",
+            depends_on: &[0, 1, 4, 6, 26],
+        },
+        ModelOutput {
+            name: "F_comp_big",
+            unit: "N",
+            about: "largest compression of the big end",
+            depends_on: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 26],
+        },
+        ModelOutput {
+            name: "F_tens_big",
+            unit: "N",
+            about: "tension of the big end at the gas exchange dead centre",
+            depends_on: &[0, 1, 2, 3, 4, 6, 26],
+        },
+        ModelOutput {
+            name: "F_comp_inertia",
+            unit: "N",
+            about: "largest compression without gas",
+            depends_on: &[0, 1, 2, 3, 4, 5, 26],
+        },
+        ModelOutput {
+            name: "F_comp_rod",
+            unit: "N",
+            about: "largest compression of the rod alone",
+            depends_on: &[0, 1, 2, 3, 5, 26],
+        },
     ],
     evaluate,
+    bounds: &[
+        Validity { output: output::H_REQ_3000, beyond: overlaps, reason: OVERLAP },
+        Validity { output: output::H_REQ, beyond: overlaps, reason: OVERLAP },
+        Validity { output: output::H_THETA, beyond: overlaps, reason: OVERLAP },
+    ],
 };
+
+const OVERLAP: &str =
+    "a height below 2 t, where the flanges of the I section overlap and the formulas count the overlap twice";
+
+/// Whether a required height is less than that of both flanges. A height of 0 asks for no section.
+fn overlaps(block: &Block<'_>, row: usize, height: f64) -> bool {
+    height > 0.0 && height < 2.0 * block.input(input::T)[row]
+}
 
 /// The outputs' places.
 mod output {
-    pub(crate) const F_TENS: usize = 0;
-    pub(crate) const F_COMP: usize = 1;
+    pub(crate) const F_TENS_6000: usize = 0;
+    pub(crate) const F_COMP_3000: usize = 1;
     pub(crate) const T_PEAK: usize = 2;
     pub(crate) const FN_ROD: usize = 3;
     pub(crate) const T_ROD: usize = 4;
-    pub(crate) const H_REQ: usize = 5;
+    pub(crate) const H_REQ_3000: usize = 5;
     pub(crate) const H_MARGIN: usize = 6;
     pub(crate) const N_ZZ: usize = 7;
     pub(crate) const N_YY: usize = 8;
@@ -257,17 +376,34 @@ mod output {
     pub(crate) const FN_OPT: usize = 11;
     pub(crate) const FN_OPT_A: usize = 12;
     pub(crate) const FN_OPT_B: usize = 13;
-    pub(crate) const THETA_F: usize = 14;
-    pub(crate) const THETA_H: usize = 15;
-    pub(crate) const AT_THETA: [usize; 3] = [16, 17, 18];
+    pub(crate) const THETA_F_COMP: usize = 14;
+    pub(crate) const THETA_H_REQ: usize = 15;
+    pub(crate) const F_AXIAL: usize = 16;
+    pub(crate) const F_NORMAL: usize = 17;
+    pub(crate) const T_CRANK: usize = 18;
+    pub(crate) const H_REQ: usize = 19;
+    pub(crate) const THETA_H: usize = 20;
+    pub(crate) const M_SHANK_REQ: usize = 21;
+    pub(crate) const H_THETA: usize = 22;
+    pub(crate) const H_BUCKLING_ZZ: usize = 23;
+    pub(crate) const H_BUCKLING_YY: usize = 24;
+    pub(crate) const THETA_BIG_TENSION: usize = 26;
+    pub(crate) const F_COMP: usize = 27;
+    pub(crate) const THETA_F: usize = 28;
+    pub(crate) const F_TENS: usize = 29;
+    pub(crate) const F_COMP_BIG: usize = 30;
+    pub(crate) const F_TENS_BIG: usize = 31;
+    pub(crate) const F_COMP_INERTIA: usize = 32;
+    pub(crate) const F_COMP_ROD: usize = 33;
 }
 
 const DEGREE: f64 = PI / 180.0;
 /// Rows whose inputs and maxima stay in the nearest cache.
 const LANES: usize = 128;
 
-fn circular(rpm: f64) -> f64 {
-    rpm * PI / 30.0
+/// The larger of both; unknown where the height is.
+fn least(height: f64, flanges: f64) -> f64 {
+    if height < flanges { flanges } else { height }
 }
 
 /// The inputs of some rows in SI units, a column each.
@@ -291,6 +427,7 @@ const SI: [f64; INPUTS] = {
     si[input::S_Y] = 1e6;
     si[input::THETA] = 1.0;
     si[input::SPEED] = 1.0;
+    si[input::CUT] = 1.0;
     si
 };
 
@@ -317,35 +454,57 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
     let count = rows.count;
     let none = || [Peak { at: f64::NAN, value: f64::NAN }; LANES];
     let found = |wanted: bool, search: &dyn Fn() -> [Peak; LANES]| if wanted { search() } else { none() };
-    let fired = circular(3000.0);
-    let with_gas = |effect| move || maxima(&Loaded { rows, w: fired, effect }, rows, &GAS_ANGLES, true);
-    let compression =
-        found(is_asked(&[output::F_COMP, output::THETA_F, output::N_ZZ, output::N_YY]), &with_gas(Effect::Compression));
+    let fired = Speed::Rpm(3000.0);
+    let with_gas = |effect| move || maxima(&Loaded { rows, speed: fired, effect }, rows, &GAS_ANGLES, true);
+    let compression = found(
+        is_asked(&[output::F_COMP_3000, output::THETA_F_COMP, output::N_ZZ, output::N_YY]),
+        &with_gas(Effect::Compression),
+    );
     let torque = found(is_asked(&[output::T_PEAK]), &with_gas(Effect::Torque));
-    let alone = |centre, effect| move || maxima(&Alone { rows, w: fired, centre, effect }, rows, &ROD_ANGLES, false);
+    let alone =
+        |centre, effect| move || maxima(&Alone { rows, speed: fired, centre, effect }, rows, &ROD_ANGLES, false);
     let normal = found(is_asked(&[output::FN_ROD]), &alone(Centre::Given, Effect::Normal));
     let braking = found(is_asked(&[output::T_ROD]), &alone(Centre::Given, Effect::Braking));
     let tied = found(is_asked(&[output::T_OPT]), &alone(Centre::Tied, Effect::Torque));
     let lobe_a = found(is_asked(&[output::FN_OPT, output::FN_OPT_A]), &alone(Centre::Optimum, Effect::Normal));
     let lobe_b = found(is_asked(&[output::FN_OPT, output::FN_OPT_B]), &alone(Centre::Optimum, Effect::AgainstNormal));
-    let height = found(is_asked(&[output::H_REQ, output::H_MARGIN, output::THETA_H]), &|| heights(rows, fired));
+    let height = found(is_asked(&[output::H_REQ_3000, output::H_MARGIN, output::THETA_H_REQ]), &|| {
+        heights(Root { rows, speed: fired, webs: [1.0; LANES], at_cut: false }, &GAS_ANGLES)
+    });
+    // At the speed that is given.
+    let given = |effect| move || maxima(&Loaded { rows, speed: Speed::Given, effect }, rows, &CYCLE, true);
+    let pushed = found(is_asked(&[output::F_COMP, output::THETA_F]), &given(Effect::Compression));
+    let big_ends = [output::F_COMP_BIG, output::H_BUCKLING_ZZ, output::H_BUCKLING_YY];
+    let big_end = found(is_asked(&big_ends), &given(Effect::BigEnd));
+    let unfired = found(is_asked(&[output::F_COMP_INERTIA]), &|| {
+        let curve = Unfired(Loaded { rows, speed: Speed::Given, effect: Effect::Compression });
+        maxima(&curve, rows, &ROD_ANGLES, false)
+    });
+    let rod = found(is_asked(&[output::F_COMP_ROD]), &|| {
+        let effect = Effect::Compression;
+        maxima(&Alone { rows, speed: Speed::Given, centre: Centre::Given, effect }, rows, &ROD_ANGLES, false)
+    });
+    let at_speed = || Root { rows, speed: Speed::Given, webs: [1.0; LANES], at_cut: true };
+    let required =
+        found(is_asked(&[output::H_REQ, output::THETA_H, output::M_SHANK_REQ]), &|| heights(at_speed(), &CYCLE));
 
     for &(output, column) in asked {
         let mut values = [f64::NAN; LANES];
         for (row, value) in values[..count].iter_mut().enumerate() {
             let x = |at: usize| rows.x[at][row];
+            let pull = |w: f64| {
+                x(input::M_P) * w * w * x(input::R) * (1.0 + x(input::R) / x(input::L))
+                    + (gas::ATMOSPHERE - gas::SUCTION) * 0.25 * PI * x(input::D) * x(input::D)
+            };
+            let buckling = || SAFETY * big_end[row].value * x(input::L) * x(input::L) / (PI * PI * x(input::E));
             *value = match output {
-                output::F_TENS => {
-                    let (w, area) = (circular(6000.0), 0.25 * PI * x(input::D) * x(input::D));
-                    x(input::M_P) * w * w * x(input::R) * (1.0 + x(input::R) / x(input::L))
-                        + (gas::ATMOSPHERE - gas::SUCTION) * area
-                }
-                output::F_COMP => compression[row].value,
+                output::F_TENS_6000 => pull(Speed::Rpm(6000.0).circular(rows, row)),
+                output::F_COMP_3000 => compression[row].value,
                 output::T_PEAK => torque[row].value,
                 output::FN_ROD => normal[row].value,
                 output::T_ROD => braking[row].value,
-                output::H_REQ => 1e3 * height[row].value,
-                output::H_MARGIN => 1e3 * (x(input::H) - height[row].value),
+                output::H_REQ_3000 => 1e3 * height[row].value,
+                output::H_MARGIN => 1e3 * (x(input::H) - least(height[row].value, 2.0 * x(input::T))),
                 output::N_ZZ | output::N_YY => {
                     let (section, l) = (Section::of(rows, row), x(input::L));
                     let web = section.web(x(input::H));
@@ -360,17 +519,37 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
                 output::FN_OPT => lobe_a[row].value.max(lobe_b[row].value),
                 output::FN_OPT_A => lobe_a[row].value,
                 output::FN_OPT_B => lobe_b[row].value,
-                output::THETA_F => compression[row].at / DEGREE,
-                output::THETA_H => height[row].at / DEGREE,
+                output::THETA_F_COMP => compression[row].at / DEGREE,
+                output::THETA_H_REQ => height[row].at / DEGREE,
+                output::H_REQ => 1e3 * required[row].value,
+                output::THETA_H => required[row].at / DEGREE,
+                output::M_SHANK_REQ => {
+                    let section = Section::of(rows, row);
+                    1e3 * x(input::RHO) * section.area(section.web(required[row].value)) * shank(rows, row)
+                }
+                output::H_BUCKLING_ZZ => 1e3 * Section::of(rows, row).height_across(buckling()),
+                output::H_BUCKLING_YY => 1e3 * Section::of(rows, row).height_along(0.25 * buckling()),
+                output::THETA_BIG_TENSION => pulled(rows, row),
+                output::F_COMP => pushed[row].value,
+                output::THETA_F => pushed[row].at / DEGREE,
+                output::F_TENS => pull(Speed::Given.circular(rows, row)),
+                output::F_COMP_BIG => big_end[row].value,
+                output::F_COMP_INERTIA => unfired[row].value,
+                output::F_COMP_ROD => rod[row].value,
                 _ => {
-                    let (degrees, w) = (x(input::THETA), circular(x(input::SPEED)));
+                    let degrees = if output == output::F_TENS_BIG { -360.0 } else { x(input::THETA) };
                     if (-360.0..=360.0).contains(&degrees) {
-                        let pressure = pressure(degrees, x(input::P3), x(input::THS));
-                        let angle = Angle::of(degrees * DEGREE, pressure);
-                        match output - output::AT_THETA[0] {
-                            0 => -Loaded { rows, w, effect: Effect::Compression }.at(row, &angle),
-                            1 => Alone { rows, w, centre: Centre::Given, effect: Effect::Normal }.at(row, &angle),
-                            _ => Loaded { rows, w, effect: Effect::Torque }.at(row, &angle),
+                        let angle = Angle::of(degrees * DEGREE, pressure(degrees, x(input::P3), x(input::THS)));
+                        let loaded = |effect| Loaded { rows, speed: Speed::Given, effect }.at(row, &angle);
+                        match output {
+                            output::F_AXIAL => -loaded(Effect::Compression),
+                            output::F_NORMAL => {
+                                let (speed, centre, effect) = (Speed::Given, Centre::Given, Effect::Normal);
+                                Alone { rows, speed, centre, effect }.at(row, &angle)
+                            }
+                            output::T_CRANK => loaded(Effect::Torque),
+                            output::H_THETA => 1e3 * height_at(&mut at_speed(), row, &angle),
+                            _ => -loaded(Effect::BigEnd),
                         }
                     } else {
                         out.fail(first + row, column, EvaluationError::Refused { message: BEYOND.into() });
@@ -380,10 +559,24 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
             };
         }
         for (row, &value) in values[..count].iter().enumerate() {
-            let refused = matches!(output, output::H_REQ | output::H_MARGIN | output::THETA_H) && value.is_nan();
-            if refused {
+            let heights = matches!(
+                output,
+                output::H_REQ_3000
+                    | output::H_MARGIN
+                    | output::THETA_H_REQ
+                    | output::H_REQ
+                    | output::THETA_H
+                    | output::M_SHANK_REQ
+                    | output::H_THETA
+            );
+            if out.error(first + row, column).is_some() {
+                continue;
+            }
+            if output == output::THETA_BIG_TENSION && value.is_nan() {
+                out.fail(first + row, column, EvaluationError::Refused { message: NEVER_PUSHED.into() });
+            } else if heights && value.is_nan() {
                 out.fail(first + row, column, EvaluationError::Refused { message: NO_HEIGHT.into() });
-            } else if out.error(first + row, column).is_none() {
+            } else {
                 out.set(first + row, column, value);
             }
         }
@@ -391,4 +584,5 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
 }
 
 const BEYOND: &str = "the crank angle theta lies beyond -360 .. 360 degrees";
+const NEVER_PUSHED: &str = "the big end is pulled during the whole stroke of suction";
 const NO_HEIGHT: &str = "no height of the section brings the stress to a fifth of the yield strength";

@@ -1,14 +1,15 @@
 //! The section of the shank, and the stress at its root.
 
 use super::super::jet::Real;
-use super::mechanics::{Angle, Curve, Motion, gas_force};
+use super::mechanics::{Angle, Curve, Motion, Speed, gas_force};
 use super::{LANES, Rows, input};
 
-/// The stress at the root of the shank, for a web of this height.
+/// The stress in a section of the shank, for a web of this height: at its root, or where the input `cut` says.
 pub(super) struct Root<'r> {
     pub(super) rows: &'r Rows,
-    pub(super) w: f64,
+    pub(super) speed: Speed,
     pub(super) webs: [f64; LANES],
+    pub(super) at_cut: bool,
 }
 
 impl Root<'_> {
@@ -21,12 +22,22 @@ impl Root<'_> {
         let mass = x(input::RHO) * section.area(self.webs[row]) * length;
         let centre = root + 0.5 * length;
         let inertia = mass * length * length / 12.0 + x(input::I_S) + x(input::I_B);
-        let motion = Motion::of(angle, x(input::R), l, self.w);
+        let motion = Motion::of(angle, x(input::R), l, self.speed.circular(self.rows, row));
         let along = gas_force(angle, x(input::D)) + motion.piston * -(x(input::M_P) + x(input::M_S));
         let side = motion.side_force([mass, centre, inertia], motion.acceleration(centre), along, l);
         let axial = -(along * motion.cos_a) - side * motion.sin_a;
         let normal = along * motion.sin_a - side * motion.cos_a;
-        [axial, normal * -root + motion.turn * x(input::I_S)]
+        if !self.at_cut {
+            return [axial, normal * -root + motion.turn * x(input::I_S)];
+        }
+        // The part of the shank before the section adds what accelerates it.
+        let before = x(input::CUT) * length;
+        let (mass, centre) = (mass * x(input::CUT), root + 0.5 * before);
+        let [ax, ay] = motion.acceleration(centre);
+        let across = (ay * motion.cos_a - ax * motion.sin_a) * mass;
+        let inertia = x(input::I_S) + mass * before * before / 12.0;
+        let moment = motion.turn * inertia + across * centre - (normal + across) * (root + before);
+        [axial + (ax * motion.cos_a + ay * motion.sin_a) * mass, moment]
     }
 }
 
@@ -76,10 +87,52 @@ impl Section {
         square * square * (2.0 * k1 * k1 * k1 + k3 * k2 * k2 * k2) / 12.0
     }
 
+    /// The height that Izz of this size needs: the largest root of a cubic. Where the flanges alone are stiffer, 0.
+    pub(super) fn height_across(&self, inertia: f64) -> f64 {
+        let (k1, k2) = (self.k1, self.k2);
+        // Izz is least at the larger root of its derivative, k2/4 k3^2 + k1 (k3 + 1), and grows above it.
+        let low = if k1 > k2 { -2.0 / (1.0 + (1.0 - k2 / k1).sqrt()) } else { -2.0 };
+        let off = |k3: f64| self.across(k3) / inertia - 1.0;
+        if off(low) > 0.0 {
+            return 0.0;
+        }
+        let mut high = low.abs() + 1.0;
+        while off(high) < 0.0 && high < MOST_WEB {
+            high *= 2.0;
+        }
+        (crossing(off, [low, high]) + 2.0) * self.t
+    }
+
+    /// The height that Iyy of this size needs; negative where the flanges alone are stiffer.
+    pub(super) fn height_along(&self, inertia: f64) -> f64 {
+        let (square, k1, k2) = (self.t * self.t, self.k1, self.k2);
+        let k3 = (12.0 * inertia / (square * square) - 2.0 * k1 * k1 * k1) / (k2 * k2 * k2);
+        (k3 + 2.0) * self.t
+    }
+
     /// Stress of a bending moment of 1.
     #[inline(always)]
     pub(super) fn bending(&self, k3: f64) -> f64 {
         0.5 * (k3 + 2.0) * self.t / self.across(k3)
+    }
+}
+
+/// The tallest web by the thickness that is looked for.
+pub(super) const MOST_WEB: f64 = 1e6;
+
+/// Where a function passes 0 within an interval at whose ends it has opposite signs: halved until nothing lies between.
+pub(super) fn crossing(mut function: impl FnMut(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
+    let falls = function(high) < 0.0;
+    loop {
+        let middle = low + 0.5 * (high - low);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if (function(middle) < 0.0) == falls {
+            high = middle;
+        } else {
+            low = middle;
+        }
     }
 }
 

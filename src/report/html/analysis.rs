@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::super::Report;
 use super::what_if::WhatIf;
-use super::{Fact, fact, json, others, provenance, render};
+use super::{Fact, fact, json, others, provenance, render, review};
 use crate::analysis::Analysis;
 use crate::document::html::{head, sections};
 use crate::document::number::{plain, plural, significant};
@@ -45,7 +45,10 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let possible = what_if.filter(|what_if| what_if.possible());
     let document = report.document();
     let analysed = Analysed { what_if: possible.map(tries), no_what_if: what_if.and_then(WhatIf::impossible) };
-    let (parts, warnings) = ([head(&document), sections(&document)], others(&document, &report.warnings));
+    let (parts, warnings) = (
+        [review::verdict(report) + &head(&document), sections(&document) + &review::maps(report)],
+        others(&document, &report.warnings),
+    );
     render("what_if.html", &report.head, facts(report), parts, warnings, possible.map(json), analysed)
 }
 

@@ -48,7 +48,8 @@ const live = (() => {
     if (sigma === 0) {
       return { ...here, law: null, by: "surface", error: 0, ...limited(one, mean, sigma, (x) => [mean < x ? 1 : 0, mean > x ? 1 : 0]) };
     }
-    // The law of the surface where the page can compute it; elsewhere the Pearson fit, and the page says so.
+    // The law of the surface where the page can compute it; elsewhere the engine's with what points of the surface say of changes, and last
+    // the Pearson fit, and the page says so.
     const law = one.law ? surface.law(surrogate, shapes, one.unexplained) : null;
     if (law !== null && !law.steps) {
       const tails = new Map([one.lower, one.upper].filter((limit) => limit !== null).map((limit) => [limit, law.tails(limit)]));
@@ -58,6 +59,13 @@ const live = (() => {
         return { ...here, law, by: "surface", error, ...kept };
       }
     }
+    if (one.counted !== null) {
+      const still = new Float64Array(shifts.length), unchanged = mathematics.relocated(one, still, new Float64Array(still.length).fill(1));
+      const [below, above] = counting.shares(one, unchanged, surrogate, shapes);
+      const kept = limited(one, mean, sigma, () => [below.value, above.value]);
+      const error = Math.hypot(one.lower === null ? 0 : below.error, one.upper === null ? 0 : above.error);
+      return { ...here, law: fit, by: "points", error, ...kept };
+    }
     return { ...here, law: fit, by: "pearson", error: null, ...of_fit };
   };
 
@@ -66,8 +74,16 @@ const live = (() => {
   const cost = (data, settings) => mathematics.exact(data.costs.map(({ members, others, parts, offers }) => {
     const t = Math.min(others ?? Infinity, ...members.map((i) => settings[i].factor * data.dimensions[i].half));
     const alone = offers.length === 1;
-    const at = ({ exponential, a, b, shape, max }) => {
+    const along = (points, held) => {
+      const next = points.findIndex(([known]) => known >= held);
+      // Of points nothing is known beyond them.
+      if (next < 0 || held < points[0][0]) return Infinity;
+      const [[low, dear], [high, cheap]] = [points[Math.max(next - 1, 0)], points[next]];
+      return low === high ? cheap : cheap + (dear - cheap) * (1 / held - 1 / high) / (1 / low - 1 / high);
+    };
+    const at = ({ exponential, a, b, shape, points, max }) => {
       const held = alone ? t : Math.min(t, max);
+      if (points) return parts * along(points, held);
       return parts * (b === 0 ? a : a + b * (exponential ? Math.exp(-held / shape) : held ** -shape));
     };
     const holds = ({ min, max }) => alone && min < max || min <= t * (1 + 1e-12);

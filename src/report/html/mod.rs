@@ -5,6 +5,7 @@
 //! browser by a content-security policy: this script and this style, known by their hashes, and nothing else.
 
 mod analysis;
+mod review;
 mod what_if;
 
 pub use analysis::analyze_html;
@@ -29,6 +30,7 @@ const SCRIPT: &str = concat!(
     include_str!("what_if.js"),
     include_str!("pearson.js"),
     include_str!("law.js"),
+    include_str!("counted.js"),
     include_str!("live.js"),
     include_str!("page.js")
 );
@@ -46,11 +48,15 @@ struct Page<'p, T: Serialize> {
     script: &'static str,
     /// JSON for the script, without any `<`.
     data: String,
+    /// The cells of the title block.
+    block: Vec<(&'p str, &'p str)>,
     facts: Vec<Fact>,
     /// What is said before everything else, then of each thing, and warnings of no characteristic in particular; all of it markup.
     head: String,
     sections: String,
     warnings: String,
+    /// What stands at the end.
+    terms: String,
     /// What a template adds.
     of: T,
 }
@@ -120,6 +126,16 @@ fn others(document: &Document, warnings: &[WarningReport]) -> String {
     blocks(&findings(warnings, |name| name.is_none_or(|name| !told(name))))
 }
 
+/// Who made what, the study, the tool: as on a drawing.
+fn block(head: &Head) -> Vec<(&str, &str)> {
+    let mut cells: Vec<(&str, &str)> = head.block.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    if let Some(first) = head.study_sha256.get(..12) {
+        cells.push(("Study, SHA-256", first));
+    }
+    cells.push(("sensitol", head.sensitol));
+    cells
+}
+
 /// A page from its template.
 fn render<T: Serialize>(
     template: &str,
@@ -145,10 +161,12 @@ fn render<T: Serialize>(
         style: STYLE,
         script,
         data: data.unwrap_or_default(),
+        block: block(head),
         facts,
         head: first,
         sections,
         warnings,
+        terms: if head.command == "analyze" { review::terms() } else { String::new() },
         of,
     };
     let mut environment = Environment::new();

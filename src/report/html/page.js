@@ -110,13 +110,17 @@
   // by which it was computed there.
   const judged = (found, then, { target, reach }) => {
     if (reach === null || found.by !== then.by) return "inconclusive";
-    if (found.yield - reach[0] >= target) return "met";
-    return found.yield + reach[1] < target ? "missed" : "inconclusive";
+    const counted = found.by === "points" ? found.error : 0;
+    if (found.yield - reach[0] - counted >= target) return "met";
+    return found.yield + reach[1] + counted < target ? "missed" : "inconclusive";
   };
   const source = (found, one) => {
     if (found.by === "surface") {
       const differs = found.pearson !== null && found.yield !== null && Math.abs(found.pearson - found.yield) > 0.01 * Math.max(1 - found.pearson, found.rejected);
       return `by the surface law${differs ? `; Pearson fit ${share(1 - found.pearson)}` : ""}`;
+    }
+    if (found.by === "points") {
+      return `by the surface law; changes counted at points${found.error > 0 ? `, ± ${(100 * found.error).toPrecision(2)} %` : ""}`;
     }
     return `by the Pearson fit: ${one.law ? "the surface law is not accurate enough here" : one.why_fit}`;
   };

@@ -41,13 +41,15 @@ struct Cost {
     offers: Vec<Offered>,
 }
 
-/// `a + b T^-shape`, or `a + b exp(-T/shape)`.
+/// `a + b T^-shape`, or `a + b exp(-T/shape)`, or points `[T, cost]` with straight lines in `1/T` between them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Offered {
     exponential: bool,
     a: f64,
     b: f64,
     shape: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<Vec<[f64; 2]>>,
     min: f64,
     max: f64,
 }
@@ -103,7 +105,10 @@ pub(super) struct Wanted {
     unexplained: Option<f64>,
     /// Whether the page computes the law of its surface.
     law: bool,
-    /// Why it does not; null where it does.
+    /// Shares below and above the limits by the law of its surface at the study's settings, to which the page adds what points of the surface
+    /// say of changes; null where the page computes the law, and where it shows the Pearson fit.
+    counted: Option<[Option<f64>; 2]>,
+    /// Why the page does not compute the law; null where it does.
     why_fit: Option<&'static str>,
     /// How far below and above its yield by that law the interval reaches within which it is known; None where that is not known.
     reach: Option<[f64; 2]>,
@@ -128,6 +133,17 @@ fn reach(found: &CharacteristicAnalysis, by_law: bool) -> Option<[f64; 2]> {
     Some([value - low, high - value])
 }
 
+/// A degree beyond every closed form.
+const DRAWN: usize = 5;
+
+/// Whether the part of an input is a parabola of a normal one.
+fn parabola(fit: &Fit, j: usize, normal: bool) -> bool {
+    normal && fit.surrogate.parts[j].is_some_and(|part| part.coefficients()[2..] == [0.0; 2])
+}
+
+/// Why a page inverts no transform of products of inputs that are not normal.
+const INTERACT: &str = "dimensions interact that are not normal";
+
 /// Why the page shows the Pearson fit of a characteristic; None where it computes the law of its surface, which it does for sums of
 /// single inputs and products of normal ones.
 fn why_fit(found: &CharacteristicAnalysis, fit: &Fit, laws: &[Option<TabulatedInput>]) -> Option<&'static str> {
@@ -143,12 +159,9 @@ fn why_fit(found: &CharacteristicAnalysis, fit: &Fit, laws: &[Option<TabulatedIn
     if counting().all(|j| laws[j].as_ref().is_some_and(TabulatedInput::is_discrete)) {
         return Some("every dimension has a few values only");
     }
-    let parabola = |j: usize| {
-        laws[j].as_ref().is_some_and(TabulatedInput::is_normal)
-            && surrogate.parts[j].is_some_and(|part| part.coefficients()[2..] == [0.0; 2])
-    };
+    let parabola = |j: usize| parabola(fit, j, laws[j].as_ref().is_some_and(TabulatedInput::is_normal));
     if surrogate.interactions.pairs().iter().any(|&(j, k, product)| product != 0.0 && !(parabola(j) && parabola(k))) {
-        return Some("dimensions interact that are not normal");
+        return Some(INTERACT);
     }
     match found.surface_law {
         Some(law) if law.branch != Branch::Sampled => None,
@@ -164,8 +177,21 @@ impl WhatIf {
         let clean = |fit: &Fit| Fit { surrogate: fit.surrogate.without_rounding(), ..fit.clone() };
         let fits: Vec<Result<Fit, NoFit>> =
             surface.characteristics.iter().map(|fit| fit.as_ref().map(clean).map_err(|&no| no)).collect();
-        // A dimension takes nodes only where its part has a higher degree than its closed form.
+        // A dimension takes nodes only where its part has a higher degree than its closed form, or points of it are drawn.
+        let normal = |j: usize| {
+            problem.dimensions()[surface.varying[j]].distribution().is_some_and(|law| law.name() == "normal")
+        };
+        let interacts = |fit: &Fit| {
+            let pairs = fit.surrogate.interactions.pairs();
+            pairs
+                .iter()
+                .any(|&(j, k, product)| product != 0.0 && !(parabola(fit, j, normal(j)) && parabola(fit, k, normal(k))))
+        };
+        let drawn = fits.iter().flatten().any(interacts);
         let degree = |j: usize| {
+            if drawn {
+                return DRAWN;
+            }
             let own = |fit: &Fit| Some(fit.surrogate.parts.get(j)?.as_ref()?.coefficients());
             let degree = |c: [f64; 4]| c.iter().rposition(|&c| c != 0.0).map_or(0, |place| place + 1);
             fits.iter().flatten().filter_map(own).map(degree).max().unwrap_or(0)
@@ -200,6 +226,10 @@ impl WhatIf {
             let (centre, parts, pairs, unexplained) = fit.as_ref().map_or_else(|_| empty(), contents);
             let why_fit = fit.as_ref().ok().and_then(|fit| why_fit(found, fit, &laws));
             let law = fit.is_ok() && why_fit.is_none();
+            let of_surface = found.surface_law.as_ref().filter(|_| why_fit == Some(INTERACT));
+            let counted = of_surface
+                .map(|law| [law.below, law.above].map(|share| Some(share?.value)))
+                .filter(|shares| shares.iter().any(Option::is_some));
             Wanted {
                 name: one.name().to_owned(),
                 unit: one.unit().map(str::to_owned),
@@ -212,8 +242,9 @@ impl WhatIf {
                 pairs,
                 unexplained,
                 law,
+                counted,
                 why_fit,
-                reach: reach(found, law),
+                reach: reach(found, law || counted.is_some()),
             }
         });
         let characteristics = characteristics.collect();
@@ -279,7 +310,8 @@ impl Cost {
         let others = group.members.iter().filter(|d| place(d).is_none());
         let offer = |curve: &Curve, min: f64, max: f64| {
             let [a, b, shape] = curve.constants();
-            Offered { exponential: curve.kind() == CurveKind::Exponential, a, b, shape, min, max }
+            let points = curve.points(min, max);
+            Offered { exponential: curve.kind() == CurveKind::Exponential, a, b, shape, points, min, max }
         };
         Self {
             members: group.members.iter().filter_map(place).collect(),

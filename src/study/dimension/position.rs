@@ -1,20 +1,23 @@
 //! A position tolerance: two dimensions, the coordinates of a point within a circular zone.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
 use super::super::spanned::Spanned;
 use super::super::values::NominalEntry;
 use super::{built, conflict, distribution};
-use crate::dimension::Dimension;
+use crate::dimension::{Dimension, DimensionFault};
+use crate::distribution::{Beta, DistributionError};
+use crate::study::zone::{OF_DISC, is_even};
 
 /// The dimensions that a position of this name declares.
 pub(super) fn names(name: &str) -> [String; 2] {
     ["x", "y"].map(|axis| format!("{name}_{axis}"))
 }
 
-/// Both coordinates: normal about the nominal, half the zone's diameter their half band.
+/// Both coordinates: normal about the nominal, half the zone's diameter their half band; or spread evenly over the zone.
 pub(super) fn position(
     name: &str,
     diameter: &Spanned<f64>,
@@ -28,7 +31,16 @@ pub(super) fn position(
     let nominal = nominal(entry, names.each_ref().map(|name| model(name)), &line.span())?;
     let band = radius.map(|radius| [-radius, radius]);
     let coordinate = |(coordinate, nominal): (&String, f64)| {
-        let distribution = distribution(entry, nominal, band)?;
+        // Spread evenly over the zone, a coordinate has the distribution of a disc's.
+        let distribution = match (band, is_even(entry)) {
+            (None, true) => None,
+            (Some([_, radius]), true) => {
+                distribution(entry, nominal, band)?;
+                let whole = |error: DistributionError| fault(diameter.span(), "position", DimensionFault::from(error));
+                Some(Arc::new(Beta::about(nominal, radius, OF_DISC, OF_DISC).map_err(whole)?) as _)
+            }
+            (_, false) => distribution(entry, nominal, band)?,
+        };
         built(coordinate, entry, nominal, band, distribution, line.span()).map(|dimension| dimension.within_zone(name))
     };
     names.iter().zip(nominal).map(coordinate).collect()
@@ -79,13 +91,16 @@ fn alone(entry: &DimensionEntry) -> Result<(), Fault> {
     }
     let spreads: [(&'static str, Option<Range<usize>>); 4] = [
         ("measured", entry.measured.as_ref().map(Spanned::span)),
-        ("distribution", entry.distribution.as_ref().map(Spanned::span)),
+        ("distribution", entry.distribution.as_ref().filter(|_| !is_even(entry)).map(Spanned::span)),
         ("moments", entry.moments.as_ref().map(Spanned::span)),
         ("shift", entry.shift.as_ref().map(Spanned::span)),
     ];
     for (key, span) in spreads {
         if let Some(span) = span {
-            let (to, instead) = ("a position".to_owned(), "its two coordinates are normal about the nominal place");
+            let (to, instead) = (
+                "a position".to_owned(),
+                "its two coordinates are normal about the nominal place, or spread evenly: \"uniform\"",
+            );
             return Err(fault(span, key, StudyFault::DoesNotApply { key, to, instead }));
         }
     }

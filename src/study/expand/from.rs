@@ -159,7 +159,7 @@ fn replace(expanded: &mut Expanded, relative: &Relative) {
     renamed(&mut expanded.tree, &relative.name, &own);
 }
 
-/// Costs and correlations of a relative dimension are those of its own part.
+/// Costs, correlations and blocks of a relative dimension are those of its own part.
 fn renamed(tree: &mut Tree, name: &str, own: &str) {
     if let Some(costs) = tree.get_mut("costs").and_then(Tree::entries_mut) {
         for (key, entry) in costs {
@@ -171,6 +171,9 @@ fn renamed(tree: &mut Tree, name: &str, own: &str) {
     }
     if let Some(Value::Array(pairs)) = tree.get_mut("correlation").map(|list| &mut list.value) {
         pairs.iter_mut().filter_map(|pair| pair.get_mut("between")).for_each(|between| text(between, name, own));
+    }
+    if let Some(Value::Array(blocks)) = tree.get_mut("joint").map(|list| &mut list.value) {
+        blocks.iter_mut().filter_map(|block| block.get_mut("of")).for_each(|of| text(of, name, own));
     }
     if let Some(pairs) = tree.get_mut("analysis").and_then(|analysis| analysis.get_mut("pairs")) {
         text(pairs, name, own);

@@ -5,6 +5,7 @@
 
 mod configurations;
 mod from;
+mod joint;
 mod toml;
 
 use std::ops::Range;
@@ -35,6 +36,7 @@ pub(super) struct Origin {
 pub(super) fn expand(tree: Tree, configuration: Option<&str>, data: &mut Data<'_>) -> Result<Expanded, Faults> {
     let mut expanded = Expanded { tree, configurations: Vec::new(), origins: Vec::new() };
     configurations::expand(&mut expanded, configuration, data)?;
+    joint::expand(&mut expanded);
     from::expand(&mut expanded)?;
     Ok(expanded)
 }

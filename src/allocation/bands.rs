@@ -1,0 +1,59 @@
+//! How a dimension and its band follow the tolerance.
+
+use crate::dimension::Dimension;
+
+/// Differences smaller than this part are rounding.
+const SAME: f64 = 1e-12;
+
+/// How a varying dimension follows its tolerance.
+#[derive(Clone, Copy)]
+pub(super) enum Scaling {
+    /// The same shape, sigma in proportion, the mean moved by `alpha` sigma for every further old half band.
+    Similar { alpha: f64 },
+    /// Another shape at every tolerance.
+    Reshaped,
+    /// It does not.
+    Still,
+}
+
+/// The band about the nominal at a factor of 1: its middle and half width, and by how many half widths the middle moves where they grow.
+#[derive(Clone, Copy)]
+pub(super) struct Reach {
+    pub(super) middle: f64,
+    pub(super) half: f64,
+    pub(super) lean: f64,
+}
+
+impl Scaling {
+    pub(super) fn of(dimension: &Dimension) -> Self {
+        let (mean, sigma) = (dimension.mean(), dimension.sigma());
+        let Some(law) = dimension.distribution() else { return Self::Still };
+        let scaled = |factor: f64| dimension.scaled(factor).and_then(Result::ok);
+        let (Some(half), Some(double)) = (scaled(0.5), scaled(2.0)) else {
+            return if dimension.scaled(1.0).is_some() { Self::Reshaped } else { Self::Still };
+        };
+        let alpha = (double.mean() - mean) / sigma;
+        // Rounding of the mean, seen in sigmas.
+        let blur = 8.0 * f64::EPSILON * (mean.abs() + double.mean().abs()) / sigma;
+        let affine = ((half.mean() - mean) / sigma + 0.5 * alpha).abs() <= blur + SAME * alpha.abs();
+        let wide = (double.sigma() / sigma - 2.0).abs() < SAME && (half.sigma() / sigma - 0.5).abs() < SAME;
+        let shape = law.standard_moments();
+        let same = [&half, &double].iter().all(|other| {
+            other.distribution().is_some_and(|law| {
+                let other = law.standard_moments().raw();
+                other.iter().zip(shape.raw()).all(|(a, b)| (a - b).abs() <= SAME * b.abs().max(1.0))
+            })
+        });
+        match affine && wide && same {
+            true => Self::Similar { alpha: if alpha.abs() <= blur { 0.0 } else { alpha } },
+            false => Self::Reshaped,
+        }
+    }
+}
+
+impl Reach {
+    pub(super) fn of(dimension: &Dimension) -> Self {
+        let [lower, upper] = dimension.reach();
+        Self { middle: 0.5 * (lower + upper), half: 0.5 * (upper - lower), lean: dimension.lean() }
+    }
+}

@@ -1,0 +1,59 @@
+//! A worst case held against points of the model itself: corners of the box of the tolerance bands, and points within it.
+//!
+//! A point beyond a limit refutes a worst case; points that keep it prove nothing.
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::assembly::{Points, Request, Responses, Run};
+use crate::problem::Problem;
+use crate::requirement::Requirement;
+use crate::verdict::Judged;
+
+/// Half of the points are corners.
+const POINTS: usize = 1 << 13;
+
+/// For every characteristic what the points say of its worst case: the greatest part of a limit's room that one takes, from there on. None where
+/// none has a value, of positions, whose zones are no boxes, and of a characteristic without room.
+pub(super) fn worst_in_box(
+    problem: &Problem,
+    nominal: &[Option<f64>],
+    seed: u64,
+    run: &Run<'_>,
+) -> Vec<Option<Judged>> {
+    let dimensions = problem.dimensions();
+    let nothing = vec![None; nominal.len()];
+    if dimensions.iter().any(|dimension| dimension.zone().is_some()) {
+        return nothing;
+    }
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let points = Points::written(POINTS, dimensions.len(), |d, column| {
+        let [lower, upper] = dimensions[d].reach().map(|deviation| dimensions[d].nominal() + deviation);
+        for (row, to) in column.iter_mut().enumerate() {
+            let part: f64 = rng.random();
+            *to = match row % 2 {
+                0 if part < 0.5 => lower,
+                0 => upper,
+                _ => lower + part * (upper - lower),
+            };
+        }
+    });
+    let outputs = problem.outputs();
+    let mut answers = Responses::open(POINTS, outputs.len());
+    problem.function().evaluate(&Request::values(&points, outputs), run, &mut answers);
+    let of = |(c, nominal): (usize, &Option<f64>)| {
+        let nominal = (*nominal)?;
+        let limits = problem.characteristics()[c].limits();
+        let part = |value: f64| {
+            let above = limits.upper().map(|upper| (value - nominal) / (upper - nominal));
+            let below = limits.lower().map(|lower| (value - nominal) / (lower - nominal));
+            above.into_iter().chain(below).fold(0.0, f64::max)
+        };
+        let values = (0..POINTS).filter_map(|row| answers.value(row, c));
+        let most = values.map(part).reduce(f64::max).filter(|most| most.is_finite())?;
+        let inside =
+            limits.lower().is_none_or(|lower| lower < nominal) && limits.upper().is_none_or(|upper| upper > nominal);
+        inside.then(|| Judged::of(Requirement::WorstCase, Some(most), Some([most, f64::INFINITY])))
+    };
+    nominal.iter().enumerate().map(of).collect()
+}

@@ -1,0 +1,173 @@
+//! Lists of options under rows that add up, as the knapsacks have them ([`knapsack`](super::knapsack)).
+
+/// What sums in another order may add to a row.
+pub(super) const ROUNDING: f64 = 1e-13;
+/// Costs that differ by less are the same.
+pub(super) const SAME: f64 = 1e-12;
+
+/// What two exchanges of a list's option save, and which they are.
+type Moves = (f64, [(usize, usize); 2]);
+
+/// One option of a list.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ListOption {
+    /// What it costs.
+    pub cost: f64,
+    /// What it uses of every row, 0 or more.
+    pub uses: Vec<f64>,
+    /// Its place in the list as given.
+    pub place: usize,
+}
+
+/// The cheapest choice found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ListChoice {
+    /// For every list the place of the option, as given.
+    pub places: Vec<usize>,
+    /// What they cost together.
+    pub cost: f64,
+    /// No choice costs less.
+    pub bound: f64,
+    /// States or nodes looked at.
+    pub nodes: usize,
+}
+
+/// Lists with their rows, as far as they matter.
+pub(super) struct Lists {
+    pub(super) lists: Vec<Vec<ListOption>>,
+    pub(super) rows: usize,
+}
+
+impl Lists {
+    /// Without what does not matter; None where a list is empty, or the tightest options break a row.
+    pub(super) fn of(given: &[Vec<ListOption>]) -> Option<Self> {
+        let rows = given.first()?.first()?.uses.len();
+        let options = || given.iter().flatten();
+        let implied = |weak: usize, strong: usize| options().all(|one| one.uses[weak] <= one.uses[strong]);
+        // Of two rows that are the same the first stays.
+        let idle = |r: usize| {
+            (0..rows).any(|s| s != r && implied(r, s) && (s < r || !implied(s, r)))
+                || given.iter().map(|list| list.iter().map(|one| one.uses[r]).fold(0.0, f64::max)).sum::<f64>() <= 1.0
+        };
+        let kept: Vec<usize> = (0..rows).filter(|&r| !idle(r)).collect();
+        let lists: Vec<Vec<ListOption>> = (given.iter())
+            .map(|list| {
+                let of =
+                    |one: &ListOption| ListOption { uses: kept.iter().map(|&r| one.uses[r]).collect(), ..one.clone() };
+                undominated(list.iter().map(of).collect())
+            })
+            .collect();
+        let all = Self { lists, rows: kept.len() };
+        let least = |r: usize| -> f64 { all.lists.iter().map(|list| least_use(list, r)).sum() };
+        let possible = all.lists.iter().all(|list| !list.is_empty()) && (0..all.rows).all(|r| fits(least(r)));
+        possible.then_some(all)
+    }
+
+    /// The cost of a choice of options, as they stand here.
+    pub(super) fn cost(&self, picks: &[usize]) -> f64 {
+        self.lists.iter().zip(picks).map(|(list, &pick)| list[pick].cost).sum()
+    }
+
+    /// What a choice uses of every row.
+    pub(super) fn uses(&self, picks: &[usize]) -> Vec<f64> {
+        let mut uses = vec![0.0; self.rows];
+        for (list, &pick) in self.lists.iter().zip(picks) {
+            uses.iter_mut().zip(&list[pick].uses).for_each(|(all, own)| *all += own);
+        }
+        uses
+    }
+
+    pub(super) fn is_kept(&self, picks: &[usize]) -> bool {
+        self.uses(picks).into_iter().all(fits)
+    }
+
+    /// As it is told: places in the lists as they were given.
+    pub(super) fn told(&self, picks: &[usize], bound: f64, nodes: usize) -> ListChoice {
+        let cost = self.cost(picks);
+        let places = self.lists.iter().zip(picks).map(|(list, &pick)| list[pick].place).collect();
+        ListChoice { places, cost, bound: bound.min(cost), nodes }
+    }
+
+    /// A choice made better by exchanges of one option, and of two at once where that is asked for, as long as they save something and keep the
+    /// rows.
+    pub(super) fn exchanged(&self, picks: &mut [usize], two: bool) {
+        let mut uses = self.uses(picks);
+        loop {
+            let mut best: Option<Moves> = None;
+            for (j, list) in self.lists.iter().enumerate() {
+                let own = &list[picks[j]];
+                for (i, one) in list.iter().enumerate().filter(|(i, _)| *i != picks[j]) {
+                    let saved = own.cost - one.cost;
+                    let keeps = || (0..self.rows).all(|r| fits(uses[r] - own.uses[r] + one.uses[r]));
+                    if saved > 0.0 && keeps() {
+                        better(&mut best, saved, [(j, i), (j, i)]);
+                    }
+                }
+            }
+            if best.is_none() && two {
+                self.pairs(picks, &uses, &mut best);
+            }
+            let Some((saved, moves)) = best else { break };
+            if saved <= SAME * self.cost(picks).abs() {
+                break;
+            }
+            moves.into_iter().for_each(|(j, i)| picks[j] = i);
+            uses = self.uses(picks);
+        }
+    }
+
+    /// Exchanges of two options at once that save something and keep the rows.
+    fn pairs(&self, picks: &[usize], uses: &[f64], best: &mut Option<Moves>) {
+        let mut after = vec![0.0; self.rows];
+        for (j, list) in self.lists.iter().enumerate() {
+            let own = &list[picks[j]];
+            // One that becomes cheaper pays for another that uses less.
+            for (i, one) in list.iter().enumerate().filter(|(_, one)| one.cost < own.cost) {
+                let gained = own.cost - one.cost;
+                after.iter_mut().enumerate().for_each(|(r, after)| *after = uses[r] - own.uses[r] + one.uses[r]);
+                for (k, other) in self.lists.iter().enumerate().filter(|(k, _)| *k != j) {
+                    let present = &other[picks[k]];
+                    for (l, tighter) in other.iter().enumerate() {
+                        let saved = gained - (tighter.cost - present.cost);
+                        let keeps = || (0..self.rows).all(|r| fits(after[r] - present.uses[r] + tighter.uses[r]));
+                        if l != picks[k] && saved > 0.0 && keeps() {
+                            better(best, saved, [(j, i), (k, l)]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Takes moves that save more.
+fn better(best: &mut Option<Moves>, saved: f64, moves: [(usize, usize); 2]) {
+    if best.is_none_or(|(most, _)| saved > most) {
+        *best = Some((saved, moves));
+    }
+}
+
+/// Whether a row is kept.
+pub(super) fn fits(use_: f64) -> bool {
+    use_ <= 1.0 + ROUNDING
+}
+
+/// The least use of a row in a list.
+pub(super) fn least_use(list: &[ListOption], r: usize) -> f64 {
+    list.iter().map(|one| one.uses[r]).fold(f64::INFINITY, f64::min)
+}
+
+/// The options that no other one of the list beats, the cheapest first.
+fn undominated(mut list: Vec<ListOption>) -> Vec<ListOption> {
+    list.sort_by(|a, b| {
+        a.cost.total_cmp(&b.cost).then_with(|| a.uses.iter().sum::<f64>().total_cmp(&b.uses.iter().sum()))
+    });
+    let mut kept: Vec<ListOption> = Vec::with_capacity(list.len());
+    for one in list {
+        let beaten = |other: &ListOption| other.uses.iter().zip(&one.uses).all(|(other, own)| other <= own);
+        if !kept.iter().any(beaten) {
+            kept.push(one);
+        }
+    }
+    kept
+}

@@ -1,0 +1,114 @@
+//! Costs of what is made: quality loss and scrap, as terms of the objective.
+//!
+//! ```text
+//! k (sigma^2 + (mean - target)^2) + price (share of assemblies that break a limit)
+//! ```
+//!
+//! The expected loss of G. Taguchi, "Introduction to quality engineering", Asian Productivity Organization (1986): a deviation from the target
+//! costs `k` times its square. Where the surface is a sum of dimensions whose means stay, the first term is a sum of squares of tolerances,
+//! exact in the search; anything else enters with its value and slopes at the trial tolerances.
+
+use super::constraint::Linearised;
+use super::cost::Priced;
+use super::cost_error::CostError;
+use super::response::Responses;
+
+/// What deviations and rejects of a characteristic cost, per assembly.
+///
+/// ```
+/// use sensitol::allocation::QualityLoss;
+/// // 40 per square of the unit, and 12 for an assembly that breaks a limit.
+/// let loss = QualityLoss::new(0, 40.0, 0.0)?.with_scrap(12.0)?;
+/// assert_eq!(loss.scrap, 12.0);
+/// # Ok::<(), sensitol::allocation::CostError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct QualityLoss {
+    /// Index of the characteristic in the problem.
+    pub characteristic: usize,
+    /// Cost per square of the characteristic's unit.
+    pub k: f64,
+    /// The value from which deviations count.
+    pub target: f64,
+    /// Cost of an assembly that breaks a limit.
+    pub scrap: f64,
+}
+
+/// Half a difference in `ln T`: truncation and rounding both near 1e-9.
+const STEP: f64 = 3e-5;
+
+impl QualityLoss {
+    /// `k` per square of the deviation from the target.
+    ///
+    /// # Errors
+    /// When `k` is negative or not finite, or the target is not finite.
+    pub fn new(characteristic: usize, k: f64, target: f64) -> Result<Self, CostError> {
+        if !(k.is_finite() && k >= 0.0) {
+            return Err(CostError::Negative { name: "k", value: k });
+        }
+        if !target.is_finite() {
+            return Err(CostError::Negative { name: "target", value: target });
+        }
+        Ok(Self { characteristic, k, target, scrap: 0.0 })
+    }
+
+    /// With the cost of an assembly that breaks a limit.
+    ///
+    /// # Errors
+    /// When it is negative or not finite.
+    pub fn with_scrap(self, scrap: f64) -> Result<Self, CostError> {
+        match scrap.is_finite() && scrap >= 0.0 {
+            true => Ok(Self { scrap, ..self }),
+            false => Err(CostError::Negative { name: "scrap", value: scrap }),
+        }
+    }
+
+    /// At factors of all tolerances, with nominals moved by `shifts`, in sigmas; None where it is unknown.
+    pub(super) fn at(&self, responses: &Responses, factors: &[f64], shifts: Option<&[f64]>) -> Option<f64> {
+        let moments = responses.moments_shifted(self.characteristic, factors, shifts)?;
+        let squares = self.k * (moments.sigma().powi(2) + (moments.mean() - self.target).powi(2));
+        let scrapped = match self.scrap {
+            0.0 => 0.0,
+            price => price * responses.rejects(&[self.characteristic]).share(responses, factors, shifts)?,
+        };
+        Some(squares + scrapped)
+    }
+
+    /// Whether it is a sum of squares of tolerances.
+    pub(super) fn is_exact(&self, responses: &Responses) -> bool {
+        self.scrap == 0.0 && responses.is_still_sum(self.characteristic)
+    }
+
+    /// Its value and slopes at half bands; None where they are unknown.
+    pub(super) fn linearised(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<Linearised> {
+        let c = self.characteristic;
+        let factors = responses.factors(priced, at);
+        let value = self.at(responses, &factors, None)?;
+        if self.is_exact(responses) {
+            let (_, squares) = responses.plain_squares(c, priced, &factors)?;
+            return Some(Linearised::of_squares(value, squares.iter().map(|square| 2.0 * self.k * square).collect()));
+        }
+        let mut slopes = vec![0.0; priced.len()];
+        let mut trial = factors.clone();
+        for (group, slope) in priced.iter().zip(&mut slopes).filter(|(group, _)| responses.depends(c, group)) {
+            let mut at = |step: f64| {
+                group.members.iter().for_each(|&d| trial[d] = factors[d] * step.exp());
+                self.at(responses, &trial, None)
+            };
+            let (up, down) = (at(STEP)?, at(-STEP)?);
+            group.members.iter().for_each(|&d| trial[d] = factors[d]);
+            *slope = (up - down) / (2.0 * STEP);
+        }
+        value.is_finite().then(|| Linearised::of_squares(value, slopes))
+    }
+}
+
+/// All losses together at half bands of the groups; infinite where one is unknown.
+pub(super) fn losses_at(losses: &[QualityLoss], responses: &Responses, priced: &[Priced], at: &[f64]) -> f64 {
+    if losses.is_empty() {
+        return 0.0;
+    }
+    let factors = responses.factors(priced, at);
+    losses.iter().map(|loss| loss.at(responses, &factors, None).unwrap_or(f64::INFINITY)).sum()
+}

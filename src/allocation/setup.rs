@@ -1,0 +1,46 @@
+//! What machines cost to set up.
+
+use serde::Serialize;
+
+use super::cost::Offer;
+use super::cost_error::CostError;
+
+/// More machines make more sets than can be looked at.
+pub(super) const MOST: usize = 12;
+
+/// A machine and what it costs to set it up, once for all dimensions whose processes need it.
+///
+/// ```
+/// use sensitol::allocation::SetUp;
+/// assert_eq!(SetUp::new("grinder", 8.0)?.cost, 8.0);
+/// assert!(SetUp::new("grinder", -8.0).is_err());
+/// # Ok::<(), sensitol::allocation::CostError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SetUp {
+    /// The machine.
+    pub machine: String,
+    /// What it costs.
+    pub cost: f64,
+}
+
+impl SetUp {
+    /// Of a machine.
+    ///
+    /// # Errors
+    /// When the cost is negative or not finite.
+    pub fn new(machine: impl Into<String>, cost: f64) -> Result<Self, CostError> {
+        match cost.is_finite() && cost >= 0.0 {
+            true => Ok(Self { machine: machine.into(), cost }),
+            false => Err(CostError::Negative { name: "set-up", value: cost }),
+        }
+    }
+}
+
+/// The set-ups that some offers need, each once.
+pub(super) fn needed<'s>(setups: &'s [SetUp], offers: &[&Offer]) -> Vec<&'s SetUp> {
+    let needs = |setup: &&SetUp| offers.iter().any(|offer| offer.machine.as_ref() == Some(&setup.machine));
+    setups.iter().filter(needs).collect()
+}

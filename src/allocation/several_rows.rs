@@ -1,0 +1,273 @@
+//! The cheapest options of lists under several rows.
+//!
+//! ```text
+//! L(lambda) = sum_j min_i [ cost_j(i) + sum_r lambda_r use_rj(i) ] - sum_r lambda_r  <=  the least cost, for every lambda >= 0
+//! ```
+//!
+//! Depth first: a node allows some options of every list, and its bound is the greatest `L` that steps from its parent's multipliers find.
+//! Steps follow the averages of the choices that they meet, the volume algorithm: F. Barahona, R. Anbil, "The volume algorithm", Mathematical
+//! Programming 87 (2000). The averages come near the fractional solution: the list that they split most is split in two. What an option adds
+//! to the bound rules it out at every node, and so does what it leaves to the others of a row.
+
+use super::lists::{ListChoice, ListOption, Lists, SAME, fits, least_use};
+
+/// Steps of the multipliers at the root and at every other node.
+const STEPS: [usize; 2] = [400, 24];
+/// Nodes between two repairs of a node's choice.
+const REPAIR: usize = 16;
+/// The part of the newest choice in the averages.
+const NEWEST: f64 = 0.15;
+/// Nodes between two repairs that exchange two options at once.
+const PAIRS: usize = 512;
+/// Nodes between two looks whether to stop.
+const LOOK: usize = 64;
+
+struct Node {
+    /// Options left of every list, the cheapest first.
+    left: Vec<Vec<usize>>,
+    multipliers: Vec<f64>,
+    bound: f64,
+}
+
+/// What the steps of the multipliers found.
+struct Bounded {
+    bound: f64,
+    multipliers: Vec<f64>,
+    /// The choice of the best multipliers.
+    picks: Vec<usize>,
+    /// How much of every option left is in the averages.
+    weights: Vec<Vec<f64>>,
+}
+
+struct Search<'p> {
+    problem: &'p Lists,
+    best: Option<Vec<usize>>,
+    known: f64,
+}
+
+pub(super) fn several_rows(problem: &Lists, stopped: &dyn Fn() -> bool) -> Option<ListChoice> {
+    let mut search = Search { problem, best: None, known: f64::INFINITY };
+    let left: Vec<Vec<usize>> = problem.lists.iter().map(|list| (0..list.len()).collect()).collect();
+    let root = Node { left, multipliers: vec![0.0; problem.rows], bound: f64::NEG_INFINITY };
+    let (mut open, mut nodes, mut left_over) = (vec![root], 0usize, f64::INFINITY);
+    while let Some(mut node) = open.pop() {
+        if node.bound >= search.known * (1.0 - SAME) {
+            continue;
+        }
+        if nodes > 0 && nodes.is_multiple_of(LOOK) && stopped() {
+            left_over = open.iter().map(|node| node.bound).fold(node.bound, f64::min);
+            break;
+        }
+        if !search.tightened(&mut node) {
+            nodes += 1;
+            continue;
+        }
+        let bounded = search.bounded(&node, STEPS[usize::from(nodes > 0)]);
+        if nodes.is_multiple_of(REPAIR) || problem.is_kept(&bounded.picks) {
+            search.repair(&bounded, nodes.is_multiple_of(PAIRS));
+        }
+        nodes += 1;
+        node.bound = node.bound.max(bounded.bound);
+        if node.bound >= search.known * (1.0 - SAME) {
+            continue;
+        }
+        search.reduce(&mut node, &bounded);
+        node.multipliers.clone_from(&bounded.multipliers);
+        open.extend(split(node, &bounded).into_iter().flatten());
+    }
+    let best = search.best?;
+    let proven = left_over.min(search.known);
+    Some(problem.told(&best, proven, nodes))
+}
+
+/// The two halves of a node: the list of which the averages hold the most different options, split at their mean. The half with the choice
+/// of the best multipliers comes last, to be looked at first. None where every list has one option.
+fn split(node: Node, bounded: &Bounded) -> Option<[Node; 2]> {
+    let wide = (0..node.left.len()).filter(|&j| node.left[j].len() > 1);
+    // Options may have been ruled out since: the averages are of the node before.
+    let fraction = |j: usize| 1.0 - bounded.weights[j].iter().copied().fold(0.0, f64::max);
+    let most =
+        wide.max_by(|&a, &b| fraction(a).total_cmp(&fraction(b)).then(node.left[a].len().cmp(&node.left[b].len())))?;
+    let options = &node.left[most];
+    let weighed =
+        options.iter().enumerate().map(|(at, &i)| (at as f64, bounded.weights[most].get(i).copied().unwrap_or(0.0)));
+    let (sum, weight) = weighed.fold((0.0, 0.0), |(sum, all), (at, weight)| (sum + at * weight, all + weight));
+    let mean = if weight > 0.0 { sum / weight } else { 0.5 * (options.len() - 1) as f64 };
+    let cut = (mean.floor() as usize + 1).clamp(1, options.len() - 1);
+    let (low, high) = options.split_at(cut);
+    let picked_low = low.contains(&bounded.picks[most]);
+    let half = |part: &[usize]| {
+        let mut left = node.left.clone();
+        left[most] = part.to_vec();
+        Node { left, multipliers: node.multipliers.clone(), bound: node.bound }
+    };
+    let halves = [half(high), half(low)];
+    Some(if picked_low {
+        halves
+    } else {
+        let [high, low] = halves;
+        [low, high]
+    })
+}
+
+impl Search<'_> {
+    /// Takes out options that leave the others of a row too little; false where nothing is left.
+    fn tightened(&self, node: &mut Node) -> bool {
+        let lists = &self.problem.lists;
+        loop {
+            let mut changed = false;
+            for r in 0..self.problem.rows {
+                let least =
+                    |j: usize, left: &[usize]| left.iter().map(|&i| lists[j][i].uses[r]).fold(f64::INFINITY, f64::min);
+                let all: Vec<f64> = node.left.iter().enumerate().map(|(j, left)| least(j, left)).collect();
+                let sum: f64 = all.iter().sum();
+                if !fits(sum) {
+                    return false;
+                }
+                for (j, left) in node.left.iter_mut().enumerate() {
+                    let before = left.len();
+                    left.retain(|&i| fits(sum - all[j] + lists[j][i].uses[r]));
+                    changed |= left.len() < before;
+                }
+            }
+            if !changed {
+                return node.left.iter().all(|left| !left.is_empty());
+            }
+        }
+    }
+
+    /// Takes out options that what they add to the bound rules out.
+    fn reduce(&self, node: &mut Node, bounded: &Bounded) {
+        let slack = 1e-9 * self.known.abs();
+        for (j, left) in node.left.iter_mut().enumerate() {
+            let list = &self.problem.lists[j];
+            let least = priced(&list[bounded.picks[j]], &bounded.multipliers);
+            left.retain(|&i| bounded.bound + priced(&list[i], &bounded.multipliers) - least <= self.known + slack);
+        }
+    }
+
+    /// Steps of the multipliers from those of the node.
+    fn bounded(&self, node: &Node, steps: usize) -> Bounded {
+        let (rows, lists) = (self.problem.rows, &self.problem.lists);
+        let choose = |multipliers: &[f64], picks: &mut [usize]| -> f64 {
+            let mut value = -multipliers.iter().sum::<f64>();
+            for (j, left) in node.left.iter().enumerate() {
+                let mut least = f64::INFINITY;
+                for &i in left {
+                    let own = priced(&lists[j][i], multipliers);
+                    if own < least {
+                        (least, picks[j]) = (own, i);
+                    }
+                }
+                value += least;
+            }
+            value
+        };
+        let mut picks = vec![0; lists.len()];
+        let mut at = node.multipliers.clone();
+        let bound = choose(&at, &mut picks);
+        let mut weights: Vec<Vec<f64>> = lists.iter().map(|list| vec![0.0; list.len()]).collect();
+        picks.iter().enumerate().for_each(|(j, &i)| weights[j][i] = 1.0);
+        // What the averages use of every row beyond it.
+        let mut over: Vec<f64> = self.problem.uses(&picks).iter().map(|use_| use_ - 1.0).collect();
+        let mut best = Bounded { bound, multipliers: at.clone(), picks: picks.clone(), weights: Vec::new() };
+        let (mut length, mut in_vain) = (1.0, 0);
+        for step in 0..steps {
+            if best.bound >= self.known * (1.0 - SAME) {
+                break;
+            }
+            let useful = |r: usize| over[r] > 0.0 || best.multipliers[r] > 0.0;
+            let square: f64 = (0..rows).filter(|&r| useful(r)).map(|r| over[r] * over[r]).sum();
+            if square <= 1e-24 {
+                break;
+            }
+            // Polyak's step towards the cost that is known.
+            let target =
+                if self.known.is_finite() { self.known } else { best.bound + 0.05 * best.bound.abs().max(1e-9) };
+            let by = length * (target - best.bound).max(1e-6 * target.abs()) / square;
+            for r in 0..rows {
+                at[r] = (best.multipliers[r] + by * over[r]).max(0.0);
+            }
+            let bound = choose(&at, &mut picks);
+            let newest = if step < 8 { 0.5 } else { NEWEST };
+            for (j, &i) in picks.iter().enumerate() {
+                weights[j].iter_mut().for_each(|weight| *weight *= 1.0 - newest);
+                weights[j][i] += newest;
+            }
+            let uses = self.problem.uses(&picks);
+            over.iter_mut().zip(&uses).for_each(|(over, use_)| *over = (1.0 - newest) * *over + newest * (use_ - 1.0));
+            if bound > best.bound {
+                let rise = bound - best.bound;
+                (best.bound, in_vain) = (bound, 0);
+                best.multipliers.clone_from(&at);
+                best.picks.clone_from(&picks);
+                if rise > 1e-4 * bound.abs() {
+                    length = f64::min(1.2 * length, 2.0);
+                }
+            } else {
+                in_vain += 1;
+                if in_vain >= 4 {
+                    (length, in_vain) = (0.6 * length, 0);
+                    // From the choice of the best multipliers anew.
+                    let uses = self.problem.uses(&best.picks);
+                    over.iter_mut().zip(&uses).for_each(|(over, use_)| *over = 0.5 * *over + 0.5 * (use_ - 1.0));
+                }
+                if length < 1e-4 {
+                    break;
+                }
+            }
+        }
+        best.weights = weights;
+        best
+    }
+
+    /// Takes the choice of the best multipliers where it is better than the one known: made to keep the rows by the exchanges that cost least
+    /// for what they free, then exchanged for the better.
+    fn repair(&mut self, bounded: &Bounded, two: bool) {
+        let problem = self.problem;
+        let mut picks = bounded.picks.clone();
+        let mut uses = problem.uses(&picks);
+        let over = |uses: &[f64]| uses.iter().map(|use_| (use_ - 1.0).max(0.0)).sum::<f64>();
+        while !uses.iter().all(|&use_| fits(use_)) {
+            let now = over(&uses);
+            let mut cheapest: Option<(f64, usize, usize)> = None;
+            for (j, list) in problem.lists.iter().enumerate() {
+                let own = &list[picks[j]];
+                for (i, one) in list.iter().enumerate().filter(|(i, _)| *i != picks[j]) {
+                    let after: f64 =
+                        (0..problem.rows).map(|r| (uses[r] - own.uses[r] + one.uses[r] - 1.0).max(0.0)).sum();
+                    if after < now {
+                        let price = priced(one, &bounded.multipliers) - priced(own, &bounded.multipliers);
+                        let ratio = price.max(1e-12) / (now - after);
+                        if cheapest.is_none_or(|(least, ..)| ratio < least) {
+                            cheapest = Some((ratio, j, i));
+                        }
+                    }
+                }
+            }
+            let Some((_, j, i)) = cheapest else { break };
+            picks[j] = i;
+            uses = problem.uses(&picks);
+        }
+        if !problem.is_kept(&picks) {
+            // The tightest of the row that is fullest: a last resort.
+            let fullest = (0..problem.rows).max_by(|&a, &b| uses[a].total_cmp(&uses[b])).unwrap_or(0);
+            for (list, pick) in problem.lists.iter().zip(&mut picks) {
+                let least = least_use(list, fullest);
+                *pick = list.iter().position(|one| one.uses[fullest] <= least).unwrap_or(*pick);
+            }
+        }
+        if problem.is_kept(&picks) {
+            problem.exchanged(&mut picks, two);
+            let cost = problem.cost(&picks);
+            if cost < self.known * (1.0 - SAME) {
+                (self.known, self.best) = (cost, Some(picks));
+            }
+        }
+    }
+}
+
+/// The cost of an option with what it uses at these prices.
+fn priced(one: &ListOption, multipliers: &[f64]) -> f64 {
+    one.cost + one.uses.iter().zip(multipliers).map(|(use_, price)| use_ * price).sum::<f64>()
+}

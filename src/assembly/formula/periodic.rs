@@ -1,0 +1,55 @@
+//! Variables inside a sine or cosine: by what they are multiplied there.
+
+use std::collections::BTreeMap;
+
+use super::functions::{Binary, Unary};
+use super::graph::{GraphNode, NodeId};
+use super::set::FormulaSet;
+
+/// Variables and what they are multiplied by in a sum.
+type Linear = BTreeMap<usize, f64>;
+
+impl FormulaSet {
+    /// Every variable of a sine or cosine whose argument is linear, with its factor: radians per unit.
+    pub(crate) fn turning(&self) -> Vec<(usize, f64)> {
+        let nodes = self.graph.nodes();
+        let mut linear: Vec<Option<Linear>> = Vec::with_capacity(nodes.len());
+        let mut found = Vec::new();
+        for node in nodes {
+            if let GraphNode::Unary(Unary::Sin | Unary::Cos, a) = *node {
+                found.extend(linear[a as usize].iter().flatten().map(|(&variable, &factor)| (variable, factor)));
+            }
+            let of = self.linear(*node, &linear);
+            linear.push(of);
+        }
+        found
+    }
+
+    /// None where a node is not linear.
+    fn linear(&self, node: GraphNode, known: &[Option<Linear>]) -> Option<Linear> {
+        let of = |id: NodeId| known[id as usize].as_ref();
+        let times = |terms: &Linear, by: f64| terms.iter().map(|(&variable, factor)| (variable, factor * by)).collect();
+        match node {
+            GraphNode::Constant(_) => Some(Linear::new()),
+            GraphNode::Variable(index) => Some(Linear::from([(index, 1.0)])),
+            GraphNode::Unary(Unary::Negate, a) => Some(times(of(a)?, -1.0)),
+            GraphNode::Binary(Binary::Add, a, b) => Some(sum(of(a)?, of(b)?, 1.0)),
+            GraphNode::Binary(Binary::Subtract, a, b) => Some(sum(of(a)?, of(b)?, -1.0)),
+            GraphNode::Binary(Binary::Multiply, a, b) => {
+                match (self.graph.constant_value(a), self.graph.constant_value(b)) {
+                    (Some(by), _) => Some(times(of(b)?, by)),
+                    (_, Some(by)) => Some(times(of(a)?, by)),
+                    _ => None,
+                }
+            }
+            GraphNode::Binary(Binary::Divide, a, b) => Some(times(of(a)?, 1.0 / self.graph.constant_value(b)?)),
+            _ => None,
+        }
+    }
+}
+
+fn sum(a: &Linear, b: &Linear, sign: f64) -> Linear {
+    let mut sum = a.clone();
+    b.iter().for_each(|(&variable, factor)| *sum.entry(variable).or_default() += sign * factor);
+    sum
+}

@@ -1,0 +1,145 @@
+//! An assembly function in several states at once: each output once in every state.
+
+use std::sync::Arc;
+
+use super::{
+    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Output, Points, Request, Responses,
+    Run, Signature, Switches,
+};
+use crate::warning::Warning;
+
+/// One state: a function, and by how much every input lies elsewhere than in the first state.
+pub(crate) struct State {
+    pub(crate) name: String,
+    pub(crate) function: Arc<dyn AssemblyFunction>,
+    pub(crate) moved: Vec<f64>,
+    /// The outputs that are asked of it.
+    pub(crate) outputs: Vec<usize>,
+}
+
+/// The outputs of every state in turn, named `output [state]`, of the inputs of the first state.
+pub(crate) struct States {
+    signature: Signature,
+    states: Vec<State>,
+    /// For every output its state, and its place among the outputs of that.
+    places: Vec<(usize, usize)>,
+}
+
+impl States {
+    pub(crate) fn new(states: Vec<State>) -> Self {
+        let of_first = states.first().map(|state| state.function.signature().clone()).unwrap_or_default();
+        let (mut outputs, mut places) = (Vec::new(), Vec::new());
+        for (s, state) in states.iter().enumerate() {
+            for &output in &state.outputs {
+                let known: &Output = &state.function.signature().outputs[output];
+                outputs.push(Output { name: Self::name(&known.name, &state.name), ..known.clone() });
+                places.push((s, output));
+            }
+        }
+        let all = |of: fn(&Signature) -> bool| states.iter().all(|state| of(state.function.signature()));
+        let costly = !all(|signature| !signature.costly);
+        let signature = Signature { outputs, costly, cheap: all(|signature| signature.cheap), ..of_first };
+        Self { signature, states, places }
+    }
+
+    /// The name of an output in a state.
+    pub(crate) fn name(output: &str, state: &str) -> String {
+        format!("{output} [{state}]")
+    }
+
+    /// The states that have some of these outputs, each with the places among them and its own outputs.
+    fn by_state(&self, outputs: &[usize]) -> impl Iterator<Item = (&State, Vec<usize>, Vec<usize>)> {
+        let of = |(s, state)| {
+            let own = outputs.iter().enumerate().filter(|&(_, &output)| self.places[output].0 == s);
+            let (asked, own): (Vec<usize>, Vec<usize>) =
+                own.map(|(place, &output)| (place, self.places[output].1)).unzip();
+            (state, asked, own)
+        };
+        let all: Vec<_> = self.states.iter().enumerate().map(of).filter(|(_, asked, _)| !asked.is_empty()).collect();
+        all.into_iter()
+    }
+
+    fn of(&self, output: usize) -> (&State, usize) {
+        let (state, own) = self.places[output];
+        (&self.states[state], own)
+    }
+}
+
+impl State {
+    fn points(&self, points: &Points) -> Points {
+        Points::written(points.rows(), points.dimensions(), |d, column| {
+            column.iter_mut().zip(points.column(d)).for_each(|(to, from)| *to = from + self.moved[d]);
+        })
+    }
+}
+
+impl AssemblyFunction for States {
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
+        let mut info = None;
+        for (state, _, own) in self.by_state(outputs) {
+            info = state.function.prepare(&own)?.or(info);
+        }
+        Ok(info)
+    }
+
+    fn bounds(&self, output: usize, region: &[[f64; 2]]) -> Option<Bounds> {
+        let (state, own) = self.of(output);
+        let moved: Vec<[f64; 2]> = region.iter().zip(&state.moved).map(|(ends, by)| ends.map(|end| end + by)).collect();
+        state.function.bounds(own, &moved)
+    }
+
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        for (state, asked, own) in self.by_state(request.outputs) {
+            let points = state.points(request.points);
+            let mut answers = Responses::open(points.rows(), own.len());
+            state.function.evaluate(&Request::values(&points, &own), run, &mut answers);
+            for (column, &place) in asked.iter().enumerate() {
+                for row in 0..points.rows() {
+                    match (answers.value(row, column), answers.error(row, column)) {
+                        (Some(value), _) => out.set(row, place, value),
+                        (None, Some(error)) => out.fail(row, place, error.clone()),
+                        (None, None) => {}
+                    }
+                }
+            }
+        }
+    }
+
+    fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
+        let mut all = vec![None; outputs.len()];
+        for (state, asked, own) in self.by_state(outputs) {
+            let point: Vec<f64> = directions.point.iter().zip(&state.moved).map(|(x, by)| x + by).collect();
+            let found = state.function.derivatives(&own, &Directions { point: &point, ..*directions });
+            asked.into_iter().zip(found).for_each(|(place, found)| all[place] = found);
+        }
+        all
+    }
+
+    fn switches(&self, output: usize) -> Option<Switches> {
+        let (state, own) = self.of(output);
+        state.function.switches(own)
+    }
+
+    fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
+        let (state, own) = self.of(output);
+        state.function.margins(own, &state.points(points))
+    }
+
+    fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
+        let (state, own) = self.of(output);
+        state.function.degree(own, varying)
+    }
+
+    fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
+        let mut all: Vec<Warning> = Vec::new();
+        for (state, _, own) in self.by_state(outputs) {
+            let more = state.function.warnings(&own).into_iter().filter(|one| !all.contains(one)).collect::<Vec<_>>();
+            all.extend(more);
+        }
+        all
+    }
+}

@@ -1,0 +1,197 @@
+//! Fitting on the narrower side: where many dimensions drive few inputs of a costly model, the surface is fitted over these inputs.
+//!
+//! With formulas `z(x)` a characteristic is `y(x) = F(z(x))`. Where N dimensions drive m < N inputs, the method runs over `z`, whose moments
+//! follow from the formulas, and its surface `q(z)` stands for the model: `q(z(x))` is made of formulas, and the same method over `x` then
+//! costs no evaluation. `full` takes `m^2 + m + 1` points in the place of `N^2 + N + 1`.
+//!
+//! Check points, and whatever else looks at the result, ask the model itself.
+
+use std::sync::Arc;
+
+use super::{DerivativeSource, Method, MethodError, Options, Outcome};
+use crate::assembly::{
+    AssemblyFunction, Composite, EvaluationError, ModelInfo, Points, Request, Responses, Run, Signature,
+};
+use crate::characteristic::Characteristic;
+use crate::dimension::Dimension;
+use crate::distribution::{Distribution, Normal, PearsonLaw};
+use crate::problem::Problem;
+use crate::sampling::{Draws, Joint, Portion, Sampler, Summary};
+use crate::surrogate::Surrogate;
+
+/// Points at which the formulas that drive the model are evaluated, to know how its inputs vary.
+const POINTS: usize = 1 << 13;
+/// An input whose sigma is below this part of its mean does not vary.
+const STILL: f64 = 1e-12;
+/// A nominal value so near to the mean, in sigmas, is where the surface is centred.
+const NEAR: f64 = 0.01;
+/// A correlation above this leaves the corners of a pair where no part is.
+const ALIKE: f64 = 0.95;
+
+/// The problem over the inputs of the model.
+pub(crate) struct Narrow<'p> {
+    composite: &'p Composite,
+    /// Its characteristics are the outputs of the model that are needed.
+    pub(crate) problem: Problem,
+    needed: Vec<usize>,
+    /// How many inputs of the model vary, and how many dimensions.
+    pub(crate) inputs: usize,
+    pub(crate) dimensions: usize,
+}
+
+impl<'p> Narrow<'p> {
+    /// None where no costly model is driven, its inputs are no fewer than the dimensions, or the options want something of the
+    /// dimensions themselves.
+    pub(crate) fn of(problem: &'p Problem, options: &Options) -> Option<Self> {
+        let composite = problem.function().driven()?;
+        let suits = matches!(options.method, Method::SecondOrder | Method::SixN | Method::Full | Method::Auto);
+        let plain = options.step.is_none() && options.pairs.is_none() && options.stencil.is_none();
+        let plain = plain && options.derivatives != Some(DerivativeSource::Exact) && !options.all_sensitivities;
+        if !suits || !plain {
+            return None;
+        }
+        let dependence = problem.dependence();
+        let varies = |d: usize| problem.dimensions()[d].sigma() > 0.0 && dependence.iter().any(|row| row[d]);
+        let dimensions = (0..problem.dimensions().len()).filter(|&d| varies(d)).count();
+        let (model, needed) = composite.inner(problem.outputs())?;
+        let names: Vec<String> = model.signature().inputs.iter().map(|input| input.name.clone()).collect();
+        if needed.is_empty() || names.is_empty() {
+            return None;
+        }
+        let sampler = if dimensions <= crate::sampling::SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
+        let draws = Draws::new(problem.dimensions(), problem.correlation(), sampler, Options::SEED).ok()?;
+        let sent = composite.drivers(&draws.points(Portion { replicate: 0, first: 0, rows: POINTS }))?;
+        let nominal: Vec<f64> = problem.dimensions().iter().map(|dimension| dimension.nominal()).collect();
+        let nominal = composite.drivers(&Points::from_rows(&[nominal]))?;
+        let inputs: Vec<Dimension> = (names.iter().enumerate())
+            .map(|(index, name)| input(name, nominal.column(index)[0], sent.column(index)))
+            .collect::<Option<_>>()?;
+        let varying = inputs.iter().filter(|input| input.sigma() > 0.0).count();
+        if varying == 0 || varying >= dimensions || too_alike(&sent) {
+            return None;
+        }
+        let outputs = &model.signature().outputs;
+        let asked: Vec<Characteristic> =
+            needed.iter().map(|&output| Characteristic::new(&outputs[output].name)).collect();
+        let narrow = Problem::new(inputs, Passed(model)).ok()?.asking(asked).ok()?;
+        Some(Self { composite, problem: narrow, needed, inputs: varying, dimensions })
+    }
+
+    /// Runs the method over the inputs of the model, and again over the dimensions with the surface in the place of the model. None where
+    /// some output of the model has no surface; its points are then spent.
+    pub(crate) fn run(
+        &self,
+        problem: &Problem,
+        options: &Options,
+        run: &Run<'_>,
+    ) -> Result<Option<Outcome>, MethodError> {
+        let over_inputs = options.method.procedure().run(&self.problem, options, run)?;
+        let varying = over_inputs.plan.varying();
+        let surrogates: Option<Vec<Surrogate>> = (over_inputs.fitted.iter())
+            .map(|fitted| fitted.surrogate.clone().filter(|of| of.parts.iter().all(Option::is_some)))
+            .collect();
+        let Some(surrogates) = surrogates else { return Ok(None) };
+        let place = |&d: &usize| {
+            let input = &self.problem.dimensions()[d];
+            (d, input.mean(), input.sigma())
+        };
+        let (model, _) = self.composite.inner(problem.outputs()).expect("a model that is driven");
+        let surface = Surface {
+            signature: Signature { costly: false, cheap: false, ..model.signature().clone() },
+            outputs: self.needed.clone(),
+            varying: varying.iter().map(place).collect(),
+            surrogates,
+        };
+        let about = problem.with_function(Arc::new(self.composite.about(Arc::new(surface))));
+        // Nothing that is evaluated now costs anything.
+        let method = if options.method == Method::Auto { Method::Full } else { options.method };
+        let free = Options { method, budget: None, ..options.clone() };
+        let mut outcome = method.procedure().run(&about, &free, &Run::to_the_end())?;
+        let (known, gradients) = (outcome.evaluated.known, outcome.evaluated.gradients);
+        outcome.evaluated = over_inputs.evaluated;
+        (outcome.evaluated.known, outcome.evaluated.gradients) = (known, gradients);
+        outcome.asked = options.method;
+        Ok(Some(outcome))
+    }
+}
+
+/// Whether two inputs vary so much alike that the corners of a pair lie where no part is.
+fn too_alike(sent: &Points) -> bool {
+    let mut pairs = (0..sent.dimensions()).flat_map(|j| (j + 1..sent.dimensions()).map(move |k| (j, k)));
+    pairs.any(|(j, k)| {
+        let rows: Vec<[f64; 2]> = sent.column(j).iter().zip(sent.column(k)).map(|(a, b)| [*a, *b]).collect();
+        let joint = Joint::of(&rows);
+        let [[aa, ab], [_, bb]] = *joint.products();
+        ab.abs() > ALIKE * aa.sqrt() * bb.sqrt() && aa > 0.0 && bb > 0.0
+    })
+}
+
+/// An input of the model by its nominal value and the moments of its values.
+fn input(name: &str, nominal: f64, values: &[f64]) -> Option<Dimension> {
+    let summary = Summary::of(values);
+    let (mean, sigma) = (summary.mean(), summary.sigma());
+    if sigma <= STILL * mean.abs() || sigma == 0.0 {
+        return Dimension::fixed(name, nominal).ok();
+    }
+    // The middle of the surface is a choice: one point is centre and nominal then.
+    let mean = if (mean - nominal).abs() < NEAR * sigma { nominal } else { mean };
+    let moments = summary.standardised()?;
+    let fitted =
+        PearsonLaw::new(mean, sigma, moments[3], moments[4] - 3.0).ok().filter(|law| law.probability().is_some());
+    let law: Arc<dyn Distribution> = match fitted {
+        Some(law) => Arc::new(law),
+        None => Arc::new(Normal::new(mean, sigma).ok()?),
+    };
+    Dimension::distributed(name, nominal, None, law).ok()
+}
+
+/// A function that belongs to another one too.
+struct Passed(Arc<dyn AssemblyFunction>);
+
+impl AssemblyFunction for Passed {
+    fn signature(&self) -> &Signature {
+        self.0.signature()
+    }
+
+    fn prepare(&self, outputs: &[usize]) -> Result<Option<ModelInfo>, EvaluationError> {
+        self.0.prepare(outputs)
+    }
+
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        self.0.evaluate(request, run, out);
+    }
+}
+
+/// Surfaces in the place of a model.
+struct Surface {
+    signature: Signature,
+    /// The outputs of the model that have one.
+    outputs: Vec<usize>,
+    /// The inputs that vary, with mean and sigma.
+    varying: Vec<(usize, f64, f64)>,
+    surrogates: Vec<Surrogate>,
+}
+
+impl AssemblyFunction for Surface {
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn evaluate(&self, request: &Request<'_>, _: &Run<'_>, out: &mut Responses) {
+        let points: &Points = request.points;
+        let column = |&(d, mean, sigma): &(usize, f64, f64)| -> Vec<f64> {
+            points.column(d).iter().map(|x| (x - mean) / sigma).collect()
+        };
+        let columns: Vec<Vec<f64>> = self.varying.iter().map(column).collect();
+        for (column, output) in request.outputs.iter().enumerate() {
+            let found = self.outputs.binary_search(output).ok().map(|place| &self.surrogates[place]);
+            let rises = found.and_then(|surrogate| Some((surrogate.centre, surrogate.rises(&columns)?)));
+            for row in 0..points.rows() {
+                match &rises {
+                    Some((centre, rises)) => out.set(row, column, centre + rises[row]),
+                    None => out.fail(row, column, EvaluationError::NotFinite { value: f64::NAN }),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! One characteristic at a glance: its statistics with their errors beside the intervals, and who contributes most.
+
+use super::DimensionReport;
+use super::figures::Figures;
+use crate::analysis::{CharacteristicAnalysis, Sensitivity};
+use crate::document::number::{UNKNOWN, carried, percent, plain, shape_with, significant};
+use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
+use crate::method::{ErrorEstimate, ErrorSource};
+
+/// Contributors that a terminal names.
+const CONTRIBUTORS: usize = 6;
+/// Rows of statistics that a terminal shows: the linear worst case beside a proven one comes after.
+const ROWS: usize = 6;
+/// Of sigma: worst cases nearer than this look the same in print.
+const SAME: f64 = 1e-3;
+/// Sigmas on either side that stand for the band of a dimension without a tolerance.
+const BAND: f64 = 3.0;
+/// A second derivative or a slope within this many of its rounding errors is 0.
+const ROUNDINGS: f64 = 2.0;
+
+impl CharacteristicAnalysis {
+    /// The unit by which its numbers are rounded.
+    pub(super) fn scale(&self) -> f64 {
+        self.sigma().filter(|&sigma| sigma > 0.0).or(self.rss).unwrap_or(0.0)
+    }
+
+    /// Statistics on the left, intervals on the right.
+    pub(super) fn statistics(&self, section: &mut Section) {
+        let scale = self.scale();
+        let estimate = self.error_estimate.as_ref();
+        let [mean_error, sigma_error] = [estimate.and_then(|of| of.mean), estimate.and_then(|of| of.sigma)];
+        let number = |value: Option<f64>, error| Cell::number(value, |value| carried(value, scale, error));
+        // Of an end k sigmas from the mean.
+        let end_error = |k: f64| mean_error.zip(sigma_error).map(|(mean, sigma)| mean.hypot(k * sigma));
+        let interval = |ends: Option<[f64; 2]>, error: Option<f64>| {
+            let ends = ends.map(|ends| ends.map(|end| carried(end, scale, error)));
+            Cell::text(ends.map_or(UNKNOWN.to_owned(), |[low, high]| format!("{low} .. {high}")))
+        };
+        let around = |middle: Option<f64>, reach: Option<f64>, error| {
+            interval(middle.zip(reach).map(|(middle, reach)| [middle - reach, middle + reach]), error)
+        };
+        let shift = self.mean().zip(self.nominal).map(|(mean, nominal)| mean - nominal);
+        // Found by no search, so that the bounds are all that is known of the true worst case.
+        let proven =
+            self.bounds.as_ref().filter(|bounds| bounds.proven && self.extremes.is_none()).map(|bounds| bounds.bounds);
+        let same =
+            |[a, b]: [[f64; 2]; 2]| (0..2).all(|end| (a[end] - b[end]).abs() <= SAME * self.sigma().unwrap_or(0.0));
+        let as_linear = proven.zip(self.worst_case).is_some_and(|(proven, linear)| same([proven, linear]));
+        let (worst, linear) = match proven.filter(|_| !as_linear) {
+            Some(proven) => (("proven worst case", Some(proven)), Some(("linear worst case", self.worst_case))),
+            None if as_linear => (("worst case", self.worst_case), None),
+            None => (("linear worst case", self.worst_case), None),
+        };
+        let exact = estimate.is_some_and(|of| matches!(of.sources[..], [ErrorSource::Proven { .. }]));
+        let error = |error: Option<f64>| match error {
+            Some(_) if exact => Cell::text("exact"),
+            Some(error) => Cell::text(format!("± {}", significant(error, 2))),
+            None => Cell::empty(),
+        };
+        let shaped = |value: Option<f64>, error| Cell::number(value, |value| shape_with(value, error));
+        let of = |figure: fn(&ErrorEstimate) -> Option<f64>| estimate.and_then(figure);
+        let (of_skewness, of_kurtosis) = (of(|of| of.skewness), of(|of| of.kurtosis));
+        let right = |name: &'static str, cell: Cell| [Cell::text(name), cell];
+        let row = |name: &'static str, value: Cell, error: Cell, [of, ends]: [Cell; 2]| {
+            [Cell::text(name), value, error, of, ends]
+        };
+        let three = around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma), end_error(3.0));
+        let linear_row =
+            linear.map(|(name, ends)| row("", Cell::empty(), Cell::empty(), right(name, interval(ends, None))));
+        let rows = [
+            row("nominal", number(self.nominal, None), Cell::empty(), right("± 3 sigma", three)),
+            row(
+                "mean",
+                number(self.mean(), mean_error),
+                error(mean_error),
+                right("RSS", around(self.middle, self.rss, None)),
+            ),
+            row(
+                "shift",
+                number(shift, mean_error),
+                Cell::empty(),
+                right("inflated RSS", around(self.middle, self.inflated_rss, None)),
+            ),
+            row(
+                "sigma",
+                number(self.sigma(), sigma_error),
+                error(sigma_error),
+                right("mean-shift RSS", around(self.middle, self.mean_shift_rss, None)),
+            ),
+            row(
+                "skewness",
+                shaped(self.skewness(), of_skewness),
+                error(of_skewness),
+                right(worst.0, interval(worst.1, None)),
+            ),
+            row("kurtosis", shaped(self.kurtosis(), of_kurtosis), error(of_kurtosis), [Cell::empty(), Cell::empty()]),
+        ];
+        section
+            .table(DataTable::untitled(rows.into_iter().chain(linear_row)).at_most([ROWS, usize::MAX], String::new()));
+    }
+
+    /// The strongest contributors, each with its own spread and what it does here.
+    pub(super) fn contributors(&self, dimensions: &[DimensionReport]) -> DataTable {
+        type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
+        let all: Vec<Row<'_>> =
+            self.sensitivities.iter().zip(dimensions).filter(|(row, of)| matters(row, of)).collect();
+        // Those that do nothing here are no contributors.
+        let does = |&index: &usize| part(all[index].0) != Some(0.0) || effect(&all[index]) != Some(0.0);
+        let mut view: Vec<usize> = (0..all.len()).filter(does).collect();
+        let size = |index: usize| part(all[index].0).unwrap_or(-1.0);
+        view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
+        let rest = &view[view.len().min(CONTRIBUTORS)..];
+        let together: f64 = rest.iter().filter_map(|&index| part(all[index].0)).sum();
+        let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));
+        let shown = |value: Option<f64>, text: fn(f64) -> String| Cell::number(value, text);
+        Columns::default()
+            .named("", "contributor", |row: &Row<'_>| Cell::name(&row.0.dimension))
+            .shown("mean", |row| Cell::number(row.1.mean, plain))
+            .shown("tolerance", |row| {
+                let unit = row.1.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
+                Cell::text(format!("{}{unit}", row.1.tolerance()))
+            })
+            .shown("sigma", move |row| shown(Some(row.1.sigma), |sigma| significant(sigma, 3)))
+            .shown("sensitivity", |row| {
+                let rounding = row.0.rounding.map(|rounding| rounding[0]);
+                Cell::both(Value::Number(row.0.first), derivative(row.0.first, rounding, 4))
+            })
+            .shown("effect", move |row| shown(effect(row), |effect| significant(effect, 3)))
+            .shown("contrib. %", move |row| shown(part(row.0), percent))
+            .table("", all.iter().copied())
+            .seen(view)
+            .at_most([CONTRIBUTORS, 0], rest)
+    }
+}
+
+/// How far the characteristic moves where this dimension alone goes to the end of its band that moves it more, by slope and curvature.
+fn effect((row, dimension): &(&Sensitivity, &DimensionReport)) -> Option<f64> {
+    let ends = match dimension.tolerance {
+        Some(ends) => ends.map(|end| dimension.nominal + end - dimension.mean),
+        None => [-BAND * dimension.sigma, BAND * dimension.sigma],
+    };
+    let (first, second) = (row.first?, row.second.unwrap_or(0.0));
+    Some(ends.map(|t| (t * (first + 0.5 * second * t)).abs()).into_iter().fold(0.0, f64::max))
+}
+
+/// Whether a dimension varies, or does something without.
+pub(super) fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
+    dimension.sigma > 0.0 || row.first.is_some_and(|first| first != 0.0)
+}
+
+/// The share of the variance of a dimension by itself, by slope and curvature; None where the slope's is unknown.
+pub(super) fn part(row: &Sensitivity) -> Option<f64> {
+    Some(row.linear_share? + row.curvature_share.unwrap_or(0.0))
+}
+
+/// A derivative to so many digits; within its own rounding error it is shown as 0.
+pub(super) fn derivative(value: Option<f64>, rounding: Option<f64>, digits: usize) -> String {
+    match (value, rounding) {
+        (None, _) => UNKNOWN.to_owned(),
+        (Some(value), Some(rounding)) if value.abs() <= ROUNDINGS * rounding => "0".to_owned(),
+        (Some(value), _) => significant(value, digits),
+    }
+}

@@ -1,0 +1,164 @@
+//! What a sample says of several characteristics at once: the share that keeps all limits, and how they vary together.
+
+use super::characteristic::YieldEstimate;
+use super::count::Lens;
+use super::replicate::of_replicates;
+use crate::assembly::Responses;
+use crate::problem::Problem;
+use crate::sampling::{Sampler, wilson};
+use crate::verification::{OutputCorrelation, student};
+
+/// Parts of the sample that errors follow from: the replicates of Sobol' points, or as many parts of random ones.
+const GROUPS: usize = super::REPLICATES as usize;
+/// Fewer assemblies on either side of the limits in each replicate say nothing of their differences.
+const REJECTED: u64 = 5;
+
+/// One part of a sample.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Together {
+    /// Points at which every characteristic has a value; their means, and the sums of products about them, a triangle by rows.
+    count: f64,
+    means: Vec<f64>,
+    products: Vec<f64>,
+    /// Points at which every characteristic with limits has a value, and those of them that keep all limits.
+    known: u64,
+    kept: u64,
+}
+
+/// More characteristics than this have no table of correlations: its cells grow with their square.
+const MOST: usize = OutputCorrelation::MOST;
+
+impl Together {
+    /// The parts of a portion, by their numbers; none of a single characteristic.
+    pub(super) fn of(out: &Responses, lenses: &[Lens], sampler: Sampler, replicate: u64) -> Vec<(usize, Self)> {
+        if lenses.len() < 2 {
+            return Vec::new();
+        }
+        match sampler {
+            Sampler::Sobol => vec![(replicate as usize, Self::of_rows(out, lenses, 0, 1))],
+            Sampler::Random => (0..GROUPS).map(|group| (group, Self::of_rows(out, lenses, group, GROUPS))).collect(),
+        }
+    }
+
+    fn of_rows(out: &Responses, lenses: &[Lens], first: usize, step: usize) -> Self {
+        let columns: Vec<&[f64]> = (0..lenses.len()).map(|output| out.column(output)).collect();
+        let rows = || (first..out.rows()).step_by(step);
+        let mut together = Self::default();
+        let limited: Vec<usize> = (0..lenses.len()).filter(|&c| lenses[c].limits.exist()).collect();
+        if limited.len() > 1 {
+            for row in rows().filter(|&row| limited.iter().all(|&c| !columns[c][row].is_nan())) {
+                together.known += 1;
+                together.kept += u64::from(limited.iter().all(|&c| lenses[c].limits.contains(columns[c][row])));
+            }
+        }
+        if lenses.len() <= MOST {
+            let full: Vec<usize> = rows().filter(|&row| columns.iter().all(|column| column[row].is_finite())).collect();
+            together.count = full.len() as f64;
+            let mean = |column: &&[f64]| match full.first() {
+                // About the first value, so that the sum of large values does not round.
+                Some(&at) => {
+                    column[at] + full.iter().map(|&row| column[row] - column[at]).sum::<f64>() / together.count
+                }
+                None => 0.0,
+            };
+            together.means = columns.iter().map(mean).collect();
+            for (a, first) in columns.iter().enumerate() {
+                for (b, second) in columns.iter().enumerate().skip(a) {
+                    let [m, n] = [together.means[a], together.means[b]];
+                    together.products.push(full.iter().map(|&row| (first[row] - m) * (second[row] - n)).sum());
+                }
+            }
+        }
+        together
+    }
+
+    /// Takes in another part (Pébay 2008, equation 3.12).
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.known += other.known;
+        self.kept += other.kept;
+        if other.count == 0.0 {
+            return;
+        }
+        if self.count == 0.0 {
+            (self.count, self.means, self.products) = (other.count, other.means.clone(), other.products.clone());
+            return;
+        }
+        let count = self.count + other.count;
+        let by = self.count * other.count / count;
+        let apart: Vec<f64> = other.means.iter().zip(&self.means).map(|(other, own)| other - own).collect();
+        let mut index = 0;
+        for a in 0..apart.len() {
+            for b in a..apart.len() {
+                self.products[index] += other.products[index] + by * apart[a] * apart[b];
+                index += 1;
+            }
+        }
+        self.means.iter_mut().zip(&apart).for_each(|(mean, apart)| *mean += apart * other.count / count);
+        self.count = count;
+    }
+
+    /// The coefficient of every pair, NaN where one of the two does not vary.
+    fn coefficients(&self) -> Vec<f64> {
+        let n = self.means.len();
+        let at = |a: usize, b: usize| self.products[a * n - a * (a + 1) / 2 + b];
+        let pairs = (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b)));
+        let of = |(a, b): (usize, usize)| {
+            let scale = at(a, a).sqrt() * at(b, b).sqrt();
+            if scale > 0.0 { (at(a, b) / scale).clamp(-1.0, 1.0) } else { f64::NAN }
+        };
+        if self.count < 2.0 { vec![f64::NAN; n * n.saturating_sub(1) / 2] } else { pairs.map(of).collect() }
+    }
+}
+
+/// The parts of a whole sample, in the order of their numbers.
+pub(super) fn parts() -> Vec<Together> {
+    vec![Together::default(); GROUPS]
+}
+
+/// The correlation of every pair of characteristics; none of a single one, and of more than 40. Errors by the jackknife over the parts.
+pub(super) fn correlations(problem: &Problem, parts: &[Together]) -> Vec<OutputCorrelation> {
+    let names: Vec<&str> = problem.characteristics().iter().map(|one| one.name()).collect();
+    if !(2..=MOST).contains(&names.len()) {
+        return Vec::new();
+    }
+    let all = |except: Option<usize>| {
+        let mut whole = Together::default();
+        parts.iter().enumerate().filter(|(p, _)| Some(*p) != except).for_each(|(_, part)| whole.merge(part));
+        whole.coefficients()
+    };
+    let values = all(None);
+    let known = parts.iter().filter(|part| part.count > 0.0).count();
+    let without: Vec<Vec<f64>> =
+        if known == parts.len() { (0..known).map(|part| all(Some(part))).collect() } else { Vec::new() };
+    let pairs = (0..names.len()).flat_map(|a| (a + 1..names.len()).map(move |b| (a, b)));
+    let of = |(index, (a, b)): (usize, (usize, usize))| {
+        let n = without.len() as f64;
+        let mean = without.iter().map(|of| of[index]).sum::<f64>() / n;
+        let squares: f64 = without.iter().map(|of| (of[index] - mean).powi(2)).sum();
+        let error = student(GROUPS) * (squares * (n - 1.0) / n).sqrt();
+        let value = values.get(index).copied().filter(|value| value.is_finite());
+        OutputCorrelation {
+            between: [a, b].map(|c| names[c].to_owned()),
+            value,
+            error: value.and(Some(error).filter(|error| error.is_finite())),
+        }
+    };
+    pairs.enumerate().map(of).collect()
+}
+
+/// The share that keeps all limits, of `answered` points; None with fewer than two characteristics that have limits.
+pub(super) fn joint(parts: &[Together], sampler: Sampler, answered: u64) -> Option<YieldEstimate> {
+    let (known, kept) = parts.iter().fold((0, 0), |(known, kept), part| (known + part.known, kept + part.kept));
+    if known == 0 {
+        return None;
+    }
+    let value = kept as f64 / known as f64;
+    let few = kept.min(known - kept) < REJECTED * parts.len() as u64;
+    let each = parts.iter().map(|part| (part.known > 0).then(|| part.kept as f64 / part.known as f64));
+    let interval = match of_replicates(each).filter(|_| sampler == Sampler::Sobol) {
+        Some(error) if !few && error > 0.0 => [(value - 2.0 * error).max(0.0), (value + 2.0 * error).min(1.0)],
+        _ => wilson(kept as f64, known as f64),
+    };
+    let bounds = [kept, kept + answered.saturating_sub(known)].map(|most| most as f64 / answered.max(1) as f64);
+    Some(YieldEstimate { value, interval, bounds })
+}
