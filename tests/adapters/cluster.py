@@ -229,7 +229,7 @@ def a_point_that_hangs_is_taken_back():
     with study("local:1", keys='timeout_s = 2\nretries = 0\nverify = 0') as path:
         text = path.read_text().replace("a = { nominal = 10.0, tolerance = 0.5 }", "a = { nominal = 500.0, tolerance = 600.0 }")
         path.write_text(text)
-        found = report("analyze", path, "--method", "rss", "--kc", "area", "--journal", "none", "--verify", "0")[0]
+        found = report("analyze", path, "--method", "rss", "--characteristic", "area", "--journal", "none", "--verify", "0")[0]
         assert found["failed"] == 1, found["failed"]
 
 

@@ -89,7 +89,7 @@ def the_moments_are_the_published_ones():
     found = report("analyze", STUDY, "--method", "full", "--journal", "none")[0]["characteristics"][0]
     # Sadikhani and Hashemian 2018, Table 3, second order: four decimals.
     assert abs(found["mean"] - 5.9954) < 5.1e-5 and abs(found["sigma"] - 0.2892) < 5.1e-5, found
-    same = report("analyze", EXAMPLES / "stacked-blocks/study.toml", "--method", "full", "--kc", "gap")[0]
+    same = report("analyze", EXAMPLES / "stacked-blocks/study.toml", "--method", "full", "--characteristic", "gap")[0]
     same = same["characteristics"][0]
     for key in ("mean", "sigma", "skewness", "kurtosis"):
         # Second differences of noise of 1e-10 over steps of sigma.

@@ -57,7 +57,7 @@ def every_point_is_that_of_the_closed_form():
 
 def the_moments_are_those_of_the_formulas():
     found, own = (
-        report("analyze", path, "--method", "full", "--kc", "angle", "--derivatives", "difference", "--journal", "none")[0]
+        report("analyze", path, "--method", "full", "--characteristic", "angle", "--derivatives", "difference", "--journal", "none")[0]
         for path in (STUDY, EXAMPLES / "four-bar/study.toml")
     )
     for key in ("mean", "sigma", "skewness", "kurtosis"):
@@ -93,7 +93,7 @@ def points_of_a_window_are_one_call_and_errors_are_their_own():
 def a_raised_error_is_that_of_its_point_alone():
     text = """
 function y = f (p)
-  disp ('noise that is no answer');
+  disp ('noise that is not an answer');
   if (any (p.a < 0))
     error ('a is negative');
   end
@@ -117,7 +117,7 @@ sensitol_octave (@f, 'version', 2);
         assert answers[0]["y"] == [2.5] and answers[3]["y"] == [3.5], answers
         failed(answers[1], "a is negative")
         assert answers[2]["y"] == [None] and ready["version"] == "2", (ready, answers)
-        assert "noise that is no answer" in done.stderr
+        assert "noise that is not an answer" in done.stderr
 
 
 def names_that_are_no_identifiers_have_a_field():

@@ -1,7 +1,7 @@
 // Pages in a real browser: nothing complains, nothing is requested, sliders move numbers, and the numbers are the engine's.
 // `node test.mjs SENSITOL CASES`, where CASES is what the suite left of pages, settings and the engine's answers.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
@@ -29,6 +29,18 @@ const report = (command, study, name, more = []) => {
 const examples = () => readdirSync(join(root, "examples"), { recursive: true })
   .map(String).filter((path) => path.endsWith(".toml")).map((path) => join("examples", path)).sort();
 const quiet = (page) => assert.deepEqual(page.complaints, []);
+// Labels of a chart that lie over one another, by as much as a pixel.
+const OVERLAPS = `(() => {
+  const found = [];
+  for (const svg of document.querySelectorAll("svg.density, svg.gauge")) {
+    const boxes = [...svg.querySelectorAll("text")].map((text) => [text.textContent, text.getBoundingClientRect()]).filter(([, box]) => box.width > 0);
+    boxes.forEach(([a, p], i) => boxes.slice(i + 1).forEach(([b, q]) => {
+      if (p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 2 && q.top < p.bottom - 2) found.push(a + " | " + b);
+    }));
+  }
+  return found;
+})()`;
+const drawn = "[...document.querySelectorAll('svg.density')].filter((svg) => svg.getBoundingClientRect().width > 0).length";
 
 test("every page of every example opens without a complaint or a request", async () => {
   for (const study of examples()) {
@@ -40,7 +52,7 @@ test("every page of every example opens without a complaint or a request", async
     if (!study.includes("external")) pages.push(report("compare", study, name, ["--samples", "2048", "--budget", "300"]));
     if (study.includes("stacked-blocks/")) pages.push(report("sweep", study, name, ["--over", "th=15:19:5"]));
     // A front is one of yield or Cpk.
-    const front = text.includes("require = \"") ? [] : ["--front", "4"];
+    const front = text.includes("require = \"") ? [] : ["--pareto", "4"];
     if (text.includes("[costs")) pages.push(report("allocate", study, name, front));
     for (const file of pages) {
       for (const options of [{}, { dark: true }, { width: 360, height: 740 }]) {
@@ -49,6 +61,9 @@ test("every page of every example opens without a complaint or a request", async
         assert.ok(await page.evaluate("document.querySelectorAll('section h2').length") > 1, file);
         const wider = await page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth");
         assert.ok(wider <= 0, `${file} is ${wider} pixels wider than a window of ${options.width ?? 1280}`);
+        assert.deepEqual(await page.evaluate(OVERLAPS), [], file);
+        // Each chart is there twice, and one of the two is seen.
+        assert.equal(2 * await page.evaluate(drawn), await page.evaluate("document.querySelectorAll('svg.density').length"), file);
         await page.close();
       }
     }
@@ -86,6 +101,27 @@ test("sliders and boxes change the numbers, and the study comes back", async () 
   await page.close();
 });
 
+test("the verdict says what the report's data say", async () => {
+  const WORDS = { met: "Met", missed: "Missed", inconclusive: "Not known" };
+  for (const study of ["examples/first-study/study.toml", "examples/shaft-and-bore/study.toml", "examples/stacked-blocks/study.toml", "examples/two-suppliers/study.toml"]) {
+    const page = await browser.open(report("analyze", study, `verdict-${study.replaceAll("/", "-")}`));
+    const { stdout } = spawnSync(sensitol, ["analyze", study, "--json", "-q"], { cwd: root, encoding: "utf8" });
+    const limited = JSON.parse(stdout).characteristics.filter((one) => one.lower !== null || one.upper !== null);
+    const rows = await page.evaluate("[...document.querySelectorAll('.gauges tbody tr:not(.all)')].map((row) => [...row.cells].map((cell) => cell.textContent))");
+    assert.deepEqual(rows.map((row) => row[1]), limited.map((one) => WORDS[one.verdict] ?? "no target"), study);
+    // Every number of a density is in what is read aloud.
+    const labels = await page.evaluate("[...document.querySelectorAll('svg.density.wide')].map((svg) => [svg.getAttribute('aria-label'), [...svg.querySelectorAll('text.name, text.rejected')].map((text) => text.textContent.split(' ').at(text.classList.contains('name') ? -1 : 0))])");
+    for (const [label, numbers] of labels) numbers.forEach((number) => assert.ok(label.includes(number), `${number} is not in: ${label}`));
+    if (process.env.AXE) {
+      await page.evaluate(readFileSync(process.env.AXE, "utf8"));
+      const found = await page.evaluate("axe.run(document, { resultTypes: ['violations'] }).then((all) => all.violations.map((one) => `${one.id}: ${one.nodes.map((node) => node.html.slice(0, 160)).slice(0, 3).join(' | ')}`))");
+      assert.deepEqual(found, [], study);
+    }
+    quiet(page);
+    await page.close();
+  }
+});
+
 test("costs follow the sliders, and only where there are costs", async () => {
   const page = await browser.open(report("analyze", "examples/first-study/study.toml", "costs"));
   const cost = () => page.evaluate("document.getElementById('cost').textContent");
@@ -120,6 +156,14 @@ test("the browser computes what the engine computes", async () => {
     assert.equal(found.length, 200);
     found.forEach((of, i) => of.forEach((one, c) => {
       const wanted = { ...expected[i][c] }, scales = { mean: wanted.sigma, sigma: 0, skewness: 1, excess: 1, below: 1e-6, above: 1e-6, cpk: 1 };
+      // Points say what settings change within their own error; the engine has computed the law of some of these settings.
+      if (one.by === "points") {
+        for (const key of ["below", "above"]) {
+          delete scales[key];
+          const law = wanted.surface[key];
+          if (law !== null && law[0] !== null) assert.ok(Math.abs(one[key] - law[0]) <= one.error + law[1], `${name} ${i}: ${key} ${one[key]} ${law}`);
+        }
+      }
       if (one.by === "surface") {
         for (const key of ["below", "above"]) {
           delete scales[key];
@@ -141,7 +185,7 @@ test("the browser computes what the engine computes", async () => {
 test("what is copied analyses to what the page shows", async () => {
   // Of second degree, so that the surrogate is the function itself.
   const rest = `[characteristics]
-y = { formula = "a*b + c*c - a*c", lower = 30, upper = 42 }
+y = { formula = "a*a + c*c - a*c + 4*b", lower = 96, upper = 120 }
 [analysis]
 method = "full"
 `;

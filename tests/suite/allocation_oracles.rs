@@ -273,3 +273,51 @@ fn the_best_for_a_cost_is_found() {
     let refused = allocate(&study.problem, &task, &options).unwrap_err().to_string();
     assert!(refused.contains("the loosest tolerances within their bounds cost 0.08"), "{refused}");
 }
+
+/// A Cpk is sought where the nominal values are best: with the gap's nominal value 0.3 off the middle of its limits, which both dimensions may
+/// move, the tolerances of the oracle's third roots are the best there too.
+#[test]
+fn nominal_values_move_for_the_best_of_a_cost() {
+    let of = problem("best-for-a-budget");
+    let text = of["study"].as_str().unwrap().replace("nominal = 20.0", "nominal = 20.03");
+    let study = Study::from_toml(&text, "study.toml").unwrap();
+    let options = AllocationOptions::default().with_analysis(study.options.clone()).with_recentre(vec!["a".to_owned()]);
+    let task = study.allocation_task().towards(Goal::MostCpk { cost_limit: 2.5 });
+    let found = allocate(&study.problem, &task, &options).unwrap();
+    // At rest within 1e-3 sigmas of a, a hundredth of its tolerance.
+    assert!((found.moved[0].after - 20.0).abs() < 3e-4, "{:?}", found.moved);
+    let sigma = of["optimum"]["sigma"].as_f64().unwrap();
+    let cpk = found.after.as_ref().unwrap().characteristics[0].capability.unwrap().cpk.unwrap();
+    assert!((cpk / (0.1 / (3.0 * sigma)) - 1.0).abs() < 1e-2, "{cpk}");
+    // Of a level that is sought a limit has no price.
+    assert!(found.prices.is_empty(), "{:?}", found.prices);
+}
+
+/// Proportions that keep a requirement however loose are no failure, and fixed proportions have no prices of limits.
+#[test]
+fn proportions_keep_what_nothing_breaks() {
+    let of = problem("no-costs");
+    let (tight, loose) = ("lower = 0.85, upper = 1.15", "lower = -1e6, upper = 1e6");
+    for (limits, status) in [(tight, Status::Optimal), (loose, Status::AlmostOptimal)] {
+        let text = of["study"].as_str().unwrap().replace(tight, limits);
+        let study = Study::from_toml(&text, "study.toml").unwrap();
+        let options = AllocationOptions::default().with_analysis(study.options.clone());
+        let task = study.allocation_task().relative(&study.problem, CostBasis::ConstantPrecision);
+        let found = allocate(&study.problem, &task, &options).unwrap();
+        assert_eq!(found.status, status, "{limits}");
+        assert!(all_met(&found) && found.prices.is_empty(), "{:?} {:?}", found.requirements, found.prices);
+    }
+}
+
+/// Bounds that hold nothing are refused before anything is evaluated.
+#[test]
+fn wrong_bounds_of_nominal_values_are_refused() {
+    let of = problem("move-the-shoulder");
+    let study = Study::from_toml(of["study"].as_str().unwrap(), "study.toml").unwrap();
+    let options = AllocationOptions::default().with_analysis(study.options.clone()).with_recentre(vec!["s".to_owned()]);
+    for (name, bounds) in [("s", [15.2, 14.8]), ("s", [f64::NAN, 15.2]), ("s", [15.0, 15.0]), ("a", [15.0, 15.6])] {
+        let options = options.clone().with_nominal_bounds(vec![(name.to_owned(), bounds)]);
+        let refused = allocate(&study.problem, &study.allocation_task(), &options).unwrap_err().to_string();
+        assert!(refused.contains(&format!("nominal value of `{name}` must be two numbers")), "{refused}");
+    }
+}

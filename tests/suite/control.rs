@@ -383,7 +383,7 @@ fn the_command_reports_it() {
         let mut command = assert_cmd::Command::new(assert_cmd::cargo::cargo_bin!("sensitol"));
         command.arg("simulate").arg(&study).args(["--samples", "2000"]).args(more).assert()
     };
-    let json = run(&["--surrogate-control", "--json"]).success().get_output().stdout.clone();
+    let json = run(&["--control-variate", "--json"]).success().get_output().stdout.clone();
     let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
     let surrogate = report["surrogate_evaluations"].as_u64().unwrap();
     assert_eq!(report["evaluations"].as_u64().unwrap(), 2000 + surrogate);
@@ -391,12 +391,12 @@ fn the_command_reports_it() {
     assert_eq!((control["method"].as_str(), control["evaluations"].as_u64()), (Some("six-n"), Some(surrogate)));
     // The study's method, whose interactions are the strongest ten; every one of them explains more.
     let strongest = control["reduction"]["sigma"].as_f64().unwrap();
-    let json = run(&["--surrogate-control", "--method", "full", "--json"]).success().get_output().stdout.clone();
+    let json = run(&["--control-variate", "--method", "full", "--json"]).success().get_output().stdout.clone();
     let report: serde_json::Value = serde_json::from_slice(&json).unwrap();
     let control = &report["characteristics"][0]["control"];
     assert_eq!(control["evaluations"], 111);
     assert!(control["reduction"]["sigma"].as_f64().unwrap() > strongest && strongest > 10.0, "{control} {strongest}");
-    let text = run(&["--surrogate-control", "--method", "full"]).success().get_output().stdout.clone();
+    let text = run(&["--control-variate", "--method", "full"]).success().get_output().stdout.clone();
     assert!(String::from_utf8(text).unwrap().contains("control: full surrogate, 111 evaluations"));
     let plain = run(&["--json"]).success().get_output().stdout.clone();
     let plain: serde_json::Value = serde_json::from_slice(&plain).unwrap();

@@ -84,8 +84,8 @@ fn every_page_names_the_same_codes() {
         let word = words[&i32::from(code)];
         assert!(meaning.contains(word), "{code}: {meaning}");
     }
-    let readme = std::fs::read_to_string(repository("README.md")).unwrap();
-    let (_, sentence) = readme.split_once("Exit codes:").unwrap();
+    let page = std::fs::read_to_string(repository("docs/commands.md")).unwrap();
+    let (_, sentence) = page.split_once("Exit codes:").unwrap();
     let sentence = sentence.split("\n\n").next().unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
     for (code, word) in &words {
         let after =

@@ -283,7 +283,7 @@ fn faults_have_their_place() {
         ("a = 2", "=", "`=` means nothing in a formula"),
         ("a && b", "&&", "`&&` means nothing in a formula"),
         ("a # b", "#", "`#` means nothing in a formula"),
-        ("1e999", "1e999", "`1e999` is no number that fits a double"),
+        ("1e999", "1e999", "`1e999` is not a number that fits a double"),
         ("`a + b", "`", "the name that starts here has no closing backquote"),
         ("a, b", ",", "a comma stands between the arguments of a function only"),
         ("(a, b)", ",", "a comma stands between the arguments of a function only"),

@@ -86,7 +86,7 @@ fn completions_load_and_the_manual_is_whole() {
     let folder = tempfile::tempdir().unwrap();
     for shell in ["bash", "zsh", "fish"] {
         let script = done(&within(folder.path(), &["completions", shell]));
-        assert!(script.contains("allocate") && script.contains("surrogate-control"), "{shell}");
+        assert!(script.contains("allocate") && script.contains("control-variate"), "{shell}");
         std::fs::write(folder.path().join(shell), script).unwrap();
     }
     let words = "source ./bash; COMP_WORDS=(sensitol allo); COMP_CWORD=1; _sensitol sensitol allo sensitol; echo ${COMPREPLY[*]}";

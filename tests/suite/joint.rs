@@ -3,8 +3,10 @@
 use assert_cmd::Command;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sensitol::rare::{RareOptions, rare};
+use sensitol::simulation::{Sampler, SimulationOptions, simulate};
 use sensitol::study::StudyText;
-use sensitol::{Analysis, Method, Study, StudyError, analyze};
+use sensitol::{Analysis, Method, Study, StudyError, Verdict, analyze};
 
 use super::driven::case;
 use super::studies::faults;
@@ -93,9 +95,8 @@ fn serial_numbers_join_files() {
     assert!(codes(text, &files).contains(&"unmatched-rows".to_owned()));
 }
 
-/// Five simultaneous readings of GUM H.2: their correlations are more than a copula between five values can have, and that is said. With
-/// the rows' own coefficients the law of propagation gives the printed figures, by the slopes of the analysis. A part's sigma is u sqrt(5)
-/// sqrt(4/5) = 2 u, as each row has the probability 1/5.
+/// Five simultaneous readings of GUM H.2: the law of propagation over their rows. A part's sigma is u sqrt(5) sqrt(4/5) = 2 u, as each row has
+/// the probability 1/5.
 #[test]
 fn readings_of_gum_h2() {
     let case = case("gum-h2");
@@ -106,35 +107,27 @@ fn readings_of_gum_h2() {
     let text = "[dimensions]\nV = { measured = \"h2.csv\", column = \"V\" }\nI = { measured = \"h2.csv\", column = \"I\" }\n\
                 phi = { measured = \"h2.csv\", column = \"phi\" }\n[characteristics]\nR = { formula = \"1000*V/I*cos(phi)\" }\n\
                 X = { formula = \"1000*V/I*sin(phi)\" }\nZ = { formula = \"1000*V/I\" }\n";
-    let study = read(text, &[("h2.csv", &csv)]).unwrap();
-    let found = study.warnings.iter().find(|warning| warning.code() == "rows-by-copula").unwrap().message();
-    assert!(found.starts_with("The rows of `V` and `phi` are correlated by 0.858,"), "{found}");
-    let analysis = analyze(&study.problem, &Method::SecondOrder.into()).unwrap();
-    let rows = |a: &[f64], b: &[f64]| {
-        let (ma, mb) = (a.iter().sum::<f64>() / 5.0, b.iter().sum::<f64>() / 5.0);
-        a.iter().zip(b).map(|(a, b)| (a - ma) * (b - mb)).sum::<f64>() / 5.0
-    };
-    let columns = [&v, &i, &phi];
-    let covariance = |p: usize, q: usize| {
-        let slopes = |k: usize| -> Vec<f64> {
-            analysis.characteristics[k].sensitivities.iter().map(|one| one.first.unwrap()).collect()
-        };
-        let (c, d) = (slopes(p), slopes(q));
-        (0..9).map(|k| c[k / 3] * d[k % 3] * rows(columns[k / 3], columns[k % 3])).sum::<f64>()
-    };
     let holds = |found: f64, key: &str| {
         let printed = &case["printed"][key];
         let (value, tolerance) = (printed["value"].as_f64().unwrap(), printed["tolerance"].as_f64().unwrap());
         assert!((found - value).abs() <= tolerance, "{key}: {found}, printed {value}");
     };
+    let study = read(text, &[("h2.csv", &csv)]).unwrap();
+    let inputs = study.problem.correlation().unwrap();
+    holds(inputs.of(0, 1), "r(V,I)");
+    holds(inputs.of(0, 2), "r(V,phi)");
+    holds(inputs.of(1, 2), "r(I,phi)");
+    close(inputs.of(0, 2), 0.858, 5e-4, 1.0);
+    let options = sensitol::Options::from(Method::SecondOrder).with_verify(0);
+    let analysis = analyze(&study.problem, &options).unwrap();
     for (index, (mean, u)) in [("R", "u(R) of the mean"), ("X", "u(X)"), ("Z", "u(Z)")].into_iter().enumerate() {
-        holds(analysis.characteristics[index].nominal.unwrap(), mean);
-        holds(covariance(index, index).sqrt() / 2.0, u);
+        let one = &analysis.characteristics[index];
+        holds(one.nominal.unwrap(), mean);
+        holds(one.moments.unwrap().sigma() / 2.0, u);
     }
-    let r = |p: usize, q: usize| covariance(p, q) / (covariance(p, p) * covariance(q, q)).sqrt();
-    holds(r(0, 1), "r(R,X)");
-    holds(r(0, 2), "r(R,Z)");
-    holds(r(1, 2), "r(X,Z)");
+    for (index, key) in ["r(R,X)", "r(R,Z)", "r(X,Z)"].into_iter().enumerate() {
+        holds(analysis.correlations[index].value.unwrap(), key);
+    }
 }
 
 /// GUM-S2, 9.2: two sums with a common term. Their correlation is 1/2, and both lie below their means with probability 1/3.
@@ -217,4 +210,36 @@ fn wrong_joint_data_is_said() {
             "[dimensions]\na = { nominal = 1, tolerance = 0.1 }\n[characteristics]\ny = { formula = \"a\", lower = 0 }\nz = { formula = \"a\", lower = 0 }\n[analysis]\ntarget_joint_yield = 99\n",
         ])
     );
+}
+
+/// Two independent characteristics: their joint yield is the product, by points of the model as by importance sampling.
+#[test]
+fn samples_know_the_joint_yield() {
+    let text = |limit: f64| {
+        format!(
+            "[dimensions]\na = {{ nominal = 0, sigma = 1 }}\nb = {{ nominal = 0, sigma = 1 }}\n[characteristics]\n\
+             y = {{ formula = \"a\", lower = -{limit}, upper = {limit} }}\nz = {{ formula = \"b\", lower = -{limit}, upper = {limit} }}\n\
+             w = {{ formula = \"a + b\" }}\n"
+        )
+    };
+    for sampler in [Sampler::Random, Sampler::Sobol] {
+        let options = SimulationOptions::default().with_sampler(sampler).with_target_joint_yield(0.9);
+        let found = simulate(&read(&text(2.0), &[]).unwrap().problem, &options).unwrap();
+        let joint = found.joint.unwrap();
+        let exact = 0.954_499_736_103_642_f64.powi(2);
+        assert!(joint.interval[0] <= exact && exact <= joint.interval[1], "{joint:?}");
+        assert!(joint.interval[1] - joint.interval[0] < 0.01, "{joint:?}");
+        assert_eq!(found.joint_requirement.unwrap().verdict, Verdict::Met);
+        // y with z, y with w, z with w.
+        for (one, exact) in found.correlations.iter().zip([0.0, 0.5f64.sqrt(), 0.5f64.sqrt()]) {
+            assert!((one.value.unwrap() - exact).abs() <= 3.0 * one.error.unwrap(), "{one:?}");
+        }
+    }
+    // Beyond four sigma on either side of one: 6.334e-5.
+    let beyond = 2.0 * 3.167_124_183_311_992e-5;
+    let found = rare(&read(&text(4.0), &[]).unwrap().problem, &RareOptions::default().with_samples(2000)).unwrap();
+    let exact = (1.0 - beyond) * (1.0 - beyond);
+    let [low, high] = found.joint_interval.unwrap();
+    assert!(low <= exact && exact <= high && high - low < beyond, "{low} {high} for {exact}");
+    assert!(found.joint.is_some() && found.joint_requirement.is_none());
 }

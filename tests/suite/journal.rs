@@ -549,7 +549,7 @@ fn points_may_be_evaluated_elsewhere() {
     };
     assert!(refused("x0,x1,y\n1,2,3\n").contains("no column `x2`"));
     assert!(refused("x0,x1,x2,x0\n1,2,3,4\n").contains("column `x0` stands twice"));
-    assert!(refused("x0,x1,x2,y\n1,2,3,many\n").contains("line 2, column `y`: `many` is no finite number"));
+    assert!(refused("x0,x1,x2,y\n1,2,3,many\n").contains("line 2, column `y`: `many` is not a finite number"));
     assert!(refused("x0,x1,x2,y\n1,2\n").contains("answers.csv"));
     // A column that is not the characteristic's is not silently nothing.
     assert!(refused("x0,x1,x2,Y\n1,2,3,4\n").contains("no column `y`; there is `Y`"));

@@ -87,7 +87,7 @@ fn surfaces() -> Vec<(Branch, Problem)> {
             problem(&[uniform(1.0), triangular(1.0), uniform(0.8), normal(1.0)], move |x| cycle(x) + x[3]),
         ),
     ];
-    // With limits, wide ones: without them a tree has no quantiles of its own.
+    // With limits, wide ones: without them the quantiles of a tree are those of points.
     let limits = SpecLimits::new(Some(-50.0), Some(50.0)).unwrap();
     let limited = |(branch, problem): (Branch, Problem)| {
         (branch, problem.asking([Characteristic::new("y").with_limits(limits)]).unwrap())
@@ -112,6 +112,27 @@ fn quantiles_sought_together_are_those_sought_alone() {
             assert!(together.error < most * law.sigma(), "{branch:?} {tail:?} {p}: {together:?}");
         }
         assert!(found.windows(2).all(|pair| pair[0].value < pair[1].value), "{found:?}");
+    }
+}
+
+/// Products of inputs that are not normal, as a tree, without limits: quantiles of points, within their errors of those of the contour.
+#[test]
+fn quantiles_of_a_tree_without_limits_are_those_of_its_law() {
+    let laws = [uniform(1.0), triangular(1.0), normal(0.4), uniform(0.7), triangular(0.5)];
+    let tree = problem(&laws, |x| {
+        x[0] + x[1] + x[2] + 0.5 * x[0] * x[1] - 0.4 * x[1] * x[2] + 0.3 * x[1] * x[3] + 0.2 * x[3] * x[4] + x[4]
+    });
+    let analysis = analysed(&tree);
+    let found = analysis.characteristics[0].surface_law.unwrap();
+    assert_eq!((found.branch, found.counted), (Branch::Sampled, None));
+    let still = vec![Relocation::NONE; laws.len()];
+    let law = law_at(&tree, &analysis.surface, 0, &still).unwrap().unwrap();
+    assert_eq!(law.branch(), Branch::Exact);
+    for (figure, (tail, p)) in found.quantiles.unwrap().iter().zip(QUANTILES) {
+        let exact = law.quantile(tail, p);
+        assert!((figure.value - exact.value).abs() <= figure.error + exact.error, "{tail:?} {p}: {figure:?} {exact:?}");
+        // 2^12 points with one direction integrated.
+        assert!(figure.error < 2e-2 * law.sigma(), "{tail:?} {p}: {figure:?}");
     }
 }
 

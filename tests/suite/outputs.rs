@@ -106,7 +106,7 @@ fn a_linear_worst_case_is_named_as_linear() {
              [characteristics]\ny = {{ formula = \"{formula}\" }}\n"
         );
         std::fs::write(&path, text).unwrap();
-        let words: Vec<&str> = ["analyze", &path, option].into_iter().filter(|word| !word.is_empty()).collect();
+        let words: Vec<&str> = ["analyze", &path, "-v", option].into_iter().filter(|word| !word.is_empty()).collect();
         let out = sensitol(&words).output().unwrap();
         let shown = String::from_utf8(out.stdout).unwrap();
         assert!(shown.contains("worst case"), "{formula}: {shown}");

@@ -86,7 +86,7 @@ fn check(value: &Value, at: &str) {
     }
 }
 
-/// No word of it is what a double prints that is no number.
+/// No word of it is what a double prints that is not a number.
 fn finite(text: &str, at: &str) {
     let odd = |word: &&str| matches!(word.trim_matches(['-', '+']).to_lowercase().as_str(), "nan" | "inf" | "infinity");
     let word = text.split(|c: char| !(c.is_alphanumeric() || "-+.".contains(c))).find(odd);

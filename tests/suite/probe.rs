@@ -137,7 +137,8 @@ fn program(does: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     std::fs::write(&study, text).unwrap();
     let output = sensitol(&[&[arguments[0], study.to_str().unwrap()], &arguments[1..]].concat()).output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (output.status.code(), text(output.stdout), text(output.stderr))
+    // Long lines go on in the next one.
+    (output.status.code(), text(output.stdout).replace("\n    ", " "), text(output.stderr))
 }
 
 /// A model that crashes beyond 1.7 sigma is told of, by the point and by how it ended.

@@ -311,9 +311,9 @@ fn the_command_reports_it() {
     let blocks = "examples/stacked-blocks/study.toml";
     let mut all = run(&["simulate", blocks, "--rare", "--samples", "600"]);
     for wrong in [
-        &["simulate", blocks, "--rare", "--surrogate-control"][..],
+        &["simulate", blocks, "--rare", "--control-variate"][..],
         &["simulate", blocks, "--rare", "--sampler", "sobol"],
-        &["simulate", blocks, "--rare", "--until-yield", "0.1"],
+        &["simulate", blocks, "--rare", "--target-yield-error", "0.1"],
         &["simulate", blocks, "--rare", "--samples", "20"],
         &["simulate", "examples/engine-balance/study.toml", "--rare"],
         &["simulate", blocks, "--method", "full"],

@@ -277,7 +277,7 @@ pub fn commands() -> String {
         }
         write!(page, "```sh\n{}\n```\n\n", examples(&subcommand).join("\n")).unwrap();
     }
-    page += "## Words\n\nWhat the words that stand for an option mean.\n";
+    page += "## Words\n\nThe meaning of the words that stand for an option.\n";
     for (option, words) in values {
         write!(page, "\n### {option}\n\n| word | meaning |\n|---|---|\n").unwrap();
         words.iter().for_each(|(word, help)| writeln!(page, "| `{word}` | {} |", cell(help)).unwrap());

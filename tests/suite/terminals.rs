@@ -139,6 +139,7 @@ fn no_command_obeys_a_name() {
         &["completions", HOSTILE],
         &["man", HOSTILE],
         &["probe", "model.toml"],
+        &["workbench", "bad.toml", "--page", HOSTILE],
         &["evaluate", "bad.toml"],
         &["journal", "show", journal],
         &["journal", "show", HOSTILE],

@@ -141,7 +141,7 @@ fn tolerances_at_fault() {
         "{ position = 0.2, nominal = [50, 30], tolerance = 0.1 }",
         "{ position = 0.2, nominal = [50, 30], limits = [1, 2] }",
         "{ position = 0.2, nominal = [50, 30], fit = \"H7\", unit = \"mm\" }",
-        "{ position = 0.2, nominal = [50, 30], distribution = \"uniform\" }",
+        "{ position = 0.2, nominal = [50, 30], distribution = \"triangular\" }",
         "{ position = 0.2, nominal = [50, 30], shift = 0.1 }",
         "{ position = 0.2, nominal = [50, 30], sigmas = 3, cp = 2 }",
         "{ position = 0.2, nominal = [50, 30], cp = 0 }",

@@ -311,8 +311,13 @@ impl AssemblyFunction for Costly {
 }
 
 pub(super) fn costly(problem: &Problem) -> (Problem, Arc<AtomicUsize>) {
+    counted(problem, true)
+}
+
+/// The same function with its points counted, as a model that costs something or that is cheap.
+fn counted(problem: &Problem, costly: bool) -> (Problem, Arc<AtomicUsize>) {
     let asked = Arc::new(AtomicUsize::new(0));
-    let signature = Signature { costly: true, cheap: false, ..problem.function().signature().clone() };
+    let signature = Signature { costly, cheap: !costly, ..problem.function().signature().clone() };
     let function = Costly { signature, inner: problem.clone(), asked: Arc::clone(&asked) };
     let mut again = Problem::new(problem.dimensions().to_vec(), function).unwrap();
     if let Some(correlation) = problem.correlation() {
@@ -493,4 +498,30 @@ fn a_sample_ends_with_the_time() {
     let found = analyzed(usize::MAX);
     assert!(found.run.stopped.is_none() && found.characteristics[0].verification.is_some());
     assert!(found.characteristics[0].requirements().iter().all(|judged| judged.verdict == Verdict::Met));
+}
+
+/// A budget counts every evaluation of a cheap model, those of its verification included; one that does not reach for a sample reaches for
+/// check points.
+#[test]
+fn a_budget_holds_what_verifies_a_cheap_model() {
+    let dimensions = json!({ "a": { "nominal": 1.0, "tolerance": 0.3 }, "b": { "nominal": 2.0, "tolerance": 0.6 } });
+    // A surface that leaves variance open, so that shares are asked for where they can be paid.
+    let study = study(dimensions, "a*b + 0.4*sin(9*a)*b");
+    for (budget, kind) in [
+        (40, VerificationKind::Checks),
+        (5_000, VerificationKind::Checks),
+        (70_000, VerificationKind::Sample),
+        (300_000, VerificationKind::Sample),
+    ] {
+        for method in [Method::Full, Method::Auto] {
+            let (problem, asked) = counted(&study.problem, false);
+            let found = analyze(&problem, &Options::from(method).with_budget(budget)).unwrap();
+            let asked = asked.load(Ordering::Relaxed);
+            assert!(asked <= budget, "{}: {asked} of {budget}", method.name());
+            let verified = found.characteristics[0].verification.as_ref();
+            assert!(verified.is_none_or(|verified| verified.kind == kind), "{budget}: {verified:?}");
+            assert!(verified.is_some() || method == Method::Auto, "{budget}");
+            assert!(found.characteristics[0].error_estimate.as_ref().unwrap().sigma.is_some(), "{budget}");
+        }
+    }
 }

@@ -51,6 +51,7 @@ fn every() -> Vec<Warning> {
         Warning::NominalOutsideLimits { dimensions: names(1) },
         Warning::NominalOutsideLimits { dimensions: names(2) },
         Warning::Overflow { characteristic: characteristic(), value: 1.5e200, limit: 1e100 },
+        Warning::OutsideModel { output: text("H_req"), reason: text("below 2 t the flanges of the section overlap") },
         Warning::UnitMismatch {
             formula: text("characteristics.gap.formula"),
             column: 1,
@@ -68,6 +69,8 @@ fn every() -> Vec<Warning> {
             others: names(3),
         },
         Warning::RowsByCopula { dimensions: [text("bore"), text("pin")], correlation: [0.8581, 0.8422] },
+        Warning::PeriodicInput { dimensions: names(1) },
+        Warning::PeriodicInput { dimensions: names(2) },
         Warning::UnknownUnit { units: vec![text("furlong")] },
         Warning::UnmatchedRows { dimension: text("pin"), file: text("pin.csv"), unmatched: 1, lines: vec![12] },
         Warning::UnmatchedRows {
@@ -267,6 +270,8 @@ fn every() -> Vec<Warning> {
         Warning::FitReplaced { dimensions: names(1) },
         Warning::FitReplaced { dimensions: names(2) },
         Warning::NotConfirmed,
+        Warning::CostNotConvex { dimensions: names(1) },
+        Warning::CostNotConvex { dimensions: names(2) },
         Warning::ConfirmationMisses {
             characteristic: characteristic(),
             requirement: "yield",
@@ -278,6 +283,12 @@ fn every() -> Vec<Warning> {
             requirement: "cpk",
             required: 1.33,
             interval: [1.2104, 1.2216],
+        },
+        Warning::ConfirmationMisses {
+            characteristic: characteristic(),
+            requirement: "worst-case",
+            required: 1.0,
+            interval: [1.0421, 1.0421],
         },
         Warning::NothingToWrite,
         Warning::NotWritten { reason: text("`a` has its tolerance in a list") },
@@ -318,7 +329,7 @@ fn warnings_are_short_sentences_of_plain_words() {
         "rest on",
         "rests on",
         "reaches far",
-        "is no number",
+        "is not a number",
         "mind of",
     ];
     for warning in every() {

@@ -1,0 +1,274 @@
+#!/usr/bin/env python3
+"""Which constant changes what: every numeric constant of the methods, their estimates and their verification, doubled and halved.
+
+    python3 tests/tuning/measure.py        # writes docs/reference/tuning.md; an hour of CPU time
+
+The library is copied to target/tuning with its constants as variables, compiled once, and run on the functions that constants may be
+tuned on (tests/data/accuracy). The functions by which errors are judged (tests/data/trust.jsonl) are not looked at: a constant that is
+chosen by this table has not been chosen by them. A constant that sizes an array, or that another constant is made of, stays as it is.
+"""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILD = ROOT / "target" / "tuning"
+FOLDERS = ["analysis", "method", "simulation", "surrogate", "verification"]
+DEFINITION = re.compile(
+    r"^(?P<indent>\s*)(?P<public>pub(?:\([a-z]+\))? )?const (?P<name>[A-Z][A-Z_0-9]*): (?P<type>f64|usize|u64|u32|i32) = (?P<value>[^;]+);",
+    re.M,
+)
+# Noise below which two results are the same: sums in another order.
+SAME = 1e-9
+
+
+def constants():
+    """Every constant: file, name, type, value as written, and what its comment says."""
+    for folder in FOLDERS:
+        for path in sorted((ROOT / "src" / folder).rglob("*.rs")):
+            text = path.read_text()
+            if path.name == "tests.rs":
+                continue
+            for found in DEFINITION.finditer(text):
+                yield {
+                    "file": str(path.relative_to(ROOT / "src")),
+                    "name": found["name"],
+                    "type": found["type"],
+                    "value": " ".join(found["value"].split()),
+                    "public": bool(found["public"]),
+                    "meaning": meaning(text[: found.start()], found["indent"]),
+                }
+
+
+def meaning(before, indent):
+    """The comment above: constants that share one stand below each other."""
+    lines, comment = before.rstrip("\n").split("\n"), []
+    while lines and DEFINITION.match(lines[-1] + "\n"):
+        lines.pop()
+    while lines and lines[-1].strip().startswith("//"):
+        comment.insert(0, lines.pop().strip().lstrip("/").strip())
+    return " ".join(comment)
+
+
+def scaled_copy(fixed):
+    """The sources with every constant that is not fixed as a function of the environment."""
+    source = BUILD / "tree"
+    (source / "src").parent.mkdir(parents=True, exist_ok=True)
+    if (source / "src").exists():
+        shutil.rmtree(source / "src")
+    shutil.copytree(ROOT / "src", source / "src")
+    manifest = (ROOT / "Cargo.toml").read_text()
+    manifest = re.sub(r"\n\[workspace\]\n.*?\n\n", "\n[workspace]\n\n", manifest, flags=re.S)
+    manifest = re.sub(r"\[\[bench\]\]\n[^\[]*", "", manifest)
+    manifest = manifest.replace('missing_docs = "deny"', 'missing_docs = "allow"')
+    manifest = manifest.replace("[lints.rust]", '[lints.rust]\nnon_snake_case = "allow"\nunused = { level = "allow", priority = -1 }')
+    manifest = re.sub(r"\[\[bin\]\]\nname = .*?\n\n", "", manifest, flags=re.S)
+    (source / "Cargo.toml").write_text(manifest)
+    shutil.copy(ROOT / "Cargo.lock", source / "Cargo.lock")
+    shutil.copy(ROOT / "README.md", source / "README.md")
+    (source / "examples").mkdir(exist_ok=True)
+    shutil.copy(Path(__file__).with_name("driver.rs"), source / "examples" / "driver.rs")
+    library = source / "src" / "lib.rs"
+    library.write_text(library.read_text() + TUNABLE)
+    for one in constants():
+        if key(one) in fixed:
+            continue
+        path = source / "src" / one["file"]
+        text = path.read_text()
+
+        def variable(found):
+            if found["name"] != one["name"]:
+                return found[0]
+            of = f'crate::tunable("{key(one)}", ({found["value"]}) as f64)'
+            whole = found["type"] != "f64"
+            of = f"{of}.round().max(1.0)" if whole else of
+            return (
+                f'{found["indent"]}{found["public"] or ""}fn {found["name"]}() -> {found["type"]} {{ '
+                f"static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *V.get_or_init(|| {of}) as {found['type']} }}"
+            )
+
+        text = DEFINITION.sub(variable, text)
+        path.write_text(called(text, one["name"]))
+        if one["public"]:
+            for other in (source / "src").rglob("*.rs"):
+                if other != path:
+                    text = other.read_text()
+                    if re.search(rf"\buse [^;]*\b{one['name']}\b", text) and Path(one["file"]).stem in text:
+                        other.write_text(called(text, one["name"]))
+    return source
+
+
+def called(text, name):
+    """Uses of a constant as calls, but for imports, comments and texts."""
+    out, importing = [], False
+    for line in text.split("\n"):
+        bare = line.strip()
+        if re.match(r"(pub(\([a-z]+\))? )?use ", bare):
+            importing = True
+        if not importing and not bare.startswith("//") and f"fn {name}()" not in line:
+            line = re.sub(rf"(?<![\w\"'`])(?<!::){name}\b(?!\(|::|`)", f"{name}()", line)
+            line = re.sub(rf"\b(Self|super|[a-z_]+)::{name}\b(?!\(|::)", rf"\1::{name}()", line)
+        if importing and ";" in line:
+            importing = False
+        out.append(line)
+    return "\n".join(out)
+
+
+TUNABLE = """
+/// A constant, scaled where the environment asks for it.
+pub fn tunable(name: &str, value: f64) -> f64 {
+    static ASKED: std::sync::OnceLock<Option<(String, f64)>> = std::sync::OnceLock::new();
+    let asked = ASKED.get_or_init(|| {
+        let (name, factor) = std::env::var("SENSITOL_TUNE").ok()?.rsplit_once('=').map(|(n, f)| (n.to_owned(), f.to_owned()))?;
+        Some((name, factor.parse().ok()?))
+    });
+    asked.as_ref().filter(|(asked, _)| asked == name).map_or(value, |(_, factor)| value * factor)
+}
+"""
+
+
+def key(one):
+    return f"{one['file']}:{one['name']}"
+
+
+def compiled():
+    """The driver, and which constants cannot vary: those on a line that does not compile as a call."""
+    # Those of the run before spare some builds.
+    known = BUILD / "fixed.json"
+    fixed = set(json.loads(known.read_text())) & {key(one) for one in constants()} if known.exists() else set()
+    command = ["cargo", "build", "--release", "--no-default-features", "--features", "study,report", "--example", "driver"]
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(BUILD / "target"), "CARGO_PROFILE_RELEASE_LTO": "off"}
+    for _ in range(30):
+        source = scaled_copy(fixed)
+        ran = subprocess.run([*command, "--message-format=json"], cwd=source, env=environment, capture_output=True, text=True)
+        if ran.returncode == 0:
+            known.write_text(json.dumps(sorted(fixed)))
+            return BUILD / "target" / "release" / "examples" / "driver", fixed
+        found = set()
+        for line in ran.stdout.splitlines():
+            message = json.loads(line).get("message") if line.startswith("{") else None
+            if not message or message.get("level") != "error":
+                continue
+            for span in message["spans"]:
+                file = span["file_name"].removeprefix("src/")
+                for text in span["text"]:
+                    for one in constants():
+                        of = one["file"] == file or one["public"]
+                        if of and re.search(rf"\b{one['name']}\b", text["text"]) and key(one) not in fixed:
+                            found.add(key(one))
+        if not found:
+            sys.exit(ran.stdout[-3000:] + ran.stderr[-3000:])
+        print(f"fixed: {sorted(found)}", file=sys.stderr)
+        fixed |= found
+    sys.exit("no end of constants that cannot vary")
+
+
+def run(driver, tuned=None):
+    """What the functions come to: by function and kind of run."""
+    environment = dict(os.environ)
+    if tuned:
+        environment["SENSITOL_TUNE"] = tuned
+    try:
+        ran = subprocess.run(
+            [driver, ROOT / "tests" / "data" / "accuracy"], env=environment, capture_output=True, text=True, timeout=600
+        )
+    except subprocess.TimeoutExpired:
+        return None
+    if ran.returncode != 0:
+        return None
+    lines = [json.loads(line) for line in ran.stdout.splitlines()]
+    return {(line["name"], line["kind"]): line for line in lines}
+
+
+def figures(result):
+    """How many figures have an error, and how many of these are within three of it."""
+    known = covered = 0
+    for line in result.values():
+        for number, (value, off, error) in enumerate(line["figures"]):
+            if off is None or error is None:
+                continue
+            floor = 1e-7 * [line["sigma"], line["sigma"], 10.0, 100.0][number]
+            known += 1
+            covered += off <= 3.0 * error + floor
+    return known, covered
+
+
+def same(a, b):
+    if a is None or b is None:
+        return a is b
+    return abs(a - b) <= SAME * max(abs(a), abs(b), 1e-12)
+
+
+def effect(before, after):
+    """What is different, in few words."""
+    if after is None:
+        return "does not end in ten minutes, or fails"
+    changed = 0
+    for of, line in before.items():
+        other = after[of]
+        alike = line["evaluations"] == other["evaluations"] and line["warnings"] == other["warnings"]
+        alike = alike and all(same(*pair) for a, b in zip(line["figures"], other["figures"]) for pair in zip(a, b))
+        changed += not alike
+    if not changed:
+        return "nothing"
+    said = [f"{changed} of {len(before)}"]
+    total = [sum(line["evaluations"] for line in of.values() if "sampled" not in line["kind"]) for of in (before, after)]
+    if total[0] != total[1]:
+        said.append(f"evaluations {100.0 * (total[1] / total[0] - 1.0):+.1f} %")
+    (known, covered), (now_known, now_covered) = figures(before), figures(after)
+    if known - covered != now_known - now_covered:
+        said.append(f"not covered {now_known - now_covered} (now {known - covered})")
+    warned = [sum(len(line["warnings"]) for line in of.values()) for of in (before, after)]
+    if warned[0] != warned[1]:
+        said.append(f"warnings {warned[1]} (now {warned[0]})")
+    return ", ".join(said)
+
+
+def written(rows, before):
+    known, covered = figures(before)
+    total = sum(line["evaluations"] for line in before.values() if "sampled" not in line["kind"])
+    names = {name for name, _ in before}
+    text = f"""# Constants, and what they do
+
+Written by [tests/tuning/measure.py](../../tests/tuning/measure.py), which doubles and halves every numeric constant of
+{", ".join(f"`src/{folder}`" for folder in FOLDERS[:-1])} and `src/{FOLDERS[-1]}` and runs the {len(names)} functions that constants may be tuned
+on ([docs/accuracy.md](../accuracy.md)) of at most 20 dimensions in five ways: `auto` as a cheap model, `auto` and `full` with check points, `auto`
+without any verification at 1 % and at 0.1 %. The functions by which errors are judged are not among them.
+
+As they are: {len(before)} runs, {total} evaluations of models that cost something, {known} figures with an estimated error, {known - covered} of
+them more than three estimates off. "3 of {len(before)}" says how many runs give another number, an error or a warning. "Nothing" is
+said of guards against what these functions do not have (poles, overflow, memory, a budget), and of constants that a doubling leaves on the
+same side of everything. "Fixed" sizes an array, or other constants are made of it.
+
+"""
+    for file in dict.fromkeys(one["file"] for one, _, _ in rows):
+        text += f"## `{file}`\n\n| constant | value | meaning | halved | doubled |\n|---|---|---|---|---|\n"
+        for one, half, double in rows:
+            if one["file"] == file:
+                said = one["meaning"].replace("|", "\\|") or "-"
+                value = one["value"].replace("|", "\\|")
+                text += f"| `{one['name']}` | `{value}` | {said} | {half} | {double} |\n"
+        text += "\n"
+    (ROOT / "docs" / "reference" / "tuning.md").write_text(text.rstrip("\n") + "\n")
+
+
+def main():
+    driver, fixed = compiled()
+    before = run(driver)
+    rows = []
+    for one in constants():
+        if key(one) in fixed:
+            rows.append((one, "fixed", "fixed"))
+            continue
+        half, double = (effect(before, run(driver, f"{key(one)}={factor}")) for factor in (0.5, 2.0))
+        print(f"{key(one)}: {half} | {double}", file=sys.stderr, flush=True)
+        rows.append((one, half, double))
+    written(rows, before)
+
+
+main()
