@@ -31,7 +31,7 @@ _ENDED = set()
 
 
 class Ended(Exception):
-    """A program that is gone, or said something that is no answer."""
+    """A program that is gone, or said something that is not an answer."""
 
 
 class Program:
@@ -93,7 +93,7 @@ class Program:
         except ValueError:
             found = None
         if not isinstance(found, dict):
-            raise Ended(f"the program wrote a line that is no answer: {line[:80].decode('utf-8', 'replace')!r}")
+            raise Ended(f"the program wrote a line that is not an answer: {line[:80].decode('utf-8', 'replace')!r}")
         return found
 
     def ask(self, points):

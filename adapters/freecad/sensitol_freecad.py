@@ -321,7 +321,7 @@ def _copy(value):
 def _number(value, factor, what):
     value = getattr(value, "Value", value)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise NoValue(f"{what} holds {value!r}, which is no number")
+        raise NoValue(f"{what} holds {value!r}, which is not a number")
     return value / (factor or 1.0)
 
 

@@ -258,7 +258,7 @@ class Model:
             where = "" if address(origin) == address(cell) else f", from {address(origin)}"
             return NoValue(f"{address(cell)} is {words(cell)}{where}")
         if cell.Type.value in ("EMPTY", "TEXT") or (cell.Type.value == "FORMULA" and cell.FormulaResultType2 == TEXT_RESULT):
-            return NoValue(f"{address(cell)} holds {cell.String!r}, which is no number")
+            return NoValue(f"{address(cell)} holds {cell.String!r}, which is not a number")
         return cell.Value
 
     def _origin(self, cell):

@@ -66,7 +66,7 @@ def _analysis_error(message: str, advice: list[str]) -> AnalysisError:
 
 
 class ModelError(ValueError):
-    """A function does not fit the study, or answers with something that is no answer."""
+    """A function does not fit the study, or answers with something that is not an answer."""
 
 
 class NoValue(Exception):

@@ -100,7 +100,7 @@ class Rendered:
         self._svg = outcome.svg("")
         self._tables = outcome.tables()
 
-    def text(self, width: int = 100, full: bool = False) -> str:
+    def text(self, width: int = 80, full: bool = False) -> str:
         return str(self._text[full])
 
     def html(self) -> str:
@@ -170,7 +170,7 @@ class Result(Record):
     def _outcome_(self) -> Any:
         return self.__dict__["_outcome"]
 
-    def text(self, *, width: int = 100, full: bool = False) -> str:
+    def text(self, *, width: int = 80, full: bool = False) -> str:
         """The report as the command line prints it, `full` as with all details."""
         return str(self._outcome_().text(width, full))
 

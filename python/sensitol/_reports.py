@@ -41,7 +41,7 @@ class Advice(Record):
     without the name of any option.
     """
 
-    action: Literal['use-method', 'raise-budget', 'check-limits', 'set-budget', 'raise-time-limit', 'limit-time', 'sample', 'sample-rare-events', 'sample-plainly', 'more-points', 'smaller-step', 'use-differences', 'include-fixed-dimensions', 'leave-out-correlation', 'use-formula', 'check-names', 'check-units', 'check-nominal', 'check-position', 'check-inputs', 'check-configuration', 'check-moments', 'check-column', 'find-missing-values', 'remove-wrong-values', 'measure-more', 'measure-finer', 'repair-model', 'read-model-log', 'name-model-files', 'keep-defined', 'reset-model', 'signed-measure', 'nearer-datum', 'larger-unit', 'tighten-solver', 'split-branches', 'nearest-fit', 'require-more', 'analyze-written-study', 'write-costs', 'name-movable-dimensions', 'write-missing-points', 'append-answers', 'analyze-stages', 'edit-study']
+    action: Literal['use-method', 'raise-budget', 'check-limits', 'set-budget', 'raise-time-limit', 'limit-time', 'sample', 'sample-rare-events', 'sample-plainly', 'more-points', 'smaller-step', 'use-differences', 'include-fixed-dimensions', 'leave-out-correlation', 'use-formula', 'check-names', 'check-units', 'write-direction-as-rim', 'check-nominal', 'check-position', 'check-inputs', 'check-configuration', 'check-moments', 'check-column', 'find-missing-values', 'remove-wrong-values', 'measure-more', 'measure-finer', 'repair-model', 'read-model-log', 'name-model-files', 'keep-defined', 'reset-model', 'signed-measure', 'nearer-datum', 'larger-unit', 'tighten-solver', 'split-branches', 'nearest-fit', 'require-more', 'analyze-written-study', 'write-costs', 'name-movable-dimensions', 'write-missing-points', 'append-answers', 'analyze-stages', 'edit-study']
     methods: Optional[List[str]]
     """The methods."""
     points: Optional[int]
@@ -76,6 +76,10 @@ class AllocatedTolerance(Record):
     """The bound that it has met."""
     before: float
     """Half band before."""
+    bound_price: Optional[float]
+    """What it saves per unit by which that bound gives way, and all else stays; None within the bounds, and where
+    that is not known.
+    """
     contributions: List[AllocatedToleranceContributions]
     """Its share of each characteristic's variance."""
     cost_after: Optional[float]
@@ -133,6 +137,10 @@ class AllocationResult(Result):
     """Where the costs come from: given, or relative to the tolerance unit of ISO 286."""
     cost_before: Optional[float]
     """All costs before; null where no process holds some tolerance, and without costs."""
+    cost_unrounded: Optional[float]
+    """What the cheapest tolerances cost that are not rounded to steps or standard grades; null without such
+    rounding.
+    """
     dimensions_table: Optional[str]
     """The entries of dimensions that have changed, ready to paste into the study."""
     evaluations: int
@@ -147,10 +155,14 @@ class AllocationResult(Result):
     """What was sought, and what may be spent on it."""
     in_model_s: float
     """Time within the model, of all threads together."""
+    joint_requirement: Optional[JointKept]
+    """The joint yield that is required of all characteristics with limits; null where none is."""
     joint_yield: AllocationResultJointYield
     """The share of assemblies that keep all limits at once; null with fewer than two characteristics with limits."""
     loosest_scaling: AllocationResultLoosestScaling
     """By which one factor all tolerances may be multiplied until some requirement is just kept."""
+    loss: AllocationResultLoss
+    """What of them is quality loss and scrap; null without losses."""
     method: str
     """The method by which derivatives were taken."""
     proof: Proof
@@ -169,6 +181,8 @@ class AllocationResult(Result):
     """The seed, where random numbers were drawn."""
     sensitol: str
     """The version of the program."""
+    setups: List[SetUp]
+    """The machines that the processes need, and what it costs to set them up, which is part of the cost."""
     shadow_prices: List[AllocationResultShadowPrices]
     """What limits and required sigmas cost."""
     stages: int
@@ -205,6 +219,8 @@ class AllocationResultAttainable(Record):
     """The best that the bounds of the tolerances allow, in the requirement's own measure."""
     characteristic: str
     """The characteristic."""
+    joint: bool
+    """Whether it is the joint yield of all characteristics with limits."""
     required: float
     """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
     requirement: str
@@ -225,6 +241,15 @@ class AllocationResultJointYield(Record):
 
 
 class AllocationResultLoosestScaling(Record):
+    """Something before and after."""
+
+    after: Optional[float]
+    """After."""
+    before: Optional[float]
+    """Before."""
+
+
+class AllocationResultLoss(Record):
     """Something before and after."""
 
     after: Optional[float]
@@ -266,8 +291,8 @@ class AllocationResultRequirements(Record):
     requirement: str
     """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
     sampled: Optional[AllocationResultRequirementsSampled]
-    """What a sample of the model says of it there; None without one, and of rss and worst case, of which samples
-    know nothing.
+    """What a sample of the model says of it there, of a worst case points in the box of the bands; None without one,
+    and of rss, of which samples know nothing.
     """
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
     """The same in a word; null where nothing was found."""
@@ -793,7 +818,9 @@ class FrontPoint(Record):
     cost: Optional[float]
     """What that costs; None where it cannot be kept."""
     required: List[RequiredOf]
-    """What was required of every characteristic of which a yield or a Cpk is, in the order of the problem."""
+    """What was required of every characteristic of which something is, in the order of the problem; of all together
+    last.
+    """
     tolerances: Optional[List[float]]
     """Half bands, in the order of [`Allocation::tolerances`]."""
 
@@ -832,6 +859,29 @@ class Interaction(Record):
     """What rounding errors of the characteristic's own size may make of it."""
     share: Optional[float]
     """Share of the variance."""
+
+
+class JointKept(Record):
+    """The joint yield that all characteristics with limits must keep, and what there is of it."""
+
+    after: Optional[float]
+    """What there is."""
+    before: Optional[float]
+    """What there was."""
+    interval: Optional[List[Optional[float]]]
+    """Within which that is known, an end null where there is none; null where it is not known at all."""
+    met: Optional[bool]
+    """Whether it is kept; null where that is not known, and where nothing was found."""
+    met_before: Optional[bool]
+    """Whether it was kept; null where that is not known."""
+    required: float
+    """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
+    requirement: str
+    """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    verdict: Optional[Literal['met', 'missed', 'inconclusive']]
+    """The same in a word; null where nothing was found."""
+    verdict_before: Literal['met', 'missed', 'inconclusive']
+    """The same in a word."""
 
 
 class JointYield(Record):
@@ -1013,6 +1063,14 @@ class RareResult(Result):
     """Points that lost at least one characteristic."""
     in_model_s: float
     """Time within the model, of all threads together."""
+    joint_requirement: Optional[Judged]
+    """Whether that share reaches the target for all characteristics at once; None without such a target."""
+    joint_yield: Optional[float]
+    """The share of assemblies within the limits of all characteristics at once; None with fewer than two that have
+    limits, where the means lie beyond one of them, and where no point lies beyond any.
+    """
+    joint_yield_interval: Optional[List[float]]
+    """95 % interval of that."""
     method: str
     """`importance-sampling`."""
     reached: Optional[bool]
@@ -1245,6 +1303,15 @@ class Sensitivity(Record):
     """
 
 
+class SetUp(Record):
+    """A machine and what it costs to set it up, once for all dimensions whose processes need it."""
+
+    cost: float
+    """What it costs."""
+    machine: str
+    """The machine."""
+
+
 class SimulatedCharacteristic(Record):
     """A characteristic with the standard errors beside the values, as it is written."""
 
@@ -1309,6 +1376,8 @@ class SimulationResult(Result):
 
     cached: int
     """Points whose answers were known from an earlier run."""
+    characteristic_correlation: List[OutputCorrelation]
+    """How every two characteristics vary together; empty with one characteristic, and with more than 40."""
     characteristics: List[SimulatedCharacteristic]
     """What is known of every characteristic, in the problem's order."""
     command: str
@@ -1325,6 +1394,12 @@ class SimulationResult(Result):
     """Points that lost at least one characteristic."""
     in_model_s: float
     """Time within the model, of all threads together."""
+    joint_requirement: Optional[Judged]
+    """Whether that share reaches the target for all characteristics at once; None without such a target."""
+    joint_yield: Optional[YieldEstimate]
+    """The share of assemblies that keep the limits of all characteristics at once; None with fewer than two that
+    have limits.
+    """
     method: str
     """`monte-carlo` or `quasi-monte-carlo`."""
     reached: Optional[bool]
@@ -1391,9 +1466,7 @@ class SurfaceLaw(Record):
     ppm_below: Optional[float]
     """Assemblies below the lower limit, per million."""
     quantiles: Optional[Dict[str, float]]
-    """Quantiles; null where one of them is unknown, and without limits where products form a tree that has no closed
-    form.
-    """
+    """Quantiles; null where one of them is unknown."""
     step_function: bool
     """Whether the law is a step function, because every input that counts has measured values only."""
     yield_: Optional[float]
@@ -1593,11 +1666,22 @@ class WorstCase(Record):
     """Whether it is proven that no assembly lies beyond the extremes."""
 
 
+class YieldEstimate(Record):
+    """The share of assemblies that keep the limits."""
+
+    bounds: List[float]
+    """If every point without a value is rejected, and if none is."""
+    interval: List[float]
+    """95 % interval of that."""
+    value: float
+    """Among the points that have a value."""
+
+
 #: The classes of the objects within each.
 _INNER: Dict[str, Dict[str, type]] = {
     "AllocatedCharacteristic": {"after": CharacteristicResult, "before": CharacteristicResult},
     "AllocatedTolerance": {"contributions": AllocatedToleranceContributions, "deviations": AllocatedToleranceDeviations},
-    "AllocationResult": {"attainable": AllocationResultAttainable, "characteristics": AllocatedCharacteristic, "confirmation": Confirmation, "evaluator": EvaluatorSummary, "front": FrontPoint, "goal": Goal, "joint_yield": AllocationResultJointYield, "loosest_scaling": AllocationResultLoosestScaling, "proof": Proof, "recentred": AllocationResultRecentred, "requirements": AllocationResultRequirements, "shadow_prices": AllocationResultShadowPrices, "tolerances": AllocatedTolerance, "warnings": ReportedWarning},
+    "AllocationResult": {"attainable": AllocationResultAttainable, "characteristics": AllocatedCharacteristic, "confirmation": Confirmation, "evaluator": EvaluatorSummary, "front": FrontPoint, "goal": Goal, "joint_requirement": JointKept, "joint_yield": AllocationResultJointYield, "loosest_scaling": AllocationResultLoosestScaling, "loss": AllocationResultLoss, "proof": Proof, "recentred": AllocationResultRecentred, "requirements": AllocationResultRequirements, "setups": SetUp, "shadow_prices": AllocationResultShadowPrices, "tolerances": AllocatedTolerance, "warnings": ReportedWarning},
     "AllocationResultJointYield": {"after": JointYield, "before": JointYield},
     "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
     "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": Verified, "warnings": ReportedWarning},
@@ -1613,12 +1697,12 @@ _INNER: Dict[str, Dict[str, type]] = {
     "FrontPoint": {"required": RequiredOf},
     "NotRun": {"reason": NotRunReason},
     "RareCharacteristic": {"above": Beyond, "below": Beyond, "requirements": Judged},
-    "RareResult": {"characteristics": RareCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "warnings": ReportedWarning},
+    "RareResult": {"characteristics": RareCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "warnings": ReportedWarning},
     "ReportedWarning": {"advice": Advice},
     "RunSummary": {"evaluator": EvaluatorSummary},
     "SampledModel": {"histogram": Histogram},
     "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "requirements": Judged, "standard_error": StandardErrors},
-    "SimulationResult": {"characteristics": SimulatedCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "warnings": ReportedWarning},
+    "SimulationResult": {"characteristic_correlation": OutputCorrelation, "characteristics": SimulatedCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": YieldEstimate, "warnings": ReportedWarning},
     "SweepResult": {"characteristics": SweptCharacteristic, "evaluator": EvaluatorSummary, "parameter": Parameter, "warnings": ReportedWarning},
     "SweptCharacteristic": {"points": SweptPoint},
     "SweptPoint": {"error_estimate": ErrorEstimate, "requirements": Judged},

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Callable
 
 from ._errors import StudyError
 
 #: What a study calls them.
-KNOWN = "norm, uniform, triang, trapezoid, beta, truncnorm, lognorm, gamma, weibull_min, expon, rayleigh"
+KNOWN = (
+    "norm, uniform, triang, trapezoid, beta, arcsine, powerlaw, rdist, semicircular, truncnorm, lognorm, gamma, chi2, erlang, "
+    "pearson3, weibull_min, expon, rayleigh"
+)
+#: Families that are others under another name: shapes of the beta distribution over their support.
+BETAS: dict[str, Callable[[list[float]], tuple[float, float]]] = {
+    "beta": lambda shapes: (shapes[0], shapes[1]),
+    "arcsine": lambda _: (0.5, 0.5),
+    "powerlaw": lambda shapes: (shapes[0], 1.0),
+    "rdist": lambda shapes: (0.5 * shapes[0], 0.5 * shapes[0]),
+    "semicircular": lambda _: (1.5, 1.5),
+}
 
 
 def is_frozen(value: Any) -> bool:
@@ -27,7 +38,15 @@ def keys(law: Any, nominal: float | None) -> dict[str, Any]:
     location, scale = float(location), float(scale)
     mean = float(law.mean())
     # The mean of a tailed kind is the nominal value and its shift, that of a band the middle and its shift.
-    tailed = {"lognorm": "lognormal", "gamma": "gamma", "weibull_min": "weibull", "expon": "exponential", "rayleigh": "rayleigh"}
+    tailed = {"lognorm": "lognormal", "gamma": "gamma", "chi2": "gamma", "erlang": "gamma", "weibull_min": "weibull", "expon": "exponential", "rayleigh": "rayleigh"}
+    if family == "pearson3":
+        # A gamma distribution from its lower end on; without skewness a normal one.
+        if shapes[0] < 0.0:
+            raise _refused(family, "has its tail below")
+        if shapes[0] > 0.0:
+            family, location = "gamma", location - 2.0 * scale / shapes[0]
+        else:
+            family = "norm"
     if family == "norm":
         found: dict[str, Any] = {"nominal": mean if nominal is None else nominal, "sigma": scale}
         if nominal is not None and nominal != mean:
@@ -46,8 +65,9 @@ def keys(law: Any, nominal: float | None) -> dict[str, Any]:
         found["distribution"] = "uniform"
     elif family == "triang":
         found["distribution"] = {"kind": "triangular", "mode": location + shapes[0] * scale}
-    elif family == "beta":
-        found["distribution"] = {"kind": "beta", "alpha": shapes[0], "beta": shapes[1]}
+    elif family in BETAS:
+        alpha, beta = BETAS[family](shapes)
+        found["distribution"] = {"kind": "beta", "alpha": alpha, "beta": beta}
     elif family == "trapezoid" and abs(shapes[0] - (1.0 - shapes[1])) < 1e-12:
         found["distribution"] = {"kind": "trapezoidal", "top": shapes[1] - shapes[0]}
     elif family == "truncnorm" and lower > -1e308 and upper < 1e308:
@@ -57,9 +77,13 @@ def keys(law: Any, nominal: float | None) -> dict[str, Any]:
         if location != middle:
             found["shift"] = location - middle
     else:
-        what = {"trapezoid": "is not symmetric", "truncnorm": "has no end on one side"}.get(family, "is no distribution of studies")
-        raise StudyError(
-            f"scipy's `{family}` {what}",
-            help=f"use one of {KNOWN}, or values drawn from it: distribution=law.rvs(10000, random_state=1)",
-        )
+        what = {"trapezoid": "is not symmetric", "truncnorm": "has no end on one side"}
+        raise _refused(family, what.get(family, "has no counterpart in a study"))
     return found
+
+
+def _refused(family: str, what: str) -> StudyError:
+    return StudyError(
+        f"scipy's `{family}` {what}",
+        help=f"use one of {KNOWN}, or values drawn from it: distribution=law.rvs(10000, random_state=1)",
+    )

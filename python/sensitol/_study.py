@@ -56,6 +56,8 @@ class Study:
         A function of named dimensions (see :func:`sensitol.model`), the name of a built-in model, or a program and its arguments.
     constants, formulas, unknowns, equations, loops, costs, analysis
         The sections of a study file.
+    configurations
+        Nominal values and constants by name of a configuration: ``{"long": {"bore": 40.0}}``.
     correlation
         The coefficient of correlation by pairs of names: ``{("bore", "shaft"): 0.3}``.
 
@@ -82,6 +84,7 @@ class Study:
         correlation: Mapping[tuple[str, str], Number] | Iterable[Mapping[str, Any]] | None = None,
         costs: Entries | None = None,
         analysis: Entries | None = None,
+        configurations: Entries | None = None,
     ) -> None:
         if title is not None and not isinstance(title, str):
             raise TypeError(f"the title must be text, got {type(title).__name__}")
@@ -104,20 +107,32 @@ class Study:
         elif model is not None:
             data["model"] = {"command": [str(word) for word in model]}
         data["analysis"] = analysis
+        data["configurations"] = configurations
         kept = {key: value for key, value in data.items() if value}
         # They are asked for even where they are empty: the engine says what belongs there.
         kept.setdefault("dimensions", {})
         kept.setdefault("characteristics", {})
         text = json.dumps(plain(kept, ""), ensure_ascii=False)
         _on_disk(kept, ".", files)
-        self._set(text, False, "study", ".", files, True, host)
+        self._set(text, False, "study", ".", files, True, host, None)
 
     def _set(
-        self, text: str, toml: bool, name: str, folder: Path, files: dict[str, bytes], made: bool, model: Model | None
+        self,
+        text: str,
+        toml: bool,
+        name: str,
+        folder: Path,
+        files: dict[str, bytes],
+        made: bool,
+        model: Model | None,
+        configuration: str | None,
     ) -> None:
+        if configuration is not None and not isinstance(configuration, str):
+            raise TypeError(f"a configuration is named by text, got {type(configuration).__name__}")
         self._state = (text, toml, name, os.fspath(folder), files, made)
+        self._configuration = configuration
         self._model = model
-        self._core = _core.Study.from_text(text, toml, name, folder, files, made, _hosted(model))
+        self._core = _core.Study.from_text(text, toml, name, folder, files, made, _hosted(model), configuration)
         self._about: dict[str, Any] = json.loads(self._core.described)
         if model is not None and self._about["model"] is not None:
             # What does not fit is told before anything is evaluated.
@@ -129,24 +144,48 @@ class Study:
 
     @classmethod
     def _of(
-        cls, text: str, toml: bool, name: str, folder: Path, files: dict[str, bytes], made: bool, model: Model | None
+        cls,
+        text: str,
+        toml: bool,
+        name: str,
+        folder: Path,
+        files: dict[str, bytes],
+        made: bool,
+        model: Model | None,
+        configuration: str | None,
     ) -> Study:
         study: Study = object.__new__(cls)
-        study._set(text, toml, name, folder, files, made, model)
+        study._set(text, toml, name, folder, files, made, model, configuration)
         return study
 
     @classmethod
-    def from_toml(cls, text: str, *, model: ModelLike = None, files: Mapping[str, bytes] | None = None) -> Study:
+    def from_toml(
+        cls,
+        text: str,
+        *,
+        model: ModelLike = None,
+        files: Mapping[str, bytes] | None = None,
+        configuration: str | None = None,
+    ) -> Study:
         """A study from the text of a TOML file; `files` has the measured files that it names."""
-        return cls._of(text, True, "<text>", ".", dict(files or {}), False, _host(model) if model is not None else None)
+        host = _host(model) if model is not None else None
+        return cls._of(text, True, "<text>", ".", dict(files or {}), False, host, configuration)
 
     @classmethod
-    def from_json(cls, text: str, *, model: ModelLike = None, files: Mapping[str, bytes] | None = None) -> Study:
+    def from_json(
+        cls,
+        text: str,
+        *,
+        model: ModelLike = None,
+        files: Mapping[str, bytes] | None = None,
+        configuration: str | None = None,
+    ) -> Study:
         """The same of JSON."""
-        return cls._of(text, False, "<text>", ".", dict(files or {}), False, _host(model) if model is not None else None)
+        host = _host(model) if model is not None else None
+        return cls._of(text, False, "<text>", ".", dict(files or {}), False, host, configuration)
 
     def __reduce__(self) -> Any:
-        return (_study, (*self._state, self._model))
+        return (_study, (*self._state, self._model, self._configuration))
 
     def __copy__(self) -> Study:
         return self
@@ -155,7 +194,12 @@ class Study:
         return self
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Study) and self._state == other._state and self._model is other._model
+        return (
+            isinstance(other, Study)
+            and self._state == other._state
+            and self._model is other._model
+            and self._configuration == other._configuration
+        )
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -181,6 +225,26 @@ class Study:
     def characteristics(self) -> list[str]:
         """The names of the characteristics."""
         return list(self._about["characteristics"])
+
+    @property
+    def configurations(self) -> list[str]:
+        """The names of its configurations."""
+        return list(self._about["configurations"])
+
+    @property
+    def configuration(self) -> str | None:
+        """The configuration that is meant; None for the study as written."""
+        return self._configuration
+
+    def configured(self, name: str | None) -> Study:
+        """The study with nominal values and constants of one of its configurations; as written with None.
+
+        Raises
+        ------
+        StudyError
+            Where there is no configuration of this name, with those that there are.
+        """
+        return type(self)._of(*self._state, self._model, name)
 
     @property
     def model(self) -> Model | None:
@@ -226,7 +290,7 @@ class Study:
         _, _, name, folder, files, _ = self._state
         files = dict(files)
         model = self._model
-        sections = ("title", "constants", "formulas", "unknowns", "equations", "loops", "costs", "analysis")
+        sections = ("title", "constants", "formulas", "unknowns", "equations", "loops", "costs", "analysis", "configurations")
         for key, value in {**(entries or {}), **more}.items():
             if key in data.get("dimensions", {}):
                 data["dimensions"].update(_entries({key: value}, "dimensions", Dimension, files))
@@ -248,7 +312,7 @@ class Study:
                 raise StudyError(f"there is no dimension and no characteristic `{key}`; there are {known}", key=key)
         text = json.dumps(plain({key: value for key, value in data.items() if value is not None}, ""), ensure_ascii=False)
         _on_disk(data, folder, files)
-        return type(self)._of(text, False, name, folder, files, True, model)
+        return type(self)._of(text, False, name, folder, files, True, model, self._configuration)
 
     def check(self) -> list[ReportedWarning]:
         """What is legal in the study but most likely not meant. Nothing is evaluated; what is wrong was raised before."""
@@ -430,6 +494,9 @@ class Study:
         *,
         recentre: Iterable[str] | Mapping[str, tuple[float, float] | None] = (),
         cost: CostBasis | None = None,
+        minimise: Literal["rejects"] | None = None,
+        maximise: Literal["cpk"] | None = None,
+        cost_limit: float | None = None,
         front: int | None = None,
         confirm: int | None = None,
         method: str | None = None,
@@ -447,10 +514,12 @@ class Study:
         """The cheapest tolerances that keep what is required; `r.study` is the study with them.
 
         `recentre` names dimensions whose nominal values may move, as a mapping with least and greatest values. `cost` takes relative
-        costs in place of the study's own.
+        costs in place of the study's own. `minimise="rejects"` or `maximise="cpk"` seeks the best that `cost_limit` pays for, in
+        place of the least cost.
         """
         asked: dict[str, Any] = {"command": "allocate", "recentre": _names(recentre), "front": front, "confirm": confirm}
         asked["cost"] = cost
+        asked["goal"], asked["cost_limit"] = _goal(minimise, maximise, cost_limit, front), cost_limit
         if isinstance(recentre, Mapping):
             asked["nominal_bounds"] = [[name, list(ends)] for name, ends in recentre.items() if ends is not None]
         for name in _names(recentre):
@@ -497,7 +566,7 @@ class Study:
         study: Study = self
         if outcome.study is not None:
             _, toml, name, folder, files, made = self._state
-            study = type(self)._of(outcome.study, toml, name, folder, files, made, self._model)
+            study = type(self)._of(outcome.study, toml, name, folder, files, made, self._model, self._configuration)
         result = cls(outcome, study)
         _warn(result)
         if outcome.not_written is not None:
@@ -558,6 +627,28 @@ class _Run:
         self.partial = on_interrupt == "partial"
 
 
+def _goal(minimise: Any, maximise: Any, cost_limit: Any, front: Any) -> str | None:
+    """What an allocation seeks in place of the least cost."""
+    if minimise not in (None, "rejects"):
+        raise ValueError(f'minimise must be "rejects", got {minimise!r}')
+    if maximise not in (None, "cpk"):
+        raise ValueError(f'maximise must be "cpk", got {maximise!r}')
+    if minimise and maximise:
+        raise ValueError("minimise and maximise are two goals: leave one out")
+    if not (minimise or maximise):
+        if cost_limit is not None:
+            raise ValueError('cost_limit is for minimise="rejects" or maximise="cpk": add one of them')
+        return None
+    said = 'minimise="rejects"' if minimise else 'maximise="cpk"'
+    if cost_limit is None:
+        raise ValueError(f"{said} needs cost_limit, what all tolerances together may cost")
+    if isinstance(cost_limit, (bool, str)) or not 0 < float(cost_limit) < float("inf"):
+        raise ValueError(f"cost_limit must be a positive number, got {cost_limit!r}")
+    if front is not None:
+        raise ValueError(f"front is for the least cost: leave out front or {said}")
+    return "fewest-rejects" if minimise else "most-cpk"
+
+
 def _names(names: Names) -> list[str]:
     if names is None:
         return []
@@ -577,9 +668,16 @@ def _host(model: Any) -> Model:
 
 
 def _study(
-    text: str, toml: bool, name: str, folder: str, files: dict[str, bytes], made: bool, model: Model | None
+    text: str,
+    toml: bool,
+    name: str,
+    folder: str,
+    files: dict[str, bytes],
+    made: bool,
+    model: Model | None,
+    configuration: str | None = None,
 ) -> Study:
-    return Study._of(text, toml, name, folder, files, made, model)
+    return Study._of(text, toml, name, folder, files, made, model, configuration)
 
 
 def _entries(entries: Any, section: str, cls: Any, files: dict[str, bytes]) -> dict[str, Any]:
@@ -650,8 +748,10 @@ def _issue(message: str, code: str, characteristic: str | None) -> None:
     warnings.warn(SensitolWarning(message, code, characteristic), stacklevel=depth)
 
 
-def read(path: Path, *, model: ModelLike = None) -> Study:
+def read(path: Path, *, model: ModelLike = None, configuration: str | None = None) -> Study:
     """Reads a study file, .toml or .json. `model` is a function that answers in place of the program that its `[model]` names.
+
+    `configuration` is one of the names in its `[configurations]`.
 
     Raises
     ------
@@ -660,10 +760,12 @@ def read(path: Path, *, model: ModelLike = None) -> Study:
     """
     host = None if model is None else _host(model)
     path = os.fspath(path)
-    found = _core.Study.read(path, _hosted(host))
+    if configuration is not None and not isinstance(configuration, str):
+        raise TypeError(f"a configuration is named by text, got {type(configuration).__name__}")
+    found = _core.Study.read(path, _hosted(host), configuration)
     # The working folder may change before the study is asked.
     folder = os.path.dirname(os.path.abspath(path))
-    return Study._of(found.text, path.endswith(".toml"), path, folder, {}, False, host)
+    return Study._of(found.text, path.endswith(".toml"), path, folder, {}, False, host, configuration)
 
 
 for _class in (Study, Dimension, Characteristic):

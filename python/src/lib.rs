@@ -3,7 +3,6 @@
 //! Python runs on the thread that called, and nowhere else: the engine works on threads of its own, and passes every block of
 //! points to the caller, who evaluates it, looks for signals and shows progress.
 
-mod commands;
 mod errors;
 mod host;
 mod outcome;

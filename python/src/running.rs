@@ -1,7 +1,7 @@
 //! A run: the engine works on a pool, and the thread that called evaluates points, looks for signals and shows progress.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -11,14 +11,13 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use sensitol::assembly::Run;
 use sensitol::{Error, StopReason, Study};
+use sensitol_commands::{Asked, Found, done};
 
-use crate::commands::{Asked, Counter, done};
 use crate::host::{Answer, Call, Event};
-use crate::outcome::Found;
 use crate::pools::Pool;
 
 /// How long the calling thread waits before it looks for signals.
-const TICK: Duration = Duration::from_millis(50);
+const TICK: Duration = Duration::from_millis(20);
 
 /// How a run ended; none where the engine panicked.
 pub(crate) type Ended = Option<Result<Found, Box<Error>>>;
@@ -37,6 +36,20 @@ impl Stop {
             return Some(StopReason::Interrupted);
         }
         self.deadline.filter(|deadline| Instant::now() >= *deadline).map(|_| StopReason::TimeLimit)
+    }
+}
+
+/// How far a run is: points answered, and how many it will take; 0 where that is not known.
+#[derive(Debug, Default)]
+struct Counter {
+    points: AtomicU64,
+    expected: AtomicU64,
+}
+
+impl Counter {
+    fn tell(&self, points: u64, expected: u64) {
+        self.points.store(points, Ordering::Relaxed);
+        self.expected.store(expected, Ordering::Relaxed);
     }
 }
 
@@ -72,12 +85,17 @@ pub(crate) fn run(
             let reason = || stopped.reason();
             let abandoned = || stopped.asked.load(Ordering::Relaxed);
             let run = Run::to_the_end().stopping_when(&reason).abandoning_when(&abandoned);
-            let mut found = done(&study, &asked, &run, &counted)?;
+            let mut found = done(&study, &asked, &run, &|answered, expected| counted.tell(answered, expected))?;
             found.not_kept = study.problem.function().account().and_then(|account| account.not_kept);
             Ok(found)
         };
         let result = catch_unwind(AssertUnwindSafe(work)).ok();
-        // Children of an external model end with the study, before the caller goes on.
+        // Children of an external model end with the study, before the caller goes on; after Ctrl-C it does not wait for children that
+        // take their time to end.
+        if stopped.asked.load(Ordering::Relaxed) {
+            let _ = ended.send(Event::Done(result));
+            return;
+        }
         drop(study);
         let _ = ended.send(Event::Done(result));
     });
@@ -110,7 +128,7 @@ pub(crate) fn run(
         let looked = py.check_signals().and_then(|()| match &caller.progress {
             Some(progress) if shown.elapsed() >= TICK => {
                 shown = Instant::now();
-                let count = |value: &std::sync::atomic::AtomicU64| value.load(Ordering::Relaxed);
+                let count = |value: &AtomicU64| value.load(Ordering::Relaxed);
                 progress.call1((count(&counter.points), count(&counter.expected))).map(drop)
             }
             _ => Ok(()),

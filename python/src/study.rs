@@ -11,9 +11,9 @@ use sensitol::assembly::Signature;
 use sensitol::assembly::process::Greeting;
 use sensitol::study::{Externals, JournalPlace, StudyText};
 use sensitol::{Error, StudyError};
+use sensitol_commands::Asked;
 use serde_json::json;
 
-use crate::commands::Asked;
 use crate::errors::{of_engine, of_study};
 use crate::host::{Event, Host};
 use crate::outcome::Outcome;
@@ -34,6 +34,8 @@ pub(crate) struct Study {
     made_in_python: bool,
     /// Whether a function of Python is the model, and whether that is cheap.
     hosted: Option<bool>,
+    /// Which of its configurations is meant.
+    configuration: Option<String>,
     described: String,
 }
 
@@ -46,7 +48,7 @@ impl Study {
         whole: bool,
     ) -> Result<(sensitol::Study, Hello), StudyError> {
         let hello: Hello = Hello::default();
-        let mut externals = Externals::default().with_journal(journal);
+        let mut externals = configured(Externals::default().with_journal(journal), self.configuration.as_deref());
         if let Some(cheap) = self.hosted {
             let heard = Arc::clone(&hello);
             externals = externals.with_host(move |signature, greeting| {
@@ -82,6 +84,7 @@ fn described(study: &sensitol::Study, hello: &Hello) -> String {
     json!({
         "title": study.title,
         "dimensions": study.problem.dimensions().iter().map(dimension).collect::<Vec<_>>(),
+        "configurations": study.configurations,
         "characteristics": study.problem.characteristics().iter().map(|one| one.name()).collect::<Vec<_>>(),
         "warnings": study.warnings.iter().map(warning).collect::<Vec<_>>(),
         "sha256": study.sha256,
@@ -101,11 +104,18 @@ fn spoken(signature: &Signature, greeting: &Greeting) -> serde_json::Value {
     })
 }
 
+fn configured(externals: Externals, configuration: Option<&str>) -> Externals {
+    match configuration {
+        Some(name) => externals.with_configuration(name),
+        None => externals,
+    }
+}
+
 #[pymethods]
 impl Study {
     /// From text. `hosted` says that a function of Python is the model: None without one, and otherwise whether it is cheap.
     #[staticmethod]
-    #[pyo3(signature = (text, toml, name, folder, files, made_in_python, hosted))]
+    #[pyo3(signature = (text, toml, name, folder, files, made_in_python, hosted, configuration))]
     #[allow(clippy::too_many_arguments, reason = "the package alone calls it, by position")]
     fn from_text(
         py: Python<'_>,
@@ -116,8 +126,10 @@ impl Study {
         files: BTreeMap<String, Vec<u8>>,
         made_in_python: bool,
         hosted: Option<bool>,
+        configuration: Option<String>,
     ) -> PyResult<Self> {
-        let study = Self { text, toml, name, folder, files, made_in_python, hosted, described: String::new() };
+        let study =
+            Self { text, toml, name, folder, files, made_in_python, hosted, configuration, described: String::new() };
         let (parsed, hello) = study
             .parsed(None, JournalPlace::Nowhere, None, true)
             .map_err(|error| of_study(py, &error, made_in_python))?;
@@ -126,9 +138,10 @@ impl Study {
 
     /// From a file.
     #[staticmethod]
-    fn read(py: Python<'_>, path: PathBuf, hosted: Option<bool>) -> PyResult<Self> {
+    #[pyo3(signature = (path, hosted, configuration))]
+    fn read(py: Python<'_>, path: PathBuf, hosted: Option<bool>, configuration: Option<String>) -> PyResult<Self> {
         // The file is read once, and its text parsed again with the model: what it says is in the message either way.
-        let mut externals = Externals::default();
+        let mut externals = configured(Externals::default(), configuration.as_deref());
         if let Some(cheap) = hosted {
             externals = externals.with_host(move |signature, _| {
                 Arc::new(Host::new(signature, (cheap, true), channel::<Event<Ended>>().0))
@@ -137,7 +150,7 @@ impl Study {
         let read = sensitol::Study::read_with(&path, externals).map_err(|error| of_study(py, &error, false))?;
         let toml = path.extension().is_some_and(|extension| extension == "toml");
         let (name, folder) = (path.display().to_string(), read.folder().to_owned());
-        Self::from_text(py, read.text().to_owned(), toml, name, folder, BTreeMap::new(), false, hosted)
+        Self::from_text(py, read.text().to_owned(), toml, name, folder, BTreeMap::new(), false, hosted, configuration)
     }
 
     /// What is known of the study, as JSON.

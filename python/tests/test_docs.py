@@ -67,6 +67,11 @@ def test_a_notebook_runs_and_has_the_page(tmp_path):
     shown = [output["data"] for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs if "data" in output]
     pages = [data["text/html"] for data in shown if "text/html" in data and "<iframe" in data["text/html"]]
     assert pages and 'type="range"' in pages[0].replace("&quot;", '"')
+    # tests/browser/notebook.mjs opens it.
+    kept = os.environ.get("SENSITOL_NOTEBOOK_PAGE")
+    if kept:
+        with open(kept, "w", encoding="utf-8") as file:
+            file.write("<!DOCTYPE html>\n<meta charset=\"utf-8\"><title>notebook</title>\n" + pages[0])
     # A wrong study is shown as its error, and the notebook goes on.
     errors = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs if output.output_type == "error"]
     assert [error.ename for error in errors] == ["StudyError"]

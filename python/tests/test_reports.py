@@ -61,6 +61,38 @@ def test_nominal_values_move_within_their_bounds():
         study.allocate(recentre=["X"])
 
 
+@pytest.mark.parametrize("goal", ["minimise=rejects", "maximise=cpk"])
+def test_the_best_for_a_cost_is_that_of_the_command_line(goal):
+    path = os.path.join(EXAMPLES, "shaft-and-housing", "study.toml")
+    what, which = goal.split("=")
+    command = [*COMMAND, "allocate", path, f"--{what}", which, "--cost-limit", "20", "--json", "-v"]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    # Without target, nothing is missed.
+    assert run.returncode in (0, 1), run.stderr
+    found = st.read(path).allocate(**{what: which}, cost_limit=20)
+    assert timeless(found.to_dict()) == timeless(json.loads(run.stdout))
+    # The limit holds to the precision at which costs are told apart.
+    assert found.cost_after <= 20 * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"minimise": "cost"}, "minimise must be \"rejects\", got 'cost'"),
+        ({"maximise": "yield"}, "maximise must be \"cpk\", got 'yield'"),
+        ({"maximise": "cpk"}, 'maximise="cpk" needs cost_limit, what all tolerances together may cost'),
+        ({"cost_limit": 3}, 'cost_limit is for minimise="rejects" or maximise="cpk": add one of them'),
+        ({"minimise": "rejects", "cost_limit": -1}, "cost_limit must be a positive number, got -1"),
+        ({"minimise": "rejects", "maximise": "cpk", "cost_limit": 1}, "minimise and maximise are two goals: leave one out"),
+        ({"minimise": "rejects", "cost_limit": 1, "front": 3}, 'front is for the least cost: leave out front or minimise="rejects"'),
+    ],
+)
+def test_goals_that_are_none(wrong, said):
+    with pytest.raises(ValueError) as error:
+        shaft_and_bore().allocate(**wrong)
+    assert str(error.value) == said
+
+
 def test_the_types_of_results_are_those_of_the_schema():
     schema = subprocess.run([*COMMAND, "schema", "--report"], capture_output=True, text=True, check=True).stdout
     tool = os.path.join(REPOSITORY, "python/tools/reports.py")
@@ -139,7 +171,7 @@ def test_plots_show_the_whole_contribution(study):
     for container in ax.containers:
         for label, bar in zip([text.get_text() for text in ax.get_yticklabels()], container):
             widths[label] = widths.get(label, 0) + bar.get_width()
-    # The tilt contributes by curvature alone: the README's table.
+    # The tilt contributes by curvature alone: the table of the example shaft-and-bore.
     assert widths["tilt"] == pytest.approx(29.18, abs=0.005)
     assert sum(widths.values()) == pytest.approx(100, abs=1e-6)
     study.simulate(2000).plot()

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import pickle
 
 import numpy as np
 import pytest
@@ -259,7 +260,7 @@ def test_a_result_tells_what_was_required(study):
 def test_an_allocation_has_the_study_that_it_found(tmp_path):
     study = st.read(os.path.join(REPOSITORY, "examples/shaft-and-housing/study.toml"))
     found = study.allocate()
-    # The cost of the published optimum in the README.
+    # The cost of the published optimum in docs/commands.md.
     assert found.cost_after == pytest.approx(8.0536, abs=5e-5)
     assert found.study.dimensions["B"].tolerance[1] == pytest.approx(0.00811423, rel=1e-5)
     found.study.write(tmp_path / "tighter.toml")
@@ -280,3 +281,40 @@ def test_worst_case_rare_sweep_and_compare(study):
     comparison = study.compare(samples=2000)
     assert {one.method for one in comparison["clearance"].methods} >= {"full", "rss"}
     assert json.loads(json.dumps(comparison.to_dict())) == comparison.to_dict()
+
+
+CONFIGURED = """[dimensions]
+a = { nominal = 10, tolerance = 0.1 }
+[constants]
+k = 2
+[configurations]
+long = { a = 20 }
+wide = { k = 3 }
+[characteristics]
+y = { formula = "a*k" }
+"""
+
+
+def test_configurations(tmp_path):
+    study = st.Study.from_toml(CONFIGURED)
+    assert study.configurations == ["long", "wide"]
+    means = [study.configured(name).analyze()["y"].mean for name in (None, "long", "wide")]
+    # The middle of a band of 10, 20 and 10, times 2, 2 and 3.
+    assert means == pytest.approx([20, 40, 30], rel=1e-12)
+    (tmp_path / "study.toml").write_text(CONFIGURED)
+    read = st.read(tmp_path / "study.toml", configuration="long")
+    assert (read.configuration, read.dimensions["a"].nominal) == ("long", 20)
+    assert pickle.loads(pickle.dumps(read)) == read
+    assert read.replace(a=st.Dimension(30, 0.1)).configuration == "long"
+    made = st.Study(
+        dimensions={"a": st.Dimension(10, 0.1)},
+        characteristics={"y": st.Characteristic("2*a")},
+        configurations={"long": {"a": 40.0}},
+    )
+    assert made.configured("long").analyze()["y"].mean == pytest.approx(80, rel=1e-12)
+    with pytest.raises(st.StudyError, match="lng"):
+        study.configured("lng")
+    with pytest.raises(TypeError, match="a configuration is named by text, got int"):
+        study.configured(3)
+    with pytest.raises(st.StudyError, match="the study has no \\[configurations\\]"):
+        shaft_and_bore().configured("long")

@@ -1,0 +1,1 @@
+../../../adapters/python/sensitol_adapter/__init__.py

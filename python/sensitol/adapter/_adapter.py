@@ -1,0 +1,1 @@
+../../../adapters/python/sensitol_adapter/_adapter.py
