@@ -1,0 +1,52 @@
+"use strict";
+// Workers that hold the engine. A run is ended by ending its worker.
+const engine = (() => {
+  let compiled, source;
+  const bytes = (text) => Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0));
+  const unpacked = async (text) => {
+    const stream = new Blob([bytes(text)]).stream().pipeThrough(new DecompressionStream("gzip"));
+    return new Response(stream).arrayBuffer();
+  };
+  const load = async () => {
+    const text = (id) => document.getElementById(id).textContent;
+    compiled = await WebAssembly.compile(await unpacked(text("engine-wasm").trim()));
+    source = URL.createObjectURL(new Blob([text("engine-glue"), text("engine-worker")], { type: "text/javascript" }));
+  };
+  class Engine {
+    #worker; #waiting = new Map(); #last = 0; #ready;
+    start() {
+      this.#worker = new Worker(source);
+      this.#ready = new Promise((resolve) => {
+        this.#worker.onmessage = ({ data }) => {
+          if (data.ready) return resolve(data.ready);
+          const waiting = this.#waiting.get(data.id);
+          if (waiting === undefined) return undefined;
+          if (data.answered !== undefined) return waiting.counted?.(data.answered, data.expected);
+          this.#waiting.delete(data.id);
+          // What has trapped does not work on.
+          if (data.failed !== undefined) this.stop();
+          return data.failed === undefined ? waiting.resolve(data.found) : waiting.reject(new Error(data.failed));
+        };
+      });
+      this.#worker.postMessage({ start: compiled });
+      return this.#ready;
+    }
+    ask(call, task, counted) {
+      if (this.#worker === undefined) this.start();
+      const id = ++this.#last, worker = this.#worker;
+      return new Promise((resolve, reject) => {
+        this.#waiting.set(id, { resolve, reject, counted });
+        // A worker that was ended before it was ready is never asked.
+        this.#ready.then(() => worker.postMessage({ id, call, task }));
+      });
+    }
+    stop() {
+      this.#worker?.terminate();
+      this.#worker = undefined;
+      const waiting = [...this.#waiting.values()];
+      this.#waiting.clear();
+      waiting.forEach((one) => one.reject(new Error("stopped")));
+    }
+  }
+  return { load, Engine };
+})();
