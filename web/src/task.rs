@@ -95,16 +95,16 @@ impl Task {
         }
     }
 
-    fn found(&self, counted: Counted<'_>) -> Result<Found, Error> {
-        let mut study = self.parsed()?;
+    fn found(&self, counted: Counted<'_>) -> Result<Found, Box<Error>> {
+        let mut study = self.parsed().map_err(Error::from)?;
         if let Some(keys) = &self.analysis {
-            study = study.with_analysis(keys.get())?;
+            study = study.with_analysis(keys.get()).map_err(Error::from)?;
         }
         if !self.characteristics.is_empty() {
-            study.problem = study.problem.only(&self.characteristics)?;
+            study.problem = study.problem.only(&self.characteristics).map_err(Error::from)?;
         }
         let asked = self.asked.as_ref().unwrap_or(&Asked::Analyze {});
-        done(&study, asked, &Run::to_the_end(), counted).map_err(|error| *error)
+        done(&study, asked, &Run::to_the_end(), counted)
     }
 
     fn shown(&self, found: &Found) -> Value {
