@@ -27,6 +27,8 @@ pub use crate::sampling::{Draws, Fine, Portion, SOBOL_DIMENSIONS, Scale, Sobol, 
 #[cfg(feature = "cli")]
 pub use crate::study::schema::schema;
 pub use crate::surrogate::{InputShape, Inputs, Surrogate, Univariate, shapes};
+#[cfg(feature = "task")]
+pub use crate::task;
 pub use crate::verdict::of_cpk;
 pub use crate::verification::{SampledFigures, Target, unseen, variance_shares, verify_by_checks, verify_by_sampling};
 pub use crate::warning::aggregate::aggregated;

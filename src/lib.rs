@@ -122,6 +122,9 @@ pub mod study;
 mod summary;
 mod surrogate;
 pub mod sweep;
+#[cfg(feature = "task")]
+#[doc(hidden)]
+pub mod task;
 mod time;
 #[cfg_attr(not(feature = "study"), allow(dead_code))]
 mod unit;

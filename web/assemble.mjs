@@ -29,7 +29,7 @@ const scripted = (text) => {
 };
 const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 
-const style = part("page.css"), script = scripted(["study.js", "engine.js", "page.js"].map(part).join(""));
+const style = part("page.css"), script = scripted(["study.js", "engine.js", "serve.js", "page.js", "folder.js"].map(part).join(""));
 const policy = `default-src 'none'; style-src ${hash(style)}; script-src ${hash(script)} 'wasm-unsafe-eval'; worker-src blob:; base-uri 'none'; form-action 'none'`;
 const wasm = gzipSync(readFileSync(join(folder, "small.wasm")), { level: 9 });
 const parts = {

@@ -1,7 +1,7 @@
 //! The outcome of a run.
 
 use pyo3::prelude::*;
-use sensitol_commands::Found;
+use sensitol::internals::task::Found;
 
 /// The outcome of a run.
 #[pyclass(frozen, module = "sensitol._core")]

@@ -10,8 +10,8 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use sensitol::assembly::Run;
+use sensitol::internals::task::{Asked, Found, done};
 use sensitol::{Error, StopReason, Study};
-use sensitol_commands::{Asked, Found, done};
 
 use crate::host::{Answer, Call, Event};
 use crate::pools::Pool;

@@ -9,9 +9,9 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use sensitol::assembly::Signature;
 use sensitol::assembly::process::Greeting;
+use sensitol::internals::task::Asked;
 use sensitol::study::{Externals, JournalPlace, StudyText};
 use sensitol::{Error, StudyError};
-use sensitol_commands::Asked;
 use serde_json::json;
 
 use crate::errors::{of_engine, of_study};

@@ -99,6 +99,12 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol workbench\n  sensitol workbench examples/first-study/study.toml -o first-study.html"
     )]
     Workbench(WorkbenchArgs),
+    /// The workbench over a folder of studies, in a browser on this machine
+    ///
+    /// The page opens and saves studies of the folder, shows a file again when it changes, and runs external models. It is reached by the
+    /// address that is printed, from this machine alone, and touches nothing outside the folder.
+    #[command(after_help = "Examples:\n  sensitol serve\n  sensitol serve examples/external-python --port 8080")]
+    Serve(ServeArgs),
     /// The JSON Schema of study files, or of reports
     #[command(
         after_help = "Examples:\n  sensitol schema -o study.schema.json\n  sensitol schema --report -o report.schema.json"
@@ -424,6 +430,25 @@ pub(super) struct WorkbenchArgs {
     /// The file to write
     #[arg(short, long, value_name = "FILE.html", default_value = "workbench.html", help_heading = OUTPUT)]
     pub(super) output: PathBuf,
+
+    /// The page without a study, as web/build writes it
+    #[arg(long, value_name = "FILE.html")]
+    pub(super) page: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ServeArgs {
+    /// The folder of the studies
+    #[arg(default_value = ".")]
+    pub(super) folder: PathBuf,
+
+    /// The port; a free one unless given
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(super) port: u16,
+
+    /// The address to listen at; another one than 127.0.0.1 lets other machines in that know the token
+    #[arg(long, value_name = "ADDRESS")]
+    pub(super) address: Option<std::net::IpAddr>,
 
     /// The page without a study, as web/build writes it
     #[arg(long, value_name = "FILE.html")]

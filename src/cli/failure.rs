@@ -125,6 +125,12 @@ pub(super) enum Failure {
     NoPage { sought: Vec<PathBuf> },
     #[error("{path} is not a page for `sensitol workbench`: {reason}", path = path.display())]
     WrongPage { path: PathBuf, reason: String },
+    #[error("the page of the workbench is older than this program: run web/build again")]
+    OldPage,
+    #[error("{path} is no folder of studies: {reason}", path = path.display())]
+    NotAFolder { path: PathBuf, reason: String },
+    #[error("nothing can listen at {address}: {reason}")]
+    NotServed { address: std::net::SocketAddr, reason: String },
     #[error("{path} cannot be put into a page: {reason}", path = path.display())]
     NotInPage { path: PathBuf, reason: String },
     #[error("{path} is there already and stays as it is: name another file, or remove it", path = path.display())]

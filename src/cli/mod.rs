@@ -29,6 +29,7 @@ mod reference;
 mod running;
 mod sampling;
 mod schema;
+mod serve;
 mod several;
 mod shared_args;
 mod simulate;
@@ -113,6 +114,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Journal(asked) => journal::run(asked, style),
         Command::Init(asked) => init::run(asked),
         Command::Workbench(asked) => workbench::run(asked, style),
+        Command::Serve(asked) => serve::run(asked),
         Command::Schema(asked) => schema::run(asked),
         Command::Completions(asked) => reference::completions(asked),
         Command::Man => reference::man(),

@@ -72,7 +72,7 @@ fn given(path: &Path, study: &Study) -> Result<Given, Failure> {
 }
 
 /// The page without a study.
-fn page(named: Option<&Path>) -> Result<String, Failure> {
+pub(super) fn page(named: Option<&Path>) -> Result<String, Failure> {
     let (path, sought) = match named {
         Some(path) => (Some(path.to_owned()), Vec::new()),
         None => {

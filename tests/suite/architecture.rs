@@ -8,6 +8,7 @@ use super::support::repository;
 const LAYERS: &[&[&str]] = &[
     &["main"],
     &["cli", "internals"],
+    &["task"],
     &["error"],
     &["study", "report"],
     &["document"],

@@ -68,6 +68,7 @@ mod response_surface;
 mod sampled_cli;
 mod sampling;
 mod schema;
+mod serve;
 mod several;
 mod simulation;
 mod stack;

@@ -1,11 +1,11 @@
 "use strict";
 // The page: a state, its steps back and forth, what is shown of it, and what the engine says of it.
-(() => {
+const page = (() => {
   const $ = (id) => document.getElementById(id);
   const data = (id) => JSON.parse($(id).textContent);
   const esc = (text) => String(text).replace(/[&<>"']/g, (c) => `&#${c.charCodeAt(0)};`);
   const examples = data("examples-data");
-  const live = new engine.Engine(), tools = new engine.Engine();
+  const { Engine } = served ?? engine, live = new Engine(), tools = new Engine();
   const KEPT = "sensitol-workbench";
   let state = study.empty(), past = [], next = [], selected = 0, tab = "allocate", view = "table", kind = "formula";
   // What the study was read from, as long as nothing has changed; its name and the files that it names.
@@ -220,7 +220,14 @@
   // ---------- live
   let running = false, again = false, timer;
   const soon = () => { document.documentElement.dataset.ready = "0"; clearTimeout(timer); timer = setTimeout(run, 0); };
-  async function run() {
+  // A program is not run at every key: who edits says when.
+  const program = () => (typed === null ? state.rest.model?.command !== undefined : /^\s*command\s*=/m.test(typed));
+  const far = (answered, expected) => {
+    if (served === null || !program()) return;
+    $("old").hidden = false;
+    $("old").textContent = expected > 0 ? `${answered} of ${expected} points` : `${answered} points`;
+  };
+  async function run(asks = false) {
     document.documentElement.dataset.ready = "0";
     if (running) { again = true; return; }
     running = true;
@@ -230,13 +237,20 @@
       const asked = typed !== null ? { text: typed, cells: null } : source();
       const begun = performance.now();
       let found;
-      try { found = await live.ask("run", task(asked.text, { asked: { command: "analyze" }, forms: ["json", "html"] })); } catch (error) { found = { error: error.message, advice: [] }; }
+      const waits = served !== null && program() && asks !== true;
+      $("analyze").hidden = served === null || !program();
+      try { found = waits ? await live.ask("study", task(asked.text)) : await live.ask("run", task(asked.text, { asked: { command: "analyze" }, forms: ["json", "html"] }), far); } catch (error) { found = { error: error.message, advice: [] }; }
       // What was typed meanwhile is asked at once; a step of undo may have replaced the study.
       made = asked;
       faults = found.faults ?? (found.error ? [{ key: "", fault: found.error, help: found.advice.join(" ") || null, start: null, end: null, line: null }] : []);
       if (found.json !== undefined) result = read(found, performance.now() - begun);
       if (found.json !== undefined && typed === null) { first(); remember(); }
       told();
+      if (waits && faults.length === 0) {
+        $("old").hidden = false;
+        $("old").textContent = result === null ? "The model is a program: Analyze runs it" : "Last result. The model is a program: Analyze runs it again";
+      }
+      asks = false;
     } while (again);
     clearTimeout(late);
     $("busy").hidden = true;
@@ -396,7 +410,7 @@
       + `<dl class="nums">${[["Cpk", row.Cpk], [`mean${unit}`, row.mean], [`σ${unit}`, row.sigma], ["worst case", row.worst]].map(([title, text]) => `<div><dt>${title}</dt><dd>${esc(text ?? "?")}</dd></div>`).join("")}</dl>`
       + warnings.map((warning) => `<p class="warn">${esc(warning.message)} <code>${esc(warning.code)}</code></p>`).join("")
       + drives(one)
-      + `<p class="foot">${result.report.evaluations} evaluations, ${Math.round(result.took)} ms, all in this page. Nothing is sent anywhere.</p>`;
+      + `<p class="foot">${result.report.evaluations} evaluations, ${Math.round(result.took)} ms, ${served === null ? "all in this page. Nothing is sent anywhere" : "by sensitol on this machine"}.</p>`;
   };
   $("kc-tabs").onclick = (event) => { const chosen = event.target.closest("button"); if (chosen) choose(+chosen.dataset.i); };
 
@@ -584,10 +598,11 @@
   const begin = async () => {
     $("kinds").innerHTML = study.KINDS.map((one) => `<option value="${one}">`).join("");
     $("units").innerHTML = study.UNITS.map((one) => `<option value="${one}">`).join("");
-    await engine.load();
+    if (served === null) await engine.load();
     models = await live.ask("models");
     $("model").innerHTML = models.map((one) => `<option value="${esc(one.name)}">${esc(one.name)}</option>`).join("");
     aboutModel();
+    if (served !== null) return folder.begin();
     const given = data("study-data"), kept = stored((storage) => storage.getItem(KEPT));
     if (location.hash.startsWith("#s=")) {
       try { return await open(await shared()); } catch { toast("The link is damaged; an example is shown instead"); return open(examples[0]); }
@@ -595,5 +610,8 @@
     if (given) return open(given);
     return open(kept ? JSON.parse(kept) : examples[0]);
   };
-  begin().catch((error) => { $("out").innerHTML = `<p class="missed"><b>The engine did not start.</b> ${esc(error.message)}. The page needs a browser of 2023 or later.</p>`; });
+  $("analyze").onclick = () => { if (running) live.stop(); else run(true); };
+  // What is beside the page is read before it begins.
+  setTimeout(() => begin().catch((error) => { $("out").innerHTML = `<p class="missed"><b>The engine did not start.</b> ${esc(error.message)}. The page needs a browser of 2023 or later.</p>`; }));
+  return { open, toast, esc, name: () => name, rename: (to) => { name = to; }, text: () => typed ?? source().text };
 })();

@@ -1,9 +1,7 @@
 //! The engine for the workbench: studies as text in, results and errors as JSON out.
 
-mod faults;
-mod task;
-
 use js_sys::Function;
+use sensitol::internals::task::{Place, Task, models as built_in};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsError, JsValue};
 
@@ -22,14 +20,14 @@ pub fn version() -> String {
 /// The built-in models, with inputs and outputs.
 #[wasm_bindgen]
 pub fn models() -> String {
-    task::models()
+    built_in()
 }
 
 /// A study in keys of JSON, so that a table can show it: `{"study": ..}`, `{"faults": [..]}`. `told` is a
 /// task without `asked`.
 #[wasm_bindgen]
 pub fn study(told: &str) -> Result<String, JsError> {
-    Ok(task::Task::read(told)?.study())
+    Ok(Task::read(told)?.study(&Place::default()))
 }
 
 /// Does a task: `{"text", "format", "name", "files", "configuration", "analysis", "characteristics", "asked", "forms"}`. The answer
@@ -41,5 +39,5 @@ pub fn run(told: &str, counted: &Function) -> Result<String, JsError> {
         // Who does not listen loses nothing.
         let _ = counted.call2(&JsValue::NULL, &JsValue::from_f64(answered as f64), &JsValue::from_f64(expected as f64));
     };
-    Ok(task::Task::read(told)?.run(&progress))
+    Ok(Task::read(told)?.run(&Place::default(), &progress))
 }

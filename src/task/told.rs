@@ -1,22 +1,23 @@
-//! What a page asks for.
+//! A task as a page sends it: the text of a study, what is asked, and the forms of the answer.
 
 use std::collections::BTreeMap;
 
-use sensitol::assembly::Run;
-use sensitol::models::ALL;
-use sensitol::study::{Externals, StudyText};
-use sensitol::{Error, Study, StudyError};
-use sensitol_commands::{Asked, Counted, Found, done};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 use serde_json::{Map, Value, json};
 
-use crate::faults::{of_engine, of_study};
+use super::asked::{Asked, Counted, done};
+use super::faults::{of_engine, of_study};
+use super::found::Found;
+use super::place::Place;
+use crate::error::Error;
+use crate::models::{ALL, Model};
+use crate::study::{Study, StudyError, StudyText};
 
 /// A study, and what is asked of it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Task {
+pub struct Task {
     /// The text of the study.
     text: String,
     format: Format,
@@ -56,17 +57,17 @@ enum Form {
 
 impl Task {
     /// From JSON.
-    pub(crate) fn read(told: &str) -> Result<Self, serde_json::Error> {
+    pub fn read(told: &str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(told)
     }
 
-    fn parsed(&self) -> Result<Study, StudyError> {
+    fn parsed(&self, place: &Place<'_>) -> Result<Study, StudyError> {
         let text = match self.format {
             Format::Toml => StudyText::toml(&self.name, &self.text),
             Format::Json => StudyText::json(&self.name, &self.text),
         };
-        let externals = Externals::default();
-        let text = text.with_externals(match &self.configuration {
+        let externals = place.externals.clone();
+        let text = text.in_folder(&place.folder).with_externals(match &self.configuration {
             Some(name) => externals.with_configuration(name),
             None => externals,
         });
@@ -76,8 +77,8 @@ impl Task {
     }
 
     /// The study's keys, or its faults.
-    pub(crate) fn study(&self) -> String {
-        match self.parsed() {
+    pub fn study(&self, place: &Place<'_>) -> String {
+        match self.parsed(place) {
             Ok(study) => {
                 // As text: the order of its keys is that of the study.
                 let study = RawValue::from_string(study.as_json()).expect("a study is JSON");
@@ -88,15 +89,15 @@ impl Task {
     }
 
     /// Does what is asked.
-    pub(crate) fn run(&self, counted: Counted<'_>) -> String {
-        match self.found(counted) {
+    pub fn run(&self, place: &Place<'_>, counted: Counted<'_>) -> String {
+        match self.found(place, counted) {
             Ok(found) => self.shown(&found).to_string(),
             Err(error) => of_engine(&error).to_string(),
         }
     }
 
-    fn found(&self, counted: Counted<'_>) -> Result<Found, Box<Error>> {
-        let mut study = self.parsed().map_err(Error::from)?;
+    fn found(&self, place: &Place<'_>, counted: Counted<'_>) -> Result<Found, Box<Error>> {
+        let mut study = self.parsed(place).map_err(Error::from)?;
         if let Some(keys) = &self.analysis {
             study = study.with_analysis(keys.get()).map_err(Error::from)?;
         }
@@ -104,7 +105,7 @@ impl Task {
             study.problem = study.problem.only(&self.characteristics).map_err(Error::from)?;
         }
         let asked = self.asked.as_ref().unwrap_or(&Asked::Analyze {});
-        done(&study, asked, &Run::to_the_end(), counted)
+        done(&study, asked, &place.run, counted)
     }
 
     fn shown(&self, found: &Found) -> Value {
@@ -129,8 +130,8 @@ impl Task {
 }
 
 /// The built-in models.
-pub(crate) fn models() -> String {
-    let model = |model: &&'static sensitol::models::Model| {
+pub fn models() -> String {
+    let model = |model: &&'static Model| {
         let inputs = model.inputs.iter().map(
             |input| json!({ "name": input.name, "unit": input.unit, "nominal": input.nominal, "about": input.about }),
         );

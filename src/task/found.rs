@@ -1,11 +1,13 @@
 //! What a run found out: a report, shown as it is asked for.
 
-use sensitol::internals::{WhatIf, analyze_html, csv_tables};
-use sensitol::report::{
+use serde::Serialize;
+
+use crate::report::csv::csv_tables;
+use crate::report::html::{WhatIf, analyze_html};
+use crate::report::{
     AllocationReport, CompareReport, CsvFile, Detail, RareReport, Report, SimulationReport, Style, SweepReport,
     ToDocument, csv_files, svg, text,
 };
-use serde::Serialize;
 
 /// A report of any command.
 pub enum Shown {

@@ -1,19 +1,22 @@
 //! What a study can be asked for: the commands of the command line, with their options as JSON.
 
-use sensitol::allocation::{AllocationOptions, CostBasis, Goal, Status, allocate_with};
-use sensitol::assembly::Run;
-use sensitol::compare::{CompareOptions, compare_with};
-use sensitol::internals::{WhatIf, procedure};
-use sensitol::rare::{RareOptions, rare_with};
-use sensitol::report::{
-    About, AllocationReport, CompareReport, RareReport, Report, SimulationReport, SweepReport, WrittenAnew,
-};
-use sensitol::simulation::{Pace, Sampler, SimulationOptions, simulate_with};
-use sensitol::sweep::sweep_with;
-use sensitol::{Error, Options, Study, analyze_with};
 use serde::Deserialize;
 
-use crate::found::{Found, Shown};
+use super::found::{Found, Shown};
+use crate::allocation::{AllocationOptions, CostBasis, Goal, Status, allocate_with};
+use crate::analysis::analyze_with;
+use crate::assembly::Run;
+use crate::compare::{CompareOptions, compare_with};
+use crate::error::Error;
+use crate::method::{Options, registry::procedure};
+use crate::rare::{RareOptions, rare_with};
+use crate::report::html::WhatIf;
+use crate::report::{
+    About, AllocationReport, CompareReport, RareReport, Report, SimulationReport, SweepReport, WrittenAnew,
+};
+use crate::simulation::{Pace, Sampler, SimulationOptions, simulate_with};
+use crate::study::Study;
+use crate::sweep::sweep_with;
 
 /// Points of a simulation unless the caller says otherwise, as the command line has it.
 const SAMPLES: u64 = 100_000;

@@ -1,10 +1,12 @@
 //! Errors as data that a page can place.
 
-use sensitol::{Error, StudyError};
 use serde_json::{Value, json};
 
+use crate::error::Error;
+use crate::study::StudyError;
+
 /// The faults of a study, each with its place in the text in bytes.
-pub(crate) fn of_study(error: &StudyError) -> Value {
+pub(super) fn of_study(error: &StudyError) -> Value {
     let all: Vec<Value> = std::iter::once(error).chain(&error.more).map(one).collect();
     json!({ "faults": all })
 }
@@ -26,7 +28,7 @@ fn one(error: &StudyError) -> Value {
 }
 
 /// What else cannot be done.
-pub(crate) fn of_engine(error: &Error) -> Value {
+pub(super) fn of_engine(error: &Error) -> Value {
     if let Error::Study(error) = error {
         return of_study(error);
     }
