@@ -171,6 +171,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, conflicts_with_all = ["json", "stack"], help_heading = OUTPUT)]
     pub(super) summary: bool,
 
+    /// Show what changed from the first study to the second: inputs, results, contributions; --check is about the second
+    #[arg(long, conflicts_with_all = ["points", "stack", "summary"], help_heading = OUTPUT)]
+    pub(super) compare: bool,
+
     /// Print the stack-up table of every characteristic instead of the report: text, csv or markdown
     #[arg(long, value_name = "FORMAT", conflicts_with = "json", help_heading = OUTPUT)]
     pub(super) stack: Option<StackArg>,

@@ -125,6 +125,8 @@ pub(super) enum Failure {
     NoPage { sought: Vec<PathBuf> },
     #[error("{path} is not a page for `sensitol workbench`: {reason}", path = path.display())]
     WrongPage { path: PathBuf, reason: String },
+    #[error("--compare is about two revisions of a study, the older one first: name two files, not {count}")]
+    NotTwo { count: usize },
     #[error("the page of the workbench is older than this program: run web/build again")]
     OldPage,
     #[error("{path} is no folder of studies: {reason}", path = path.display())]

@@ -9,6 +9,7 @@ mod args;
 mod check;
 mod compare;
 mod csv;
+mod difference;
 mod evaluate;
 mod expand;
 mod failure;
@@ -98,6 +99,8 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         output::Look { color: arguments.color, quiet: arguments.quiet, verbose: arguments.verbose, study: None };
     let result = match &arguments.command {
         Command::Analyze(asked) => match &asked.studies[..] {
+            [old, new] if asked.compare => difference::run([old, new], asked, style),
+            studies if asked.compare => Err(Failure::NotTwo { count: studies.len() }),
             [study] if asked.how.configuration.as_deref() != Some(study::ALL) => analyze::run(study, asked, style),
             studies => several::analyze(studies, asked, style),
         },

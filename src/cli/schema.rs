@@ -8,7 +8,9 @@ use super::args::{OutputArgs, SchemaArgs};
 use super::failure::{Exit, Failure};
 use super::output::{Destination, json};
 use super::{journal, models, pearson, plan, probe, several};
-use crate::report::{AllocationReport, CompareReport, RareReport, Report, SCHEMA, SimulationReport, SweepReport};
+use crate::report::{
+    AllocationReport, CompareReport, DifferenceReport, RareReport, Report, SCHEMA, SimulationReport, SweepReport,
+};
 use crate::study::schema;
 
 pub(super) fn run(asked: &SchemaArgs) -> Result<Exit, Failure> {
@@ -23,8 +25,9 @@ pub(super) fn run(asked: &SchemaArgs) -> Result<Exit, Failure> {
 fn reports() -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| settings.contract = Contract::Serialize);
     let mut generator = settings.into_generator();
-    let commands: [(&str, Value); 11] = [
+    let commands: [(&str, Value); 12] = [
         ("analyze", of::<Report>(&mut generator)),
+        ("analyze-compare", of::<DifferenceReport>(&mut generator)),
         ("simulate", of::<SimulationReport>(&mut generator)),
         ("simulate-rare", of::<RareReport>(&mut generator)),
         ("compare", of::<CompareReport>(&mut generator)),

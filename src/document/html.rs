@@ -97,6 +97,7 @@ fn block(block: &Element) -> String {
             format!("<p{class}>{}</p>\n", toned(&one.line))
         }
         Element::Detail(inner) => blocks(inner),
+        Element::Markup(one) => one.clone(),
         Element::Brief(_) => String::new(),
         Element::Aside(aside) if aside.title.is_empty() => blocks(&aside.blocks),
         Element::Aside(aside) => format!("<h3>{}</h3>\n{}", aside.title, blocks(&aside.blocks)),

@@ -22,7 +22,7 @@ pub fn markdown(document: &Document) -> String {
 
 fn shown(block: &Element) -> String {
     match block {
-        Element::Gap | Element::Chart(_) | Element::Brief(_) => String::new(),
+        Element::Gap | Element::Chart(_) | Element::Brief(_) | Element::Markup(_) => String::new(),
         Element::Detail(inner) => inner.iter().map(shown).collect(),
         Element::Paragraph(one) => format!("{}\n\n", escaped(one.line.text().trim())),
         Element::Aside(aside) => {

@@ -121,6 +121,8 @@ pub enum Element {
     Table(DataTable),
     /// A drawing.
     Chart(Chart),
+    /// HTML that is drawn already, of which only pages know.
+    Markup(String),
     /// A warning. Terminals have it from stderr.
     Finding(Notice),
 }

@@ -104,7 +104,7 @@ impl Page {
             }
             Element::Detail(inner) if self.style.detail == Detail::Full => inner.iter().for_each(|one| self.block(one)),
             Element::Brief(inner) if self.style.detail == Detail::Short => inner.iter().for_each(|one| self.block(one)),
-            Element::Detail(_) | Element::Brief(_) => {}
+            Element::Detail(_) | Element::Brief(_) | Element::Markup(_) => {}
             Element::Chart(Chart::Plot(_) | Chart::Bars(_)) | Element::Aside(_) | Element::Finding(_) => {}
         }
     }

@@ -9,6 +9,7 @@ mod compare;
 #[cfg(test)]
 mod complete;
 pub(crate) mod csv;
+mod difference;
 mod figures;
 mod head;
 #[cfg(feature = "html")]
@@ -35,6 +36,7 @@ pub use compare::CompareReport;
 pub use csv::{CsvFile, csv_files};
 #[cfg(feature = "cli")]
 pub(crate) use csv::{csv_file_names, csv_tables, stack_csv, stack_csv_of_studies};
+pub use difference::DifferenceReport;
 pub(crate) use head::Head;
 pub use rare::RareReport;
 pub use simulation::SimulationReport;

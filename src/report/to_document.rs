@@ -1,6 +1,6 @@
 //! Every report as a document and as a page.
 
-use super::{AllocationReport, CompareReport, RareReport, Report, SimulationReport, SweepReport};
+use super::{AllocationReport, CompareReport, DifferenceReport, RareReport, Report, SimulationReport, SweepReport};
 use crate::document::Document;
 
 /// A report that can be shown to people.
@@ -53,4 +53,5 @@ to_document! {
     CompareReport by super::html::compare_html,
     SweepReport by super::html::sweep_html,
     AllocationReport by super::html::allocate_html,
+    DifferenceReport by super::html::difference_html,
 }

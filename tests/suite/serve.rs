@@ -85,8 +85,11 @@ impl Server {
         let headers: Vec<&str> = host.into_iter().chain(headers.iter().copied()).collect();
         let length = body.len();
         let head = headers.join("\r\n");
-        write!(stream, "{method} {path} HTTP/1.1\r\n{head}\r\nConnection: close\r\nContent-Length: {length}\r\n\r\n{body}")
-            .unwrap();
+        write!(
+            stream,
+            "{method} {path} HTTP/1.1\r\n{head}\r\nConnection: close\r\nContent-Length: {length}\r\n\r\n{body}"
+        )
+        .unwrap();
         stream
     }
 
@@ -118,7 +121,11 @@ impl Server {
         stream.read_to_string(&mut text).unwrap();
         let chunks = text.split_once("\r\n\r\n").unwrap().1;
         // Chunks are lines; their lengths stand alone on lines of their own.
-        chunks.split("\r\n").filter(|line| line.starts_with('{')).map(|line| serde_json::from_str(line).unwrap()).collect()
+        chunks
+            .split("\r\n")
+            .filter(|line| line.starts_with('{'))
+            .map(|line| serde_json::from_str(line).unwrap())
+            .collect()
     }
 }
 
@@ -157,13 +164,21 @@ fn only_the_page_itself_is_answered() {
 #[test]
 fn studies_of_the_folder_are_opened_and_saved() {
     let json = r#"{ "dimensions": { "a": { "nominal": 1, "tolerance": 0.1 } }, "characteristics": { "y": { "formula": "2*a" } } }"#;
-    let server = Server::with(&[("gap.toml", STUDY), ("in/two words.toml", STUDY), ("old.json", json), ("Cargo.toml", "[package]")]);
+    let server = Server::with(&[
+        ("gap.toml", STUDY),
+        ("in/two words.toml", STUDY),
+        ("old.json", json),
+        ("Cargo.toml", "[package]"),
+    ]);
     assert_eq!(server.get("studies").json()["studies"], json!(["gap.toml", "in/two words.toml", "old.json"]));
     let read = server.get("study?path=in%2Ftwo%20words.toml").json();
     assert_eq!((read["text"].as_str(), read["name"].as_str()), (Some(STUDY), Some("in/two words.toml")));
     let old = server.get("study?path=old.json").json();
     assert_eq!((old["name"].as_str(), old["hash"].is_null()), (Some("old.toml"), true));
-    assert_eq!(sensitol::Study::from_toml(old["text"].as_str().unwrap(), "old.toml").unwrap().problem.dimensions().len(), 1);
+    assert_eq!(
+        sensitol::Study::from_toml(old["text"].as_str().unwrap(), "old.toml").unwrap().problem.dimensions().len(),
+        1
+    );
 
     let hash = server.get("study?path=gap.toml").json()["hash"].as_str().unwrap().to_owned();
     let changed = STUDY.replace("0.3", "0.2");
@@ -187,7 +202,8 @@ fn nothing_outside_the_folder_is_touched() {
     let server = Server::with(&[("gap.toml", STUDY)]);
     let outside = server.folder.path().join("outside.toml");
     std::fs::write(&outside, "secret").unwrap();
-    let mut wrong = vec!["../outside.toml", "studies/../../outside.toml", "", "..%5Coutside.toml", "gap.txt", "page.html"];
+    let mut wrong =
+        vec!["../outside.toml", "studies/../../outside.toml", "", "..%5Coutside.toml", "gap.txt", "page.html"];
     let absolute = outside.display().to_string();
     wrong.push(&absolute);
     #[cfg(unix)]
@@ -229,7 +245,10 @@ fn a_run_is_that_of_the_command_line() {
         report
     };
     assert_eq!(timeless(found), timeless(expected));
-    let wrong = server.run("gap.toml", &task("[dimensions]\na = { nominal = 1 }\n[characteristics]\ny = { formula = \"a*c\" }", "gap.toml"));
+    let wrong = server.run(
+        "gap.toml",
+        &task("[dimensions]\na = { nominal = 1 }\n[characteristics]\ny = { formula = \"a*c\" }", "gap.toml"),
+    );
     let fault = &wrong.last().unwrap()["found"]["faults"][0];
     assert_eq!(fault["key"], "characteristics.y.formula");
     let keys = server.answer("POST", &server.at("keys?path=gap.toml"), &[], &task(STUDY, "gap.toml").to_string());
@@ -268,7 +287,8 @@ fn external_models_run_in_their_folder_and_end_with_the_page() {
     };
     let found = server.run("in%2Fgap.toml", &task("second-order"));
     let last = found.last().unwrap();
-    let report: Value = serde_json::from_str(last["found"]["json"].as_str().unwrap_or_else(|| panic!("{last}"))).unwrap();
+    let report: Value =
+        serde_json::from_str(last["found"]["json"].as_str().unwrap_or_else(|| panic!("{last}"))).unwrap();
     // Twelve times a third of 0.1, in squares.
     let sigma = report["characteristics"][0]["sigma"].as_f64().unwrap();
     assert!((sigma - 0.1 / 3.0 * 12f64.sqrt()).abs() < 1e-9, "{sigma}");
@@ -330,11 +350,19 @@ fn what_cannot_be_served_is_said() {
     write("page.html", PAGE);
     write("old.html", &PAGE.replace("server-data", "other-data"));
     write("gap.toml", STUDY);
-    refused(folder.path(), &["serve", "gap.toml", "--page", "page.html"], "gap.toml is no folder of studies: it is a file");
+    refused(
+        folder.path(),
+        &["serve", "gap.toml", "--page", "page.html"],
+        "gap.toml is no folder of studies: it is a file",
+    );
     refused(folder.path(), &["serve", "none", "--page", "page.html"], "none is no folder of studies");
     refused(folder.path(), &["serve", "--page", "old.html"], "run web/build again");
     refused(folder.path(), &["serve", "--page", "page.html", "--port", "70000"], "70000");
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port().to_string();
-    refused(folder.path(), &["serve", "--page", "page.html", "--port", &port], &format!("nothing can listen at 127.0.0.1:{port}"));
+    refused(
+        folder.path(),
+        &["serve", "--page", "page.html", "--port", &port],
+        &format!("nothing can listen at 127.0.0.1:{port}"),
+    );
 }

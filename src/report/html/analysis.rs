@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::super::Report;
 use super::what_if::WhatIf;
-use super::{Fact, fact, json, others, provenance, render, review};
+use super::{Fact, evidence, fact, json, others, provenance, render, review};
 use crate::analysis::Analysis;
 use crate::document::html::{head, sections};
 use crate::document::number::{plain, plural, significant};
@@ -43,10 +43,11 @@ struct Try<'r> {
 /// The page needs no network and loads nothing. No evaluation.
 pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let possible = what_if.filter(|what_if| what_if.possible());
-    let document = report.document();
+    let mut document = report.document();
+    evidence::add(report, &mut document.sections);
     let analysed = Analysed { what_if: possible.map(tries), no_what_if: what_if.and_then(WhatIf::impossible) };
     let (parts, warnings) = (
-        [review::verdict(report) + &head(&document), sections(&document) + &review::maps(report)],
+        [review::verdict(report) + &head(&document), sections(&document) + &evidence::how_sure(report)],
         others(&document, &report.warnings),
     );
     render("what_if.html", &report.head, facts(report), parts, warnings, possible.map(json), analysed)

@@ -5,6 +5,7 @@
 //! browser by a content-security policy: this script and this style, known by their hashes, and nothing else.
 
 mod analysis;
+mod evidence;
 mod review;
 mod what_if;
 
@@ -18,7 +19,9 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::head::findings;
-use super::{AllocationReport, CompareReport, Head, RareReport, SimulationReport, SweepReport, WarningReport};
+use super::{
+    AllocationReport, CompareReport, DifferenceReport, Head, RareReport, SimulationReport, SweepReport, WarningReport,
+};
 use crate::document::Document;
 use crate::document::html::{blocks, head as summary, sections};
 use crate::document::number::significant;
@@ -114,6 +117,21 @@ pub(crate) fn allocate_html(report: &AllocationReport) -> String {
     page(&report.head, &report.run, &report.document(), &report.warnings)
 }
 
+/// Two revisions of a study as one page of HTML: what changed in inputs, results and contributions.
+pub(crate) fn difference_html(report: &DifferenceReport) -> String {
+    let document = report.document();
+    let [old, new] = &report.studies;
+    let [of_old, of_new] = &report.sha256;
+    let facts = vec![
+        fact("was", format!("{old}, SHA-256 {of_old}")),
+        fact("is", format!("{new}, SHA-256 {of_new}")),
+        fact("evaluations", format!("{} and {}", report.evaluations[0], report.evaluations[1])),
+        fact("sensitol", format!("{}, report schema {}", report.head.sensitol, report.head.schema)),
+    ];
+    let parts = [summary(&document), sections(&document)];
+    render("page.html", &report.head, facts, parts, String::new(), None, ())
+}
+
 /// A page of a document.
 fn page(head: &Head, run: &RunSummary, document: &Document, warnings: &[WarningReport]) -> String {
     let parts = [summary(document), sections(document)];
@@ -166,7 +184,7 @@ fn render<T: Serialize>(
         head: first,
         sections,
         warnings,
-        terms: if head.command == "analyze" { review::terms() } else { String::new() },
+        terms: if template == "what_if.html" { review::terms() } else { String::new() },
         of,
     };
     let mut environment = Environment::new();

@@ -242,25 +242,14 @@ fn together(report: &Report, gauge: &Gauge) -> String {
     )
 }
 
-/// The section of all maps; nothing where there is none.
-pub(super) fn maps(report: &Report) -> String {
-    let maps: String = report.analysis.characteristics.iter().map(map).collect();
-    match maps.is_empty() {
-        true => maps,
-        false => format!(
-            "<section aria-labelledby=\"interactions\">\n<h2 id=\"interactions\">Interactions</h2>\n{maps}</section>\n"
-        ),
-    }
-}
-
 /// Which dimensions act jointly, a triangle below their own shares; nothing where no interaction is seen or left out.
-fn map(one: &CharacteristicAnalysis) -> String {
+pub(super) fn map(one: &CharacteristicAnalysis) -> Option<String> {
     let examined = one.interactions.len();
     let strongest = one.interactions.iter().filter_map(|pair| pair.share).fold(0.0, f64::max);
     // What all that was examined leaves out may be interactions.
     let left_out = one.left_out_share.unwrap_or(0.0);
     if one.possible_interactions == 0 || strongest.max(left_out) < 5.0 * SEEN {
-        return String::new();
+        return None;
     }
     let own =
         |row: &crate::analysis::Sensitivity| row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0));
@@ -272,7 +261,7 @@ fn map(one: &CharacteristicAnalysis) -> String {
     let left = rows.len().saturating_sub(MAPPED);
     rows.truncate(MAPPED);
     if rows.len() < 2 {
-        return String::new();
+        return None;
     }
     let shade = |share: f64| GREYS.iter().filter(|&&from| share >= from).count();
     let mut text = format!(
@@ -312,8 +301,10 @@ fn map(one: &CharacteristicAnalysis) -> String {
     let more = if left > 0 { format!(" {left} dimensions of less influence are not shown.") } else { String::new() };
     let hatched =
         if examined < one.possible_interactions { " Hatched: not examined, or without a joint effect." } else { "" };
-    text + &format!(
-        "<p class=\"note\">On the diagonal what a dimension makes alone, below what two make jointly; darker is more.{hatched}{more}</p>\n"
+    Some(
+        text + &format!(
+            "<p class=\"note\">On the diagonal what a dimension makes alone, below what two make jointly; darker is more.{hatched}{more}</p>\n"
+        ),
     )
 }
 

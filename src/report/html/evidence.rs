@@ -1,0 +1,378 @@
+//! What a review asks next, for each characteristic: the tails, why the mean is not the nominal value, the chain of dimensions; and
+//! how sure all of it is.
+
+use std::fmt::Write;
+
+use super::super::figures::{Figures, Named};
+use super::super::{DimensionReport, Report};
+use crate::analysis::{CharacteristicAnalysis, Sensitivity};
+use crate::capability::Law;
+use crate::document::number::{band, beside, estimated, plain, plural, uncertainty};
+use crate::document::svg::escaped;
+use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section};
+use crate::pearson::Pearson;
+
+/// A shift of the mean below this part of sigma is none.
+const SEEN: f64 = 0.01;
+/// Rows of a table of shifts.
+const SHIFTS: usize = 12;
+/// A slope this near to 1 or -1 is that of a link of a chain.
+const STRAIGHT: f64 = 0.05;
+/// A chain of more links is no picture.
+const LINKS: usize = 24;
+/// The share from which a tail is drawn, and the least to which.
+const FROM: f64 = 0.1;
+const TO: f64 = 1e-5;
+
+/// Puts what belongs to each characteristic into its section.
+pub(super) fn add(report: &Report, sections: &mut [Section]) {
+    for (one, section) in report.analysis.characteristics.iter().zip(sections) {
+        let mut drawn = |title: &'static str, block: Option<Element>| {
+            let blocks = block.into_iter().collect::<Vec<_>>();
+            if !blocks.is_empty() {
+                crate::document::Blocks::aside(section, title, blocks);
+            }
+        };
+        drawn("Tails", tails(one).map(Element::Markup));
+        drawn("Dimension chain", chain(one, &report.dimensions).map(Element::Markup));
+        let shifts = shifts(one, &report.dimensions).map(|bars| Element::Chart(Chart::Bars(bars)));
+        drawn("From the nominal value to the mean", shifts);
+        drawn("Interactions", super::review::map(one).map(Element::Markup));
+    }
+}
+
+/// One limit, the share beyond it in any distance, and who says what at it.
+struct Tail<'l> {
+    name: &'static str,
+    limit: f64,
+    upper: bool,
+    law: &'l Pearson,
+    /// The share beyond the limit by the surface, and by points of the model with its error.
+    surface: Option<f64>,
+    model: Option<(f64, f64)>,
+}
+
+/// The share rejected on a logarithmic scale near each limit: the Pearson fit as a line, the surface and the model as marks at the limit.
+fn tails(one: &CharacteristicAnalysis) -> Option<String> {
+    let Some(Law::Pearson(law)) = one.fitted() else { return None };
+    let of_surface = one.surface_law.as_ref();
+    let by_model = one.verification.as_ref().map_or([None, None], |found| found.beyond);
+    let all = [
+        ("lower", one.lower(), false, of_surface.and_then(|law| law.below), by_model[0]),
+        ("upper", one.upper(), true, of_surface.and_then(|law| law.above), by_model[1]),
+    ];
+    let panels: Vec<String> = all
+        .into_iter()
+        .filter_map(|(name, limit, upper, surface, model)| {
+            let surface = surface.map(|figure| figure.value);
+            let model = model.map(|found| (found.value, found.error));
+            panel(one, &Tail { name, limit: limit?, upper, law, surface, model })
+        })
+        .collect();
+    (!panels.is_empty()).then(|| {
+        format!(
+            "<div class=\"tails\">{}</div>\n<p class=\"note\">Share of the assemblies beyond a value, on a logarithmic scale. Line: the Pearson fit. At the limit: \
+             diamond, the surface; dot and bar, points of the model with two standard errors.</p>\n",
+            panels.concat()
+        )
+    })
+}
+
+/// A panel; None where the limit is too far out for shares that are drawn.
+fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
+    const WIDTH: f64 = 340.0;
+    const TALL: f64 = 150.0;
+    const LEFT: f64 = 56.0;
+    let beyond = |x: f64| if tail.upper { tail.law.sf(x) } else { tail.law.cdf(x) };
+    let at = |share: f64| if tail.upper { tail.law.upper_quantile(share) } else { tail.law.quantile(share) };
+    let seen = [tail.surface, tail.model.map(|model| model.0), Some(beyond(tail.limit))];
+    let least = seen.into_iter().flatten().filter(|share| *share > 0.0).fold(TO, f64::min);
+    // Further out than this nobody looks at a picture.
+    const FARTHEST: f64 = 1e-9;
+    if least < FARTHEST {
+        return None;
+    }
+    let decades = -least.log10().floor();
+    let least = 10f64.powf(-decades);
+    let scale = Extent::over([at(FROM), at(least), tail.limit].into_iter(), 0.04, WIDTH - LEFT)?;
+    let x = |value: f64| LEFT + scale.at(value);
+    let y = |share: f64| {
+        let part = (FROM.log10() - share.max(least).log10()) / (FROM.log10() - least.log10());
+        (10.0 * TALL * part.clamp(0.0, 1.0)).round() / 10.0 + 8.0
+    };
+    let mut line = String::new();
+    for i in 0..=60 {
+        let value = scale.from + (scale.to - scale.from) * f64::from(i) / 60.0;
+        let share = beyond(value);
+        if share <= FROM && share >= least {
+            let _ = write!(line, "{}{:.1} {:.1}", if line.is_empty() { "M" } else { "L" }, x(value), y(share));
+        }
+    }
+    let limit = x(tail.limit);
+    let (from, to) = if tail.upper { (limit, WIDTH) } else { (LEFT, limit) };
+    let unit = one.unit().map(|unit| format!(" {unit}")).unwrap_or_default();
+    let said = |share: f64| format!("{} ppm", estimated(1e6 * share, None));
+    let mut spoken = vec![format!("Tail of {} at the {} limit {}{unit}", one.name(), tail.name, plain(tail.limit))];
+    spoken.push(format!("Pearson fit {}", said(beyond(tail.limit))));
+    spoken.extend(tail.surface.map(|share| format!("surface {}", said(share))));
+    spoken.extend(tail.model.map(|(share, error)| format!("model {} ± {}", said(share), said(error))));
+    let mut svg = format!(
+        "<svg class=\"tail\" viewBox=\"0 0 {WIDTH} {}\" role=\"img\" aria-label=\"{}\">\n",
+        TALL + 30.0,
+        escaped(&spoken.join(", "))
+    );
+    let _ = writeln!(
+        svg,
+        "<rect class=\"zone\" x=\"{from:.1}\" y=\"8\" width=\"{:.1}\" height=\"{TALL}\"/>",
+        (to - from).max(0.0)
+    );
+    for decade in 1..=decades as i32 {
+        let share = 10f64.powi(-decade);
+        let name = match decade {
+            1 => "10 %".to_owned(),
+            2 => "1 %".to_owned(),
+            3 => "0.1 %".to_owned(),
+            4..=6 => format!("{} ppm", 10i32.pow(6 - decade as u32)),
+            _ => format!("{} ppm", plain(10f64.powi(6 - decade))),
+        };
+        let at = y(share);
+        let _ = writeln!(
+            svg,
+            "<path class=\"axis\" d=\"M{LEFT} {at}H{WIDTH}\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{name}</text>",
+            LEFT - 6.0,
+            at + 4.0
+        );
+    }
+    let _ =
+        writeln!(svg, "<path class=\"line\" d=\"{line}\"/><path class=\"limit\" d=\"M{limit:.1} 2V{}\"/>", TALL + 12.0);
+    let anchor = if limit > 0.75 * WIDTH {
+        "end"
+    } else if limit < 0.35 * WIDTH {
+        "start"
+    } else {
+        "middle"
+    };
+    let _ = writeln!(
+        svg,
+        "<text class=\"name\" x=\"{limit:.1}\" y=\"{}\" text-anchor=\"{anchor}\">{} {}{}</text>",
+        TALL + 25.0,
+        tail.name,
+        plain(tail.limit),
+        escaped(&unit)
+    );
+    if let Some(share) = tail.surface.filter(|share| *share > 0.0) {
+        let _ = writeln!(svg, "<path class=\"of-surface\" d=\"M{limit:.1} {:.1}l5 5l-5 5l-5 -5z\"/>", y(share) - 5.0);
+    }
+    if let Some((share, error)) = tail.model.filter(|(share, error)| share + 2.0 * error > least) {
+        let [low, high] = [-2.0, 2.0].map(|by| y((share + by * error).max(least)));
+        let _ = writeln!(svg, "<path class=\"reach\" d=\"M{limit:.1} {low:.1}V{high:.1}\"/>");
+        if share > least {
+            let _ = writeln!(svg, "<circle cx=\"{limit:.1}\" cy=\"{:.1}\" r=\"4\"/>", y(share));
+        }
+    }
+    Some(svg + "</svg>")
+}
+
+/// Why the mean is not the value of the nominal dimensions; None where it nearly is, or where that is not known.
+fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<Bars> {
+    let (nominal, mean, sigma) = (one.nominal?, one.mean()?, one.sigma()?);
+    let seen = SEEN * sigma;
+    if !(sigma > 0.0 && (mean - nominal).abs() >= seen) {
+        return None;
+    }
+    let mut found: Vec<(String, f64, String)> = Vec::new();
+    for row in &one.sensitivities {
+        let Some(dimension) = dimensions.iter().find(|of| of.name == row.dimension) else { continue };
+        let off = dimension.mean - dimension.nominal;
+        if let Some(first) = row.first.filter(|_| off != 0.0) {
+            // From the nominal value to the mean of the dimension, by the derivatives at the mean.
+            let moved = first * off - 0.5 * row.second.unwrap_or(0.0) * off * off;
+            let one_sided = dimension.tolerance.filter(|[lower, upper]| lower + upper != 0.0);
+            let cause = one_sided
+                .map_or("its mean is off the nominal value".to_owned(), |ends| format!("tolerance {}", band(ends)));
+            found.push((row.dimension.clone(), moved, cause));
+        }
+        found.extend(row.mean_shift.map(|moved| (row.dimension.clone(), moved, "curvature".to_owned())));
+    }
+    for pair in &one.interactions {
+        let name = || pair.dimensions.join(" × ");
+        found.extend(pair.mean_shift.map(|moved| (name(), moved, "correlation".to_owned())));
+    }
+    found.retain(|(_, moved, _)| moved.abs() >= seen);
+    found.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    found.truncate(SHIFTS);
+    let rest = mean - nominal - found.iter().map(|(_, moved, _)| moved).sum::<f64>();
+    if rest.abs() >= seen {
+        found.push(("all others".to_owned(), rest, "together".to_owned()));
+    }
+    let mut at = nominal;
+    let ends: Vec<[f64; 2]> = (found.iter())
+        .map(|(_, moved, _)| {
+            let from = at;
+            at += moved;
+            [from, at]
+        })
+        .collect();
+    let scale = Extent::over(ends.iter().flatten().copied().chain([nominal, mean]), 0.04, 100.0)?;
+    let place = |value: f64| vec![(Fill::Span, [(scale.at(value) - 0.3).max(0.0), 0.6])];
+    let end = |name: &str, value: f64| Bar {
+        name: name.to_owned(),
+        parts: place(value),
+        text: beside(value, sigma),
+        remark: Line::default(),
+    };
+    let mut rows = vec![end("nominal value", nominal)];
+    rows.extend(found.into_iter().zip(ends).map(|((name, moved, cause), [from, to])| {
+        let (low, high) = (from.min(to), from.max(to));
+        let sign = if moved > 0.0 { "+" } else { "" };
+        Bar {
+            name,
+            parts: vec![(Fill::Span, [scale.at(low), (scale.at(high) - scale.at(low)).max(0.2)])],
+            text: format!("{sign}{}", beside(moved, sigma)),
+            remark: Line::from(cause),
+        }
+    }));
+    rows.push(end("mean", mean));
+    Some(Bars {
+        caption: format!("Shifts of the mean of {} above 1 % of sigma", one.name()),
+        rows,
+        marks: Vec::new(),
+        legend: Vec::new(),
+    })
+}
+
+/// The links as arrows from one to the next; None where the characteristic is no sum and difference of its dimensions.
+fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<String> {
+    let nominal = one.nominal?;
+    let straight = |row: &&Sensitivity| row.first.is_some_and(|first| first != 0.0);
+    let rows: Vec<&Sensitivity> = one.sensitivities.iter().filter(straight).collect();
+    let curved = |row: &&&Sensitivity| row.curvature_share.is_some_and(|share| share > 1e-6);
+    if !(2..=LINKS).contains(&rows.len()) || rows.iter().any(|row| curved(&row)) || !one.interactions.is_empty() {
+        return None;
+    }
+    let links: Option<Vec<(&DimensionReport, f64)>> = (rows.iter())
+        .map(|row| {
+            let first = row.first?;
+            let of = dimensions.iter().find(|of| of.name == row.dimension)?;
+            ((first.abs() - 1.0).abs() <= STRAIGHT).then_some((of, first.signum()))
+        })
+        .collect();
+    let links = links?;
+    let sum: f64 = links.iter().map(|(of, sign)| sign * of.nominal).sum();
+    let size = links.iter().map(|(of, _)| of.nominal.abs()).fold(nominal.abs(), f64::max);
+    // What is left would be a link that has no name.
+    if (sum - nominal).abs() > 1e-9 * size || size == 0.0 {
+        return None;
+    }
+    Some([("wide", 736.0), ("narrow", 358.0)].map(|(class, width)| drawing(one, &links, class, width)).concat())
+}
+
+fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], class: &str, width: f64) -> String {
+    const ROW: f64 = 26.0;
+    let (left, right) = (if width > 500.0 { 110.0 } else { 84.0 }, if width > 500.0 { 110.0 } else { 74.0 });
+    let mut at = 0.0;
+    let ends: Vec<[f64; 2]> = (links.iter())
+        .map(|(of, sign)| {
+            let from = at;
+            at += sign * of.nominal;
+            [from, at]
+        })
+        .collect();
+    let Some(scale) = Extent::over(ends.iter().flatten().copied(), 0.02, width - left - right) else {
+        return String::new();
+    };
+    let x = |value: f64| left + scale.at(value);
+    let tall = ROW * (links.len() + 1) as f64 + 8.0;
+    let unit = one.unit().map(|unit| format!(" {unit}")).unwrap_or_default();
+    let named: Vec<String> = (links.iter())
+        .map(|(of, sign)| format!("{}{} {}", if *sign < 0.0 { "minus " } else { "plus " }, of.name, plain(of.nominal)))
+        .collect();
+    let nominal = plain(one.nominal.unwrap_or(at));
+    let label = format!("Chain of {}: {}, which is {nominal}{unit}", one.name(), named.join(", "));
+    let mut svg = format!(
+        "<svg class=\"density chain {class}\" viewBox=\"0 0 {width} {tall}\" role=\"img\" aria-label=\"{}\">\n",
+        escaped(&label)
+    );
+    let datum = x(0.0);
+    let _ = writeln!(svg, "<path class=\"datum\" d=\"M{datum:.1} 2V{}\"/>", tall - 4.0);
+    let mut arrow = |row: usize, [from, to]: [f64; 2], (name, value, note, class): (&str, String, String, &str)| {
+        let (y, a, b) = (ROW * (row as f64 + 0.5) + 4.0, x(from), x(to));
+        let head = if b >= a { -7.0 } else { 7.0 };
+        let _ = writeln!(svg, "<path class=\"{class}\" d=\"M{a:.1} {y}H{b:.1}m{head} -4l{} 4l{head} 4\"/>", -head);
+        let _ = writeln!(svg, "<path class=\"axis\" d=\"M{b:.1} {y}V{}\"/>", y + ROW);
+        let _ = writeln!(
+            svg,
+            "<text class=\"name\" x=\"0\" y=\"{:.1}\">{}</text>",
+            y + 4.0,
+            escaped(&crate::document::number::short(name))
+        );
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{value}</text>",
+            0.5 * (a + b),
+            y - 4.0
+        );
+        let _ = writeln!(svg, "<text x=\"{width}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", y + 4.0, escaped(&note));
+    };
+    for (row, ((of, _), ends)) in links.iter().zip(&ends).enumerate() {
+        let note = of.tolerance.map(band).unwrap_or_default();
+        arrow(row, *ends, (&of.name, plain(of.nominal), note, "link"));
+    }
+    arrow(links.len(), [0.0, at], (one.name(), nominal, String::new(), "link gap"));
+    svg + "</svg>\n"
+}
+
+/// The section of all errors: every figure with its estimated error, beside what points of the model say of it.
+pub(super) fn how_sure(report: &Report) -> String {
+    let rows: String = report.analysis.characteristics.iter().map(errors).collect();
+    if rows.is_empty() {
+        return rows;
+    }
+    let run = &report.analysis.run;
+    let spent = plural(run.evaluations as usize, "evaluation", "evaluations");
+    let seed = run.seed.map(|seed| format!(" --seed {seed}")).unwrap_or_default();
+    let method = report.analysis.method.name();
+    format!(
+        "<section aria-labelledby=\"sure\">\n<h2 id=\"sure\">How sure is this</h2>\n<div class=\"wide\" tabindex=\"0\"><table><thead><tr><th scope=\"col\">characteristic</th><th scope=\"col\">figure</th><th scope=\"col\" class=\"n\">value</th><th scope=\"col\" class=\"n\">estimated error</th><th scope=\"col\" class=\"n\">points of the model say</th></tr></thead><tbody>\n{rows}</tbody></table></div>\n\
+         <p class=\"note\">The analysis took {spent}. These commands repeat it, and hold it against a million points of the model:</p>\n\
+         <pre>sensitol analyze STUDY --method {method}{seed} --html report.html\nsensitol simulate STUDY --samples 1000000</pre>\n</section>\n"
+    )
+}
+
+fn errors(one: &CharacteristicAnalysis) -> String {
+    let estimate = one.error_estimate.as_ref();
+    let by_model = one.verification.as_ref();
+    let figure = |place: usize| by_model.and_then(|found| found.figures[place]);
+    let all = [
+        ("mean", one.mean(), estimate.and_then(|of| of.mean), figure(0)),
+        ("sigma", one.sigma(), estimate.and_then(|of| of.sigma), figure(1)),
+        ("skewness", one.skewness(), estimate.and_then(|of| of.skewness), figure(2)),
+        ("kurtosis", one.kurtosis(), estimate.and_then(|of| of.kurtosis), figure(3)),
+        ("yield", one.yield_(), estimate.and_then(|of| of.yield_), by_model.and_then(|found| found.yield_)),
+    ];
+    let mut text = String::new();
+    for (name, value, error, model) in all {
+        let Some(value) = value else { continue };
+        let shown = |value: f64, error: Option<f64>| match error {
+            Some(error) if error > 0.0 => estimated(value, Some(error)),
+            _ => beside(value, one.sigma().filter(|_| ["mean", "sigma"].contains(&name)).unwrap_or(1.0)),
+        };
+        let first = if text.is_empty() {
+            format!("<th scope=\"row\">{}</th>", escaped(one.name()))
+        } else {
+            "<td></td>".to_owned()
+        };
+        let _ = writeln!(
+            text,
+            "<tr>{first}<td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>",
+            shown(value, error),
+            error.map_or("unknown".to_owned(), |error| format!("± {}", uncertainty(error))),
+            model.map_or("–".to_owned(), |model| format!(
+                "{} ± {}",
+                shown(model.value, Some(model.error)),
+                uncertainty(model.error)
+            )),
+        );
+    }
+    text
+}
