@@ -49,12 +49,12 @@ export class Browser {
     return new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
   }
 
-  /// A page of this file, loaded; `complaints` collects what the console says, every exception, every breach of the
+  /// A page of this file or address, loaded; `complaints` collects what the console says, every exception, every breach of the
   /// policy, and every request beyond the page's own file.
   async open(file, { width = 1280, height = 900, dark = false } = {}) {
     const { targetId } = await this.send("Target.createTarget", { url: "about:blank" });
     const { sessionId } = await this.send("Target.attachToTarget", { targetId, flatten: true });
-    const page = new Page(this, targetId, sessionId, pathToFileURL(file).href);
+    const page = new Page(this, targetId, sessionId, /^https?:/.test(file) ? file : pathToFileURL(file).href);
     await page.prepare({ width, height, dark });
     return page;
   }

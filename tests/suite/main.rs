@@ -21,6 +21,7 @@ mod correlation;
 mod coverage;
 mod derivatives;
 mod distributions;
+mod difference;
 mod docs;
 mod driven;
 mod elements;

@@ -2,8 +2,8 @@
 // The studies of the folder that is served: opened, saved, shown again when they change.
 const folder = (() => {
   const $ = (id) => document.getElementById(id);
-  // What the file is known by, and its text as it was opened or saved.
-  let known = null, saved = "";
+  // The file that is open, what it is known by, and its text as it was opened or saved. An example has no file yet.
+  let mine = null, known = null, saved = "";
   const dirty = () => page.text() !== saved;
   const mark = () => { document.title = `${dirty() ? "* " : ""}${page.name()} - sensitol`; };
   const list = async () => {
@@ -15,7 +15,7 @@ const folder = (() => {
   const open = async (path) => {
     let found;
     try { found = await served.read(path); } catch (error) { return page.toast(`${path}: ${error.message}`); }
-    [known, saved] = [found.hash, found.text];
+    [mine, known, saved] = [found.name, found.hash, found.text];
     await page.open({ name: found.name, text: found.text, files: {} });
     history.replaceState(null, "", `#f=${encodeURIComponent(path)}`);
     mark();
@@ -31,14 +31,15 @@ const folder = (() => {
   const write = async (overwrite) => {
     const text = page.text();
     ({ hash: known } = await served.save(page.name(), text, known, overwrite));
-    saved = text;
+    [mine, saved] = [page.name(), text];
     mark();
     page.toast(`${page.name()} is saved`);
     served.watch(page.name(), known, changed);
     await list();
   };
   const save = async () => {
-    if (known === null) {
+    if (known === null || page.name() !== mine) {
+      known = null;
       const path = prompt("Save as, within the folder", page.name());
       if (path === null) return;
       page.rename(path.endsWith(".toml") ? path : `${path}.toml`);

@@ -1,0 +1,138 @@
+// `sensitol serve` in a real browser: a folder of studies, edited, saved, watched, with an external model.
+// `SENSITOL=program WORKBENCH=page node --test serve.mjs`
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { Browser } from "./chromium.mjs";
+
+const { SENSITOL: sensitol, WORKBENCH: workbench } = process.env;
+const folder = mkdtempSync(join(tmpdir(), "sensitol-serve-"));
+const STUDY = "# The gap.\ntitle = \"Gap\"\n[dimensions]\na = { nominal = 10, tolerance = 0.3 }\nb = { nominal = 4, tolerance = 0.1 }\n[characteristics]\ny = { formula = \"a - b\", lower = 5.5, upper = 6.5, target_yield = 0.9 }\n";
+const PROGRAM = `
+import json, sys, time
+for line in sys.stdin:
+    told = json.loads(line)
+    if "id" not in told:
+        print(json.dumps({"ready": True, "name": "slow"}), flush=True)
+        continue
+    time.sleep(0.1)
+    print(json.dumps({"id": told["id"], "y": [sum(told["x"])]}), flush=True)
+`;
+const EXTERNAL = "[dimensions]\na = { nominal = 10, tolerance = 0.3 }\nb = { nominal = 4, tolerance = 0.1 }\n[model]\ncommand = [\"python3\", \"slow.py\"]\n[characteristics]\ny = { lower = 13, upper = 15, target_yield = 0.9 }\n";
+let browser, server, address;
+
+before(async () => {
+  mkdirSync(join(folder, "in"));
+  writeFileSync(join(folder, "gap.toml"), STUDY);
+  writeFileSync(join(folder, "in", "program.toml"), EXTERNAL);
+  writeFileSync(join(folder, "in", "slow.py"), PROGRAM);
+  server = spawn(sensitol, ["serve", folder, "--page", workbench], { stdio: ["ignore", "pipe", "inherit"] });
+  address = await new Promise((resolve) => server.stdout.on("data", (text) => resolve(/http:\S+/.exec(String(text))[0])));
+  browser = await Browser.start();
+});
+after(async () => {
+  server.kill();
+  await browser.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+const until = async (page, expression) => {
+  for (let i = 0; i < 1200; i += 1) {
+    const found = await page.evaluate(expression);
+    if (found) return found;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  throw new Error(`never: ${expression}; ${await page.evaluate("document.body.innerText.slice(0, 2000)")}`);
+};
+const settled = (page) => until(page, "document.documentElement.dataset.ready === '1'");
+const text = (page, selector) => page.evaluate(`document.querySelector(${JSON.stringify(selector)})?.textContent ?? null`);
+const click = (page, selector) => page.evaluate(`document.querySelector(${JSON.stringify(selector)}).click()`);
+const type = async (page, selector, value) => {
+  await page.evaluate(`(() => { const input = document.querySelector(${JSON.stringify(selector)}); input.focus(); input.value = ${JSON.stringify(value)}; input.dispatchEvent(new Event("input", { bubbles: true })); })()`);
+  await settled(page);
+};
+const cell = (row, column) => `#rows tr[data-i="${row}"] [data-column="${column}"]`;
+// Requests go to this server and to no other; a refused save is told in the console too.
+const quiet = (page, expected = []) => assert.deepEqual(page.complaints.filter((one) => !one.startsWith(`request: ${address}`) && !expected.some((part) => one.includes(part))), []);
+const opened = async (hash = "") => {
+  const page = await browser.open(address + hash);
+  await settled(page);
+  await until(page, "document.querySelector('#rows tr') !== null");
+  await settled(page);
+  return page;
+};
+
+test("a study of the folder is edited, saved as it was but for the change, and watched", async () => {
+  const page = await opened();
+  assert.equal(await page.evaluate("document.getElementById('title').value"), "Gap");
+  const shown = await text(page, "#yield");
+  assert.match(shown, /%/);
+  assert.match(await text(page, "#out"), /by sensitol on this machine/);
+  // Nothing is saved that has not changed: comments stay.
+  await click(page, "#save");
+  await until(page, "document.getElementById('toast').textContent.includes('is saved')");
+  assert.equal(readFileSync(join(folder, "gap.toml"), "utf8"), STUDY);
+  await type(page, cell(0, "tolerance"), "0.5");
+  assert.notEqual(await text(page, "#yield"), shown);
+  await until(page, "document.title.startsWith('*')");
+  await click(page, "#save");
+  await until(page, "!document.title.startsWith('*')");
+  assert.match(readFileSync(join(folder, "gap.toml"), "utf8"), /0\.5/);
+  // Another program writes the file: it is shown again, and the change is undone no more.
+  writeFileSync(join(folder, "gap.toml"), STUDY.replace("Gap", "Other"));
+  await until(page, "document.getElementById('title').value === 'Other'");
+  await settled(page);
+  assert.equal(await text(page, "#yield"), shown);
+  quiet(page);
+  await page.close();
+});
+
+test("what is not saved is not lost when the file changes", async () => {
+  writeFileSync(join(folder, "gap.toml"), STUDY);
+  const page = await opened("#f=gap.toml");
+  await type(page, cell(0, "tolerance"), "0.4");
+  writeFileSync(join(folder, "gap.toml"), STUDY.replace("Gap", "Theirs"));
+  await until(page, "document.getElementById('toast').textContent.includes('changed on the disk')");
+  assert.equal(await page.evaluate(`document.querySelector('${cell(0, "tolerance")}').value`), "0.4");
+  await click(page, "#save");
+  // The question is answered with yes, and told of.
+  await until(page, "document.getElementById('toast').textContent.includes('is saved')");
+  assert.ok(page.complaints.some((one) => one.startsWith("dialog:") && one.includes("Overwrite")), page.complaints.join("\n"));
+  assert.match(readFileSync(join(folder, "gap.toml"), "utf8"), /0\.4/);
+  quiet(page, ["dialog:", "409"]);
+  await page.close();
+});
+
+test("an external model runs when it is asked for, and can be stopped", async () => {
+  const page = await opened("#f=in%2Fprogram.toml");
+  assert.match(await text(page, "#old"), /Analyze runs it/);
+  assert.equal(existsSync(join(folder, "in", "program.journal.sqlite")), false);
+  await click(page, "#analyze");
+  await until(page, "/\\d+ of \\d+ points/.test(document.getElementById('old').textContent)");
+  await settled(page);
+  assert.match(await text(page, "#yield"), /%/);
+  assert.equal(existsSync(join(folder, "in", "program.journal.sqlite")), true);
+  await type(page, cell(0, "tolerance"), "0.35");
+  assert.match(await text(page, "#old"), /Last result/);
+  await click(page, "#analyze");
+  await click(page, "#analyze");
+  await settled(page);
+  assert.match(await page.evaluate("document.body.innerText"), /stopped/);
+  quiet(page);
+  await page.close();
+});
+
+test("a new study is saved into the folder", async () => {
+  const page = await opened("#f=gap.toml");
+  await page.evaluate("document.querySelector('#examples-list button').click()");
+  await settled(page);
+  await page.evaluate("window.prompt = () => 'made'");
+  await click(page, "#save");
+  await until(page, "document.getElementById('toast').textContent.includes('is saved')");
+  assert.match(readFileSync(join(folder, "made.toml"), "utf8"), /\[dimensions\]/);
+  quiet(page);
+  await page.close();
+});
