@@ -361,9 +361,9 @@ fn compose(
             let function: Arc<dyn AssemblyFunction> = Arc::new(model.function());
             Some((function, drive::of_built_in(model, dimensions, &constants, written)))
         }
-        Some(ModelOf::Program(program)) => {
-            Some(sent_to(&|signature, greeting| process(program, signature, greeting, source).map_err(nowhere))?)
-        }
+        Some(ModelOf::Program(program)) => Some(sent_to(&|signature, greeting| {
+            process(program, signature, greeting, (source, units::held(file))).map_err(nowhere)
+        })?),
         Some(ModelOf::Host(host)) => Some(sent_to(&|signature, greeting| Ok(host.function(signature, greeting)))?),
     };
     let parts = Parts {

@@ -155,18 +155,19 @@ pub(super) fn signature(inputs: &[Input], outputs: Vec<(String, Option<String>)>
     Signature { inputs: inputs.to_vec(), outputs, ..Signature::default() }
 }
 
-/// The program as assembly function of this signature; its answers kept where the study is read to be evaluated.
+/// The program as assembly function of this signature; its answers kept where the study is read to be evaluated, and its units held
+/// against those of the study where these are.
 pub(super) fn process(
     program: &Program,
     signature: Signature,
     greeting: Greeting,
-    source: &Source,
+    (source, held): (&Source, bool),
 ) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
     if let Some(table) = &source.externals.points {
         let given = GivenAnswers::new(signature, Arc::clone(table));
         return Ok(Arc::new(given.map_err(StudyFault::MissingColumn)?));
     }
-    started(program, signature, greeting, source)
+    started(program, signature, greeting, (source, held))
 }
 
 /// The program, and the journal that keeps its answers.
@@ -175,9 +176,10 @@ fn started(
     program: &Program,
     signature: Signature,
     greeting: Greeting,
-    source: &Source,
+    (source, held): (&Source, bool),
 ) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
-    let process = Process::new(signature, greeting, program.settings.clone());
+    let settings = Settings { units: held, ..program.settings.clone() };
+    let process = Process::new(signature, greeting, settings);
     #[cfg(feature = "journal")]
     if let Some(path) = source.externals.journal.path(&source.name) {
         return Ok(Arc::new(crate::journal::Journaled::new(process, path, program.files.clone())));
@@ -189,7 +191,12 @@ fn started(
 
 /// Without the feature `process` no program is run.
 #[cfg(not(feature = "process"))]
-fn started(program: &Program, _: Signature, _: Greeting, _: &Source) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
+fn started(
+    program: &Program,
+    _: Signature,
+    _: Greeting,
+    _: (&Source, bool),
+) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
     let _ = &program.files;
     Err(StudyFault::NoPrograms { program: program.settings.argv.first().cloned().unwrap_or_default() })
 }

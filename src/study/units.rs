@@ -216,6 +216,11 @@ impl Units {
     }
 }
 
+/// Whether the units of an external program are held against those of the study; a wrong mode is said elsewhere.
+pub(super) fn held(file: &StudyFile) -> bool {
+    mode(file).is_ok_and(|mode| mode != Mode::Labels)
+}
+
 fn mode(file: &StudyFile) -> Result<Mode, Fault> {
     let Some(text) = &file.units else { return Ok(Mode::Warn) };
     let found = text.get_ref();

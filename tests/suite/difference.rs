@@ -50,10 +50,13 @@ fn inputs_results_and_contributions_are_compared() {
     let sigma = &one["figures"][1];
     let [was, is] = [0, 1].map(|place| sigma["values"][place].as_f64().unwrap());
     // Rounding of closed forms.
-    assert!((was - 0.02f64.sqrt()).abs() < 1e-12 && (is - (0.1f64.powi(2) + (0.1f64 / 3.0).powi(2)).sqrt()).abs() < 1e-12);
+    assert!(
+        (was - 0.02f64.sqrt()).abs() < 1e-12 && (is - (0.1f64.powi(2) + (0.1f64 / 3.0).powi(2)).sqrt()).abs() < 1e-12
+    );
     assert_eq!((sigma["figure"].as_str(), sigma["differs"].as_bool()), (Some("sigma"), Some(true)));
     assert_eq!(one["figures"][0]["differs"].as_bool(), Some(false), "the mean has not moved");
-    let shares: Vec<&str> = one["shares"].as_array().unwrap().iter().map(|row| row["dimension"].as_str().unwrap()).collect();
+    let shares: Vec<&str> =
+        one["shares"].as_array().unwrap().iter().map(|row| row["dimension"].as_str().unwrap()).collect();
     assert_eq!(shares.len(), 2);
     assert!(shares.contains(&"a") && shares.contains(&"b"));
     let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
@@ -70,7 +73,8 @@ fn inputs_results_and_contributions_are_compared() {
 #[test]
 fn a_study_beside_itself_has_not_changed() {
     let folder = folder();
-    let output = sensitol(&["analyze", "old.toml", "old.toml", "--compare"]).current_dir(folder.path()).output().unwrap();
+    let output =
+        sensitol(&["analyze", "old.toml", "old.toml", "--compare"]).current_dir(folder.path()).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("no input differs"), "{text}");
     assert!(text.contains("unchanged") && !text.contains("contribution of"), "{text}");

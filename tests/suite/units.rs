@@ -189,3 +189,47 @@ fn every_example_passes_check() {
     }
     assert!(without.is_empty(), "dimensions without a unit:\n{}", without.join("\n"));
 }
+
+/// A program that says its own units.
+const PROGRAM: &str = r#"
+import json, sys
+for line in sys.stdin:
+    told = json.loads(line)
+    if "id" not in told:
+        print(json.dumps({"ready": True, "name": "gap", "units": UNITS}), flush=True)
+    else:
+        print(json.dumps({"id": told["id"], "y": [told["x"][0]]}), flush=True)
+"#;
+
+#[test]
+fn the_units_of_a_program_are_held_against_the_study() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |units: &str, mode: &str, unit: &str| {
+        std::fs::write(folder.path().join("gap.py"), PROGRAM.replace("UNITS", units)).unwrap();
+        let study = format!(
+            "units = \"{mode}\"\n[dimensions]\na = {{ nominal = 10, tolerance = 0.3, unit = \"{unit}\" }}\n\
+             [model]\ncommand = [\"python3\", \"gap.py\"]\n[characteristics]\ny = {{ unit = \"{unit}\" }}\n"
+        );
+        std::fs::write(folder.path().join("gap.toml"), study).unwrap();
+        let arguments = ["analyze", "gap.toml", "--method", "second-order", "--verify", "0", "--journal", "none"];
+        let output = super::cli::sensitol(&arguments).current_dir(folder.path()).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    for mode in ["warn", "check", "convert"] {
+        let (code, error) = run(r#"{"a": "in"}"#, mode, "mm");
+        assert_eq!(code, Some(3), "{error}");
+        assert!(error.contains("the model has `a` in in, and the study in mm (factor 0.03937"), "{error}");
+        assert!(error.contains("write `a` in in, or units = \"labels\""), "{error}");
+    }
+    let (code, error) = run(r#"{"y": "N"}"#, "warn", "mm");
+    assert!(code == Some(3) && error.contains("they measure different things; write `y` in N"), "{error}");
+    // The same unit, another spelling of one; no unit that is known; nothing that is a unit at all.
+    for units in
+        [r#"{"a": "mm", "y": "mm"}"#, r#"{"a": "furlong"}"#, r#"{"b": "in"}"#, "{}", "None", "[1, 2]", r#"{"a": 3}"#]
+    {
+        let (code, error) = run(units, "check", "mm");
+        assert_eq!(code, Some(0), "{units}: {error}");
+    }
+    assert_eq!(run(r#"{"a": "m/s^2"}"#, "check", "m/s²").0, Some(0));
+    assert_eq!(run(r#"{"a": "in"}"#, "labels", "mm").0, Some(0));
+}

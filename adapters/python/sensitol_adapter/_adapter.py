@@ -52,7 +52,7 @@ class Adapter:
                     characteristics a dict of such dicts; a dimension that is left out has derivative 0
     batch           the function takes a list for every parameter and returns a list (or a dict of lists)
     inputs          what a function with `**values` takes; without it that takes every name. The study may leave these out
-    units           a dict from dimension to unit; a study that states another one is refused
+    units           a dict from dimension or output to unit; a study that states another one is refused
     isolated        points do not share the process's fate, as on a cluster: after a crash all of them go out again together
     threads         points evaluated side by side, where the function may be called by several threads: it waits for servers or
                     programs. Every answer is written as soon as it is there
@@ -124,6 +124,9 @@ class Adapter:
                 ready["version"] = "; ".join(parts)
             if self.isolated:
                 ready["isolated"] = True
+            if self.units:
+                # The engine holds them against those of the study, whatever way they are written.
+                ready["units"] = self.units
             if self.heartbeat is not None:
                 ready["heartbeat"] = True
                 session.started = lambda id: _write(answers, [{"id": id, "started": session.host}])

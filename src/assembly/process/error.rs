@@ -52,6 +52,18 @@ pub enum ProcessFault {
         /// Its own words.
         message: String,
     },
+    /// It has a dimension or a characteristic in another unit.
+    #[error("the model has `{name}` in {own}, and the study in {study}{}: {}", by(*factor), in_own(name, own, *factor))]
+    ForeignUnit {
+        /// The dimension or characteristic.
+        name: String,
+        /// The unit of the study.
+        study: String,
+        /// That of the model.
+        own: String,
+        /// What a number of the study is multiplied by; None where the two measure different things.
+        factor: Option<f64>,
+    },
     /// Its first line was none of the protocol.
     #[error("the model's first line is not a `ready` of this protocol: {line}{}", hint(line))]
     NotReady {
@@ -192,6 +204,19 @@ impl fmt::Display for StderrTail {
             return Ok(());
         }
         write!(f, "; its stderr ended with: {}", self.0.join(" | "))
+    }
+}
+
+/// The factor between two units, where there is one.
+fn by(factor: Option<f64>) -> String {
+    factor.map_or(String::new(), |factor| format!(" (factor {factor})"))
+}
+
+/// How the two come together.
+fn in_own(name: &str, own: &str, factor: Option<f64>) -> String {
+    match factor {
+        Some(_) => format!("write `{name}` in {own}, or units = \"labels\" at the top to take numbers as they are"),
+        None => format!("they measure different things; write `{name}` in {own}"),
     }
 }
 

@@ -377,6 +377,10 @@ impl Pool {
                     message: format!("it speaks version {version} of the protocol, and this is version {VERSION}"),
                 },
                 line @ Line { ready: Some(true), .. } => {
+                    if let Some(fault) = self.hello.foreign_unit(&line.units).filter(|_| self.settings.units) {
+                        let stderr = child.kill().1;
+                        return self.lost_start(index, ProcessError { fault, stderr });
+                    }
                     let (name, version) = (line.name.clone(), line.version.clone());
                     let version = version.map(|version| match version {
                         serde_json::Value::String(text) => text,

@@ -70,6 +70,8 @@ impl Process {
     }
 
     fn hello(&self, characteristics: Vec<String>) -> Hello {
+        let unit = |name: &String| self.signature.outputs.iter().find(|output| output.name == *name)?.unit.clone();
+        let asked_units = characteristics.iter().map(unit).collect();
         let value = |value: f64| serde_json::Number::from_f64(value).map_or(serde_json::Value::Null, Into::into);
         Hello {
             sensitol: VERSION,
@@ -79,6 +81,7 @@ impl Process {
             constants: self.greeting.constants.iter().map(|(name, number)| (name.clone(), value(*number))).collect(),
             characteristics,
             optional: self.greeting.optional.clone(),
+            asked_units,
         }
     }
 }

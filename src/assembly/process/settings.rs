@@ -28,6 +28,8 @@ pub struct Settings {
     /// How many answers are replayed in a fresh process, reached from the nominal point in small steps, to see whether they depend on
     /// the points before them: by default 5 %, 5 at the least, and 2 more. 0 for none; only with `sentinels`.
     pub verify: Option<usize>,
+    /// Whether units that the program says it has must be those of the study; true unless given.
+    pub(crate) units: bool,
     /// Hears every line that a child writes to stderr.
     pub listener: Option<Listener>,
 }
@@ -44,6 +46,7 @@ impl Settings {
             retries: 1,
             sentinels: true,
             verify: None,
+            units: true,
             listener: None,
         }
     }
