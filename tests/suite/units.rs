@@ -233,3 +233,48 @@ fn the_units_of_a_program_are_held_against_the_study() {
     assert_eq!(run(r#"{"a": "m/s^2"}"#, "check", "m/s²").0, Some(0));
     assert_eq!(run(r#"{"a": "in"}"#, "labels", "mm").0, Some(0));
 }
+
+/// Dimensions in the units of a case, and a characteristic of this formula and unit.
+fn with_units(inputs: &serde_json::Value, formula: &str, unit: Option<&str>) -> String {
+    let dimensions: String = (inputs.as_object().unwrap().iter())
+        .map(|(name, unit)| format!("{name} = {{ nominal = 2, tolerance = 0.001, unit = {unit} }}\n"))
+        .collect();
+    let unit = unit.map(|unit| format!(", unit = \"{unit}\"")).unwrap_or_default();
+    format!("[dimensions]\n{dimensions}[characteristics]\ny = {{ formula = \"{formula}\"{unit} }}\n")
+}
+
+/// The printed factors of NIST SP 811, and formulas that are right, wrong or doubtful by definition.
+#[test]
+fn factors_and_formulas_of_the_sources() {
+    let factors = super::driven::case("units-sp811");
+    for (pair, printed) in factors["printed"].as_object().unwrap() {
+        let (from, to) = pair.split_once(' ').unwrap();
+        let text = format!(
+            "[dimensions]\na = {{ nominal = 1, tolerance = 0.1, unit = \"{from}\" }}\n[characteristics]\ny = {{ formula = \"a\", unit = \"{to}\" }}\n"
+        );
+        let found = at_nominal(&parse(&mode("convert", &text)).unwrap());
+        // Seven digits are printed; the exact factor is a quotient of two doubles.
+        close(found, printed["value"].as_f64().unwrap(), printed["tolerance"].as_f64().unwrap(), 1.0);
+        relative(found, factors["exact"][pair].as_f64().unwrap(), 1e-15);
+    }
+    let accepted = super::driven::case("units-check-accepts");
+    let inputs = &accepted["inputs"];
+    let faulty = |unit_mode: &str, formula: &str, unit: Option<&str>| {
+        parse(&mode(unit_mode, &with_units(inputs, formula, unit))).err().map(|error| error.to_string())
+    };
+    for (formula, unit) in accepted["printed"].as_object().unwrap() {
+        assert_eq!(faulty("check", formula, unit.as_str()), None, "{formula}");
+    }
+    for formula in super::driven::case("units-check-refuses")["printed"].as_object().unwrap().keys() {
+        let error = faulty("check", formula, None).unwrap_or_else(|| panic!("{formula} is accepted"));
+        assert!(error.contains("column"), "{formula}: {error}");
+        let warned = parse(&mode("warn", &with_units(inputs, formula, None))).unwrap().warnings;
+        assert!(warned.iter().any(|warning| warning.code() == "unit-mismatch"), "{formula}");
+    }
+    for formula in super::driven::case("units-check-doubts")["printed"].as_object().unwrap().keys() {
+        let error = faulty("check", formula, None).unwrap_or_else(|| panic!("{formula} is accepted"));
+        assert!(error.contains('['), "a unit is asked for: {error}");
+        let silent = parse(&mode("warn", &with_units(inputs, formula, None))).unwrap().warnings;
+        assert!(silent.iter().all(|warning| warning.code() != "unit-mismatch"), "{formula}: {silent:?}");
+    }
+}
