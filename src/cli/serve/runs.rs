@@ -71,14 +71,16 @@ pub(super) fn run(folder: &Folder, query: &Query, told: &str, request: Request) 
         run: Run::to_the_end().stopping_when(&stop).abandoning_when(&abandon).showing(&show),
     };
     let found = std::thread::scope(|scope| {
-        scope.spawn(|| {
+        let beats = scope.spawn(|| {
             while !done.load(Ordering::SeqCst) {
-                std::thread::sleep(BEAT);
+                std::thread::park_timeout(BEAT);
                 tell("");
             }
         });
         let found = catch_unwind(AssertUnwindSafe(|| task.run(&place, &counted)));
         done.store(true, Ordering::SeqCst);
+        // A quick run does not wait for the next beat.
+        beats.thread().unpark();
         found
     });
     let found = found.unwrap_or_else(|_| json!({ "error": "the engine failed", "advice": [] }).to_string());

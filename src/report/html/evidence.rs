@@ -353,8 +353,10 @@ fn errors(one: &CharacteristicAnalysis) -> String {
     let mut text = String::new();
     for (name, value, error, model) in all {
         let Some(value) = value else { continue };
+        let scale = one.sigma().filter(|_| ["mean", "sigma"].contains(&name)).unwrap_or(1.0);
         let shown = |value: f64, error: Option<f64>| match error {
-            Some(error) if error > 0.0 => estimated(value, Some(error)),
+            // Rounding alone: more digits say nothing to a reader.
+            Some(error) if error > 1e-6 * scale => estimated(value, Some(error)),
             _ => beside(value, one.sigma().filter(|_| ["mean", "sigma"].contains(&name)).unwrap_or(1.0)),
         };
         let first = if text.is_empty() {
