@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from typing import Any, Iterable, Mapping, Sequence, Union
 
 from ._errors import StudyError
@@ -152,6 +154,32 @@ def _measured(values: Any) -> bytes:
             key="distribution",
         )
     return ("value\n" + "\n".join(repr(value) for value in array.tolist()) + "\n").encode()
+
+
+def rows(values: Any, names: list[str], where: str) -> bytes:
+    """Measured parts, one a row, as a file of CSV with these names in its first line."""
+    import numpy
+
+    try:
+        array = numpy.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise TypeError(f"{where} must be an array of numbers or the name of a CSV file, got {type(values).__name__}") from None
+    if array.ndim != 2 or array.shape[1] != len(names):
+        raise StudyError(
+            f"{where} must have a row for each part and a column for each of {', '.join(names)}: shape (parts, {len(names)}), got {array.shape}",
+            key="joint",
+        )
+    wrong = numpy.argwhere(~numpy.isfinite(array))
+    if wrong.size:
+        row, column = (int(one) for one in wrong[0])
+        raise StudyError(
+            f"{where} must be finite: row {row}, {names[column]}, is {array[row, column]}; {len(wrong)} are not finite", key="joint"
+        )
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows([repr(value) for value in row] for row in array.tolist())
+    return file.getvalue().encode()
 
 
 class Characteristic(_Entry):

@@ -9,7 +9,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence, TypeVar, Union
 
 from . import _core, _toml
-from ._dimension import Characteristic, Dimension, Number, plain
+from ._dimension import Characteristic, Dimension, Number, plain, rows
 from ._errors import SensitolWarning, StudyError
 from ._model import Model
 from ._progress import Progress, Shown
@@ -60,6 +60,11 @@ class Study:
         Nominal values and constants by name of a configuration: ``{"long": {"bore": 40.0}}``.
     correlation
         The coefficient of correlation by pairs of names: ``{("bore", "shaft"): 0.3}``.
+    joint
+        Blocks of dimensions that vary together as a whole: ``{"of": ["x", "y"], "law": "disc"}``, or measured parts, one a row:
+        ``{"of": ["x", "y"], "measured": array}`` with an array of shape (parts, dimensions) or the name of a CSV file.
+    loss, setup, about, units
+        The sections of a study file of these names.
 
     Raises
     ------
@@ -85,6 +90,11 @@ class Study:
         costs: Entries | None = None,
         analysis: Entries | None = None,
         configurations: Entries | None = None,
+        joint: Iterable[Mapping[str, Any]] | None = None,
+        loss: Entries | None = None,
+        setup: Entries | None = None,
+        about: Entries | None = None,
+        units: str | None = None,
     ) -> None:
         if title is not None and not isinstance(title, str):
             raise TypeError(f"the title must be text, got {type(title).__name__}")
@@ -96,7 +106,9 @@ class Study:
         data["unknowns"], data["equations"], data["loops"] = unknowns, equations, loops
         data["characteristics"] = _entries(characteristics, "characteristics", Characteristic, files)
         data["correlation"] = _correlation(correlation)
-        data["costs"] = costs
+        data["joint"] = _joint(joint, files)
+        data["costs"], data["loss"], data["setup"] = costs, loss, setup
+        data["about"], data["units"] = about, units
         host: Model | None = None
         if isinstance(model, str):
             data["model"] = {"builtin": model}
@@ -290,7 +302,10 @@ class Study:
         _, _, name, folder, files, _ = self._state
         files = dict(files)
         model = self._model
-        sections = ("title", "constants", "formulas", "unknowns", "equations", "loops", "costs", "analysis", "configurations")
+        sections = (
+            *("title", "constants", "formulas", "unknowns", "equations", "loops", "costs", "loss", "setup"),
+            *("about", "units", "analysis", "configurations"),
+        )
         for key, value in {**(entries or {}), **more}.items():
             if key in data.get("dimensions", {}):
                 data["dimensions"].update(_entries({key: value}, "dimensions", Dimension, files))
@@ -302,6 +317,8 @@ class Study:
                 data[key] = _entries(value, key, Characteristic, files)
             elif key == "correlation":
                 data[key] = _correlation(value)
+            elif key == "joint":
+                data[key] = _joint(value, files)
             elif key == "model":
                 data.pop("model", None)
                 model = _host(value)
@@ -586,7 +603,7 @@ class Study:
 
 def _on_disk(data: Mapping[str, Any], folder: Path, files: dict[str, bytes]) -> None:
     """Beside files in memory the engine looks for none in the folder: those that the study names there are read."""
-    for entry in data.get("dimensions", {}).values() if files else ():
+    for entry in [*data.get("dimensions", {}).values(), *(data.get("joint") or ())] if files else ():
         name = entry.get("measured") if isinstance(entry, Mapping) else None
         if isinstance(name, str) and name not in files and os.path.isfile(os.path.join(folder, name)):
             with open(os.path.join(folder, name), "rb") as file:
@@ -708,6 +725,29 @@ def _correlation(pairs: Any) -> list[Any]:
                 raise TypeError(f"correlation is by pairs of names, such as {{('bore', 'shaft'): 0.3}}, got {pair!r}")
         return [{"between": list(pair), "value": value} for pair, value in pairs.items()]
     return list(pairs)
+
+
+def _joint(blocks: Any, files: dict[str, bytes]) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = []
+    if blocks is None:
+        return found
+    if isinstance(blocks, Mapping) or isinstance(blocks, str) or not isinstance(blocks, Iterable):
+        raise TypeError(f"joint must be a list of blocks such as [{{'of': ['x', 'y'], 'law': 'disc'}}], got {type(blocks).__name__}")
+    for place, block in enumerate(blocks):
+        if not isinstance(block, Mapping):
+            raise TypeError(f"joint[{place}] must be a mapping such as {{'of': ['x', 'y'], 'law': 'disc'}}, got {type(block).__name__}")
+        keys = dict(block)
+        of, measured = keys.get("of"), keys.get("measured")
+        if measured is not None and not isinstance(measured, (str, os.PathLike)):
+            if isinstance(of, str) or not isinstance(of, Iterable):
+                raise TypeError(f"joint[{place}]['of'] must be a list of names, one for each column, got {type(of).__name__}")
+            file = f"joint-{place + 1}.csv"
+            files[file] = rows(measured, [str(name) for name in of], f"joint[{place}]['measured']")
+            keys["measured"] = file
+        elif isinstance(measured, os.PathLike):
+            keys["measured"] = os.fspath(measured)
+        found.append(keys)
+    return found
 
 
 def _warn(result: Result) -> None:

@@ -72,6 +72,46 @@ def test_toml_keeps_names_that_are_no_words():
     assert st.Study.from_toml(study.to_toml()).to_dict() == study.to_dict()
 
 
+def test_blocks_vary_together():
+    zone = st.Study(
+        dimensions={"x": st.Dimension(0, 0.5), "y": st.Dimension(0, 0.5)},
+        characteristics={"r2": st.Characteristic("x^2 + y^2")},
+        joint=[{"of": ["x", "y"], "law": "disc"}],
+    )
+    # The square of the distance is uniform from 0 to R^2: closed form, rounding apart.
+    found = zone.analyze("full")["r2"]
+    assert found.mean == pytest.approx(0.25 / 2, rel=1e-12)
+    assert found.sigma == pytest.approx(0.25 / math.sqrt(12), rel=1e-12)
+    parts = np.random.default_rng(1).multivariate_normal([3, 4], [[0.01, 0.008], [0.008, 0.01]], 200)
+    measured = st.Study(
+        dimensions={"x": st.Dimension(), "y": st.Dimension()},
+        characteristics={"area": st.Characteristic("x*y")},
+        joint=[{"of": ["x", "y"], "measured": parts}],
+    )
+    areas = parts[:, 0] * parts[:, 1]
+    found = measured.analyze("full")["area"]
+    assert found.mean == pytest.approx(areas.mean(), rel=1e-12)
+    assert found.sigma == pytest.approx(areas.std(), rel=1e-10)
+    assert pickle.loads(pickle.dumps(measured)) == measured
+    assert measured.replace(joint=None).analyze("full")["area"].sigma != found.sigma
+    half = measured.replace(joint=[{"of": ["x", "y"], "measured": parts[:100]}])
+    assert half.analyze("full")["area"].mean == pytest.approx(areas[:100].mean(), rel=1e-12)
+
+
+def test_sections_of_a_study_are_arguments():
+    study = st.Study(
+        dimensions={"a": st.Dimension(10, 0.3, unit="mm")},
+        characteristics={"y": st.Characteristic("2*a", lower=19, upper=21, unit="mm")},
+        units="check",
+        about={"part": "pin", "drawing": "D-1"},
+        loss={"y": {"k": 2.0}},
+    )
+    data = study.to_dict()
+    assert (data["units"], data["about"]["part"], data["loss"]["y"]["k"]) == ("check", "pin", 2.0)
+    with pytest.raises(st.StudyError, match="loss"):
+        study.replace(loss={"z": {"k": 1.0}})
+
+
 def test_numbers_of_numpy_are_numbers():
     study = st.Study(
         dimensions={"a": st.Dimension(np.float32(10), np.array([-0.25, 0.5])), "b": st.Dimension(np.int64(3))},
@@ -180,6 +220,26 @@ def test_every_fault_is_told_at_once():
             lambda: shaft_and_bore(correlation={"bore": 0.3}),
             TypeError,
             "correlation is by pairs of names, such as {('bore', 'shaft'): 0.3}, got 'bore'",
+        ),
+        (
+            lambda: shaft_and_bore(joint={"of": ["bore", "shaft"]}),
+            TypeError,
+            "joint must be a list of blocks such as [{'of': ['x', 'y'], 'law': 'disc'}], got dict",
+        ),
+        (
+            lambda: shaft_and_bore(joint=["bore"]),
+            TypeError,
+            "joint[0] must be a mapping such as {'of': ['x', 'y'], 'law': 'disc'}, got str",
+        ),
+        (
+            lambda: shaft_and_bore(joint=[{"of": ["bore", "shaft"], "measured": [1.0, 2.0]}]),
+            st.StudyError,
+            "joint[0]['measured'] must have a row for each part and a column for each of bore, shaft: shape (parts, 2), got (2,)",
+        ),
+        (
+            lambda: shaft_and_bore(joint=[{"of": ["bore", "shaft"], "measured": [[1.0, math.nan], [2.0, 1.0]]}]),
+            st.StudyError,
+            "joint[0]['measured'] must be finite: row 0, shaft, is nan; 1 are not finite",
         ),
         (lambda: shaft_and_bore().analyze(threads=0), ValueError, "threads must be 1 or more, got 0"),
         (lambda: shaft_and_bore().analyze(time=-1), ValueError, "time must be positive, in seconds, got -1"),

@@ -212,6 +212,10 @@ pub(super) struct DistributionEntry {
     pub(super) origin: Option<Spanned<f64>>,
     /// The parts of a mixture by name.
     pub(super) parts: Option<Spanned<Entries<PartEntry>>>,
+    /// Of a table of quantiles the normal scores, ascending: the value at the score z has the probability Phi(z) below it.
+    pub(super) scores: Option<Spanned<Vec<f64>>>,
+    /// Of a table of quantiles the values of the dimension at its scores, ascending; the first and last are its ends.
+    pub(super) values: Option<Spanned<Vec<f64>>>,
 }
 
 /// A part of a mixture: a weight, and what of a dimension is its own.

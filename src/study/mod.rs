@@ -17,6 +17,7 @@
 //! | `lognormal`, `gamma`, `weibull` | nominal plus `shift`; `sigma`, or half the band by `sigmas` or `cp` | `origin`: where it begins, 0 by default |
 //! | `exponential`, `rayleigh` | nominal plus `shift`; sigma follows from mean and origin | `origin` |
 //! | `mixture` | follow from the parts | `parts`: tables by name |
+//! | `tabulated` | follow from the table | `scores`, `values`: quantiles over normal scores, both ascending |
 //!
 //! A part of a mixture has a `weight` (relative to the others') and `nominal`, `tolerance` or `limits`, `sigma`, `sigmas`, `cp`,
 //! `shift` and `distribution` as a dimension has; nominal and band are the dimension's where the part gives none:

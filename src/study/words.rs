@@ -31,6 +31,7 @@ pub(super) enum Kind {
     Exponential,
     Rayleigh,
     Mixture,
+    Tabulated,
     /// Told by the key `moments`, not by a name.
     Moments,
 }
@@ -40,7 +41,7 @@ pub(super) type KnownKind = (&'static str, Kind, &'static [&'static str], &'stat
 
 const NOTHING: &str = "it has no parameters of its own";
 const ORIGIN: &str = "it knows `origin`";
-pub(super) const KINDS: [KnownKind; 12] = [
+pub(super) const KINDS: [KnownKind; 13] = [
     ("normal", Kind::Normal, &[], NOTHING),
     ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
     ("uniform", Kind::Uniform, &[], NOTHING),
@@ -53,6 +54,7 @@ pub(super) const KINDS: [KnownKind; 12] = [
     ("exponential", Kind::Exponential, &["origin"], ORIGIN),
     ("rayleigh", Kind::Rayleigh, &["origin"], ORIGIN),
     ("mixture", Kind::Mixture, &["parts"], "it knows `parts`"),
+    ("tabulated", Kind::Tabulated, &["scores", "values"], "it knows `scores` and `values`"),
 ];
 
 /// The names of all kinds, with the parameters that each knows.

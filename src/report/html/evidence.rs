@@ -357,7 +357,7 @@ fn errors(one: &CharacteristicAnalysis) -> String {
         let shown = |value: f64, error: Option<f64>| match error {
             // Rounding alone: more digits say nothing to a reader.
             Some(error) if error > 1e-6 * scale => estimated(value, Some(error)),
-            _ => beside(value, one.sigma().filter(|_| ["mean", "sigma"].contains(&name)).unwrap_or(1.0)),
+            _ => beside(value, scale),
         };
         let first = if text.is_empty() {
             format!("<th scope=\"row\">{}</th>", escaped(one.name()))

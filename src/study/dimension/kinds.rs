@@ -11,7 +11,7 @@ use super::conflict;
 use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, shift, sigma, sigmas};
 use crate::dimension::DimensionFault;
 use crate::distribution::{
-    Beta, CentralMoments, Distribution, DistributionError, Exponential, Gamma, Lognormal, Normal, Rayleigh,
+    Beta, CentralMoments, Distribution, DistributionError, Exponential, Gamma, Lognormal, Normal, Rayleigh, Tabulated,
     Trapezoidal, Triangular, TruncatedNormal, Uniform, Weibull,
 };
 use crate::names::nearest;
@@ -42,6 +42,7 @@ pub(super) fn distribution(
             of_mean(entry, nominal, "an exponential distribution", |o, mean| shared(Exponential::new(o, mean)))
         }
         Kind::Rayleigh => of_mean(entry, nominal, "a rayleigh distribution", |o, mean| shared(Rayleigh::new(o, mean))),
+        Kind::Tabulated => tabulated(entry),
     }
 }
 
@@ -80,7 +81,7 @@ fn kind(entry: &DimensionEntry) -> Result<Kind, Fault> {
 }
 
 /// Every parameter that a table may have, and where it stands.
-fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 6] {
+fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 8] {
     let span = |parameter: &Option<Spanned<f64>>| parameter.as_ref().map(Spanned::span);
     [
         ("mode", span(&entry.mode)),
@@ -89,6 +90,8 @@ fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>
         ("beta", span(&entry.beta)),
         ("origin", span(&entry.origin)),
         ("parts", entry.parts.as_ref().map(Spanned::span)),
+        ("scores", entry.scores.as_ref().map(Spanned::span)),
+        ("values", entry.values.as_ref().map(Spanned::span)),
     ]
 }
 
@@ -211,6 +214,34 @@ fn moments(entry: &DimensionEntry, nominal: f64) -> Result<Spread, Fault> {
     match CentralMoments::new(nominal + shift(entry), *moments.get_ref()) {
         Ok(distribution) => Ok(Some(Arc::new(distribution))),
         Err(error) => Err(fault(moments.span(), "moments", DimensionFault::from(error))),
+    }
+}
+
+/// The table says all: values of the dimension by their scores.
+fn tabulated(entry: &DimensionEntry) -> Result<Spread, Fault> {
+    const TO: &str = "a tabulated distribution";
+    let table = entry.distribution.as_ref().expect("its kind was told by it");
+    if let Some((key, span, _)) = sigmas(entry)? {
+        let instead = "its sigma follows from the table";
+        return Err(fault(span, key, StudyFault::DoesNotApply { key, to: TO.to_owned(), instead }));
+    }
+    if let Some(shift) = &entry.shift {
+        let instead = "move the values of the table instead";
+        let found = StudyFault::DoesNotApply { key: "shift", to: TO.to_owned(), instead };
+        return Err(fault(shift.span(), "shift", found));
+    }
+    let (Some(scores), Some(values)) = (&table.get_ref().scores, &table.get_ref().values) else {
+        let key = if table.get_ref().scores.is_none() { "scores" } else { "values" };
+        let instead = "write { kind = \"tabulated\", scores = [-3, 0, 3], values = [9.9, 10.0, 10.2] }".to_owned();
+        return Err(fault(table.span(), "distribution", StudyFault::MissingKey { key: key.to_owned(), instead }));
+    };
+    match Tabulated::new(scores.get_ref(), values.get_ref()) {
+        Ok(law) => {
+            let law: Spread = Some(Arc::new(law));
+            agreeing(entry, &law, "distribution", "the law of this table")?;
+            Ok(law)
+        }
+        Err(error) => Err(fault(table.span(), "distribution", DimensionFault::from(error))),
     }
 }
 

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use sensitol::distribution::{
-    Beta, Distribution, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rayleigh, Trapezoidal, Triangular,
-    TruncatedNormal, Uniform, Weibull,
+    Beta, Distribution, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rayleigh, Tabulated, Trapezoidal,
+    Triangular, TruncatedNormal, Uniform, Weibull,
 };
 
 /// A distribution and its density, as a sum of pieces that are smooth inside: each an interval and a function of the distances
@@ -184,6 +184,23 @@ fn apart() -> Case {
     Case::new(Mixture::new(parts).unwrap(), pieces)
 }
 
+/// A straight line over the scores from -5 to 5, which have this mass of a normal distribution.
+fn straight_table(mass: f64) -> Case {
+    let density = move |d: f64, _: f64| gauss(10.0 * d - 5.0) * 10.0 / mass;
+    let table = Tabulated::new(&[-5.0, -1.0, 0.5, 5.0], &[7.0, 7.4, 7.55, 8.0]).unwrap();
+    Case::new(table, vec![Piece::new(7.0, 8.0, density)])
+}
+
+/// Three lines on the parabola 2 + z/2 + z^2/18, which ascends from -3 to 3: the cubics are that, and its root is the score.
+fn parabola_table(mass: f64) -> Case {
+    let density = move |d: f64, _: f64| {
+        let slope = (1.0 / 36.0 + 2.0 * d / 9.0).sqrt();
+        gauss(9.0 * (slope - 0.5)) / (slope * mass)
+    };
+    let table = Tabulated::new(&[-3.0, 0.0, 3.0], &[1.0, 2.0, 4.0]).unwrap();
+    Case::new(table, vec![Piece::new(1.0, 4.0, density)])
+}
+
 /// Constants: mpmath 1.3 with 30 digits.
 pub fn cases() -> Vec<Case> {
     vec![
@@ -215,5 +232,7 @@ pub fn cases() -> Vec<Case> {
         weibull(8.0, 0.941_742_699_849_701_5, 0.906_402_477_055_477),
         mixture(),
         apart(),
+        straight_table(0.999_999_426_696_856_2),
+        parabola_table(0.997_300_203_936_739_8),
     ]
 }
