@@ -1,11 +1,11 @@
 //! The outcome of a run.
 
 use pyo3::prelude::*;
-use sensitol::internals::task::Found;
+use sensitol::internals::task::TaskReport;
 
 /// The outcome of a run.
 #[pyclass(frozen, module = "sensitol._core")]
-pub(crate) struct Outcome(pub(crate) Found);
+pub(crate) struct Outcome(pub(crate) TaskReport);
 
 #[pymethods]
 impl Outcome {

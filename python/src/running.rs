@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyList};
 use sensitol::assembly::Run;
-use sensitol::internals::task::{Asked, Found, done};
+use sensitol::internals::task::{Asked, TaskReport, done};
 use sensitol::{Error, StopReason, Study};
 
 use crate::host::{Answer, Call, Event};
@@ -20,7 +20,7 @@ use crate::pools::Pool;
 const TICK: Duration = Duration::from_millis(20);
 
 /// How a run ended; none where the engine panicked.
-pub(crate) type Ended = Option<Result<Found, Box<Error>>>;
+pub(crate) type Ended = Option<Result<TaskReport, Box<Error>>>;
 
 /// Why a run is to end.
 #[derive(Default)]
@@ -73,7 +73,7 @@ pub(crate) fn run(
     caller: &Caller<'_>,
     events: Receiver<Event<Ended>>,
     ended: std::sync::mpsc::Sender<Event<Ended>>,
-) -> PyResult<Result<Found, Box<Error>>> {
+) -> PyResult<Result<TaskReport, Box<Error>>> {
     let pool = Pool::of(threads).map_err(|error| PyRuntimeError::new_err(format!("no threads: {error}")))?;
     let deadline =
         seconds.and_then(|s| Duration::try_from_secs_f64(s).ok()).and_then(|s| Instant::now().checked_add(s));
@@ -81,7 +81,7 @@ pub(crate) fn run(
     let counter = Arc::new(Counter::default());
     let (stopped, counted) = (Arc::clone(&stop), Arc::clone(&counter));
     pool.spawn(move || {
-        let work = || -> Result<Found, Box<Error>> {
+        let work = || -> Result<TaskReport, Box<Error>> {
             let reason = || stopped.reason();
             let abandoned = || stopped.asked.load(Ordering::Relaxed);
             let run = Run::to_the_end().stopping_when(&reason).abandoning_when(&abandoned);

@@ -27,7 +27,7 @@ pub struct Tabulated {
     values: Vec<f64>,
     /// Of the value by the score, at every line.
     slopes: Vec<f64>,
-    /// What a normal distribution has below, between and above the ends of the table.
+    /// The probability of a normal distribution below, between and above the ends of the table.
     below: f64,
     within: f64,
     above: f64,
@@ -253,6 +253,8 @@ impl Probability for Tabulated {
     fn quantile(&self, p: f64) -> f64 {
         match checked(p) {
             p if p.is_nan() => p,
+            p if p == 0.0 => self.values[0],
+            p if p == 1.0 => self.values[self.values.len() - 1],
             p => self.value_at(standard_normal::quantile(self.below + p * self.within)),
         }
     }
@@ -260,6 +262,8 @@ impl Probability for Tabulated {
     fn upper_quantile(&self, p: f64) -> f64 {
         match checked(p) {
             p if p.is_nan() => p,
+            p if p == 0.0 => self.values[self.values.len() - 1],
+            p if p == 1.0 => self.values[0],
             p => self.value_at(standard_normal::upper_quantile(self.above + p * self.within)),
         }
     }

@@ -13,11 +13,11 @@ use crate::verdict::Verdict;
 /// A share of the variance that moves by less than this is not worth a line.
 const SEEN: f64 = 0.005;
 
-/// Two analyses beside each other. What is unknown is null, never 0.
+/// Two analyses beside each other. An unknown figure is null, never 0.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct DifferenceReport {
-    /// What every report begins with; the study is the newer one.
+    /// The head of every report; the study is the newer one.
     #[serde(flatten)]
     pub(crate) head: Head,
     /// The two studies, the older one first.
@@ -102,7 +102,7 @@ impl DifferenceReport {
         }
     }
 
-    /// What it says. Its tables: `changes`, `results` and `contributions`.
+    /// The document. Its tables: `changes`, `results` and `contributions`.
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let [old, new] = &self.studies;
@@ -238,7 +238,7 @@ fn dimensions(old: &Report, new: &Report) -> Vec<Changed> {
         differ("nominal", [one, other].map(|of| Some(plain(of.nominal))));
         differ("tolerance", [one, other].map(|of| of.tolerance.map(band)));
         differ("distribution", [one, other].map(|of| of.distribution.map(str::to_owned)));
-        // What follows from the tolerance is said by that.
+        // A sigma that follows from the tolerance is said by that.
         if one.tolerance == other.tolerance && one.distribution == other.distribution {
             differ("sigma", [one, other].map(|of| Some(plain(of.sigma))));
             if one.nominal == other.nominal {
@@ -315,7 +315,7 @@ fn compared(old: &Report, new: &Report) -> Vec<Compared> {
         .collect()
 }
 
-/// What each dimension makes of the variance, before and after, where that has moved.
+/// The share of the variance of each dimension, before and after, where that has moved.
 fn shares(both: &[Option<CharacteristicAnalysis>; 2]) -> Vec<SharePair> {
     let share = |one: &CharacteristicAnalysis, name: &str| {
         let row = one.sensitivities.iter().find(|row| row.dimension == name)?;

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::found::{Found, Shown};
+use super::found::{Shown, TaskReport};
 use crate::allocation::{AllocationOptions, CostBasis, Goal, Status, allocate_with};
 use crate::analysis::analyze_with;
 use crate::assembly::Run;
@@ -142,7 +142,7 @@ pub type Counted<'c> = &'c dyn Fn(u64, u64);
 ///
 /// # Errors
 /// What cannot be done with it.
-pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -> Result<Found, Box<Error>> {
+pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<Error>> {
     let problem = &study.problem;
     let about = || About {
         title: study.title.clone(),
@@ -161,7 +161,7 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
             options.densities = true;
             let found = analyze_with(problem, &options, run).map_err(boxed)?;
             let what_if = WhatIf::of(problem, &found, &study.lines, &study.costs);
-            Found::of(Shown::Analysis(Box::new((Report::of(problem, &found, about()), what_if))))
+            TaskReport::of(Shown::Analysis(Box::new((Report::of(problem, &found, about()), what_if))))
         }
         Asked::Simulate { samples, sampler, until, until_yield, control_variate } => {
             let mut options = SimulationOptions::default().with_seed(seed);
@@ -174,7 +174,7 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
             (options.until, options.until_yield) = (*until, *until_yield);
             options.control = control_variate.then(|| study.options.clone());
             let found = simulate_with(problem, &options, run, &pace).map_err(boxed)?;
-            Found::of(Shown::Simulation(SimulationReport::of(problem, &found, about())))
+            TaskReport::of(Shown::Simulation(SimulationReport::of(problem, &found, about())))
         }
         Asked::Rare { samples, until } => {
             let costly = problem.function().signature().costly;
@@ -184,17 +184,17 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
                 .with_surrogate(study.options.clone());
             let options = until.map_or(options.clone(), |until| options.with_until(until));
             let found = rare_with(problem, &options, run, &pace).map_err(boxed)?;
-            Found::of(Shown::Rare(RareReport::of(problem, &found, about())))
+            TaskReport::of(Shown::Rare(RareReport::of(problem, &found, about())))
         }
         Asked::Compare { samples } => {
             let mut options = CompareOptions::default().with_seed(seed);
             (options.budget, options.reference) = (study.options.budget, *samples);
             let found = compare_with(problem, &options, run).map_err(boxed)?;
-            Found::of(Shown::Comparison(CompareReport::of(&found, about())))
+            TaskReport::of(Shown::Comparison(CompareReport::of(&found, about())))
         }
         Asked::Sweep { over, values } => {
             let found = sweep_with(problem, over, values, &study.options, run).map_err(boxed)?;
-            Found::of(Shown::Sweep(SweepReport::of(problem, &found, about())))
+            TaskReport::of(Shown::Sweep(SweepReport::of(problem, &found, about())))
         }
         Asked::Allocate { recentre, nominal_bounds, front, confirm, cost, goal, cost_limit } => {
             let mut options = AllocationOptions::default().with_analysis(study.options.clone()).with_seed(seed);
@@ -223,7 +223,7 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
                 .map(|anew| WrittenAnew { entries: anew.entries.clone(), replaced_fits: anew.replaced_fits.clone() });
             let report = AllocationReport::of(problem, &found, written.as_ref(), about());
             let study = anew.map(|anew| anew.text);
-            Found { study, not_written, ..Found::of(Shown::Allocation(Box::new(report))) }
+            TaskReport { study, not_written, ..TaskReport::of(Shown::Allocation(Box::new(report))) }
         }
     })
 }

@@ -26,7 +26,7 @@ pub enum Shown {
 }
 
 /// A report, and what else there is.
-pub struct Found {
+pub struct TaskReport {
     /// The report.
     pub shown: Shown,
     /// The study with the tolerances that were found.
@@ -48,7 +48,7 @@ impl<R: ToDocument + Serialize> Reported for R {
     }
 }
 
-impl Found {
+impl TaskReport {
     /// A report, and nothing else.
     pub(crate) fn of(shown: Shown) -> Self {
         Self { shown, study: None, not_written: None, not_kept: None }

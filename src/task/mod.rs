@@ -1,4 +1,4 @@
-//! What a study is asked for as JSON, and what was found: what the Python package, the workbench and `serve` share.
+//! Questions to a study as JSON, and the answers: the Python package, the workbench and `serve` share them.
 
 mod asked;
 mod faults;
@@ -7,6 +7,6 @@ mod place;
 mod told;
 
 pub use asked::{Asked, Counted, done};
-pub use found::{Found, Shown};
-pub use place::Place;
+pub use found::{Shown, TaskReport};
+pub use place::TaskPlace;
 pub use told::{Task, models};

@@ -8,8 +8,8 @@ use serde_json::{Map, Value, json};
 
 use super::asked::{Asked, Counted, done};
 use super::faults::{of_engine, of_study};
-use super::found::Found;
-use super::place::Place;
+use super::found::TaskReport;
+use super::place::TaskPlace;
 use crate::error::Error;
 use crate::models::{ALL, Model};
 use crate::study::{Study, StudyError, StudyText};
@@ -61,7 +61,7 @@ impl Task {
         serde_json::from_str(told)
     }
 
-    fn parsed(&self, place: &Place<'_>) -> Result<Study, StudyError> {
+    fn parsed(&self, place: &TaskPlace<'_>) -> Result<Study, StudyError> {
         let text = match self.format {
             Format::Toml => StudyText::toml(&self.name, &self.text),
             Format::Json => StudyText::json(&self.name, &self.text),
@@ -77,7 +77,7 @@ impl Task {
     }
 
     /// The study's keys, or its faults.
-    pub fn study(&self, place: &Place<'_>) -> String {
+    pub fn study(&self, place: &TaskPlace<'_>) -> String {
         match self.parsed(place) {
             Ok(study) => {
                 // As text: the order of its keys is that of the study.
@@ -89,14 +89,14 @@ impl Task {
     }
 
     /// Does what is asked.
-    pub fn run(&self, place: &Place<'_>, counted: Counted<'_>) -> String {
+    pub fn run(&self, place: &TaskPlace<'_>, counted: Counted<'_>) -> String {
         match self.found(place, counted) {
             Ok(found) => self.shown(&found).to_string(),
             Err(error) => of_engine(&error).to_string(),
         }
     }
 
-    fn found(&self, place: &Place<'_>, counted: Counted<'_>) -> Result<Found, Box<Error>> {
+    fn found(&self, place: &TaskPlace<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<Error>> {
         let mut study = self.parsed(place).map_err(Error::from)?;
         if let Some(keys) = &self.analysis {
             study = study.with_analysis(keys.get()).map_err(Error::from)?;
@@ -108,7 +108,7 @@ impl Task {
         done(&study, asked, &place.run, counted)
     }
 
-    fn shown(&self, found: &Found) -> Value {
+    fn shown(&self, found: &TaskReport) -> Value {
         let mut shown = Map::new();
         for form in &self.forms {
             let (name, value) = match form {

@@ -54,6 +54,7 @@ fn every_command_refuses_what_is_wrong() {
         &["expand", "nowhere.toml"],
         &["init", "no-such-folder/gap"],
         &["workbench", "nowhere.toml"],
+        &["serve", "nowhere"],
         &["schema", "-o", "/nowhere/study.schema.json"],
         &["pearson", "--skewness", "1", "--kurtosis", "1.9"],
         &["completions", "tcsh"],

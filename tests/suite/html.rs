@@ -413,7 +413,8 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
     assert!(verdict.contains("st missed\"") && verdict.contains("st met\""), "{verdict}");
     // The limit, what lies beyond it, and ranges are in the density, drawn twice.
     for (label, drawn) in [
-        (">lower 3.8<", 2),
+        // And once in the panel of its tail.
+        (">lower 3.8<", 3),
         (">28890 ppm<", 2),
         (">mean \u{b1} 3\u{3c3}<", 4),
         (">RSS</text>", 4),

@@ -35,7 +35,7 @@ impl Drop for Server {
     }
 }
 
-/// What came back.
+/// The answer.
 struct Answer {
     status: u16,
     head: String,

@@ -1,7 +1,7 @@
 //! The engine for the workbench: studies as text in, results and errors as JSON out.
 
 use js_sys::Function;
-use sensitol::internals::task::{Place, Task, models as built_in};
+use sensitol::internals::task::{Task, TaskPlace, models as built_in};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsError, JsValue};
 
@@ -27,7 +27,7 @@ pub fn models() -> String {
 /// task without `asked`.
 #[wasm_bindgen]
 pub fn study(told: &str) -> Result<String, JsError> {
-    Ok(Task::read(told)?.study(&Place::default()))
+    Ok(Task::read(told)?.study(&TaskPlace::default()))
 }
 
 /// Does a task: `{"text", "format", "name", "files", "configuration", "analysis", "characteristics", "asked", "forms"}`. The answer
@@ -39,5 +39,5 @@ pub fn run(told: &str, counted: &Function) -> Result<String, JsError> {
         // Who does not listen loses nothing.
         let _ = counted.call2(&JsValue::NULL, &JsValue::from_f64(answered as f64), &JsValue::from_f64(expected as f64));
     };
-    Ok(Task::read(told)?.run(&Place::default(), &progress))
+    Ok(Task::read(told)?.run(&TaskPlace::default(), &progress))
 }

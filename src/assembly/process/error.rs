@@ -61,7 +61,7 @@ pub enum ProcessFault {
         study: String,
         /// That of the model.
         own: String,
-        /// What a number of the study is multiplied by; None where the two measure different things.
+        /// The factor on a number of the study; None where the two measure different things.
         factor: Option<f64>,
     },
     /// Its first line was none of the protocol.

@@ -1,4 +1,4 @@
-//! What goes back to a page.
+//! Answers to a page.
 
 use std::io::{Cursor, Write};
 

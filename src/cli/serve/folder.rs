@@ -78,7 +78,7 @@ impl Folder {
     }
 
     fn collect(&self, folder: &Path, depth: usize, found: &mut Vec<String>) {
-        // What cannot be read is not listed.
+        // An entry that cannot be read is not listed.
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
             let path = entry.path();
             let hidden = entry.file_name().to_string_lossy().starts_with('.');

@@ -14,7 +14,7 @@ pub(super) struct Guard {
     at: SocketAddr,
 }
 
-/// What is asked, and about what.
+/// A question, and its subject.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Query {
     /// The last part of the address.
@@ -42,7 +42,7 @@ impl Guard {
         format!("http://{}/{}/", self.at, self.token)
     }
 
-    /// What is asked, where the one who asks may: a page of another site knows no token, and sends an origin or a host that are
+    /// The question, where the one who asks may: a page of another site knows no token, and sends an origin or a host that are
     /// not this server's.
     pub(super) fn admits(&self, request: &Request) -> Result<Query, Answer> {
         let header = |name: &'static str| {

@@ -32,10 +32,10 @@ const TICK: Duration = Duration::from_millis(200);
 const LONGEST: u64 = 16 << 20;
 /// Where the page says whose it is.
 const ALONE: &str = "<script type=\"application/json\" id=\"server-data\">null</script>";
-/// What a page that asks no network allows itself.
+/// The policy of a page that asks no network.
 const OFFLINE: &str = "default-src 'none';";
 
-/// What every request needs.
+/// The parts that every request needs.
 struct Served {
     page: String,
     folder: Folder,

@@ -16,7 +16,7 @@ use crate::assembly::{Progress, Run};
 use crate::cli::interrupt;
 use crate::study::{Externals, JournalPlace};
 use crate::summary::StopReason;
-use crate::task::{Place, Task};
+use crate::task::{Task, TaskPlace};
 
 /// How often a page is asked whether it still listens.
 const BEAT: Duration = Duration::from_millis(500);
@@ -26,7 +26,7 @@ pub(super) fn keys(folder: &Folder, query: &Query, told: &str) -> Answer {
     let asked = Task::read(told).map_err(|error| Answer::refused(400, &error.to_string()));
     match asked.and_then(|task| Ok((task, folder.place(query)?))) {
         Ok((task, path)) => {
-            let place = Place { folder: parent(&path), ..Place::default() };
+            let place = TaskPlace { folder: parent(&path), ..TaskPlace::default() };
             Answer::json(task.study(&place))
         }
         Err(refusal) => refusal,
@@ -65,7 +65,7 @@ pub(super) fn run(folder: &Folder, query: &Query, told: &str, request: Request) 
         tell(&json!({ "answered": progress.points, "expected": points.max(progress.points as u64) }).to_string());
     };
     let journal = path.with_extension("journal.sqlite");
-    let place = Place {
+    let place = TaskPlace {
         folder: parent(&path),
         externals: Externals::default().with_journal(JournalPlace::At(journal)),
         run: Run::to_the_end().stopping_when(&stop).abandoning_when(&abandon).showing(&show),

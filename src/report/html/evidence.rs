@@ -1,4 +1,4 @@
-//! What a review asks next, for each characteristic: the tails, why the mean is not the nominal value, the chain of dimensions; and
+//! The next questions of a review, for each characteristic: the tails, why the mean is not the nominal value, the chain of dimensions; and
 //! how sure all of it is.
 
 use std::fmt::Write;
@@ -260,7 +260,7 @@ fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option
     let links = links?;
     let sum: f64 = links.iter().map(|(of, sign)| sign * of.nominal).sum();
     let size = links.iter().map(|(of, _)| of.nominal.abs()).fold(nominal.abs(), f64::max);
-    // What is left would be a link that has no name.
+    // The rest would be a link that has no name.
     if (sum - nominal).abs() > 1e-9 * size || size == 0.0 {
         return None;
     }
@@ -330,12 +330,11 @@ pub(super) fn how_sure(report: &Report) -> String {
     }
     let run = &report.analysis.run;
     let spent = plural(run.evaluations as usize, "evaluation", "evaluations");
-    let seed = run.seed.map(|seed| format!(" --seed {seed}")).unwrap_or_default();
     let method = report.analysis.method.name();
+    let seed = run.seed.map(|seed| format!(", seed {seed}")).unwrap_or_default();
     format!(
         "<section aria-labelledby=\"sure\">\n<h2 id=\"sure\">How sure is this</h2>\n<div class=\"wide\" tabindex=\"0\"><table><thead><tr><th scope=\"col\">characteristic</th><th scope=\"col\">figure</th><th scope=\"col\" class=\"n\">value</th><th scope=\"col\" class=\"n\">estimated error</th><th scope=\"col\" class=\"n\">points of the model say</th></tr></thead><tbody>\n{rows}</tbody></table></div>\n\
-         <p class=\"note\">The analysis took {spent}. These commands repeat it, and hold it against a million points of the model:</p>\n\
-         <pre>sensitol analyze STUDY --method {method}{seed} --html report.html\nsensitol simulate STUDY --samples 1000000</pre>\n</section>\n"
+         <p class=\"note\">The analysis took {spent} by the method {method}{seed}, which give the same figures again. A simulation of a million points holds them against the model itself.</p>\n</section>\n"
     )
 }
 
