@@ -8,7 +8,7 @@ from ._errors import StudyError
 
 #: What a study calls them.
 KNOWN = (
-    "norm, uniform, triang, trapezoid, beta, arcsine, powerlaw, rdist, semicircular, truncnorm, lognorm, gamma, chi2, erlang, "
+    "norm, t, uniform, triang, trapezoid, beta, arcsine, powerlaw, rdist, semicircular, truncnorm, lognorm, gamma, chi2, erlang, "
     "pearson3, weibull_min, expon, rayleigh"
 )
 #: Families that are others under another name: shapes of the beta distribution over their support.
@@ -51,6 +51,16 @@ def keys(law: Any, nominal: float | None) -> dict[str, Any]:
         found: dict[str, Any] = {"nominal": mean if nominal is None else nominal, "sigma": scale}
         if nominal is not None and nominal != mean:
             found["shift"] = mean - nominal
+        return found
+    if family == "t":
+        if shapes[0] <= 2.0:
+            raise _refused(family, f"has no sigma with {shapes[0]:g} degrees of freedom")
+        found = {
+            "nominal": location if nominal is None else nominal,
+            "distribution": {"kind": "student", "degrees": shapes[0], "scale": scale},
+        }
+        if nominal is not None and nominal != location:
+            found["shift"] = location - nominal
         return found
     if family in tailed:
         found = {"nominal": mean if nominal is None else nominal, "distribution": {"kind": tailed[family], "origin": location}}
