@@ -49,6 +49,18 @@ def keys(law: Any, nominal: float | None) -> dict[str, Any]:
         if nominal is not None and nominal != mean:
             found["shift"] = mean - nominal
         return found
+    if family == "t":
+        if shapes[0] <= 2.0:
+            raise StudyError(
+                f"scipy's `{family}` has no sigma with {shapes[0]:g} degrees of freedom", help="use more than 2, or measured values"
+            )
+        found = {
+            "nominal": location if nominal is None else nominal,
+            "distribution": {"kind": "student", "degrees": shapes[0], "scale": scale},
+        }
+        if nominal is not None and nominal != location:
+            found["shift"] = location - nominal
+        return found
     if family in tailed:
         found = {"nominal": mean if nominal is None else nominal, "distribution": {"kind": tailed[family], "origin": location}}
         if family not in ("expon", "rayleigh"):

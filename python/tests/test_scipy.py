@@ -11,6 +11,7 @@ ss = pytest.importorskip("scipy.stats", reason="skipped: scipy is not installed;
 
 LAWS = {
     "norm": lambda: ss.norm(3, 0.2),
+    "t": lambda: ss.t(9, 3, 0.2),
     "uniform": lambda: ss.uniform(2, 0.5),
     "triang": lambda: ss.triang(0.3, 1, 2),
     "trapezoid": lambda: ss.trapezoid(0.25, 0.75, 1, 2),
@@ -129,6 +130,8 @@ def test_laws_that_are_none():
                 dimensions={"x": st.Dimension(1.0, distribution={"kind": "tabulated", **table})},
                 characteristics={"y": st.Characteristic("x")},
             )
+    with pytest.raises(st.StudyError, match="scipy's `t` has no sigma with 2 degrees of freedom"):
+        st.Dimension(distribution=ss.t(2, 0, 1))
     with pytest.raises(st.StudyError, match="`sigma` follows from the distribution of scipy: leave it out"):
         st.Dimension(sigma=3, distribution=ss.norm(0, 1))
     with pytest.raises(st.StudyError, match="`tolerance` follows from the distribution of scipy: leave it out"):

@@ -41,7 +41,10 @@ impl Scaling {
         let same = [&half, &double].iter().all(|other| {
             other.distribution().is_some_and(|law| {
                 let other = law.standard_moments().raw();
-                other.iter().zip(shape.raw()).all(|(a, b)| (a - b).abs() <= SAME * b.abs().max(1.0))
+                other
+                    .iter()
+                    .zip(shape.raw())
+                    .all(|(a, b)| (a.is_nan() && b.is_nan()) || (a - b).abs() <= SAME * b.abs().max(1.0))
             })
         });
         match affine && wide && same {

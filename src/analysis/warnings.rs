@@ -8,7 +8,7 @@ use crate::method::{Basis, Lacking, Order, Outcome};
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::surrogate::Surrogate;
-use crate::warning::{Loss, Warning, aggregated};
+use crate::warning::{Figure, Loss, Warning, aggregated};
 
 /// The third power of a larger value is beyond the largest double, 1.8e308.
 const LARGEST: f64 = 1e100;
@@ -63,6 +63,7 @@ pub(super) fn of(
         }
         warnings.extend(atom(problem, outcome, c));
         warnings.extend(long_tails(problem, outcome, analysis));
+        warnings.extend(infinite_moment(problem, outcome, analysis));
         warnings.extend(doubtful(outcome, c, analysis));
         warnings.extend(trust::of(problem, outcome, c, analysis));
         let wanted = outcome.climbed.as_ref().map(|climbed| climbed.accuracy);
@@ -217,6 +218,30 @@ fn lost(problem: &Problem, outcome: &Outcome, c: usize) -> Vec<Warning> {
     warnings
 }
 
+/// Moments that no characteristic has that feels these dimensions' tails so.
+fn infinite_moment(problem: &Problem, outcome: &Outcome, analysis: &CharacteristicAnalysis) -> Option<Warning> {
+    let figure = match analysis.moments {
+        None => Figure::Sigma,
+        Some(moments) if moments.sigma() == 0.0 || moments.kurtosis().is_some() => return None,
+        Some(moments) if moments.skewness().is_some() => Figure::Kurtosis,
+        Some(_) => Figure::Skewness,
+    };
+    let slope = |d: usize| analysis.sensitivities[d].first;
+    let endless = |&&d: &&usize| {
+        let law = problem.dimensions()[d].distribution();
+        law.is_some_and(|law| !law.standard_moments().are_finite()) && slope(d).is_some_and(|slope| slope != 0.0)
+    };
+    let varying = outcome.plan.varying();
+    // What was not evaluated is another reason for a missing sigma.
+    if varying.iter().any(|&d| slope(d).is_none()) {
+        return None;
+    }
+    let dimensions: Vec<String> =
+        varying.iter().filter(endless).map(|&d| problem.dimensions()[d].name().to_owned()).collect();
+    let characteristic = analysis.characteristic.name().to_owned();
+    (!dimensions.is_empty()).then_some(Warning::InfiniteMoment { characteristic, figure, dimensions })
+}
+
 /// Curvature along dimensions whose tails reach far beyond what was evaluated.
 fn long_tails(problem: &Problem, outcome: &Outcome, analysis: &CharacteristicAnalysis) -> Vec<Warning> {
     let warning = |&d: &usize| {
@@ -298,6 +323,8 @@ fn not_proven(analysis: &CharacteristicAnalysis) -> Option<Warning> {
 fn law(analysis: &CharacteristicAnalysis, characteristic: &str) -> Option<Warning> {
     let characteristic = characteristic.to_owned();
     match analysis.law.as_ref()? {
+        // The warning `infinite-moment` says it.
+        Err(_) if analysis.moments.is_some_and(|moments| moments.sigma() > 0.0 && moments.kurtosis().is_none()) => None,
         Err(error) => Some(Warning::InfeasibleMoments { characteristic, reason: error.to_string() }),
         Ok(Law::Pearson(law)) if law.margin() < MARGIN => {
             Some(Warning::NearInfeasibleMoments { characteristic, skewness: law.skewness(), kurtosis: law.kurtosis() })

@@ -52,7 +52,7 @@ impl Law {
     pub fn fit(moments: &Moments) -> Result<Self, PearsonError> {
         let (Some(skewness), Some(excess)) = (moments.skewness(), moments.excess()) else {
             return match moments.mean() {
-                mean if mean.is_finite() => Ok(Self::Point { at: mean }),
+                mean if mean.is_finite() && moments.sigma() == 0.0 => Ok(Self::Point { at: mean }),
                 _ => Err(PearsonError::NotFinite),
             };
         };
@@ -68,10 +68,8 @@ impl Law {
     /// # Errors
     /// When mean or sigma is not finite.
     pub(crate) fn normal(moments: &Moments) -> Result<Self, PearsonError> {
-        Self::fit(&match moments.skewness() {
-            Some(_) => Moments::new(moments.mean(), moments.sigma(), 0.0, 0.0),
-            None => *moments,
-        })
+        let varies = moments.skewness().is_some() || moments.sigma() > 0.0;
+        Self::fit(&if varies { Moments::new(moments.mean(), moments.sigma(), 0.0, 0.0) } else { *moments })
     }
 
     /// Probability below `x`, which itself does not count.

@@ -64,6 +64,15 @@ pub enum DistributionError {
         /// The largest ratio.
         largest: f64,
     },
+    /// Student's distribution with so few degrees of freedom that its variance is infinite.
+    #[error(
+        "a student distribution of {degrees} degrees of freedom has no sigma, by which every method scales: it needs more than 2, as \
+         four readings give; with fewer, state a sigma from experience, or give measured values"
+    )]
+    NoSigma {
+        /// Degrees of freedom as given.
+        degrees: f64,
+    },
     /// The parameters are possible, but what follows from them is beyond doubles.
     #[error("this distribution cannot be computed: {reason}")]
     NoLaw {

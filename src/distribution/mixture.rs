@@ -67,6 +67,11 @@ impl Mixture {
         let mean = first + weighted(&parts, |part| part.mean() - first);
         let sigma = weighted(&parts, |part| (part.mean() - mean).powi(2) + part.sigma().powi(2)).sqrt();
         let moments = standard_moments(&parts, mean, sigma);
+        if parts.iter().any(|part| !part.distribution.standard_moments().are_finite()) {
+            let reason =
+                "a part has no eighth moment; a student distribution has one with more than 8 degrees of freedom";
+            return Err(DistributionError::NoLaw { reason: reason.into() });
+        }
         if !(mean.is_finite() && sigma.is_finite() && moments.are_finite()) {
             return Err(DistributionError::NoLaw { reason: "its moments are beyond the range of a double".into() });
         }

@@ -9,6 +9,7 @@
 
 mod beta;
 mod central_moments;
+mod curvilinear_trapezoid;
 mod discretised;
 mod ends;
 mod error;
@@ -27,17 +28,20 @@ pub(crate) mod rule;
 pub(crate) mod sample;
 mod standard_moments;
 pub(crate) mod standard_normal;
+mod student;
 mod tabulated;
 mod tail;
 mod trapezoidal;
 mod triangular;
 mod truncated_normal;
+mod u_shaped;
 mod uniform;
 mod weibull;
 pub(crate) mod ziggurat;
 
 pub use beta::Beta;
 pub use central_moments::CentralMoments;
+pub use curvilinear_trapezoid::CurvilinearTrapezoid;
 pub use error::DistributionError;
 pub use exponential::Exponential;
 pub use gamma::Gamma;
@@ -54,10 +58,12 @@ pub use rule::Jacobi;
 pub(crate) use rule::Rule;
 pub(crate) use sample::{Resample, Reweighted, Sample};
 pub use standard_moments::StandardMoments;
+pub use student::Student;
 pub use tabulated::Tabulated;
 pub use trapezoidal::Trapezoidal;
 pub use triangular::Triangular;
 pub use truncated_normal::TruncatedNormal;
+pub use u_shaped::UShaped;
 pub use uniform::Uniform;
 pub use weibull::Weibull;
 
@@ -83,7 +89,8 @@ pub trait Distribution: Debug + Send + Sync {
     /// Standard deviation, in the dimension's own unit; finite and above 0.
     fn sigma(&self) -> f64;
 
-    /// Moments 3 to 8 of `u = (x - mean)/sigma`, analytic wherever a closed form exists.
+    /// Moments 3 to 8 of `u = (x - mean)/sigma`, analytic wherever a closed form exists; NaN where the distribution has none, as
+    /// Student's has of orders that its degrees of freedom do not exceed.
     fn standard_moments(&self) -> StandardMoments;
 
     /// Smallest and largest possible value, in the dimension's own unit; infinite where there is no bound or where

@@ -119,7 +119,7 @@ impl StandardMoments {
     }
 
     /// Whether every one of them is a finite number.
-    pub(super) fn are_finite(&self) -> bool {
+    pub(crate) fn are_finite(&self) -> bool {
         let of_fourth_powers = [self.h6, self.h7, self.h8];
         self.raw().iter().chain(&of_fourth_powers).all(|moment| moment.is_finite())
     }

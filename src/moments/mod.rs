@@ -85,20 +85,20 @@ impl Moments {
         self.sigma * self.sigma
     }
 
-    /// Third standardised moment; None where sigma is 0.
+    /// Third standardised moment; None where sigma is 0, and where an input's tail makes it infinite.
     pub fn skewness(&self) -> Option<f64> {
-        self.shape.map(|(skewness, _)| skewness)
+        self.shape.map(|(skewness, _)| skewness).filter(|skewness| skewness.is_finite())
     }
 
-    /// Fourth standardised moment, 3 for a normal; None where sigma is 0.
+    /// Fourth standardised moment, 3 for a normal; None where sigma is 0, and where an input's tail makes it infinite.
     pub fn kurtosis(&self) -> Option<f64> {
         self.excess().map(|excess| 3.0 + excess)
     }
 
     /// Fourth standardised moment minus 3, with the digits that the kurtosis of a nearly normal distribution has lost;
-    /// None where sigma is 0.
+    /// None where there is no kurtosis.
     pub(crate) fn excess(&self) -> Option<f64> {
-        self.shape.map(|(_, excess)| excess)
+        self.shape.map(|(_, excess)| excess).filter(|excess| excess.is_finite())
     }
 }
 

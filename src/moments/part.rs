@@ -110,22 +110,38 @@ impl Term<'_> {
     /// `factor g - E = p u + h`: the slope, and the cumulants of the rest.
     fn split(&self, factor: f64) -> (f64, RestCumulants) {
         match self {
+            // Rounding makes a small curvature of a straight line, and an infinite moment would make a figure of it.
+            Self::Quadratic { linear, curvature, moments }
+                if !moments.are_finite() && curvature.abs() <= STRAIGHT * linear.abs() =>
+            {
+                (factor * linear, RestCumulants::default())
+            }
             Self::Quadratic { linear, curvature, moments } => {
                 let (b, a) = (factor * linear, factor * curvature);
                 (b + a * moments.skewness, RestCumulants::of_curvature(a, moments))
             }
-            Self::Tabulated { values, rule, .. } => {
+            Self::Tabulated { values, rule, moments } => {
                 let mean = self.mean();
                 let centred: Vec<f64> = values.iter().map(|value| factor * (value - mean)).collect();
                 let p = expectation(rule, |i| centred[i] * rule.nodes[i]);
                 let rest: Vec<f64> = centred.iter().zip(&rule.nodes).map(|(g, u)| g - p * u).collect();
-                (p, RestCumulants::of_table(&rest, rule))
+                let mut rest = RestCumulants::of_table(&rest, rule);
+                // Without a fourth moment no curvature has a variance, whatever the rule says.
+                if moments.excess.is_nan() {
+                    let straight = rest.hh.sqrt() <= STRAIGHT * p.abs();
+                    rest = RestCumulants { hh: if straight { 0.0 } else { f64::NAN }, ..RestCumulants::default() };
+                }
+                (p, rest)
             }
         }
     }
 }
 
+/// A curvature of this part of the slope, both per sigma, is a rounding error of differences.
+const STRAIGHT: f64 = 1e-6;
+
 /// Cumulants of `u` and `h`, where `E h = E[u h] = 0`.
+#[derive(Default)]
 struct RestCumulants {
     hh: f64,
     uuh: f64,

@@ -107,8 +107,10 @@ impl Nodes {
 
 fn pair(distribution: &dyn Distribution, [lower, upper]: [f64; 2]) -> (Vec<f64>, Vec<MovedNode>) {
     let moments = distribution.standard_moments();
-    let s = moments.skewness;
-    let half = (moments.kurtosis() - 0.75 * s * s).sqrt();
+    // Where there is no such moment, a normal distribution's: a model can be evaluated there.
+    let known = |moment: f64, normal: f64| if moment.is_finite() { moment } else { normal };
+    let (s, kurtosis) = (known(moments.skewness, 0.0), known(moments.kurtosis(), 3.0));
+    let half = (kurtosis - 0.75 * s * s).sqrt();
     let wanted = [0.5 * s - half, 0.5 * s + half];
     // The other node goes to s - u, which keeps the third moment, if the support allows.
     let within = |u: f64| u.clamp(INSIDE * lower, INSIDE * upper);

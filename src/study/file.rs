@@ -207,6 +207,13 @@ pub(super) struct DistributionEntry {
     pub(super) alpha: Option<Spanned<f64>>,
     /// Of a beta distribution the exponent at the upper end, above 0.
     pub(super) beta: Option<Spanned<f64>>,
+    /// Of a curvilinear trapezoid by how much the two ends of the band may be off, above 0 and below half the band.
+    pub(super) inexactness: Option<Spanned<f64>>,
+    /// Of a student distribution the degrees of freedom, above 2.
+    pub(super) degrees: Option<Spanned<f64>>,
+    /// Of a student distribution the scale, in place of sigma: sigma is scale sqrt(degrees/(degrees - 2)). A standard uncertainty with
+    /// degrees of freedom is a scale.
+    pub(super) scale: Option<Spanned<f64>>,
     /// Where a distribution with a tail begins.
     #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
     pub(super) origin: Option<Spanned<f64>>,

@@ -14,6 +14,9 @@
 //! | `triangular` | follow from the band | `mode`: a value within the band, its middle by default |
 //! | `trapezoidal` | follow from the band | `top`: the share of the band over which it is flat |
 //! | `beta` | follow from the band | `alpha`, `beta`: the exponents at the lower and the upper end |
+//! | `arcsine`, `u-shaped` | follow from the band | |
+//! | `curvilinear-trapezoid` | follow from the band and its inexactness | `inexactness`: by how much the ends of the band may be off |
+//! | `student` | the band's middle plus `shift`; `sigma`, half the band by `sigmas` or `cp`, or `scale` | `degrees`: above 2; `scale`: sigma is `scale sqrt(degrees/(degrees - 2))` |
 //! | `lognormal`, `gamma`, `weibull` | nominal plus `shift`; `sigma`, or half the band by `sigmas` or `cp` | `origin`: where it begins, 0 by default |
 //! | `exponential`, `rayleigh` | nominal plus `shift`; sigma follows from mean and origin | `origin` |
 //! | `mixture` | follow from the parts | `parts`: tables by name |

@@ -25,6 +25,10 @@ pub(super) enum Kind {
     Triangular,
     Trapezoidal,
     Beta,
+    Arcsine,
+    UShaped,
+    CurvilinearTrapezoid,
+    Student,
     Lognormal,
     Gamma,
     Weibull,
@@ -41,13 +45,17 @@ pub(super) type KnownKind = (&'static str, Kind, &'static [&'static str], &'stat
 
 const NOTHING: &str = "it has no parameters of its own";
 const ORIGIN: &str = "it knows `origin`";
-pub(super) const KINDS: [KnownKind; 13] = [
+pub(super) const KINDS: [KnownKind; 17] = [
     ("normal", Kind::Normal, &[], NOTHING),
     ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
     ("uniform", Kind::Uniform, &[], NOTHING),
     ("triangular", Kind::Triangular, &["mode"], "it knows `mode`"),
     ("trapezoidal", Kind::Trapezoidal, &["top"], "it knows `top`"),
     ("beta", Kind::Beta, &["alpha", "beta"], "it knows `alpha` and `beta`"),
+    ("arcsine", Kind::Arcsine, &[], NOTHING),
+    ("u-shaped", Kind::UShaped, &[], NOTHING),
+    ("curvilinear-trapezoid", Kind::CurvilinearTrapezoid, &["inexactness"], "it knows `inexactness`"),
+    ("student", Kind::Student, &["degrees", "scale"], "it knows `degrees` and `scale`"),
     ("lognormal", Kind::Lognormal, &["origin"], ORIGIN),
     ("gamma", Kind::Gamma, &["origin"], ORIGIN),
     ("weibull", Kind::Weibull, &["origin"], ORIGIN),

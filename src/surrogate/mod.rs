@@ -41,7 +41,7 @@ pub struct Surrogate {
 }
 
 impl Surrogate {
-    /// Moments and contributions; None when a part is unknown.
+    /// Moments and contributions; None when a part is unknown, or an input's tail makes its variance infinite.
     ///
     /// Exact where the inputs are independent, where those that are not are normal and their parts parabolas, and over blocks;
     /// sampled from the surrogate otherwise, with standard errors ([`Contributions::sampled`]).
@@ -54,14 +54,15 @@ impl Surrogate {
             }
             return correlated::correlated(self, inputs, correlation);
         }
-        Some(contributions(self.centre, &self.terms(inputs)?, &self.interactions))
+        let found = contributions(self.centre, &self.terms(inputs)?, &self.interactions);
+        Some(found).filter(|found| !found.moments.sigma().is_nan())
     }
 
     fn terms<'a>(&self, inputs: &'a Inputs) -> Option<Vec<Term<'a>>> {
         self.parts.iter().zip(inputs.shapes()).map(|(part, shape)| Some(part.as_ref()?.term(shape))).collect()
     }
 
-    /// The variance and its standard error, 0 where it is exact; None when a part is unknown.
+    /// The variance and its standard error, 0 where it is exact; None when a part is unknown or it is infinite.
     ///
     /// Of independent inputs it takes a pass over the parts and products, where all four moments take the cube of N.
     pub(crate) fn variance(&self, inputs: &Inputs) -> Option<(f64, f64)> {
@@ -72,6 +73,7 @@ impl Surrogate {
         }
         let terms = self.terms(inputs)?;
         let parts = terms.iter().map(|term| term.variance(1.0));
-        Some((exact(parts.chain([self.interactions.variance(1.0)])), 0.0))
+        let variance = exact(parts.chain([self.interactions.variance(1.0)]));
+        (!variance.is_nan()).then_some((variance, 0.0))
     }
 }

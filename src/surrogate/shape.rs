@@ -16,7 +16,7 @@ pub struct InputShape {
 
 /// Nodes that integrate the fourth power of a quartic, of degree 16, exactly.
 const NODES: usize = 9;
-/// The order that eight moments determine.
+/// The order that eight moments determine; fewer are known of Student's distribution with few degrees.
 const MOMENTS_ORDER: usize = 4;
 
 /// The shapes of these distributions; equal ones share a rule.
@@ -27,7 +27,7 @@ pub fn shapes<'a>(distributions: impl IntoIterator<Item = &'a dyn Distribution>)
         let known = rules.iter().find(|(of, _)| *of == jacobi).map(|(_, rule)| Arc::clone(rule));
         let rule = known.unwrap_or_else(|| {
             let rule = match jacobi.order() {
-                MOMENTS_ORDER => jacobi.gauss_with_mean().unwrap_or_else(|| jacobi.gauss()),
+                ..=MOMENTS_ORDER => jacobi.gauss_with_mean().unwrap_or_else(|| jacobi.gauss()),
                 _ => jacobi.gauss(),
             };
             rules.push((jacobi, Arc::new(rule)));

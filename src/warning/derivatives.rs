@@ -1,7 +1,7 @@
 //! Warnings about derivatives, and about the points from which they are taken.
 
 use super::text::{Text, likewise, names, say};
-use super::{Advice, Loss};
+use super::{Advice, Figure, Loss};
 use crate::method_kind::Method;
 
 pub(super) fn lost_derivative(characteristic: &str, dimensions: &[String], loss: &Loss, others: &[String]) -> Text {
@@ -81,6 +81,21 @@ pub(super) fn long_tail(
         likewise(others)
     ))
     .advise(Advice::UseMethod { methods: vec![Method::SixN, Method::SecondOrder] })
+    .advise(Advice::Sample { points: None })
+}
+
+pub(super) fn infinite_moment(characteristic: &str, figure: &Figure, dimensions: &[String]) -> Text {
+    let of = names(dimensions);
+    let result = match figure {
+        Figure::Sigma => "No figure follows from its moments; quantiles and rejects of samples do not need them.",
+        _ => {
+            "No distribution can be fitted to its moments; yield and quantiles are those of the surface, which need none."
+        }
+    };
+    say(format!(
+        "The {} of `{characteristic}` is infinite: with so few degrees of freedom the tail of {of} is too long for it. {result}",
+        figure.name()
+    ))
     .advise(Advice::Sample { points: None })
 }
 

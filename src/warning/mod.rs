@@ -365,6 +365,15 @@ warnings! {
         /// Further dimensions with a long tail.
         others: Vec<String>,
     };
+    /// A dimension has so long a tail that a moment of a characteristic is infinite.
+    InfiniteMoment = "infinite-moment" by derivatives::infinite_moment {
+        /// The characteristic.
+        characteristic: String,
+        /// The first moment that it does not have; nor has it those beyond.
+        figure: Figure,
+        /// The dimensions whose own moments end.
+        dimensions: Vec<String>,
+    };
     /// Some interactions were not examined.
     PairsNotExamined = "pairs-not-examined" by derivatives::pairs_not_examined {
         /// Interactions examined.

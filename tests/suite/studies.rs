@@ -99,6 +99,19 @@ fn every_kind_of_distribution_is_written() {
             "beta",
             (9.5, 0.7 * root(10.0 / 49.0 / 8.0), 0.35),
         ),
+        ("limits = [9, 10], distribution = \"arcsine\"", "beta", (9.5, 0.5 / root(2.0), 0.5)),
+        ("tolerance = 0.3, distribution = \"u-shaped\"", "u-shaped", (10.0, 0.3 * root(0.6), 0.3)),
+        (
+            "tolerance = [0, 0.6], distribution = { kind = \"curvilinear-trapezoid\", inexactness = 0.06 }",
+            "curvilinear-trapezoid",
+            (10.3, root(0.03 + 0.0004), 0.3),
+        ),
+        ("tolerance = 0.3, distribution = { kind = \"student\", degrees = 9 }", "student", (10.0, 0.1, 0.3)),
+        (
+            "shift = 0.5, distribution = { kind = \"student\", degrees = 18, scale = 4 }",
+            "student",
+            (10.5, 4.0 * root(1.125), 12.0 * root(1.125)),
+        ),
         ("sigma = 2, shift = 1, distribution = \"lognormal\"", "lognormal", (11.0, 2.0, 6.0)),
         ("tolerance = [-1, 5], distribution = { kind = \"gamma\", origin = 4 }", "gamma", (10.0, 1.0, 3.0)),
         ("tolerance = 3, sigmas = 2, distribution = { kind = \"weibull\", origin = 4 }", "weibull", (10.0, 1.5, 3.0)),
@@ -136,7 +149,7 @@ fn every_kind_of_distribution_is_written() {
         close(found.3, half, 1e-12, 0.0);
     }
     // A tolerance that is set to 0 for once makes any dimension fixed.
-    for kind in ["normal", "triangular", "gamma", "exponential"] {
+    for kind in ["normal", "triangular", "arcsine", "u-shaped", "gamma", "exponential"] {
         let line = format!("{{ nominal = 10, tolerance = 0, distribution = \"{kind}\" }}");
         assert!(dimension(&line).unwrap().distribution().is_none(), "{kind}");
     }
@@ -162,6 +175,18 @@ fn distributions_at_fault() {
         "tolerance = 0.1, cp = 1, distribution = \"triangular\"",
         "tolerance = 0.1, shift = 10, distribution = \"truncated-normal\"",
         "tolerance = 0.1, sigma = 0.05, distribution = \"truncated-normal\"",
+        "tolerance = 0.1, distribution = { kind = \"arcsine\", alpha = 2 }",
+        "tolerance = 0.1, sigma = 0.05, distribution = \"u-shaped\"",
+        "distribution = \"arcsine\"",
+        "tolerance = 0.1, distribution = \"curvilinear-trapezoid\"",
+        "tolerance = 0.1, distribution = { kind = \"curvilinear-trapezoid\", inexactness = 0.1 }",
+        "tolerance = 0.1, distribution = \"student\"",
+        "tolerance = 0.1, distribution = { kind = \"student\", degrees = 2 }",
+        "distribution = { kind = \"student\", degrees = 5 }",
+        "tolerance = 0.1, sigma = 0.1, distribution = { kind = \"student\", degrees = 5, scale = 0.1 }",
+        "tolerance = 0.1, sigmas = 2, distribution = { kind = \"student\", degrees = 5, scale = 0.1 }",
+        "distribution = { kind = \"student\", degrees = 5, scale = 0 }",
+        "tolerance = 0.1, distribution = { kind = \"studnet\", degrees = 5 }",
         "tolerance = 0.1, distribution = { kind = \"normal\", origin = 0 }",
         "distribution = \"gamma\"",
         "sigma = 0.1, distribution = { kind = \"gamma\", origin = 2 }",

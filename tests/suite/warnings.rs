@@ -186,6 +186,8 @@ fn every() -> Vec<Warning> {
             share: 0.031,
             others: names(0),
         },
+        Warning::InfiniteMoment { characteristic: characteristic(), figure: Figure::Kurtosis, dimensions: names(1) },
+        Warning::InfiniteMoment { characteristic: characteristic(), figure: Figure::Sigma, dimensions: names(2) },
         Warning::PairsNotExamined { examined: 10, possible: 45 },
         Warning::RssInvalid { characteristic: characteristic(), mean_shift: 0.4, variance: 0.29 },
         Warning::HigherOrder {

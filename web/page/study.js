@@ -1,7 +1,7 @@
 "use strict";
 // Studies as a table shows them, and as the text that the engine reads. Nothing here knows a page.
 const study = (() => {
-  const KINDS = ["normal", "truncated-normal", "uniform", "triangular", "trapezoidal", "beta", "lognormal", "gamma", "weibull", "exponential", "rayleigh"];
+  const KINDS = ["normal", "truncated-normal", "uniform", "triangular", "trapezoidal", "beta", "arcsine", "u-shaped", "curvilinear-trapezoid", "student", "lognormal", "gamma", "weibull", "exponential", "rayleigh"];
   const UNITS = ["mm", "in", "µm", "deg", "rad", "K", "1"];
   // A number of TOML, and what spreadsheets write in its place.
   const NUMBER = /^[+-]?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d+)?$/;

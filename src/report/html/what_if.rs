@@ -122,6 +122,12 @@ struct Pairs {
     a: Vec<f64>,
 }
 
+/// Why the page cannot compute moments that the tail of an input makes infinite.
+fn endless(found: &CharacteristicAnalysis) -> Option<String> {
+    let lacks = found.moments.is_some_and(|moments| moments.sigma() > 0.0 && moments.kurtosis().is_none());
+    lacks.then(|| "the tail of a dimension is so long that the kurtosis is infinite".to_owned())
+}
+
 /// How far the interval of a yield reaches on either side of what the page computes, the law of the surface or the Pearson fit: where
 /// that is off, both ends may lie on one side of it.
 fn reach(found: &CharacteristicAnalysis, by_law: bool) -> Option<[f64; 2]> {
@@ -236,7 +242,7 @@ impl WhatIf {
                 lower: limits.lower(),
                 upper: limits.upper(),
                 target: one.target_yield(),
-                why: fit.as_ref().err().map(ToString::to_string),
+                why: fit.as_ref().err().map(ToString::to_string).or_else(|| endless(found)),
                 centre,
                 parts,
                 pairs,

@@ -11,8 +11,8 @@ use super::conflict;
 use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, shift, sigma, sigmas};
 use crate::dimension::DimensionFault;
 use crate::distribution::{
-    Beta, CentralMoments, Distribution, DistributionError, Exponential, Gamma, Lognormal, Normal, Rayleigh, Tabulated,
-    Trapezoidal, Triangular, TruncatedNormal, Uniform, Weibull,
+    Beta, CentralMoments, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Lognormal, Normal,
+    Rayleigh, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull,
 };
 use crate::names::nearest;
 
@@ -30,9 +30,15 @@ pub(super) fn distribution(
         Kind::Moments => moments(entry, nominal),
         Kind::Normal => normal(entry, nominal, tolerance),
         Kind::Mixture => mixture(entry, nominal, tolerance),
-        over @ (Kind::TruncatedNormal | Kind::Uniform | Kind::Triangular | Kind::Trapezoidal | Kind::Beta) => {
-            over_band(over, entry, nominal, tolerance)
-        }
+        over @ (Kind::TruncatedNormal
+        | Kind::Uniform
+        | Kind::Triangular
+        | Kind::Trapezoidal
+        | Kind::Beta
+        | Kind::Arcsine
+        | Kind::UShaped
+        | Kind::CurvilinearTrapezoid) => over_band(over, entry, nominal, tolerance),
+        Kind::Student => student(entry, nominal, tolerance),
         Kind::Lognormal => {
             with_tail(entry, nominal, tolerance, |o, mean, sigma| shared(Lognormal::new(o, mean, sigma)))
         }
@@ -81,7 +87,7 @@ fn kind(entry: &DimensionEntry) -> Result<Kind, Fault> {
 }
 
 /// Every parameter that a table may have, and where it stands.
-fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 8] {
+fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>); 11] {
     let span = |parameter: &Option<Spanned<f64>>| parameter.as_ref().map(Spanned::span);
     [
         ("mode", span(&entry.mode)),
@@ -89,6 +95,9 @@ fn parameters(entry: &DistributionEntry) -> [(&'static str, Option<Range<usize>>
         ("alpha", span(&entry.alpha)),
         ("beta", span(&entry.beta)),
         ("origin", span(&entry.origin)),
+        ("inexactness", span(&entry.inexactness)),
+        ("degrees", span(&entry.degrees)),
+        ("scale", span(&entry.scale)),
         ("parts", entry.parts.as_ref().map(Spanned::span)),
         ("scores", entry.scores.as_ref().map(Spanned::span)),
         ("values", entry.values.as_ref().map(Spanned::span)),
@@ -109,7 +118,32 @@ fn normal(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> 
     placed(entry, shared(Normal::new(nominal + middle + shift(entry), sigma)))
 }
 
-/// The support is the band; mean and sigma follow from the shape.
+/// As a normal distribution; its sigma may be given by the scale.
+fn student(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+    let degrees = parameter(entry, "degrees", |entry| &entry.degrees)?;
+    let middle = tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
+    let mean = nominal + middle + shift(entry);
+    let scale = entry.distribution.as_ref().and_then(|table| table.get_ref().scale.as_ref());
+    let Some(scale) = scale else {
+        let Some(sigma) = sigma(entry, tolerance)? else { return nothing_to_spread(entry) };
+        return placed(entry, shared(Student::new(mean, sigma, degrees)));
+    };
+    let again = entry.sigma.as_ref().map(|sigma| ("sigma", sigma.span()));
+    if let Some((key, span)) = again.or(sigmas(entry)?.map(|(key, span, _)| (key, span))) {
+        let why = "say the same thing: sigma is scale sqrt(degrees/(degrees - 2)), so leave one out";
+        return Err(fault(span, key, conflict("scale", key, why)));
+    }
+    let value = *scale.get_ref();
+    if value <= 0.0 {
+        return Err(fault(scale.span(), within("scale"), StudyFault::OutOfRange { value, range: "above 0" }));
+    }
+    if is_flat(entry) {
+        return nothing_to_spread(entry);
+    }
+    placed(entry, shared(Student::with_scale(mean, value, degrees)))
+}
+
+/// The support is the band, or about it; mean and sigma follow from the shape.
 fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
     let name = KINDS.iter().find(|known| known.1 == kind).map_or("", |known| known.0);
     let to = || format!("a {name} distribution");
@@ -142,6 +176,12 @@ fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option
         Kind::Beta => {
             let alpha = parameter(entry, "alpha", |entry| &entry.alpha)?;
             shared(Beta::about(middle, half, alpha, parameter(entry, "beta", |entry| &entry.beta)?))
+        }
+        Kind::Arcsine => shared(Beta::about(middle, half, 0.5, 0.5)),
+        Kind::UShaped => shared(UShaped::about(middle, half)),
+        Kind::CurvilinearTrapezoid => {
+            let inexactness = parameter(entry, "inexactness", |entry| &entry.inexactness)?;
+            shared(CurvilinearTrapezoid::about(middle, half, inexactness))
         }
         _ => shared(Uniform::about(middle, half)),
     };
@@ -260,6 +300,12 @@ fn parameter(
     of(distribution.get_ref()).as_ref().map(|value| *value.get_ref()).ok_or_else(|| {
         let instead = match key {
             "top" => "write { kind = \"trapezoidal\", top = 0.5 }: the share of the band over which it is flat",
+            "inexactness" => {
+                "write { kind = \"curvilinear-trapezoid\", inexactness = 0.01 }: by how much the ends of the band may be off"
+            }
+            "degrees" => {
+                "write { kind = \"student\", degrees = 18 }: the degrees of freedom, one less than the number of readings"
+            }
             _ => "write { kind = \"beta\", alpha = 2, beta = 5 }",
         };
         let missing = StudyFault::MissingKey { key: key.to_owned(), instead: instead.to_owned() };
@@ -301,6 +347,7 @@ pub(super) fn placed(
         }
         DistributionError::OutOfRange { parameter, .. } => of_table(parameter),
         DistributionError::NotAboveOrigin { .. } => of_table("origin").or(whole),
+        DistributionError::NoSigma { .. } => of_table("degrees"),
         DistributionError::SigmaToMean { .. } => sigma.or(whole),
         _ => sigma.or(whole),
     };

@@ -63,6 +63,29 @@ def trapezoidal(middle, half, top):
     return polynomial_pieces(sorted(pieces), middle, half)
 
 
+def u_shaped(middle, half):
+    raw = [mp.mpf(0) if n % 2 else mp.mpf(3) / (n + 3) for n in range(21)]
+    cdf = lambda x: (1 + ((x - middle) / half) ** 3) / 2
+    return raw, middle, half, cdf, (middle - half, middle + half)
+
+
+def curvilinear_trapezoid(middle, half, inexactness):
+    """A uniform variable whose half width is uniform itself (GUM Supplement 1, 6.4.3)."""
+    w, d = half, inexactness
+    raw = [mp.mpf(0) if n % 2 else ((w + d) ** (n + 1) - (w - d) ** (n + 1)) / (2 * d * (n + 1) ** 2) for n in range(21)]
+
+    def upper(t):
+        if t >= w - d:
+            return ((w + d) - t - t * mp.log((w + d) / t)) / (4 * d)
+        return upper(w - d) + (w - d - t) * mp.log((w + d) / (w - d)) / (4 * d)
+
+    def cdf(x):
+        t = x - middle
+        return upper(-t) if t < 0 else 1 - upper(t)
+
+    return raw, middle, mp.mpf(1), cdf, (middle - w - d, middle + w + d)
+
+
 def beta(middle, half, a, b):
     raw = [mp.beta(a + n, b) / mp.beta(a, b) for n in range(21)]
     cdf = lambda x: mp.betainc(a, b, 0, (x - middle + half) / (2 * half), regularized=True)
@@ -185,6 +208,8 @@ CASES = [
         ("beta", [0.0, 1.0, a, b], beta)
         for a, b in [(1e6, 1e6), (0.5, 0.5), (0.5, 3.0), (2.0, 5.0), (1.0, 1.0), (3.0, 1e5), (0.01, 0.02), (150.0, 0.7)]
     ],
+    ("u-shaped", [2.0, 0.5], u_shaped),
+    *[("curvilinear-trapezoid", [2.0, 0.5, d], curvilinear_trapezoid) for d in [1e-6, 0.1, 0.3, 0.499]],
     *[("gamma", [0.0, 1.0, sigma], gamma) for sigma in [1e-4, 0.02, 0.3, 1.0, 3.0, 20.0]],
     *[("lognormal", [0.0, 1.0, sigma], lognormal) for sigma in [1e-4, 0.02, 0.3, 1.0, 90.0]],
     *[("weibull", [0.0, 1.0, sigma], weibull) for sigma in [1e-4, 0.02, 0.27, 0.5, 1.0, 3.0, 30.0]],

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use sensitol::distribution::{
-    Beta, Distribution, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rayleigh, Tabulated, Trapezoidal,
-    Triangular, TruncatedNormal, Uniform, Weibull,
+    Beta, CurvilinearTrapezoid, Distribution, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rayleigh, Student,
+    Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull,
 };
 
 /// A distribution and its density, as a sum of pieces that are smooth inside: each an interval and a function of the distances
@@ -130,6 +130,33 @@ fn beta(alpha: f64, beta: f64, function: f64) -> Case {
     Case::new(Beta::new(1.0, 3.0, alpha, beta).unwrap(), vec![Piece::new(1.0, 3.0, density)])
 }
 
+fn u_shaped() -> Case {
+    // From the middle 1.5 the distance d in halves of 0.5.
+    let pieces = vec![Piece::new(1.0, 1.5, |_, d| 12.0 * d * d), Piece::new(1.5, 2.0, |d, _| 12.0 * d * d)];
+    Case::new(UShaped::new(1.0, 2.0).unwrap(), pieces)
+}
+
+/// Between -1 and 1, by the density of GUM Supplement 1, 6.4.3.2.
+fn curvilinear(d: f64) -> Case {
+    let (end, flat) = (1.0 + d, 1.0 - d);
+    // ln(end/t) of the distance from the end.
+    let ramp = move |from_end: f64| -(-from_end / end).ln_1p() / (4.0 * d);
+    let pieces = vec![
+        Piece::new(-end, -flat, move |from_end, _| ramp(from_end)),
+        Piece::new(-flat, flat, move |_, _| (end / flat).ln() / (4.0 * d)),
+        Piece::new(flat, end, move |_, from_end| ramp(from_end)),
+    ];
+    Case::new(CurvilinearTrapezoid::new(-1.0, 1.0, d).unwrap(), pieces)
+}
+
+/// With 25 degrees of freedom, so that the moments exist that rules of nine nodes take; scale 1.
+fn student() -> Case {
+    // Gamma(13)/(Gamma(12.5) sqrt(25 pi)). Beyond 1e4 lies nothing that even the twentieth moment sees.
+    let density = |d: f64| 0.394_973_789_636_461_19 * (1.0 + d * d / 25.0).powf(-13.0);
+    let pieces = vec![Piece::new(-1e4, 0.0, move |_, d| density(d)), Piece::new(0.0, 1e4, move |d, _| density(d))];
+    Case::new(Student::with_scale(0.0, 1.0, 25.0).unwrap(), pieces)
+}
+
 fn exponential() -> Case {
     Case::new(Exponential::new(0.5, 2.0).unwrap(), vec![Piece::new(0.5, f64::INFINITY, |d, _| (-d / 1.5).exp() / 1.5)])
 }
@@ -232,6 +259,10 @@ pub fn cases() -> Vec<Case> {
         weibull(8.0, 0.941_742_699_849_701_5, 0.906_402_477_055_477),
         mixture(),
         apart(),
+        u_shaped(),
+        curvilinear(0.125),
+        curvilinear(0.75),
+        student(),
         straight_table(0.999_999_426_696_856_2),
         parabola_table(0.997_300_203_936_739_8),
     ]

@@ -6,8 +6,9 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::distribution::{
-    Beta, Distribution, DistributionError, Exponential, Gamma, Jacobi, Lognormal, Mixture, Normal, Part, Rayleigh,
-    StandardMoments, Trapezoidal, Triangular, TruncatedNormal, Uniform, Weibull,
+    Beta, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Jacobi, Lognormal, Mixture,
+    Normal, Part, Rayleigh, StandardMoments, Student, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform,
+    Weibull,
 };
 use sensitol::internals::reach::*;
 
@@ -24,6 +25,9 @@ fn built(kind: &str, p: &[f64]) -> Result<Arc<dyn Distribution>, DistributionErr
         "trapezoidal" => Arc::new(Trapezoidal::about(p[0], p[1], p[2])?),
         "truncated-normal" => Arc::new(TruncatedNormal::about(p[0], p[1], p[2], p[3])?),
         "beta" => Arc::new(Beta::about(p[0], p[1], p[2], p[3])?),
+        "u-shaped" => Arc::new(UShaped::new(p[0] - p[1], p[0] + p[1])?),
+        "curvilinear-trapezoid" => Arc::new(CurvilinearTrapezoid::new(p[0] - p[1], p[0] + p[1], p[2])?),
+        "student" => Arc::new(Student::new(p[0], p[1], p[2])?),
         "gamma" => Arc::new(Gamma::new(p[0], p[1], p[2])?),
         "lognormal" => Arc::new(Lognormal::new(p[0], p[1], p[2])?),
         "weibull" => Arc::new(Weibull::new(p[0], p[1], p[2])?),
@@ -120,6 +124,10 @@ fn kinds_meet_at_their_limits() {
         &Rayleigh::new(0.5, 2.0).unwrap(),
         1e-12,
     );
+    // Without inexactness a rectangle: the variance differs by 1e-12 of it, the density at the ends over 1e-6 of the width.
+    same(&CurvilinearTrapezoid::new(-1.0, 3.0, 2e-6).unwrap(), &uniform, 1e-6);
+    // A million degrees of freedom have an excess kurtosis of 6e-6.
+    same(&Student::new(1.0, 0.5, 1e6).unwrap(), &Normal::new(1.0, 0.5).unwrap(), 1e-5);
     // Nearly normal ones differ from it by their skewness, 2e-6 and 3e-6.
     let normal = Normal::new(1.0, 1e-6).unwrap();
     same(&Gamma::new(0.0, 1.0, 1e-6).unwrap(), &normal, 1e-5);
@@ -168,6 +176,13 @@ fn impossible_shapes_are_refused() {
         error(built("truncated-normal", &[0.0, 1.0, 50.0, 1.0])),
         error(built("beta", &[0.0, 1.0, 0.0, 2.0])),
         error(built("beta", &[0.0, 1.0, 2.0, f64::NAN])),
+        error(built("u-shaped", &[0.0, 0.0])),
+        error(built("curvilinear-trapezoid", &[0.0, 1.0, 0.0])),
+        error(built("curvilinear-trapezoid", &[0.0, 1.0, 1.0])),
+        error(built("curvilinear-trapezoid", &[0.0, 1.0, f64::NAN])),
+        error(built("student", &[0.0, 1.0, 2.0])),
+        error(built("student", &[0.0, 1.0, f64::INFINITY])),
+        error(built("student", &[0.0, 0.0, 5.0])),
         error(built("gamma", &[0.0, -1.0, 0.1])),
         error(built("gamma", &[0.0, 1.0, 100.0])),
         error(built("gamma", &[0.0, 1.0, -1.0])),
@@ -192,6 +207,11 @@ fn anything() -> impl Strategy<Value = (&'static str, Vec<f64>)> {
         (band.clone(), 0.0..=1.0f64).prop_map(|((m, h), top)| ("trapezoidal", vec![m, h, top])),
         (band.clone(), -2.0..2.0f64, logarithmic(0.1, 100.0))
             .prop_map(|((m, h), shift, sigma)| ("truncated-normal", vec![m, h, h * shift, h * sigma])),
+        (band.clone(), 0.0..1.0f64).prop_map(|((m, h), _)| ("u-shaped", vec![m, h])),
+        (band.clone(), logarithmic(1e-6, 0.999))
+            .prop_map(|((m, h), part)| ("curvilinear-trapezoid", vec![m, h, part * h])),
+        // A mixture needs eight moments.
+        (band.clone(), logarithmic(8.5, 1e6)).prop_map(|((m, h), degrees)| ("student", vec![m, h, degrees])),
         (band, logarithmic(0.02, 1e6), logarithmic(0.02, 1e6)).prop_map(|((m, h), a, b)| ("beta", vec![m, h, a, b])),
         (tail.clone(), prop_oneof![Just("gamma"), Just("lognormal"), Just("weibull")])
             .prop_map(|((o, d, ratio), kind)| (kind, vec![o, o + d, d * ratio])),

@@ -4,6 +4,7 @@ mod analyses;
 mod densities;
 mod extremes;
 mod scaling;
+mod student;
 
 use proptest::prelude::*;
 use rand::SeedableRng;
