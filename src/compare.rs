@@ -16,7 +16,7 @@ use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::verdict::Verdict;
 
-/// What may be spent.
+/// The most that may be spent.
 ///
 /// ```
 /// use sensitol::compare::CompareOptions;
@@ -102,7 +102,7 @@ impl Serialize for Contender {
     }
 }
 
-/// What a method says of one characteristic. What is unknown is None.
+/// The results of a method for one characteristic. Unknown values are None.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -207,7 +207,7 @@ pub struct NotRun {
     #[serde(rename = "method")]
     #[cfg_attr(feature = "cli", schemars(with = "String"))]
     pub contender: Contender,
-    /// What it would have taken.
+    /// The evaluations that it needs.
     pub evaluations: Option<u64>,
     /// Seconds that the model would have taken, at the speed of those that ran.
     pub projected_s: Option<f64>,

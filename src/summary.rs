@@ -42,7 +42,7 @@ impl fmt::Display for StopReason {
     }
 }
 
-/// What a run came to. Every result has one.
+/// The cost of a run and the reason for its end. Every result has one.
 ///
 /// ```
 /// use sensitol::{Closure, Dimension, Method, Problem, analyze};
@@ -78,11 +78,11 @@ pub struct RunSummary {
     pub seed: Option<u64>,
     /// Why it ended early; None where it did not.
     pub stopped: Option<StopReason>,
-    /// What became of the processes of an external model; None where no such model ran.
+    /// Starts, crashes and retries of the processes of an external model; None where no such model ran.
     pub evaluator: Option<EvaluatorSummary>,
 }
 
-/// What became of the processes of an external model, in numbers, since it was made.
+/// Starts, crashes and retries of the processes of an external model since it was made.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]

@@ -22,7 +22,7 @@ pub(crate) const ERRORS: f64 = 2.0;
 /// just keep a target keep it. The search of tolerances keeps its constraints to a part of 10^9 of their room.
 const ROUNDING: f64 = 1e-8;
 
-/// What is to be said of a target.
+/// The verdict on a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -100,13 +100,13 @@ pub struct Judged {
     pub verdict: Verdict,
 }
 
-/// What is judged as it is written.
+/// A judged requirement as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(crate) struct JudgedShape {
     #[serde(flatten)]
     required: Required,
-    /// What there is.
+    /// The value found.
     value: Option<f64>,
     /// Within which that is known, an end null where there is none; null where it is not known at all.
     interval: Option<[Option<f64>; 2]>,

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Literal, Optional, Tuple, Union
 from ._records import Record, Result
 
 class Account(Record):
-    """What `auto` found of the dimensions, and what its points went to. As text it is a sentence."""
+    """The shapes that `auto` found for the dimensions, and the use of its points. As text it is a sentence."""
 
     checks: int
     """Points that check the surrogate."""
@@ -77,15 +77,15 @@ class AllocatedTolerance(Record):
     before: float
     """Half band before."""
     bound_price: Optional[float]
-    """What it saves per unit by which that bound gives way, and all else stays; None within the bounds, and where
-    that is not known.
+    """The saving per unit by which that bound gives way, all else unchanged; None within the bounds, and where it is
+    not known.
     """
     contributions: List[AllocatedToleranceContributions]
     """Its share of each characteristic's variance."""
     cost_after: Optional[float]
-    """What it costs."""
+    """Its cost."""
     cost_before: Optional[float]
-    """What it cost; None where no process holds that tolerance."""
+    """Its cost before; None where no process holds that tolerance."""
     deviations: AllocatedToleranceDeviations
     """Lower and upper deviation from the nominal before and after, where there is a band."""
     dimension: str
@@ -117,7 +117,7 @@ class AllocatedToleranceDeviations(Record):
 
 
 class AllocationResult(Result):
-    """What an allocation found out. What is unknown is null, never 0."""
+    """The report of an allocation. Unknown values are null, never 0."""
 
     attainable: Optional[AllocationResultAttainable]
     """The requirement that cannot be kept, and the best that can be had."""
@@ -138,21 +138,19 @@ class AllocationResult(Result):
     cost_before: Optional[float]
     """All costs before; null where no process holds some tolerance, and without costs."""
     cost_unrounded: Optional[float]
-    """What the cheapest tolerances cost that are not rounded to steps or standard grades; null without such
-    rounding.
-    """
+    """The cost of the cheapest tolerances without rounding to steps or standard grades; null without such rounding."""
     dimensions_table: Optional[str]
     """The entries of dimensions that have changed, ready to paste into the study."""
     evaluations: int
     """Points sent to the model, those sent again included."""
     evaluator: Optional[EvaluatorSummary]
-    """What became of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
     failed: int
     """Points that lost at least one characteristic."""
     front: List[FrontPoint]
     """Cost against what is required."""
     goal: Goal
-    """What was sought, and what may be spent on it."""
+    """The objective, and the most that may be spent on it."""
     in_model_s: float
     """Time within the model, of all threads together."""
     joint_requirement: Optional[JointKept]
@@ -162,11 +160,11 @@ class AllocationResult(Result):
     loosest_scaling: AllocationResultLoosestScaling
     """By which one factor all tolerances may be multiplied until some requirement is just kept."""
     loss: AllocationResultLoss
-    """What of them is quality loss and scrap; null without losses."""
+    """The part of them that is quality loss and scrap; null without losses."""
     method: str
     """The method by which derivatives were taken."""
     proof: Proof
-    """What shows that nothing is cheaper."""
+    """The evidence that nothing is cheaper."""
     recentred: List[AllocationResultRecentred]
     """Nominal values that have moved."""
     requirements: List[AllocationResultRequirements]
@@ -184,7 +182,7 @@ class AllocationResult(Result):
     setups: List[SetUp]
     """The machines that the processes need, and what it costs to set them up, which is part of the cost."""
     shadow_prices: List[AllocationResultShadowPrices]
-    """What limits and required sigmas cost."""
+    """Shadow prices of limits and required sigmas."""
     stages: int
     """Batches in which points were sent."""
     status: Literal['optimal', 'local-optimum', 'almost-optimal', 'infeasible', 'no-feasible-point-found', 'out-of-time']
@@ -275,9 +273,9 @@ class AllocationResultRequirements(Record):
     """Something of a characteristic, with its name."""
 
     after: Optional[float]
-    """What there is."""
+    """The value found."""
     before: Optional[float]
-    """What there was."""
+    """The value before."""
     characteristic: str
     """The characteristic."""
     interval: Optional[List[Optional[float]]]
@@ -291,8 +289,8 @@ class AllocationResultRequirements(Record):
     requirement: str
     """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
     sampled: Optional[AllocationResultRequirementsSampled]
-    """What a sample of the model says of it there, of a worst case points in the box of the bands; None without one,
-    and of rss, of which samples know nothing.
+    """The verdict of a sample of the model there, of a worst case by points in the box of the bands; None without
+    one, and of rss, of which samples know nothing.
     """
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
     """The same in a word; null where nothing was found."""
@@ -301,14 +299,14 @@ class AllocationResultRequirements(Record):
 
 
 class AllocationResultRequirementsSampled(Record):
-    """What a sample says of a requirement, as it is written."""
+    """The verdict of a sample on a requirement, as it is written."""
 
     interval: Optional[List[Optional[float]]]
     """Within which that is known, three errors on either side; null where it is not known at all."""
     value: Optional[float]
-    """What the sample has."""
+    """The figure of the sample."""
     verdict: Literal['met', 'missed', 'inconclusive']
-    """What that says of the requirement."""
+    """The verdict on the requirement from that."""
 
 
 class AllocationResultShadowPrices(Record):
@@ -321,28 +319,28 @@ class AllocationResultShadowPrices(Record):
     lower: Optional[float]
     """Per unit by which its lower limit goes down."""
     narrow: Optional[float]
-    """What it costs per unit by which they go inwards."""
+    """The extra cost per unit by which they go inwards."""
     sigma: Optional[float]
     """Per unit of a required sigma."""
     upper: Optional[float]
     """Per unit by which its upper limit goes up."""
     widen: Optional[float]
-    """What it saves per unit by which the limits go outwards, or a required sigma grows, and all else stays."""
+    """The saving per unit by which the limits go outwards, or a required sigma grows, all else unchanged."""
 
 
 class AnalysisResult(Result):
-    """The report of an analysis, as `--json` prints it. What is unknown is null, never 0."""
+    """The report of an analysis, as `--json` prints it. Unknown values are null, never 0."""
 
     account: Optional[Account]
-    """What `auto` found, and what its points went to; None for any other method."""
+    """The findings of `auto` and the use of its points; None for any other method."""
     basis: Literal['exact', 'differences', 'least-squares', 'quadrature']
-    """What the moments rest on."""
+    """The basis of the moments."""
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristic_correlation: List[OutputCorrelation]
     """How every two characteristics vary together; empty with one characteristic, and with more than 40."""
     characteristics: List[CharacteristicResult]
-    """What is known of every characteristic, in the problem's order."""
+    """The results of every characteristic, in the problem's order."""
     command: str
     """The command that made the report."""
     correlation: List[Pair]
@@ -356,7 +354,7 @@ class AnalysisResult(Result):
     evaluations: int
     """Points sent to the model, those sent again included."""
     evaluator: Optional[EvaluatorSummary]
-    """What became of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
     failed: int
     """Points that lost at least one characteristic."""
     in_model_s: float
@@ -399,7 +397,7 @@ class AnalysisResult(Result):
 
 
 class Beyond(Record):
-    """What lies beyond one limit, as it is written."""
+    """Rejects beyond one limit, as they are written."""
 
     bounds: Optional[List[float]]
     """If no point without a value lies beyond, and if all do; null where every point has a value."""
@@ -472,7 +470,7 @@ class CharacteristicResult(Record):
     interactions: List[Interaction]
     """The interactions examined, strongest first."""
     interactions_remainder: Optional[Remainder]
-    """What the interactions make that are not listed one by one; None where all are."""
+    """The sum of the interactions that are not listed one by one; None where all are."""
     kurtosis: Optional[float]
     """Fourth standardised moment, 3 for a normal."""
     least_squares: Optional[Residual]
@@ -526,9 +524,9 @@ class CharacteristicResult(Record):
     skewness: Optional[float]
     """Third standardised moment."""
     surface_law: Optional[SurfaceLaw]
-    """What the law of its surface says; None where its moments follow from no surface."""
+    """The results of its surface distribution; None where its moments follow from no surface."""
     surrogate_sampling: Optional[Sampled]
-    """What sampling the surrogate of correlated inputs leaves uncertain of them; None where they are exact."""
+    """Their uncertainty from sampling the surrogate of correlated inputs; None where they are exact."""
     target_yield: Optional[float]
     """The share of assemblies that must keep the limits."""
     unfinished: bool
@@ -540,7 +538,7 @@ class CharacteristicResult(Record):
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
     """The same in a word; null without a target."""
     verification: Optional[Verification]
-    """What the model itself says of these results; None where they were not verified."""
+    """The verification of these results by the model itself; None where they were not verified."""
     without_value: int
     """Evaluated points at which it has no value."""
     worst_case: WorstCase
@@ -550,7 +548,7 @@ class CharacteristicResult(Record):
     yield_interval: Optional[List[float]]
     """Within which the share is known that keeps the limits; null where that is not known."""
     yield_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
-    """What its yield comes from; None without a yield."""
+    """The source of its yield; None without a yield."""
 
 
 class ComparedCharacteristic(Record):
@@ -561,7 +559,7 @@ class ComparedCharacteristic(Record):
     name: str
     """Its name."""
     reference: SimulatedCharacteristic
-    """What the methods are measured by."""
+    """The reference for all methods."""
 
 
 class ComparedMethod(Record):
@@ -586,30 +584,30 @@ class ComparedMethod(Record):
     pareto: bool
     """Whether no other method has a smaller error for as many evaluations or fewer."""
     run: RunSummary
-    """What its run came to by itself."""
+    """The cost of its run by itself."""
     sigma: Optional[float]
     """Standard deviation."""
     skewness: Optional[float]
     """Third standardised moment."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
-    """What it says of the target yield; null without one."""
+    """Its verdict on the target yield; null without one."""
     yield_: Optional[float]
     """Share within the limits."""
 
 
 class ComparisonResult(Result):
-    """The report of a comparison, as `--json` prints it. What is unknown is null, never 0."""
+    """The report of a comparison, as `--json` prints it. Unknown values are null, never 0."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristics: List[ComparedCharacteristic]
-    """What was asked."""
+    """The results of every characteristic asked for."""
     command: str
     """The command that made the report."""
     evaluations: int
     """Points sent to the model, those sent again included."""
     evaluator: Optional[EvaluatorSummary]
-    """What became of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
     failed: int
     """Points that lost at least one characteristic."""
     in_model_s: float
@@ -655,7 +653,7 @@ class Confirmation(Record):
 
 
 class Control(Record):
-    """What a surrogate as control variate has done, as it is written."""
+    """The effect of a surrogate as control variate, as it is written."""
 
     evaluations: int
     """The evaluations that it took, of all characteristics together."""
@@ -716,13 +714,13 @@ class ErrorEstimate(Record):
     skewness: Optional[float]
     """Of the skewness."""
     sources: List[ErrorSource]
-    """What it rests on."""
+    """Its basis."""
     yield_: Optional[float]
     """Of the share within the limits."""
 
 
 class ErrorSource(Record):
-    """What an estimate rests on."""
+    """The basis of an estimate."""
 
     kind: Literal['checked', 'powers', 'taylor', 'curvature', 'exact-pairs', 'similar-pairs', 'unknown-pairs', 'triples', 'scatter', 'lost', 'proven', 'sampled']
     points: Optional[int]
@@ -757,7 +755,7 @@ class ErrorVsReference(Record):
 
 
 class EvaluatorSummary(Record):
-    """What became of the processes of an external model, in numbers, since it was made."""
+    """Starts, crashes and retries of the processes of an external model since it was made."""
 
     crashes: int
     """Processes that ended while points were under way, or before they were ready."""
@@ -787,7 +785,7 @@ class ExtremesAt(Record):
 
 
 class Figures(Record):
-    """What a method says of one characteristic. What is unknown is None."""
+    """The results of a method for one characteristic. Unknown values are None."""
 
     kurtosis: Optional[float]
     """Fourth standardised moment."""
@@ -805,7 +803,7 @@ class FoundSwitch(Record):
     """A switch on both sides of which there are assemblies within eight sigmas."""
 
     kind: Literal['kink', 'jump', 'edge', 'pole']
-    """What the output does there."""
+    """The behaviour of the output there."""
     name: str
     """The part of the formula that does it, as it is written there."""
     probability: float
@@ -816,21 +814,19 @@ class FrontPoint(Record):
     """One point of the front: the cheapest tolerances for a requirement."""
 
     cost: Optional[float]
-    """What that costs; None where it cannot be kept."""
+    """The cost of that; None where it cannot be kept."""
     required: List[RequiredOf]
-    """What was required of every characteristic of which something is, in the order of the problem; of all together
-    last.
-    """
+    """The requirement of every characteristic that has one, in the order of the problem; of all together last."""
     tolerances: Optional[List[float]]
     """Half bands, in the order of [`Allocation::tolerances`]."""
 
 
 class Goal(Record):
-    """What is sought."""
+    """The objective."""
 
     kind: Literal['least-cost', 'most-cpk', 'fewest-rejects']
     cost_limit: Optional[float]
-    """What may be spent."""
+    """The most that may be spent."""
 
 
 class Histogram(Record):
@@ -843,7 +839,7 @@ class Histogram(Record):
 
 
 class Interaction(Record):
-    """What two dimensions do together."""
+    """The joint effect of two dimensions."""
 
     dimensions: List[str]
     """The two dimensions."""
@@ -856,7 +852,7 @@ class Interaction(Record):
     mixed: Optional[float]
     """Mixed second derivative at the means; None where it is missing."""
     rounding: Optional[float]
-    """What rounding errors of the characteristic's own size may make of it."""
+    """The largest effect of rounding errors of the characteristic's own size on it."""
     share: Optional[float]
     """Share of the variance."""
 
@@ -865,9 +861,9 @@ class JointKept(Record):
     """The joint yield that all characteristics with limits must keep, and what there is of it."""
 
     after: Optional[float]
-    """What there is."""
+    """The value found."""
     before: Optional[float]
-    """What there was."""
+    """The value before."""
     interval: Optional[List[Optional[float]]]
     """Within which that is known, an end null where there is none; null where it is not known at all."""
     met: Optional[bool]
@@ -898,7 +894,7 @@ class JointYield(Record):
 
 
 class Judged(Record):
-    """What is judged as it is written."""
+    """A judged requirement as it is written."""
 
     interval: Optional[List[Optional[float]]]
     """Within which that is known, an end null where there is none; null where it is not known at all."""
@@ -909,7 +905,7 @@ class Judged(Record):
     requirement: str
     """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
     value: Optional[float]
-    """What there is."""
+    """The value found."""
     verdict: Literal['met', 'missed', 'inconclusive']
     """The same in a word."""
 
@@ -932,7 +928,7 @@ class NotRun(Record):
     """One method that was not run."""
 
     evaluations: Optional[int]
-    """What it would have taken."""
+    """The evaluations that it needs."""
     method: str
     """Which."""
     projected_s: Optional[float]
@@ -1011,9 +1007,9 @@ class RareCharacteristic(Record):
     """A characteristic with its verdicts, as it is written."""
 
     above: Optional[Beyond]
-    """What lies above the upper limit; null without one."""
+    """Rejects above the upper limit; null without one."""
     below: Optional[Beyond]
-    """What lies below the lower limit; null without one."""
+    """Rejects below the lower limit; null without one."""
     error: Optional[str]
     """Why not, of the first of them."""
     failed: int
@@ -1043,12 +1039,12 @@ class RareCharacteristic(Record):
 
 
 class RareResult(Result):
-    """The report of rare events, as `--json` prints it. What is unknown is null, never 0."""
+    """The report of rare events, as `--json` prints it. Unknown values are null, never 0."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristics: List[RareCharacteristic]
-    """What is known of every characteristic, in the problem's order."""
+    """The results of every characteristic, in the problem's order."""
     command: str
     """The command that made the report."""
     correlation: List[Pair]
@@ -1058,7 +1054,7 @@ class RareResult(Result):
     evaluations: int
     """Points sent to the model, those sent again included."""
     evaluator: Optional[EvaluatorSummary]
-    """What became of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
     failed: int
     """Points that lost at least one characteristic."""
     in_model_s: float
@@ -1132,13 +1128,13 @@ class ReportedWarning(Record):
     """A warning."""
 
     advice: List[Advice]
-    """What to do, the most promising first."""
+    """Remedies, the most promising first."""
     at: Optional[List[float]]
     """Of a sweep, the values of the parameter at which it is so."""
     characteristic: Optional[str]
     """The characteristic concerned."""
     code: str
-    """What kind."""
+    """The kind."""
     data: Dict[str, Any]
     """The fields of the warning."""
     dimension: Optional[str]
@@ -1148,7 +1144,7 @@ class ReportedWarning(Record):
 
 
 class RequiredOf(Record):
-    """What is required of a characteristic, as it is written."""
+    """A requirement of a characteristic, as it is written."""
 
     characteristic: str
     """The characteristic."""
@@ -1164,9 +1160,7 @@ class Residual(Record):
     coefficients: int
     """Coefficients."""
     mean_standard_error: Optional[float]
-    """What that leaves uncertain of the mean, as a standard error; None where it is unknown or inputs are
-    correlated.
-    """
+    """The standard error of the mean from that; None where it is unknown or inputs are correlated."""
     points: int
     """Points that were fitted."""
     residual_standard_error: Optional[float]
@@ -1178,14 +1172,14 @@ class Residual(Record):
 
 
 class RunSummary(Record):
-    """What a run came to. Every result has one."""
+    """The cost of a run and the reason for its end. Every result has one."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
     evaluations: int
     """Points sent to the model, those sent again included."""
     evaluator: Optional[EvaluatorSummary]
-    """What became of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
     failed: int
     """Points that lost at least one characteristic."""
     in_model_s: float
@@ -1277,7 +1271,7 @@ class SamplingInterval(Record):
 
 
 class Sensitivity(Record):
-    """What one dimension does to a characteristic."""
+    """The effect of one dimension on a characteristic."""
 
     curvature_share: Optional[float]
     """Share of the variance that its curvature adds."""
@@ -1292,8 +1286,8 @@ class Sensitivity(Record):
     mean_shift: Optional[float]
     """How far its curvature moves the mean."""
     rounding: Optional[List[float]]
-    """What a rounding error of the characteristic's own size may make of the two derivatives: at the steps taken,
-    over a sigma where they are exact.
+    """The largest effect of a rounding error of the characteristic's own size on the two derivatives: at the steps
+    taken, over a sigma where they are exact.
     """
     second: Optional[float]
     """Second derivative at the mean."""
@@ -1307,7 +1301,7 @@ class SetUp(Record):
     """A machine and what it costs to set it up, once for all dimensions whose processes need it."""
 
     cost: float
-    """What it costs."""
+    """Its cost."""
     machine: str
     """The machine."""
 
@@ -1372,14 +1366,14 @@ class SimulatedCharacteristic(Record):
 
 
 class SimulationResult(Result):
-    """The report of a simulation, as `--json` prints it. What is unknown is null, never 0."""
+    """The report of a simulation, as `--json` prints it. Unknown values are null, never 0."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristic_correlation: List[OutputCorrelation]
     """How every two characteristics vary together; empty with one characteristic, and with more than 40."""
     characteristics: List[SimulatedCharacteristic]
-    """What is known of every characteristic, in the problem's order."""
+    """The results of every characteristic, in the problem's order."""
     command: str
     """The command that made the report."""
     correlation: List[Pair]
@@ -1389,7 +1383,7 @@ class SimulationResult(Result):
     evaluations: int
     """Points sent to the model, those sent again included."""
     evaluator: Optional[EvaluatorSummary]
-    """What became of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
     failed: int
     """Points that lost at least one characteristic."""
     in_model_s: float
@@ -1455,7 +1449,7 @@ class StandardErrors(Record):
 
 
 class SurfaceLaw(Record):
-    """What the law of the fitted surface says, as it is written."""
+    """The results of the surface distribution, as they are written."""
 
     branch: str
     """`exact`, `single` or `sampled`: how it is computed."""
@@ -1476,18 +1470,18 @@ class SurfaceLaw(Record):
 
 
 class SweepResult(Result):
-    """The report of a sweep, as `--json` prints it. What is unknown is null, never 0."""
+    """The report of a sweep, as `--json` prints it. Unknown values are null, never 0."""
 
     cached: int
     """Points whose answers were known from an earlier run."""
     characteristics: List[SweptCharacteristic]
-    """What was asked."""
+    """The results of every characteristic asked for."""
     command: str
     """The command that made the report."""
     evaluations: int
     """Points sent to the model, those sent again included."""
     evaluator: Optional[EvaluatorSummary]
-    """What became of the processes of an external model; None where no such model ran."""
+    """Starts, crashes and retries of the processes of an external model; None where no such model ran."""
     failed: int
     """Points that lost at least one characteristic."""
     in_model_s: float
@@ -1495,7 +1489,7 @@ class SweepResult(Result):
     method: Optional[str]
     """The method that was run; null where nothing was done."""
     parameter: Parameter
-    """What is swept."""
+    """The swept parameter."""
     retried: int
     """Points sent again: because an answer was a failure, or was not trusted."""
     schema: int
@@ -1572,11 +1566,11 @@ class SweptPoint(Record):
     yield_: Optional[float]
     """Share of assemblies within the limits."""
     yield_source: Optional[Literal['proof', 'samples', 'surface-law', 'pearson']]
-    """What it comes from; null without limits."""
+    """Its source; null without limits."""
 
 
 class VarianceShare(Record):
-    """What a dimension explains of the variance, by the model itself."""
+    """The part of the variance that a dimension explains, by the model itself."""
 
     dimension: str
     """The dimension."""
@@ -1657,7 +1651,7 @@ class WorstCase(Record):
     bounds_reached: Optional[bool]
     """Whether values next to both bounds exist."""
     evaluations: Optional[int]
-    """What the search evaluated; a point that serves several characteristics counts for each."""
+    """Evaluations of the search; a point that serves several characteristics counts for each."""
     extremes: Optional[List[float]]
     """Of the model itself, where they were searched."""
     linear: Optional[List[float]]

@@ -208,7 +208,7 @@ impl Curve {
 pub struct Offer {
     /// Its name, where several compete.
     pub process: Option<String>,
-    /// What it costs.
+    /// Its cost.
     pub curve: Curve,
     /// Least half band.
     pub min: f64,

@@ -32,7 +32,7 @@ impl Goal {
         }
     }
 
-    /// What may be spent.
+    /// The most that may be spent.
     pub(super) fn cost_limit(self) -> Option<f64> {
         match self {
             Self::LeastCost => None,

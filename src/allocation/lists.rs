@@ -11,7 +11,7 @@ type Moves = (f64, [(usize, usize); 2]);
 /// One option of a list.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ListOption {
-    /// What it costs.
+    /// Its cost.
     pub cost: f64,
     /// What it uses of every row, 0 or more.
     pub uses: Vec<f64>,

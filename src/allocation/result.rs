@@ -79,16 +79,16 @@ pub struct Allocated {
     pub before: f64,
     /// Half band after.
     pub after: f64,
-    /// What it cost; None where no process holds that tolerance.
+    /// Its cost before; None where no process holds that tolerance.
     pub cost_before: Option<f64>,
-    /// What it costs.
+    /// Its cost.
     pub cost_after: Option<f64>,
     /// The process, where several compete.
     pub process: Option<String>,
     /// The bound that it has met.
     #[serde(rename = "at_bound")]
     pub bound: Option<Bound>,
-    /// What it saves per unit by which that bound gives way, and all else stays; None within the bounds, and where that is not known.
+    /// The saving per unit by which that bound gives way, all else unchanged; None within the bounds, and where it is not known.
     pub bound_price: Option<f64>,
 }
 
@@ -126,7 +126,7 @@ pub struct Kept {
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "After"))]
     pub after: Option<Judged>,
-    /// What a sample of the model says of it there, of a worst case points in the box of the bands; None without one, and of rss, of which
+    /// The verdict of a sample of the model there, of a worst case by points in the box of the bands; None without one, and of rss, of which
     /// samples know nothing.
     #[serde(serialize_with = "sampled")]
     #[cfg_attr(feature = "cli", schemars(with = "Option<Sampled>"))]
@@ -165,9 +165,9 @@ pub struct ShadowPrice {
     pub characteristic: usize,
     /// Per unit by which both limits go outwards, or the only one; None where that is not what they cost inwards.
     pub both: Option<f64>,
-    /// What it saves per unit by which the limits go outwards, or a required sigma grows, and all else stays.
+    /// The saving per unit by which the limits go outwards, or a required sigma grows, all else unchanged.
     pub widen: Option<f64>,
-    /// What it costs per unit by which they go inwards.
+    /// The extra cost per unit by which they go inwards.
     pub narrow: Option<f64>,
     /// Per unit by which its lower limit goes down.
     pub lower: Option<f64>,
@@ -201,7 +201,7 @@ pub struct Attainable {
     pub because: Vec<String>,
 }
 
-/// What shows that nothing is cheaper.
+/// The evidence that nothing is cheaper.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
@@ -273,7 +273,7 @@ pub struct Allocation {
     /// What a requirement that holds the cost up costs; empty where everything is chosen from lists.
     #[serde(rename = "shadow_prices")]
     pub prices: Vec<ShadowPrice>,
-    /// What shows that nothing is cheaper.
+    /// The evidence that nothing is cheaper.
     pub proof: Proof,
     /// The requirement that cannot be kept.
     pub attainable: Option<Attainable>,
@@ -303,11 +303,11 @@ pub struct Allocation {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct FrontPoint {
-    /// What was required of every characteristic of which something is, in the order of the problem; of all together last.
+    /// The requirement of every characteristic that has one, in the order of the problem; of all together last.
     #[serde(serialize_with = "required")]
     #[cfg_attr(feature = "cli", schemars(with = "Vec<RequiredOf>"))]
     pub required: Vec<FrontRequirement>,
-    /// What that costs; None where it cannot be kept.
+    /// The cost of that; None where it cannot be kept.
     pub cost: Option<f64>,
     /// Half bands, in the order of [`Allocation::tolerances`].
     pub tolerances: Option<Vec<f64>>,

@@ -22,7 +22,7 @@ pub(super) const MOST: usize = 12;
 pub struct SetUp {
     /// The machine.
     pub machine: String,
-    /// What it costs.
+    /// Its cost.
     pub cost: f64,
 }
 

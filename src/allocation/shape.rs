@@ -10,7 +10,7 @@ use crate::verdict::{Judged, Verdict};
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct Before {
-    /// What there was.
+    /// The value before.
     before: Option<f64>,
     /// Whether it was kept; null where that is not known.
     met_before: Option<bool>,
@@ -28,7 +28,7 @@ impl From<&Judged> for Before {
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct After {
-    /// What there is.
+    /// The value found.
     after: Option<f64>,
     /// Within which that is known, an end null where there is none; null where it is not known at all.
     interval: Option<[Option<f64>; 2]>,
@@ -49,15 +49,15 @@ impl From<&Option<Judged>> for After {
     }
 }
 
-/// What a sample says of a requirement, as it is written.
+/// The verdict of a sample on a requirement, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct Sampled {
-    /// What the sample has.
+    /// The figure of the sample.
     value: Option<f64>,
     /// Within which that is known, three errors on either side; null where it is not known at all.
     interval: Option<[Option<f64>; 2]>,
-    /// What that says of the requirement.
+    /// The verdict on the requirement from that.
     verdict: Verdict,
 }
 
@@ -71,7 +71,7 @@ pub(super) fn sampled<S: Serializer>(of: &Option<Judged>, serializer: S) -> Resu
     of.as_ref().map(written).serialize(serializer)
 }
 
-/// What is required of a characteristic, as it is written.
+/// A requirement of a characteristic, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct RequiredOf<'r> {

@@ -28,7 +28,7 @@ pub struct AllocationTask {
     pub requirements: Vec<Option<Requirement>>,
     /// Where the costs come from.
     pub basis: CostBasis,
-    /// What is sought.
+    /// The objective.
     pub goal: Goal,
     /// What deviations and rejects cost.
     pub losses: Vec<QualityLoss>,
@@ -36,7 +36,7 @@ pub struct AllocationTask {
     pub setups: Vec<SetUp>,
 }
 
-/// What is sought.
+/// The objective.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -47,12 +47,12 @@ pub enum Goal {
     LeastCost,
     /// The greatest of the least Cpk of all characteristics with limits of which neither worst case nor sigma is required, for this cost.
     MostCpk {
-        /// What may be spent.
+        /// The most that may be spent.
         cost_limit: f64,
     },
     /// The fewest rejects of the one characteristic with limits, for this cost.
     FewestRejects {
-        /// What may be spent.
+        /// The most that may be spent.
         cost_limit: f64,
     },
 }
@@ -345,7 +345,7 @@ pub enum AllocateError {
         "to seek {what} for a cost takes costs and {of} with limits of which neither worst case nor sigma is required; there are {count}"
     )]
     NoGoal {
-        /// What is sought.
+        /// The objective.
         what: &'static str,
         /// Of how many.
         of: &'static str,

@@ -13,7 +13,7 @@ const NAMED: usize = 8;
 /// A curvature with a share of the variance below this is none, in every characteristic.
 const STRAIGHT: f64 = 1e-8;
 
-/// What `auto` found of the dimensions, and what its points went to. As text it is a sentence.
+/// The shapes that `auto` found for the dimensions, and the use of its points. As text it is a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]

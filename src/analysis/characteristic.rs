@@ -36,23 +36,23 @@ pub struct CharacteristicAnalysis {
     #[serde(flatten, serialize_with = "through::<Four<Option<f64>>, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "Four<Option<f64>>"))]
     pub moments: Option<Moments>,
-    /// What sampling the surrogate of correlated inputs leaves uncertain of them; None where they are exact.
+    /// Their uncertainty from sampling the surrogate of correlated inputs; None where they are exact.
     #[serde(rename = "surrogate_sampling")]
     pub sampled: Option<Sampled>,
     /// Points of the model that the moments rest on, in place of a surrogate that was not trusted.
     #[serde(rename = "model_sampling")]
     pub model_sampled: Option<SampledModel>,
-    /// What the model itself says of these results; None where they were not verified.
+    /// The verification of these results by the model itself; None where they were not verified.
     #[cfg_attr(feature = "cli", schemars(with = "Option<super::verified::VerificationShape>"))]
     pub verification: Option<Verification>,
-    /// What the law of its surface says; None where its moments follow from no surface.
+    /// The results of its surface distribution; None where its moments follow from no surface.
     #[cfg_attr(feature = "cli", schemars(with = "Option<super::surface_law::SurfaceLawShape>"))]
     pub surface_law: Option<SurfaceShares>,
     /// The density of that law as `[y, density, error]`, to be drawn; None unless [asked for](crate::Options::densities), and where the
     /// law has none.
     #[serde(skip)]
     pub density: Option<Vec<[f64; 3]>>,
-    /// What its yield comes from; None without a yield.
+    /// The source of its yield; None without a yield.
     pub yield_source: Option<YieldSource>,
     /// Whether planned points were not evaluated because the run was stopped: no verdict follows from the others.
     pub unfinished: bool,
@@ -111,7 +111,7 @@ pub struct CharacteristicAnalysis {
     pub sensitivities: Vec<Sensitivity>,
     /// The interactions examined, strongest first.
     pub interactions: Vec<Interaction>,
-    /// What the interactions make that are not listed one by one; None where all are.
+    /// The sum of the interactions that are not listed one by one; None where all are.
     pub interactions_remainder: Option<Remainder>,
     /// How many interactions it can have.
     pub possible_interactions: usize,
@@ -121,7 +121,7 @@ pub struct CharacteristicAnalysis {
     pub constant: bool,
 }
 
-/// What one dimension does to a characteristic.
+/// The effect of one dimension on a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -134,7 +134,7 @@ pub struct Sensitivity {
     pub second: Option<f64>,
     /// Whether both are exact rather than differences.
     pub exact: bool,
-    /// What a rounding error of the characteristic's own size may make of the two derivatives: at the steps taken, over a
+    /// The largest effect of a rounding error of the characteristic's own size on the two derivatives: at the steps taken, over a
     /// sigma where they are exact.
     pub rounding: Option<[f64; 2]>,
     /// Where the model was evaluated along it, off its mean and in its unit, ascending: the nodes that answered; empty where none
@@ -148,7 +148,7 @@ pub struct Sensitivity {
     pub mean_shift: Option<f64>,
 }
 
-/// What two dimensions do together.
+/// The joint effect of two dimensions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -161,7 +161,7 @@ pub struct Interaction {
     pub missing: Option<Missing>,
     /// Whether it is exact rather than a difference.
     pub exact: bool,
-    /// What rounding errors of the characteristic's own size may make of it.
+    /// The largest effect of rounding errors of the characteristic's own size on it.
     pub rounding: Option<f64>,
     /// Share of the variance.
     pub share: Option<f64>,

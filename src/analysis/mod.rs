@@ -78,7 +78,7 @@ pub struct Analysis {
     /// What it came to in points and time, and why it ended early; the seed, where one was given or random numbers were drawn.
     #[serde(flatten)]
     pub run: RunSummary,
-    /// What is known of every characteristic, in the problem's order.
+    /// The results of every characteristic, in the problem's order.
     #[cfg_attr(feature = "cli", schemars(with = "Vec<CharacteristicShape>"))]
     pub characteristics: Vec<CharacteristicAnalysis>,
     /// The share of assemblies that keep the limits of all characteristics at once, and its error; None with fewer than two that have
@@ -91,9 +91,9 @@ pub struct Analysis {
     /// How every two characteristics vary together; empty with one characteristic, and with more than 40.
     #[serde(rename = "characteristic_correlation")]
     pub correlations: Vec<OutputCorrelation>,
-    /// What `auto` found, and what its points went to; None for any other method.
+    /// The findings of `auto` and the use of its points; None for any other method.
     pub account: Option<Account>,
-    /// What the moments rest on.
+    /// The basis of the moments.
     #[serde(flatten, serialize_with = "through::<shape::BasisShape, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "shape::BasisShape"))]
     pub basis: Basis,

@@ -10,7 +10,7 @@ use crate::method::{Basis, DerivativeSource};
 pub(super) struct BasisShape {
     /// Where the derivatives that the moments rest on come from: `exact` or `difference`; null where they rest on none.
     derivatives: Option<&'static str>,
-    /// What the moments rest on.
+    /// The basis of the moments.
     basis: Basis,
 }
 

@@ -307,7 +307,7 @@ fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
     found.try_into().ok().filter(|_| known)
 }
 
-/// What the law of the fitted surface says, as it is written.
+/// The results of the surface distribution, as they are written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct SurfaceLawShape {

@@ -61,7 +61,7 @@ pub struct Verification {
     pub replaced: bool,
 }
 
-/// What a dimension explains of the variance, by the model itself.
+/// The part of the variance that a dimension explains, by the model itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]

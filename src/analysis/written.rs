@@ -59,7 +59,7 @@ struct WorstCase<'r> {
     bounds: Option<[f64; 2]>,
     /// Whether values next to both bounds exist.
     bounds_reached: Option<bool>,
-    /// What the search evaluated; a point that serves several characteristics counts for each.
+    /// Evaluations of the search; a point that serves several characteristics counts for each.
     evaluations: Option<usize>,
 }
 

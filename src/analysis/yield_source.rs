@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What a yield comes from, best first.
+/// The sources of a yield, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]

@@ -155,7 +155,7 @@ pub(super) struct AnalyzeArgs {
     pub(super) points: Option<PathBuf>,
 
     /// Write the points of the next stage that have no answer in the file of --points, as plan --write-points does
-    #[arg(long, value_name = "FILE.csv", requires = "points", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.csv", requires = "points", help_heading = OUTPUT, hide_short_help = true)]
     pub(super) write_missing: Option<PathBuf>,
 
     /// Verify every figure by the model itself: a sample of a cheap model, or at most N check points of an external one, 12 unless said
@@ -192,11 +192,11 @@ pub(super) struct AnalyzeArgs {
     pub(super) check: bool,
 
     /// Seed of random numbers, for the methods that draw some; kept in the report
-    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, hide_short_help = true)]
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     pub(super) threads: Option<u16>,
 
     #[command(flatten)]
@@ -326,7 +326,7 @@ pub(super) struct SweepArgs {
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     pub(super) threads: Option<u16>,
 
     /// Write the report as one HTML page
@@ -385,11 +385,11 @@ pub(super) struct AllocateArgs {
     pub(super) work: WorkArgs,
 
     /// Seed of what is drawn [default: that of the study, or 1]
-    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole, allow_negative_numbers = true, hide_short_help = true)]
     pub(super) seed: Option<u64>,
 
     /// Threads that evaluate formulas and built-in models [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), hide_short_help = true)]
     pub(super) threads: Option<u16>,
 
     /// Write the study with the tolerances found, otherwise as it is
@@ -405,7 +405,7 @@ pub(super) struct AllocateArgs {
     pub(super) csv: Option<PathBuf>,
 
     /// Draw the front
-    #[arg(long, value_name = "FILE.svg", help_heading = OUTPUT)]
+    #[arg(long, value_name = "FILE.svg", help_heading = OUTPUT, hide_short_help = true)]
     pub(super) svg: Option<PathBuf>,
 
     #[command(flatten)]

@@ -17,7 +17,7 @@ use crate::document::terminal::text;
 use crate::document::{Blocks, Document};
 use crate::journal::{KnownModel, Store, StoredAnswer};
 
-/// What `journal show --json` prints of one model.
+/// The report of `journal show --json` on one model.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "JournalReport")]
 pub(super) struct ModelReport {

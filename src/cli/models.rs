@@ -11,7 +11,7 @@ use crate::document::terminal::text;
 use crate::document::{Blocks, Cell, DataTable, Document, Section};
 use crate::models::{ALL, Model};
 
-/// What `models --json` prints of one model.
+/// The report of `models --json` on one model.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct ModelReport {
     name: &'static str,

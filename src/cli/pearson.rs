@@ -9,7 +9,7 @@ use super::output::{Destination, Look, json};
 use crate::pearson::Pearson;
 use crate::report::law_text;
 
-/// What was asked, in the order in which it was.
+/// The answers, in the order of the questions.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct Answers {
     #[serde(rename = "type")]

@@ -20,7 +20,7 @@ use crate::study::Externals;
 use crate::verification::MOST_CHECKS;
 use crate::warning::Warning;
 
-/// What `plan --json` prints.
+/// The report of `plan --json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct PlanReport {
     schema: u32,
@@ -32,7 +32,7 @@ pub(super) struct PlanReport {
     evaluations: usize,
     /// Evaluations where the program sends derivatives (`"gradients":true`); null where these save none, and for formulas.
     with_gradients: Option<usize>,
-    /// What the surface is fitted over, where many dimensions drive few inputs of the program; null where it is the dimensions.
+    /// The inputs over which the surface is fitted, where many dimensions drive few inputs of the program; null where these are the dimensions.
     fitted_over: Option<FittedOver>,
     /// The fewest and the most, of a method that chooses as it goes.
     range: Option<[usize; 2]>,
@@ -44,7 +44,7 @@ pub(super) struct PlanReport {
     /// The check points that verify it in the end, placed by the answers, at most; null where the model is sampled instead, and 0
     /// where nothing is verified.
     checks: Option<usize>,
-    /// Whether a search of the extremes follows, whose points nobody knows beforehand.
+    /// Whether a search of the extremes follows, whose points are not known beforehand.
     extremes: bool,
     dimensions: Vec<AxisReport>,
 }

@@ -19,7 +19,7 @@ use crate::probe::{Finding, Probe, evaluations, probe};
 use crate::study::Externals;
 use crate::summary::RunSummary;
 
-/// What `probe --json` prints.
+/// The report of `probe --json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct ProbeReport {
     schema: u32,

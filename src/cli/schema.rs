@@ -44,6 +44,8 @@ fn reports() -> Value {
     definitions.extend(commands.map(|(name, schema)| (name.to_owned(), schema)));
     let mut schema = value!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
+        // A name, not an address: reports of other versions have other schemas, and none is fetched.
+        "$id": format!("urn:sensitol:report:{SCHEMA}"),
         "title": format!("Reports of sensitol, schema {SCHEMA}"),
         "anyOf": all,
         "$defs": definitions,

@@ -39,15 +39,15 @@ pub(super) struct HowArgs {
     pub(super) accuracy: Option<f64>,
 
     /// Wanted error of the skewness, for auto
-    #[arg(long, value_name = "E", value_parser = positive)]
+    #[arg(long, value_name = "E", value_parser = positive, hide_short_help = true)]
     pub(super) accuracy_skewness: Option<f64>,
 
     /// Wanted error of the kurtosis, for auto
-    #[arg(long, value_name = "E", value_parser = positive)]
+    #[arg(long, value_name = "E", value_parser = positive, hide_short_help = true)]
     pub(super) accuracy_kurtosis: Option<f64>,
 
     /// Wanted error of the yield, a share such as 1e-5, for auto
-    #[arg(long, value_name = "E", value_parser = part, allow_negative_numbers = true)]
+    #[arg(long, value_name = "E", value_parser = part, allow_negative_numbers = true, hide_short_help = true)]
     pub(super) accuracy_yield: Option<f64>,
 
     /// Most evaluations that may be spent; without it a method that needs more than 1000000 is refused
@@ -55,27 +55,27 @@ pub(super) struct HowArgs {
     pub(super) budget: Option<usize>,
 
     /// Evaluate at K sigma on either side instead of at the nodes that suit each distribution
-    #[arg(long, value_name = "K", value_parser = positive)]
+    #[arg(long, value_name = "K", value_parser = positive, hide_short_help = true)]
     pub(super) step: Option<f64>,
 
     /// The interactions that six-n examines: strongest, adjacent, or A:B,C:D (names with : or , in backquotes)
-    #[arg(long, value_name = "PAIRS")]
+    #[arg(long, value_name = "PAIRS", hide_short_help = true)]
     pub(super) pairs: Option<String>,
 
     /// How six-n evaluates an interaction: two-point, or four-point as the papers do
-    #[arg(long, value_name = "STENCIL")]
+    #[arg(long, value_name = "STENCIL", hide_short_help = true)]
     pub(super) stencil: Option<StencilArg>,
 
     /// Nodes of the quadrature rules of dimension-reduction, univariate or bivariate: 3, 5 or 7 [default: 5]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", hide_short_help = true)]
     pub(super) nodes: Option<usize>,
 
     /// Sensitivities of varying dimensions, or of all: two evaluations each for those without tolerance
-    #[arg(long, value_name = "WHICH")]
+    #[arg(long, value_name = "WHICH", hide_short_help = true)]
     pub(super) sensitivities: Option<SensitivitiesArg>,
 
     /// Where derivatives come from [default: exact sensitivities where formulas give them, moments by differences]
-    #[arg(long, value_name = "SOURCE")]
+    #[arg(long, value_name = "SOURCE", hide_short_help = true)]
     pub(super) derivatives: Option<DerivativesArg>,
 }
 

@@ -37,11 +37,11 @@ pub struct ErrorEstimate {
     /// Of the share within the limits.
     #[serde(rename = "yield")]
     pub yield_: Option<f64>,
-    /// What it rests on.
+    /// Its basis.
     pub sources: Vec<ErrorSource>,
 }
 
-/// What an estimate rests on.
+/// The basis of an estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -59,7 +59,7 @@ pub enum ErrorSource {
     },
     /// Powers beyond the second, from exact derivatives.
     Taylor,
-    /// What curvature would add to a first-order method.
+    /// The effect of curvature that a first-order method leaves out.
     Curvature,
     /// Interactions that were not examined, from exact derivatives.
     ExactPairs {

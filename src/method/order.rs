@@ -9,7 +9,7 @@ pub enum Order {
     Second,
 }
 
-/// What the moments rest on.
+/// The basis of the moments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]

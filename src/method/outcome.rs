@@ -18,7 +18,7 @@ pub struct Outcome {
     pub asked: Method,
     /// The method that was run.
     pub method: Method,
-    /// What the moments rest on.
+    /// The basis of the moments.
     pub basis: Basis,
     /// What it planned.
     pub plan: Arc<dyn Plan>,
@@ -124,7 +124,7 @@ pub struct Residual {
     /// than coefficients.
     #[serde(rename = "residual_standard_error")]
     pub standard_error: Option<f64>,
-    /// What that leaves uncertain of the mean, as a standard error; None where it is unknown or inputs are correlated.
+    /// The standard error of the mean from that; None where it is unknown or inputs are correlated.
     #[serde(rename = "mean_standard_error")]
     pub mean: Option<f64>,
     /// The same of sigma.

@@ -139,7 +139,7 @@ pub struct RareEvents {
     /// Whether that share reaches the target for all characteristics at once; None without such a target.
     #[cfg_attr(feature = "cli", schemars(with = "Option<crate::verdict::JudgedShape>"))]
     pub joint_requirement: Option<Judged>,
-    /// What is known of every characteristic, in the problem's order.
+    /// The results of every characteristic, in the problem's order.
     #[cfg_attr(feature = "cli", schemars(with = "Vec<RareShape>"))]
     pub characteristics: Vec<RareCharacteristic>,
     /// Where the estimates rest on little, and where points have no value.

@@ -16,9 +16,9 @@ pub(crate) struct RareShape<'r> {
     #[serde(flatten, serialize_with = "RareCharacteristic::serialize")]
     #[cfg_attr(feature = "cli", schemars(with = "RareCharacteristic"))]
     own: &'r RareCharacteristic,
-    /// What lies below the lower limit; null without one.
+    /// Rejects below the lower limit; null without one.
     below: Option<BeyondShape<'r>>,
-    /// What lies above the upper limit; null without one.
+    /// Rejects above the upper limit; null without one.
     above: Option<BeyondShape<'r>>,
     /// Whether the interval of the yield lies above the target (true), below (false), or around it (null).
     met: Option<bool>,
@@ -29,7 +29,7 @@ pub(crate) struct RareShape<'r> {
     requirements: Vec<Judged>,
 }
 
-/// What lies beyond one limit, as it is written.
+/// Rejects beyond one limit, as they are written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 struct BeyondShape<'r> {

@@ -20,7 +20,7 @@ use crate::simulation::SimulatedShape;
 use crate::summary::RunSummary;
 use crate::warning::Warning;
 
-/// What an allocation found out. What is unknown is null, never 0.
+/// The report of an allocation. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct AllocationReport {
@@ -43,13 +43,13 @@ pub struct AllocationReport {
     pub(crate) cost_before: Option<f64>,
     /// All costs after.
     pub(crate) cost_after: Option<f64>,
-    /// What of them is quality loss and scrap; null without losses.
+    /// The part of them that is quality loss and scrap; null without losses.
     pub(crate) loss: BeforeAfter<Option<f64>>,
-    /// What the cheapest tolerances cost that are not rounded to steps or standard grades; null without such rounding.
+    /// The cost of the cheapest tolerances without rounding to steps or standard grades; null without such rounding.
     pub(crate) cost_unrounded: Option<f64>,
     /// The machines that the processes need, and what it costs to set them up, which is part of the cost.
     pub(crate) setups: Vec<SetUp>,
-    /// What was sought, and what may be spent on it.
+    /// The objective, and the most that may be spent on it.
     pub(crate) goal: Goal,
     /// Where the costs come from: given, or relative to the tolerance unit of ISO 286.
     pub(crate) cost_basis: CostBasis,
@@ -61,11 +61,11 @@ pub struct AllocationReport {
     pub(crate) requirements: Vec<OfCharacteristic<Kept>>,
     /// The joint yield that is required of all characteristics with limits; null where none is.
     pub(crate) joint_requirement: Option<JointKept>,
-    /// What limits and required sigmas cost.
+    /// Shadow prices of limits and required sigmas.
     pub(crate) shadow_prices: Vec<OfCharacteristic<ShadowPrice>>,
     /// The requirement that cannot be kept, and the best that can be had.
     pub(crate) attainable: Option<OfCharacteristic<Attainable>>,
-    /// What shows that nothing is cheaper.
+    /// The evidence that nothing is cheaper.
     #[cfg_attr(feature = "cli", schemars(with = "ProofShape"))]
     pub(crate) proof: Proof,
     /// By which one factor all tolerances may be multiplied until some requirement is just kept.

@@ -16,7 +16,7 @@ use crate::verdict::Verdict;
 #[cfg(feature = "cli")]
 use crate::{compare::ErrorShape, simulation::SimulatedShape};
 
-/// The report of a comparison, as `--json` prints it. What is unknown is null, never 0.
+/// The report of a comparison, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CompareReport {
@@ -30,7 +30,7 @@ pub struct CompareReport {
     pub(crate) reference_samples: u64,
     /// How they were drawn.
     pub(crate) reference_method: &'static str,
-    /// What was asked.
+    /// The results of every characteristic asked for.
     pub(crate) characteristics: Vec<ComparedReport>,
     /// Methods that were not run, and why.
     pub(crate) not_run: Vec<NotRun>,
@@ -42,7 +42,7 @@ pub struct CompareReport {
 pub(crate) struct ComparedReport {
     /// Its name.
     pub(crate) name: String,
-    /// What the methods are measured by.
+    /// The reference for all methods.
     #[cfg_attr(feature = "cli", schemars(with = "SimulatedShape"))]
     pub(crate) reference: SimulatedCharacteristic,
     /// The methods, fewest evaluations first.
@@ -59,7 +59,7 @@ pub(crate) struct MethodReport {
     pub(crate) evaluations: u64,
     /// Those of them that were known already.
     pub(crate) cached: u64,
-    /// What its run came to by itself.
+    /// The cost of its run by itself.
     pub(crate) run: RunSummary,
     /// Seconds within the model.
     pub(crate) evaluation_s: f64,
@@ -73,7 +73,7 @@ pub(crate) struct MethodReport {
     pub(crate) error_vs_reference: Errors,
     /// Whether no other method has a smaller error for as many evaluations or fewer.
     pub(crate) pareto: bool,
-    /// What it says of the target yield; null without one.
+    /// Its verdict on the target yield; null without one.
     pub(crate) verdict: Option<Verdict>,
 }
 

@@ -58,7 +58,7 @@ use crate::warning::{Advice, Warning};
 /// The version of the JSON report's shape.
 pub const SCHEMA: u32 = 2;
 
-/// The report of an analysis, as `--json` prints it. What is unknown is null, never 0.
+/// The report of an analysis, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Report {
@@ -103,7 +103,7 @@ pub struct DimensionReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(crate) struct WarningReport {
-    /// What kind.
+    /// The kind.
     pub(crate) code: &'static str,
     /// The characteristic concerned.
     pub(crate) characteristic: Option<String>,
@@ -113,7 +113,7 @@ pub(crate) struct WarningReport {
     pub(crate) message: String,
     /// The fields of the warning.
     pub(crate) data: serde_json::Map<String, serde_json::Value>,
-    /// What to do, the most promising first.
+    /// Remedies, the most promising first.
     pub(crate) advice: Vec<Advice>,
     /// Of a sweep, the values of the parameter at which it is so.
     #[serde(skip_serializing_if = "Vec::is_empty")]

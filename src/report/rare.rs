@@ -14,7 +14,7 @@ use crate::problem::Problem;
 use crate::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
 use crate::sampling::Estimate;
 
-/// The report of rare events, as `--json` prints it. What is unknown is null, never 0.
+/// The report of rare events, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RareReport {

@@ -18,7 +18,7 @@ use crate::problem::Problem;
 use crate::sampling::{Estimate, one_error};
 use crate::simulation::{SimulatedCharacteristic, Simulation, YieldEstimate};
 
-/// The report of a simulation, as `--json` prints it. What is unknown is null, never 0.
+/// The report of a simulation, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SimulationReport {

@@ -20,21 +20,21 @@ use crate::summary::RunSummary;
 use crate::sweep::Sweep;
 use crate::verdict::{Judged, Verdict};
 
-/// The report of a sweep, as `--json` prints it. What is unknown is null, never 0.
+/// The report of a sweep, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SweepReport {
     /// What every report begins with.
     #[serde(flatten)]
     pub(crate) head: Head,
-    /// What is swept.
+    /// The swept parameter.
     pub(crate) parameter: ParameterReport,
     /// The method that was run; null where nothing was done.
     pub(crate) method: Option<&'static str>,
     /// What it came to in points and time, and why it ended early.
     #[serde(flatten)]
     pub(crate) run: RunSummary,
-    /// What was asked.
+    /// The results of every characteristic asked for.
     pub(crate) characteristics: Vec<SweptReport>,
     /// Where an assumption fails, each once, with the values at which it does.
     pub(crate) warnings: Vec<WarningReport>,
@@ -95,7 +95,7 @@ pub(crate) struct SweptPointReport {
     /// Share of assemblies within the limits.
     #[serde(rename = "yield")]
     pub(crate) yield_: Option<f64>,
-    /// What it comes from; null without limits.
+    /// Its source; null without limits.
     pub(crate) yield_source: Option<YieldSource>,
     /// Rejected below the lower limit, in parts per million.
     pub(crate) ppm_below: Option<f64>,

@@ -176,7 +176,7 @@ pub struct Simulation {
     /// How every two characteristics vary together; empty with one characteristic, and with more than 40.
     #[serde(rename = "characteristic_correlation")]
     pub correlations: Vec<OutputCorrelation>,
-    /// What is known of every characteristic, in the problem's order.
+    /// The results of every characteristic, in the problem's order.
     #[cfg_attr(feature = "cli", schemars(with = "Vec<SimulatedShape>"))]
     pub characteristics: Vec<SimulatedCharacteristic>,
     /// Where points have no value, and where the model contradicted itself.

@@ -25,7 +25,7 @@ pub(super) fn value<S: Serializer>(estimate: &Option<Estimate>, serializer: S) -
     estimate.map(|estimate| estimate.value).serialize(serializer)
 }
 
-/// What a surrogate as control variate has done, as it is written.
+/// The effect of a surrogate as control variate, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct ControlShape {

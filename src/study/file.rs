@@ -51,9 +51,9 @@ pub(super) struct StudyFile {
     /// Where editors find the schema; it means nothing here.
     #[serde(rename = "$schema")]
     pub(super) _schema: Option<String>,
-    /// What the study is about, in one line.
+    /// The subject of the study, in one line.
     pub(super) title: Option<String>,
-    /// What the title block of pages says: part, drawing, revision, author, a note.
+    /// The title block of pages: part, drawing, revision, author, a note.
     #[serde(default)]
     pub(super) about: AboutEntry,
     /// How units are held: labels (not at all), warn, check (units that do not go together are errors) or convert (every name times its
@@ -71,7 +71,7 @@ pub(super) struct StudyFile {
     /// constants pi and deg = pi/180; angles are radians; a name with other characters than letters, digits and _ stands in backquotes.
     #[serde(default)]
     pub(super) formulas: Entries<FormulaEntry>,
-    /// What equations and loops determine: where the search for each begins.
+    /// Values that equations and loops determine, each with the start of its search.
     #[serde(default)]
     pub(super) unknowns: Entries<UnknownEntry>,
     /// Formulas that are 0 in the assembled state.
@@ -83,14 +83,14 @@ pub(super) struct StudyFile {
     /// The key characteristics: what is asked.
     #[serde(default)]
     pub(super) characteristics: Entries<CharacteristicEntry>,
-    /// What the tolerances of dimensions cost, for `sensitol allocate`; dimensions without a cost keep theirs. A band opens and
+    /// The cost of tolerances, for `sensitol allocate`; dimensions without a cost keep their tolerance. A band opens and
     /// closes about its middle, so that no mean moves because a tolerance does.
     #[serde(default)]
     pub(super) costs: Entries<CostEntry>,
-    /// What machines cost to set up, by name: paid once for all dimensions whose processes need them.
+    /// The cost to set up each machine, by name: paid once for all dimensions whose processes need it.
     #[serde(default)]
     pub(super) setup: Entries<f64>,
-    /// What deviations and rejects of characteristics cost, which `sensitol allocate` adds to the tolerances' cost, per assembly.
+    /// The cost of deviations and rejects per assembly, which `sensitol allocate` adds to that of the tolerances.
     #[serde(default)]
     pub(super) loss: Entries<LossEntry>,
     /// Pairs of dimensions that vary together.
@@ -104,7 +104,7 @@ pub(super) struct StudyFile {
     #[serde(default, rename = "configurations")]
     #[cfg_attr(feature = "cli", schemars(schema_with = "registry::configurations"))]
     pub(super) _configurations: Option<IgnoredAny>,
-    /// What is evaluated beside formulas: a built-in model or an external program.
+    /// A built-in model or an external program, evaluated next to the formulas.
     pub(super) model: Option<Spanned<ModelEntry>>,
     /// How the study is analysed; flags of the command line win.
     #[serde(default)]
@@ -129,7 +129,7 @@ pub(super) struct DimensionEntry {
     pub(super) limits: Option<Spanned<[f64; 2]>>,
     /// A tolerance class of ISO 286, H7 or g6, in place of a tolerance; the unit must be mm.
     pub(super) fit: Option<Spanned<String>>,
-    /// What it is measured from: a dimension or formula, or several that are added; of a position another position. Its nominal is
+    /// The origin of its measurement: a dimension or formula, or several that are added; of a position another position. Its nominal is
     /// then the distance.
     #[serde(default, rename = "from")]
     #[cfg_attr(feature = "cli", schemars(schema_with = "registry::names"))]
@@ -164,7 +164,7 @@ pub(super) struct DimensionEntry {
     /// The column with the number of the part: rows of several files with the same one belong together.
     #[serde(rename = "match")]
     pub(super) serial: Option<Spanned<String>>,
-    /// What is made of measured values: empirical, each with the same probability, or the pearson law with their moments.
+    /// The distribution made from measured values: `empirical`, each with the same probability, or `pearson`, by their four moments.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::measured_models(), "default" = registry::measured_models()[0])))]
     pub(super) model: Option<Spanned<String>>,
     /// Evaluation step in sigmas, in place of the nodes that suit the distribution.
@@ -318,7 +318,7 @@ pub(super) struct CharacteristicEntry {
     pub(super) upper: Option<Spanned<f64>>,
     /// The share of assemblies that must keep the limits, between 0 and 1; what --check looks at, and what allocate keeps.
     pub(super) target_yield: Option<Spanned<f64>>,
-    /// What it must keep, for allocate in place of its target_yield, for --check beside it: worst case, rss, or a number.
+    /// A requirement, for allocate in place of its target_yield, for --check in addition to it: worst case, rss, or a number.
     pub(super) require: Option<Spanned<RequireEntry>>,
 }
 

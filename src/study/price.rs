@@ -70,7 +70,7 @@ pub(super) struct ProcessEntry {
     pub(super) name: Spanned<String>,
     /// The half band that it holds.
     pub(super) tolerance: Option<Spanned<f64>>,
-    /// What a part costs.
+    /// The cost of a part.
     pub(super) cost: Option<Spanned<f64>>,
     /// The machine that it needs: its cost in [setup] is paid once for all dimensions that need it.
     pub(super) machine: Option<Spanned<String>>,

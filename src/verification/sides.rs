@@ -39,7 +39,7 @@ const NEAR: [f64; 2] = [1e-5, 1e-4];
 /// So many sigmas off the mean beside a border, a value grows without bound.
 const WITHOUT_BOUND: f64 = 1e6;
 
-/// What an output does at a switch, as its values show it.
+/// The behaviour of an output at a switch, by its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -64,7 +64,7 @@ pub struct FoundSwitch {
     pub switch: Switch,
     /// The part of the formula that does it, as it is written there.
     pub name: String,
-    /// What the output does there.
+    /// The behaviour of the output there.
     #[serde(rename = "kind")]
     pub crossing: Crossing,
     /// The probability of its smaller side.

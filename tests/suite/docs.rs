@@ -10,6 +10,7 @@ use sensitol::simulation::{SimulationOptions, simulate};
 use sensitol::{Method, Options, Study, Warning, analyze};
 
 use super::reference;
+use super::report_reference;
 use super::support::{INSTALLED, data, repository};
 
 /// Console blocks of the README, the documents and every example, run from the repository's root; none leaves anything out.
@@ -75,6 +76,12 @@ fn the_reference_of_study_files_is_generated() {
 #[test]
 fn the_reference_of_commands_is_generated() {
     page("docs/reference/commands.md", "the_reference_of_commands_is_generated", &reference::commands());
+}
+
+/// Every key of a report, from its schema.
+#[test]
+fn the_reference_of_reports_is_generated() {
+    page("docs/reference/json-report.md", "the_reference_of_reports_is_generated", &report_reference::json_report());
 }
 
 /// A document is what was generated now.
@@ -242,7 +249,7 @@ fn every_example_is_described() {
 }
 
 /// Every document of the repository, by its path in it.
-fn documents() -> Vec<String> {
+pub fn documents() -> Vec<String> {
     let examples = std::fs::read_dir(repository("examples")).unwrap();
     let of_example = |folder: std::io::Result<std::fs::DirEntry>| {
         format!("examples/{}/README.md", folder.unwrap().file_name().into_string().unwrap())
@@ -253,6 +260,8 @@ fn documents() -> Vec<String> {
         "CHANGELOG.md",
         "SECURITY.md",
         "benches/README.md",
+        "benches/python.md",
+        "python/README.md",
         "adapters/PROTOCOL.md",
         "adapters/python/README.md",
         "adapters/freecad/README.md",

@@ -56,7 +56,7 @@ fn the_tutorial_reads_its_output_right() {
     says(TUTORIAL, &format!("- Yield {:.3} %, target missed.", 100.0 * of("yield")));
     let both = format!("would say {normal:.2} %, a Pearson distribution with the same four moments {fit:.3} %:");
     says(TUTORIAL, &format!("{both} kurtosis {:.2} instead of 3", of("kurtosis")));
-    let [low, high] = [0, 1].map(|end| number(&gap["worst_case"]["linear"][end]));
+    let [low, high] = [0, 1].map(|end| number(&gap["worst_case"]["bounds"][end]));
     says(TUTORIAL, &format!("- Worst case {low:.3} .. {high:.3}:"));
     let bearing = gap["sensitivities"].as_array().unwrap().iter().find(|row| row["dimension"] == "bearing").unwrap();
     let share = 100.0 * number(&bearing["linear_share"]);

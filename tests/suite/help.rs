@@ -39,6 +39,24 @@ fn every_command_has_help() {
     insta::assert_snapshot!("help-of-journal", run(&["journal", "--help"]));
 }
 
+/// `-h` has the options of every day and fits a window; `--help` has all of them, with more to say.
+#[test]
+fn short_help_fits_a_window() {
+    for words in commands() {
+        let [short, long] = ["-h", "--help"].map(|flag| {
+            let arguments: Vec<&str> = words.iter().map(String::as_str).chain([flag]).collect();
+            let output = sensitol(&arguments).env("COLUMNS", "100").output().unwrap();
+            String::from_utf8(output.stdout).unwrap().lines().count()
+        });
+        // The lines of a terminal that takes the height of a common screen.
+        assert!(short <= 60, "{words:?}: {short} lines");
+        assert!(short < long || long <= 60, "{words:?}: {short} lines and {long}");
+    }
+    let short = run(&["analyze", "-h"]);
+    assert!(short.contains("--accuracy <R>") && !short.contains("--accuracy-skewness"), "{short}");
+    assert!(short.contains("see more with '--help'"), "{short}");
+}
+
 /// One mistake that is likely with each command: exit code 2, nothing on stdout.
 #[test]
 fn every_command_refuses_what_is_wrong() {

@@ -23,6 +23,7 @@ fn every_report_keeps_its_schema() {
     const ENGINE: &str = "examples/engine-balance/allocate.toml";
     const HOUSING: &str = "examples/shaft-and-housing/worst-case.toml";
     let schema = printed(&["schema", "--report"]);
+    assert_eq!(schema["$id"], format!("urn:sensitol:report:{}", sensitol::report::SCHEMA));
     let cases: [(&str, &[&str]); 17] = [
         ("analyze", &["analyze", GAP, "--json"]),
         ("analyze", &["analyze", GAP, "--json", "--extremes", "-m", "six-n"]),
