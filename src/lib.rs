@@ -96,6 +96,7 @@ mod error;
 mod evaluation;
 mod extremes;
 pub mod fits;
+pub mod inspection;
 #[doc(hidden)]
 pub mod internals;
 #[cfg(feature = "journal")]

@@ -48,7 +48,7 @@ pub(super) enum Command {
     Analyze(AnalyzeArgs),
     /// Monte Carlo: the model itself at random or quasi-random points, with standard errors
     #[command(
-        after_help = "Examples:\n  sensitol simulate examples/engine-balance/study.toml --samples 1000000\n  sensitol simulate examples/first-study/study.toml --rare"
+        after_help = "Examples:\n  sensitol simulate examples/engine-balance/study.toml --samples 1000000\n  sensitol simulate examples/first-study/study.toml --rare\n  sensitol simulate examples/ishigami/study.toml --sobol"
     )]
     Simulate(SimulateArgs),
     /// The trade of speed for accuracy: every method that fits, against a reference
@@ -245,6 +245,14 @@ pub(super) struct SimulateArgs {
     /// Sample only what the surrogate of an analysis leaves unexplained (control variate): the same standard errors with fewer points
     #[arg(long = "control-variate", alias = "surrogate-control")]
     pub(super) surrogate_control: bool,
+
+    /// Sobol' indices of every input too, by exchanging inputs: n (N + 2) evaluations more for N inputs, with n = --samples [default: 16384]
+    #[arg(long, conflicts_with = "rare")]
+    pub(super) sobol: bool,
+
+    /// Most evaluations of --sobol [default: 10000 of an external model]
+    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true, requires = "sobol")]
+    pub(super) budget: Option<u64>,
 
     /// The probability beyond each limit, small or not, by importance sampling that is placed with the surrogate
     #[arg(long, conflicts_with_all = ["surrogate_control", "until_yield", "sampler"])]

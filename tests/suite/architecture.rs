@@ -30,7 +30,7 @@ const LAYERS: &[&[&str]] = &[
     &["warning"],
     &["correlation"],
     &["dimension", "characteristic"],
-    &["distribution", "fits", "requirement"],
+    &["distribution", "fits", "requirement", "inspection"],
     &["pearson", "method_kind"],
     &["names", "elementary", "summary", "time", "unit"],
     &["shape"],

@@ -39,6 +39,7 @@ mod hostile;
 mod html;
 mod implicit;
 mod init;
+mod inspection;
 mod intervals;
 mod joint;
 mod journal;
@@ -70,6 +71,7 @@ mod sampling;
 mod schema;
 mod several;
 mod simulation;
+mod sobol;
 mod stack;
 #[cfg(unix)]
 mod storm;
