@@ -123,6 +123,8 @@ pub mod study;
 mod summary;
 mod surrogate;
 pub mod sweep;
+#[cfg(feature = "study")]
+mod table;
 mod time;
 #[cfg_attr(not(feature = "study"), allow(dead_code))]
 mod unit;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
+use super::import::ImportArgs;
 use super::shared_args::OUTPUT;
 pub(super) use super::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 pub(super) use super::values::{
@@ -91,6 +92,14 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml\n  sensitol init balance --model engine-balance"
     )]
     Init(InitArgs),
+    /// Makes a study of a stack-up table: one row a dimension, in English or German
+    ///
+    /// A row names the columns: name and nominal, and as far as there are direction or factor, tolerance or upper and lower deviation,
+    /// unit, distribution, part, description. Numbers have decimal points or commas.
+    #[command(
+        after_help = "Examples:\n  sensitol import stack.csv -o stack.toml\n  sensitol import stack.csv --column nominal=Wert --name play"
+    )]
+    Import(ImportArgs),
     /// Writes a page that edits and analyses studies in a browser, offline
     ///
     /// The page holds the engine: it opens from disk and sends nothing anywhere. It is not part of every build: web/build makes it, and

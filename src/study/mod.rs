@@ -52,6 +52,8 @@ mod files;
 mod grades;
 mod guard;
 mod implicit;
+#[cfg(feature = "cli")]
+pub(crate) mod import;
 mod inspected;
 mod joint;
 mod lines;

@@ -32,7 +32,7 @@ const LAYERS: &[&[&str]] = &[
     &["dimension", "characteristic"],
     &["distribution", "fits", "requirement", "inspection"],
     &["pearson", "method_kind"],
-    &["names", "elementary", "summary", "time", "unit"],
+    &["names", "elementary", "summary", "time", "unit", "table"],
     &["shape"],
 ];
 

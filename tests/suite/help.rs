@@ -53,6 +53,7 @@ fn every_command_refuses_what_is_wrong() {
         &["models", "rocket"],
         &["expand", "nowhere.toml"],
         &["init", "no-such-folder/gap"],
+        &["import", "no-such.csv"],
         &["workbench", "nowhere.toml"],
         &["schema", "-o", "/nowhere/study.schema.json"],
         &["pearson", "--skewness", "1", "--kurtosis", "1.9"],

@@ -38,6 +38,7 @@ mod hosted;
 mod hostile;
 mod html;
 mod implicit;
+mod import;
 mod init;
 mod inspection;
 mod intervals;
