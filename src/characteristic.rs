@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::inspection::{Inspection, InspectionError};
 use crate::requirement::{Requirement, RequirementError};
 
 /// A key characteristic: its name, its unit, and the limits it should keep.
@@ -26,12 +27,22 @@ pub struct Characteristic {
     // What is required stands in results, with what there is of it.
     #[serde(skip)]
     requirement: Option<Requirement>,
+    // Stands in results with what it does.
+    #[serde(skip)]
+    inspection: Option<Inspection>,
 }
 
 impl Characteristic {
     /// Without unit, limits or target.
     pub fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), unit: None, limits: SpecLimits::default(), target_yield: None, requirement: None }
+        Self {
+            name: name.into(),
+            unit: None,
+            limits: SpecLimits::default(),
+            target_yield: None,
+            requirement: None,
+            inspection: None,
+        }
     }
 
     /// Under another name.
@@ -76,6 +87,20 @@ impl Characteristic {
     pub fn with_requirement(mut self, requirement: Requirement) -> Result<Self, RequirementError> {
         self.requirement = Some(requirement.checked(self.limits.exist())?);
         Ok(self)
+    }
+
+    /// With a gauge by which its limits are inspected.
+    ///
+    /// # Errors
+    /// When it has no limits, or guard bands leave nothing between them.
+    pub fn with_inspection(mut self, inspection: Inspection) -> Result<Self, InspectionError> {
+        self.inspection = Some(inspection.checked([self.limits.lower, self.limits.upper])?);
+        Ok(self)
+    }
+
+    /// The gauge by which its limits are inspected, where there is one.
+    pub fn inspection(&self) -> Option<Inspection> {
+        self.inspection
     }
 
     /// Its name.

@@ -96,6 +96,7 @@ mod error;
 mod evaluation;
 mod extremes;
 pub mod fits;
+pub mod inspection;
 #[doc(hidden)]
 pub mod internals;
 #[cfg(feature = "journal")]
@@ -122,6 +123,8 @@ pub mod study;
 mod summary;
 mod surrogate;
 pub mod sweep;
+#[cfg(feature = "study")]
+mod table;
 #[cfg(feature = "task")]
 #[doc(hidden)]
 pub mod task;

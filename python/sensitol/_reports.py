@@ -467,6 +467,8 @@ class CharacteristicResult(Record):
     """How far these results may be off; None without moments."""
     inflated_rss: Optional[float]
     """1.5 times the RSS (Bender 1962, 1968)."""
+    inspection: Optional[InspectionRisks]
+    """The risks of its inspection; None without a gauge."""
     interactions: List[Interaction]
     """The interactions examined, strongest first."""
     interactions_remainder: Optional[Remainder]
@@ -523,6 +525,8 @@ class CharacteristicResult(Record):
     """Sigmas of a normal beyond which, on one side, as many lie as are rejected."""
     skewness: Optional[float]
     """Third standardised moment."""
+    sobol: Optional[SobolIndices]
+    """The source of the Sobol' indices of its [`sensitivities`](Self::sensitivities); None where it does not vary."""
     surface_law: Optional[SurfaceLaw]
     """The results of its surface distribution; None where its moments follow from no surface."""
     surrogate_sampling: Optional[Sampled]
@@ -754,6 +758,15 @@ class ErrorVsReference(Record):
     """Share within the limits."""
 
 
+class EstimatedShare(Record):
+    """A share that is estimated: of the variance, or of all parts."""
+
+    error: Optional[float]
+    """Three of these reach the truth; None where nothing is known of it."""
+    value: float
+    """Its value; an estimate from a sample may be below 0 by its error."""
+
+
 class EvaluatorSummary(Record):
     """Starts, crashes and retries of the processes of an external model since it was made."""
 
@@ -782,6 +795,17 @@ class ExtremesAt(Record):
     """The dimensions at the least value."""
     upper: Dict[str, float]
     """The dimensions at the greatest value."""
+
+
+class FactorIndices(Record):
+    """Dimensions that vary together, as one factor."""
+
+    dimensions: List[str]
+    """The dimensions."""
+    first_order: Optional[EstimatedShare]
+    """The part of the variance that they explain by themselves."""
+    total: Optional[EstimatedShare]
+    """The same with everything in which they have a part."""
 
 
 class Figures(Record):
@@ -836,6 +860,36 @@ class Histogram(Record):
     """How many values in each."""
     edges: List[float]
     """One more than there are intervals, ascending."""
+
+
+class IndexEstimate(Record):
+    """An index with what the sample leaves uncertain of it."""
+
+    interval: List[float]
+    """Its 95 % interval."""
+    standard_error: float
+    """Its standard error."""
+    value: float
+    """The estimate; of an index near 0 it may be below."""
+
+
+class InspectionRisks(Record):
+    """The risks of an inspection with a gauge that errs. Shares are of all parts unless something else is said."""
+
+    acceptance: List[Optional[float]]
+    """The tightened limits."""
+    accepted: Optional[EstimatedShare]
+    """Accepted."""
+    bad_among_accepted: Optional[EstimatedShare]
+    """Of the accepted parts, those that are bad."""
+    false_accept: Optional[EstimatedShare]
+    """Bad and accepted: the consumer's risk."""
+    false_reject: Optional[EstimatedShare]
+    """Good and rejected: the producer's risk."""
+    gauge: float
+    """The standard deviation of the gauge."""
+    guard: Optional[float]
+    """By how much the limits are tightened; None where no guard reaches the rate that is wanted."""
 
 
 class Interaction(Record):
@@ -1209,6 +1263,17 @@ class Sampled(Record):
     """Standard error of the skewness."""
 
 
+class SampledFactor(Record):
+    """The indices of one factor."""
+
+    dimensions: List[str]
+    """The dimension, or those that vary together."""
+    first_order: IndexEstimate
+    """The part of the variance that it explains by itself."""
+    total: IndexEstimate
+    """The same with every interaction in which it has a part."""
+
+
 class SampledModel(Record):
     """Points of the model in place of a surrogate that was not trusted."""
 
@@ -1281,6 +1346,10 @@ class Sensitivity(Record):
     """Whether both are exact rather than differences."""
     first: Optional[float]
     """First derivative at the mean, in units of the characteristic per unit of the dimension."""
+    first_order: Optional[EstimatedShare]
+    """First-order Sobol' index: the part of the variance that it explains by itself; None of a dimension that varies
+    together with others.
+    """
     linear_share: Optional[float]
     """Share of the variance that the best straight line through its own part explains."""
     mean_shift: Optional[float]
@@ -1295,6 +1364,8 @@ class Sensitivity(Record):
     """Where the model was evaluated along it, off its mean and in its unit, ascending: the nodes that answered;
     empty where none was asked.
     """
+    total: Optional[EstimatedShare]
+    """Total Sobol' index: with every interaction in which it has a part."""
 
 
 class SetUp(Record):
@@ -1347,6 +1418,8 @@ class SimulatedCharacteristic(Record):
     """Standard deviation."""
     skewness: Optional[float]
     """Third standardised moment; None where nothing varies."""
+    sobol: Optional[List[SampledFactor]]
+    """Its Sobol' indices, of every input; None where none were asked for, or the sample does not tell."""
     standard_error: StandardErrors
     """How uncertain the sample leaves all this."""
     target_yield: Optional[float]
@@ -1429,6 +1502,17 @@ class SimulationResult(Result):
         """The characteristic of this name."""
         found: SimulatedCharacteristic = self._named(name)
         return found
+
+
+class SobolIndices(Record):
+    """Where the indices of a characteristic come from, and those of factors that are no single dimension."""
+
+    factors: List[FactorIndices]
+    """Dimensions that vary together: these have indices as one factor only."""
+    interactions: Optional[float]
+    """1 less the sum of all first orders: interactions, and what the first orders are off."""
+    source: str
+    """Their source: `surface`, `exchange` of inputs of the model, or `ranks` of a sample."""
 
 
 class StandardErrors(Record):
@@ -1680,7 +1764,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
     "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": Verified, "warnings": ReportedWarning},
     "Beyond": {"design_point": DesignPoint},
-    "CharacteristicResult": {"distribution": Law, "error_estimate": ErrorEstimate, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
+    "CharacteristicResult": {"distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
     "ComparedCharacteristic": {"methods": ComparedMethod, "reference": SimulatedCharacteristic},
     "ComparedMethod": {"error_vs_reference": ErrorVsReference, "run": RunSummary},
     "ComparisonResult": {"characteristics": ComparedCharacteristic, "evaluator": EvaluatorSummary, "not_run": NotRun},
@@ -1688,15 +1772,20 @@ _INNER: Dict[str, Dict[str, type]] = {
     "Control": {"reduction": Reduction},
     "ErrorEstimate": {"sources": ErrorSource},
     "ErrorVsReference": {"reference_standard_error": Figures},
+    "FactorIndices": {"first_order": EstimatedShare, "total": EstimatedShare},
     "FrontPoint": {"required": RequiredOf},
+    "InspectionRisks": {"accepted": EstimatedShare, "bad_among_accepted": EstimatedShare, "false_accept": EstimatedShare, "false_reject": EstimatedShare},
     "NotRun": {"reason": NotRunReason},
     "RareCharacteristic": {"above": Beyond, "below": Beyond, "requirements": Judged},
     "RareResult": {"characteristics": RareCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "warnings": ReportedWarning},
     "ReportedWarning": {"advice": Advice},
     "RunSummary": {"evaluator": EvaluatorSummary},
+    "SampledFactor": {"first_order": IndexEstimate, "total": IndexEstimate},
     "SampledModel": {"histogram": Histogram},
-    "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "requirements": Judged, "standard_error": StandardErrors},
+    "Sensitivity": {"first_order": EstimatedShare, "total": EstimatedShare},
+    "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "requirements": Judged, "sobol": SampledFactor, "standard_error": StandardErrors},
     "SimulationResult": {"characteristic_correlation": OutputCorrelation, "characteristics": SimulatedCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": YieldEstimate, "warnings": ReportedWarning},
+    "SobolIndices": {"factors": FactorIndices},
     "SweepResult": {"characteristics": SweptCharacteristic, "evaluator": EvaluatorSummary, "parameter": Parameter, "warnings": ReportedWarning},
     "SweptCharacteristic": {"points": SweptPoint},
     "SweptPoint": {"error_estimate": ErrorEstimate, "requirements": Judged},

@@ -5,9 +5,11 @@ use std::collections::HashMap;
 use serde::{Serialize, Serializer};
 
 use super::errors::of_yield;
+use super::inspection_risks::InspectionRisks;
 use super::linear::Linear;
 use super::remainder::Remainder;
 use super::shares::Shares;
+use super::sobol::{EstimatedShare, SobolIndices};
 use super::{SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource};
 use crate::capability::{Capability, CapabilityShape, Law};
 use crate::characteristic::{Characteristic, SpecLimits};
@@ -80,6 +82,8 @@ pub struct CharacteristicAnalysis {
     #[serde(rename = "normal_fit")]
     #[cfg_attr(feature = "cli", schemars(with = "Option<CapabilityShape>"))]
     pub normal: Option<Capability>,
+    /// The risks of its inspection; None without a gauge.
+    pub inspection: Option<InspectionRisks>,
     /// How far the results may be off because measured dimensions are known by samples; None where there are none.
     #[serde(rename = "sampling_interval")]
     pub sampling: Option<SamplingInterval>,
@@ -117,6 +121,9 @@ pub struct CharacteristicAnalysis {
     pub possible_interactions: usize,
     /// The share of the variance that no contribution accounts for; None where it is unknown.
     pub left_out_share: Option<f64>,
+    /// The source of the Sobol' indices of its [`sensitivities`](Self::sensitivities); None where it does not vary.
+    #[serde(rename = "sobol")]
+    pub indices: Option<SobolIndices>,
     /// Whether it can depend on nothing that varies, so that its one value is all that there is.
     pub constant: bool,
 }
@@ -146,6 +153,10 @@ pub struct Sensitivity {
     pub curvature_share: Option<f64>,
     /// How far its curvature moves the mean.
     pub mean_shift: Option<f64>,
+    /// First-order Sobol' index: the part of the variance that it explains by itself; None of a dimension that varies together with others.
+    pub first_order: Option<EstimatedShare>,
+    /// Total Sobol' index: with every interaction in which it has a part.
+    pub total: Option<EstimatedShare>,
 }
 
 /// The joint effect of two dimensions.
@@ -353,6 +364,7 @@ impl CharacteristicAnalysis {
             normal,
             law,
             sampling: None,
+            inspection: None,
             characteristic,
             worst_case: middle
                 .zip(linear)
@@ -369,6 +381,7 @@ impl CharacteristicAnalysis {
             interactions_remainder: None,
             possible_interactions,
             left_out_share,
+            indices: None,
             error_estimate,
             model_sampled: None,
             verification: None,
@@ -460,6 +473,8 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
         linear_share: of(Shares::linear),
         curvature_share: curved(of(Shares::curvature)),
         mean_shift: curved(of(Shares::mean_shift)),
+        first_order: None,
+        total: None,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::errors::of_yield;
+use super::recorded::Recorded;
 use super::remembered::Remembered;
 use super::strides::{Beside, StridedFigures, Strides};
 use super::wanted::excess;
@@ -15,7 +16,7 @@ use crate::problem::Problem;
 use crate::sampling::{Estimate, SOBOL_DIMENSIONS, Sampler, one_error};
 use crate::simulation::{REPLICATES, SimulatedCharacteristic, Simulation, SimulationOptions, simulate_beside};
 use crate::summary::RunSummary;
-use crate::verification::{carried_by, student};
+use crate::verification::{Share, carried_by, student};
 use crate::warning::Figure;
 
 /// Points of a cheap model, at most;
@@ -86,7 +87,12 @@ pub(super) fn fall_back(
     let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
     // What was evaluated in strides is not evaluated again.
     let most = most + if sampler == Sampler::Sobol { spent.run.evaluations } else { 0 };
+    let recorded = Arc::new(Recorded::new(problem));
+    // A cheap model is asked anew, and answers several batches at a time.
+    let recording = costly.then(|| problem.with_function(recorded.clone()));
+    let problem = recording.as_ref().unwrap_or(problem);
     while spent.run.evaluations + samples <= most {
+        recorded.clear();
         // Sobol's points come in powers of two: not more of them than may be.
         let points = if sampler == Sampler::Sobol { (samples + 1).next_power_of_two() / 2 } else { samples };
         let wish = SimulationOptions { samples: points.max(2), sampler, seed, ..SimulationOptions::default() };
@@ -99,7 +105,9 @@ pub(super) fn fall_back(
         let last = enough || spent.run.evaluations + MORE * samples > most;
         if last {
             for &c in &short {
-                replace(&mut characteristics[c], climbed, c, (&found.characteristics[c], few_scramblings));
+                let depends = outcome.plan.varying().iter().copied().filter(|&d| outcome.plan.depends(c, d));
+                let ranks = recorded.ranks(c, &depends.collect::<Vec<usize>>());
+                replace(&mut characteristics[c], climbed, c, (&found.characteristics[c], few_scramblings), ranks);
             }
             return spent;
         }
@@ -204,6 +212,7 @@ fn replace(
     climbed: &Climbed,
     c: usize,
     (found, few): (&SimulatedCharacteristic, f64),
+    ranks: Vec<(usize, Share)>,
 ) {
     let (Some(mean), Some(sigma)) = (found.mean, found.sigma) else { return };
     let (Some(skewness), Some(kurtosis)) = (found.skewness, found.kurtosis) else { return };
@@ -221,6 +230,7 @@ fn replace(
         yield_: found.yield_.map(|share| (share.value, share.interval)),
         beyond: [found.below, found.above],
         histogram: found.histogram.clone(),
+        ranks,
     };
     take(one, StridedFigures { moments, sampled });
 }

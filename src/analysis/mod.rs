@@ -6,11 +6,15 @@ mod characteristic;
 mod counted;
 mod errors;
 mod fallback;
+mod indices;
+mod inspected;
+mod inspection_risks;
 mod interval;
 mod jumps;
 pub(crate) mod law_at;
 mod linear;
 mod outputs;
+mod recorded;
 mod remainder;
 mod remembered;
 mod sampled_model;
@@ -20,6 +24,7 @@ mod shape;
 mod shapes;
 mod shares;
 mod shorten;
+mod sobol;
 mod strides;
 mod surface;
 pub(crate) mod surface_law;
@@ -39,9 +44,11 @@ pub use crate::surrogate::Relocation;
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use account::Account;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
+pub use inspection_risks::InspectionRisks;
 pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
 pub use sampling_interval::SamplingInterval;
+pub use sobol::{EstimatedShare, FactorIndices, IndexSource, SobolIndices};
 pub use surface::{Fit, NoFit, Surface};
 pub use surface_law::SurfaceShares;
 pub(crate) use surface_law::{law_over, surface_law};
@@ -179,6 +186,9 @@ pub(crate) fn analyze_keeping(
     let warnings = warnings::of(problem, &outcome, &characteristics, jumps.warnings);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
+    let surface = Surface::of(&outcome, &characteristics);
+    // Last, because warnings and accounts read the contributions of a surface that is not trusted too.
+    indices::add(problem, &outcome, options, &mut characteristics, run);
     let analysis = Analysis {
         method: outcome.method,
         varying: outcome.plan.varying().len(),
@@ -190,7 +200,7 @@ pub(crate) fn analyze_keeping(
         },
         account,
         basis: outcome.basis,
-        surface: Surface::of(&outcome, &characteristics),
+        surface,
         joint_requirement: joint_requirement(problem, options, joint, &characteristics),
         characteristics,
         joint,

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::shape::{Four, through};
 use crate::simulation::Histogram;
+use crate::verification::Share;
 
 /// Points of the model in place of a surrogate that was not trusted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,6 +31,9 @@ pub struct SampledModel {
     pub beyond: [Option<f64>; 2],
     /// The sample, counted in some tens of intervals.
     pub histogram: Option<Histogram>,
+    /// First-order indices of the dimensions, by the ranks of the sample; empty where the model is cheap enough to be asked anew.
+    #[serde(skip)]
+    pub(crate) ranks: Vec<(usize, Share)>,
 }
 
 /// A share and its interval, as they are written.

@@ -11,6 +11,7 @@
 //! agree on is exact, and only what they differ by is sampled.
 
 use super::CharacteristicAnalysis;
+use super::inspected::inspected;
 use super::surface_law::{SurfaceShares, density};
 use super::unverified::error_of_shares;
 use super::verified::{TRUSTED, Verification, VerificationKind};
@@ -59,6 +60,7 @@ pub(super) fn settle(
             one.error_estimate =
                 Some(ErrorEstimate { yield_: found.error.filter(|error| error.is_finite()), ..estimate });
         }
+        one.inspection = inspected(one, laws[c].as_ref());
     }
     joint(characteristics, &laws)
 }

@@ -14,6 +14,7 @@
 //! never below what so few points overlook.
 
 use super::SampledModel;
+use super::recorded::ranked;
 use super::remembered::Remembered;
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
 use crate::method::{Climbed, Outcome};
@@ -25,7 +26,7 @@ use crate::simulation::Histogram;
 use crate::summary::RunSummary;
 use crate::surrogate::{Chaos, Places, Sparse, Surrogate};
 use crate::time::Instant;
-use crate::verification::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
+use crate::verification::{MOMENTS, Share, carried_by, effective, jackknife, standard, student, totals};
 
 /// Scramblings, and the parts into which they fall.
 const REPLICATES: usize = 16;
@@ -249,8 +250,17 @@ impl<'p> Strides<'p> {
                 yield_: limits.exist().then(|| (share(MOMENTS + 2), around(MOMENTS + 2))),
                 beyond: [limits.lower().map(|_| share(MOMENTS)), limits.upper().map(|_| share(MOMENTS + 1))],
                 histogram: histogram(&valid),
+                ranks: self.ranks(c, &values),
             },
         })
+    }
+
+    /// First-order indices of the dimensions on which a characteristic depends, by the ranks of the points.
+    fn ranks(&self, c: usize, values: &[f64]) -> Vec<(usize, Share)> {
+        let plan = &self.outcome.plan;
+        let column = |j: usize| -> Vec<f64> { self.strides.iter().flat_map(|stride| &stride.u[j]).copied().collect() };
+        let depends = plan.varying().iter().enumerate().filter(|&(_, &d)| plan.depends(c, d));
+        depends.filter_map(|(j, &d)| ranked(d, &column(j), values)).collect()
     }
 
     /// Fits the regression of every part to the points of the others, and to those that were evaluated before.

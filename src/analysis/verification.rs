@@ -4,8 +4,11 @@
 //! asked for by name stay what they are, with the model's beside them. `auto` takes the model's where its own lies beyond two
 //! standard errors of it; within them both agree, and the figures of one surface stay together.
 
+use std::sync::Arc;
+
 use super::CharacteristicAnalysis;
 use super::errors::of_yield;
+use super::indices::UNTRUSTED;
 use super::verified::{TRUSTED, VarianceShare, Verification, VerificationKind};
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::capability::{Capability, Law};
@@ -32,8 +35,6 @@ const OFF: f64 = 3.0;
 const MATTERS: f64 = 0.01;
 /// Beyond so many standard errors `auto` takes the model's figure.
 const AGREES: f64 = 2.0;
-/// A surface that leaves more of the variance unexplained has no shares to show.
-const UNTRUSTED: f64 = 0.05;
 /// An error of sigma above this part of it says that the surface is no surface.
 const UNKNOWN: f64 = 0.1;
 /// A switch is worth a warning from one assembly in ten million on.
@@ -123,6 +124,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
         unseen: None,
         shares: None,
         replaced: false,
+        sample: None,
     });
     true
 }
@@ -196,6 +198,7 @@ fn sample(
         unseen: None,
         shares,
         replaced,
+        sample: found.sample.map(Arc::new),
     });
     true
 }
@@ -306,6 +309,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         unseen: Some(checked.unseen()),
         shares: None,
         replaced: false,
+        sample: None,
     });
 }
 

@@ -1,9 +1,11 @@
 //! What the verification of a characteristic found.
 
+use std::sync::Arc;
+
 use serde::{Serialize, Serializer};
 
 use crate::shape::{Four, Sides, through};
-use crate::verification::{FoundSwitch, Share, Verified};
+use crate::verification::{FoundSwitch, Share, Verified, WeightedSample};
 
 /// How figures were verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,6 +61,9 @@ pub struct Verification {
     pub shares: Option<Vec<VarianceShare>>,
     /// Whether figures of the characteristic are the model's, in place of the surface's.
     pub replaced: bool,
+    /// The sample, where an inspection asks for more of it.
+    #[serde(skip)]
+    pub(crate) sample: Option<Arc<WeightedSample>>,
 }
 
 /// The part of the variance that a dimension explains, by the model itself.

@@ -2,9 +2,11 @@
 
 mod law;
 mod quantiles;
+mod risks;
 
 pub use law::Law;
 pub use quantiles::{PROBABILITIES, Quantiles};
+pub(crate) use risks::{Risks, Tails, guard_for};
 
 use std::sync::LazyLock;
 

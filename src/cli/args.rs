@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
+use super::import::ImportArgs;
 use super::shared_args::OUTPUT;
 pub(super) use super::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 pub(super) use super::values::{
@@ -48,7 +49,7 @@ pub(super) enum Command {
     Analyze(AnalyzeArgs),
     /// Monte Carlo: the model itself at random or quasi-random points, with standard errors
     #[command(
-        after_help = "Examples:\n  sensitol simulate examples/engine-balance/study.toml --samples 1000000\n  sensitol simulate examples/first-study/study.toml --rare"
+        after_help = "Examples:\n  sensitol simulate examples/engine-balance/study.toml --samples 1000000\n  sensitol simulate examples/first-study/study.toml --rare\n  sensitol simulate examples/ishigami/study.toml --sobol"
     )]
     Simulate(SimulateArgs),
     /// The trade of speed for accuracy: every method that fits, against a reference
@@ -91,6 +92,14 @@ pub(super) enum Command {
         after_help = "Examples:\n  sensitol init gap && sensitol analyze gap.toml\n  sensitol init balance --model engine-balance"
     )]
     Init(InitArgs),
+    /// Makes a study of a stack-up table: one row a dimension, in English or German
+    ///
+    /// A row names the columns: name and nominal, and as far as there are direction or factor, tolerance or upper and lower deviation,
+    /// unit, distribution, part, description. Numbers have decimal points or commas.
+    #[command(
+        after_help = "Examples:\n  sensitol import stack.csv -o stack.toml\n  sensitol import stack.csv --column nominal=Wert --name play"
+    )]
+    Import(ImportArgs),
     /// Writes a page that edits and analyses studies in a browser, offline
     ///
     /// The page holds the engine: it opens from disk and sends nothing anywhere. It is not part of every build: web/build makes it, and
@@ -255,6 +264,14 @@ pub(super) struct SimulateArgs {
     /// Sample only what the surrogate of an analysis leaves unexplained (control variate): the same standard errors with fewer points
     #[arg(long = "control-variate", alias = "surrogate-control")]
     pub(super) surrogate_control: bool,
+
+    /// Sobol' indices of every input too, by exchanging inputs: n (N + 2) evaluations more for N inputs, with n = --samples [default: 16384]
+    #[arg(long, conflicts_with = "rare")]
+    pub(super) sobol: bool,
+
+    /// Most evaluations of --sobol [default: 10000 of an external model]
+    #[arg(long, value_name = "N", value_parser = samples, allow_negative_numbers = true, requires = "sobol")]
+    pub(super) budget: Option<u64>,
 
     /// The probability beyond each limit, small or not, by importance sampling that is placed with the surrogate
     #[arg(long, conflicts_with_all = ["surrogate_control", "until_yield", "sampler"])]

@@ -111,6 +111,8 @@ pub(super) enum Failure {
     NotAgreed { answers: usize },
     #[error("{path}: {reason}", path = path.display())]
     Points { path: PathBuf, reason: String },
+    #[error("{path}: {reason}", path = path.display())]
+    Import { path: PathBuf, reason: String, help: Option<String> },
     #[error("the table cannot be written: {reason}")]
     Table { reason: String },
     #[error("--check has nothing to check: no characteristic asked for has a target_yield or a require")]
@@ -202,6 +204,7 @@ impl Failure {
             Self::Problem(ProblemError::UnknownCharacteristic { nearest: Some(nearest), .. }) => {
                 Some(title(&format!("{of}{self}"), Some(format!("did you mean `{nearest}`?"))))
             }
+            Self::Import { help, .. } => Some(title(&format!("{of}{self}"), help.clone())),
             _ => Some(title(&format!("{of}{self}"), advice::help(&self.advice()))),
         }
     }

@@ -14,6 +14,7 @@ mod evaluate;
 mod expand;
 mod failure;
 mod files;
+mod import;
 mod init;
 mod interrupt;
 mod journal;
@@ -116,6 +117,7 @@ pub fn run_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Evaluate(asked) => evaluate::run(asked, style),
         Command::Journal(asked) => journal::run(asked, style),
         Command::Init(asked) => init::run(asked),
+        Command::Import(asked) => import::run(asked),
         Command::Workbench(asked) => workbench::run(asked, style),
         Command::Serve(asked) => serve::run(asked),
         Command::Schema(asked) => schema::run(asked),

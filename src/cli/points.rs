@@ -7,6 +7,7 @@ use super::failure::Failure;
 use crate::assembly::{Points, Table};
 use crate::document::csv::{guarded, unguarded};
 use crate::problem::Problem;
+use crate::table::{NumberFault, Style, delimiter, records};
 
 /// A column for every input that the model is sent, a row for every point, every number to its last digit.
 ///
@@ -44,36 +45,50 @@ fn written(names: Vec<String>, points: Vec<Vec<f64>>) -> String {
     String::from_utf8(writer.into_inner().expect("memory is always flushed")).expect("text and numbers are UTF-8")
 }
 
-/// Reads a table with a header. Empty cells are unknown; everything else is a finite number.
+/// The delimiters of points, in the order in which they are tried: files are written with commas.
+const CANDIDATES: [u8; 3] = [b',', b';', b'\t'];
+
+/// Reads a table with a header, in English or German style. Empty cells are unknown; everything else is a finite number.
 pub(super) fn read(path: &Path) -> Result<Table, Failure> {
     let failed = |reason: String| Failure::Points { path: path.to_owned(), reason };
-    let mut reader = csv::Reader::from_path(path).map_err(|error| failed(error.to_string()))?;
-    let columns: Vec<String> = reader
-        .headers()
-        .map_err(|error| failed(error.to_string()))?
-        .iter()
-        .map(|name| unguarded(name.trim()).to_owned())
-        .collect();
+    let bytes = std::fs::read(path).map_err(|error| failed(error.to_string()))?;
+    let text = std::str::from_utf8(&bytes).map_err(|_| failed("it is not UTF-8 text".to_owned()))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let delimiter = delimiter(text, CANDIDATES);
+    let mut records = records(text, delimiter);
+    let header = records.next().map(|(_, header)| header).unwrap_or_default();
+    let columns: Vec<String> = header.iter().map(|name| unguarded(name).to_owned()).collect();
     if let Some(twice) = columns.iter().enumerate().find(|(index, name)| columns[..*index].contains(name)) {
         return Err(failed(format!("column `{}` stands twice", twice.1)));
     }
-    let mut rows = Vec::new();
-    for (index, record) in reader.records().enumerate() {
-        let record = record.map_err(|error| failed(error.to_string()))?;
-        let cell = |(column, text): (usize, &str)| match text.trim() {
-            "" => Ok(None),
-            // A column of remarks is nobody's business here.
-            text => match text.parse::<f64>() {
-                Ok(value) if value.is_finite() => Ok(Some(value)),
-                _ if columns[column].ends_with(" error") => Ok(None),
-                _ => Err(failed(format!(
-                    "line {}, column `{}`: `{text}` is not a finite number",
-                    index + 2,
-                    columns[column]
-                ))),
-            },
-        };
-        rows.push(record.iter().enumerate().map(cell).collect::<Result<Vec<_>, _>>()?);
+    let records: Vec<(u64, csv::StringRecord)> = records.collect();
+    if let Some((line, record)) = records.iter().find(|(_, record)| record.len() != columns.len()) {
+        return Err(failed(format!("line {line}: {} cells, and {} in the header", record.len(), columns.len())));
+    }
+    let mut rows = vec![vec![None; columns.len()]; records.len()];
+    for (index, name) in columns.iter().enumerate() {
+        let cells: Vec<(usize, &str)> =
+            records.iter().map(|(_, record)| &record[index]).enumerate().filter(|(_, cell)| !cell.is_empty()).collect();
+        let style = Style::of(cells.iter().map(|(_, cell)| *cell), delimiter == b',');
+        for (place, &(row, cell)) in cells.iter().enumerate() {
+            rows[row][index] = match style.number(place, cell) {
+                Ok(value) => Some(value),
+                // Texts in a column of errors are remarks.
+                Err(_) if name.ends_with(" error") => None,
+                Err(found) => {
+                    let why = match found {
+                        NumberFault::NoNumber { comma: true } => {
+                            "is not a number: decimal commas need semicolons or tabs between the columns".to_owned()
+                        }
+                        NumberFault::TwoMarks { other, .. } => {
+                            format!("has another decimal mark than line {}", records[cells[other].0].0)
+                        }
+                        _ => "is not a finite number".to_owned(),
+                    };
+                    return Err(failed(format!("line {}, column `{name}`: `{cell}` {why}", records[row].0)));
+                }
+            };
+        }
     }
     Ok(Table::new(columns, rows))
 }

@@ -19,8 +19,11 @@ use crate::warning::{Counted, Warning};
 /// Points unless the user says otherwise; where accuracy is wanted, as many as that takes.
 const SAMPLES: u64 = 100_000;
 
-/// The tables of a simulation, a file each.
-const TABLES: [&str; 2] = ["estimates", "histogram"];
+/// Base points of Sobol' indices unless the user says otherwise.
+const SOBOL: u64 = 1 << 14;
+
+/// The tables of a simulation, a file each; the last one with Sobol' indices only.
+const TABLES: [&str; 3] = ["estimates", "histogram", "sobol"];
 
 pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let study = study::read_sampled(&asked.of, look)?;
@@ -33,7 +36,8 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     }
     let mut files = Files::of(&asked.of.study, &study, asked.of.work.journal.as_deref());
     let destination = files.output(&asked.output)?;
-    let names = TABLES.map(|name| format!("{name}.csv"));
+    let tables = if asked.sobol { &TABLES[..] } else { &TABLES[..2] };
+    let names: Vec<String> = tables.iter().map(|name| format!("{name}.csv")).collect();
     let folder = files.folder(asked.csv.as_deref(), &names)?;
     let page = files.file(asked.html.as_deref())?;
     let wanted = asked.until.is_some() || asked.until_yield.is_some();
@@ -48,6 +52,8 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
         until_yield: asked.until_yield,
         control: asked.surrogate_control.then(|| surrogate(&study, asked)),
         target_joint_yield: study.options.target_joint_yield,
+        sobol: asked.sobol.then(|| asked.samples.unwrap_or(SOBOL)),
+        budget: asked.budget,
     };
     let clock = Clock::start(asked.of.work.time);
     let simulation = simulate(&study, asked.of.threads, &options, &clock, look);
@@ -58,7 +64,7 @@ pub(super) fn run(asked: &SimulateArgs, look: Look) -> Result<Exit, Failure> {
     let document = report.document();
     let written =
         destination.write(&if asked.output.json { json(&report) } else { text(&document, look.style(&asked.output)) });
-    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, &TABLES))));
+    let written = written.and(folder.map_or(Ok(()), |folder| folder.write(&csv_tables(&document, tables))));
     let written = written.and(page.map_or(Ok(()), |page| page.write(&simulate_html(&report))));
     look.tell_all(&report.warnings);
     clock.stopped(&simulation.run, (simulation.samples, None), Counted::Points, look);

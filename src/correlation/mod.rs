@@ -32,6 +32,25 @@ use serde::Serialize;
 
 use crate::dimension::Dimension;
 
+/// Dimensions that are independent of all others by themselves, those that vary together in one list: places in `dimensions`, ascending.
+pub(crate) fn factors(correlation: Option<&Correlation>, dimensions: &[usize]) -> Vec<Vec<usize>> {
+    let mut factors: Vec<Vec<usize>> = Vec::new();
+    for (place, &d) in dimensions.iter().enumerate() {
+        let member = correlation.filter(|of| of.members().binary_search(&d).is_ok());
+        let linked =
+            |factor: &Vec<usize>| member.is_some_and(|of| factor.iter().any(|&other| of.linked(d, dimensions[other])));
+        // A dimension may link factors that were apart so far.
+        let (together, apart): (Vec<_>, Vec<_>) = std::mem::take(&mut factors).into_iter().partition(linked);
+        let mut own: Vec<usize> = together.into_iter().flatten().collect();
+        own.push(place);
+        own.sort_unstable();
+        factors = apart;
+        factors.push(own);
+    }
+    factors.sort_unstable();
+    factors
+}
+
 /// Two dimensions and their coefficient of correlation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]

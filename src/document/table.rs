@@ -106,6 +106,11 @@ impl<'a, T> Columns<'a, T> {
         self.with(["", title, title], [true, true], cell)
     }
 
+    /// A column for people, where there is something to show.
+    pub fn shown_if(self, shows: bool, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
+        self.with(["", title, title], [shows; 2], cell)
+    }
+
     /// A column for people, for which a terminal has no room.
     pub fn page(self, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with(["", title, title], [false, true], cell)

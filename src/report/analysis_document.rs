@@ -6,9 +6,9 @@ use super::output_correlation::{all_limits, together, together_table};
 use super::requirement::{judged, lines};
 use super::source::source;
 use super::stack::Stack;
-use super::statistics::{derivative, matters, part};
+use super::statistics::{derivative, matters, part, size, total};
 use super::{DimensionReport, Report, bars};
-use crate::analysis::{CharacteristicAnalysis, Interaction, Sensitivity};
+use crate::analysis::{CharacteristicAnalysis, EstimatedShare, IndexSource, Interaction, Sensitivity, SobolIndices};
 use crate::capability::{Capability, Law, Quantiles, TAIL};
 use crate::correlation::Pair;
 use crate::document::number::{
@@ -291,6 +291,7 @@ impl CharacteristicAnalysis {
             section.note(indices);
         }
         lines(self.requirements()).for_each(|line| section.note(line));
+        self.inspected(section);
         let mut detail = Vec::new();
         let quantiles = join(vec![named("Cp", of(|of| of.cp_percentile)), named("Cpk", of(|of| of.cpk_percentile))]);
         if !quantiles.is_empty() {
@@ -300,6 +301,30 @@ impl CharacteristicAnalysis {
             detail.note(format!("a normal fit would say: {}", shown(Rejects::new(normal.below, normal.above, None))));
         }
         section.detail(detail);
+    }
+
+    /// The parts that an inspection accepts and rejects wrongly.
+    fn inspected(&self, section: &mut Section) {
+        let Some(of) = &self.inspection else { return };
+        let gauge = format!("inspection with gauge sigma {}", plain(of.gauge));
+        let Some(guard) = of.guard else {
+            return section.note(format!("{gauge}: no guard band reaches the wanted share of bad parts accepted"));
+        };
+        let share = |of: Option<EstimatedShare>| known(of.map(|of| of.value), risk);
+        let accepted = limits(of.acceptance[0], of.acceptance[1]);
+        let guarded = if guard > 0.0 {
+            format!(", guard {}: accepted {accepted}", plain(significant(guard, 4).parse().unwrap_or(guard)))
+        } else {
+            String::new()
+        };
+        section.note(format!("{gauge}{guarded}"));
+        section.note(format!(
+            "  bad and accepted {}, good and rejected {}; {} accepted, of which {} are bad",
+            share(of.false_accept),
+            share(of.false_reject),
+            share(of.accepted),
+            share(of.bad_among_accepted)
+        ));
     }
 
     /// What is rejected, with its error.
@@ -379,7 +404,7 @@ impl CharacteristicAnalysis {
         type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
         let all: Vec<Row<'_>> = self.sensitivities.iter().zip(dimensions).collect();
         let mut view: Vec<usize> = (0..all.len()).filter(|&index| matters(all[index].0, all[index].1)).collect();
-        let size = |index: usize| part(all[index].0).unwrap_or(-1.0);
+        let size = |index: usize| size(all[index].0);
         view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
         let rest = &view[view.len().min(CONTRIBUTIONS)..];
         let together: f64 = rest.iter().filter_map(|&index| part(all[index].0)).sum();
@@ -406,8 +431,13 @@ impl CharacteristicAnalysis {
             .column("linear_share", "linear %", |row| Cell::number(row.0.linear_share, percent))
             .column("curvature_share", "curved %", |row| Cell::number(row.0.curvature_share, percent))
             .column("mean_shift", "mean shift", shift)
+            .shown_if(self.has_totals(), "total %", |row| Cell::number(total(row.0), percent))
             .data("rounding_first", move |row| rounding(row, 0))
             .data("rounding_second", move |row| rounding(row, 1))
+            .data("first_order", |row| Cell::data(row.0.first_order.map(|index| index.value)))
+            .data("first_order_error", |row| Cell::data(row.0.first_order.and_then(|index| index.error)))
+            .data("total", |row| Cell::data(total(row.0)))
+            .data("total_error", |row| Cell::data(row.0.total.and_then(|index| index.error)))
             .table("sensitivities", all.iter().copied())
             .seen(view)
             .at_most([CONTRIBUTIONS, usize::MAX], rest)
@@ -416,7 +446,10 @@ impl CharacteristicAnalysis {
     /// The interactions examined: how many, what they make, and the strongest.
     fn pairs(&self, section: &mut Section) {
         let (possible, examined) = (self.possible_interactions, self.interactions.len());
-        if possible > 0 && examined == 0 {
+        self.together(section);
+        if let Some(of_model) = self.indices.as_ref().filter(|_| self.is_of_model()) {
+            section.note(self.of_model(of_model));
+        } else if possible > 0 && examined == 0 {
             section.note(format!("interactions: none of {possible} examined"));
         } else if possible > 0 {
             let known: Option<Vec<f64>> = self.interactions.iter().map(|interaction| interaction.share).collect();
@@ -428,9 +461,44 @@ impl CharacteristicAnalysis {
         section.table(self.interaction_table());
     }
 
+    /// Dimensions that vary together, as one factor: without what they do to each other where the surface tells of each of them.
+    fn together(&self, section: &mut Section) {
+        let Some(of) = &self.indices else { return };
+        let percents =
+            |index: Option<EstimatedShare>| known(index.map(|of| of.value), |share| format!("{} %", percent(share)));
+        let mut lines = Vec::new();
+        for factor in &of.factors {
+            let names: Vec<String> = factor.dimensions.iter().map(|name| short(name)).collect();
+            let (first, total) = (percents(factor.first_order), percents(factor.total));
+            lines.wrapped(2, format!("{} together: contribution {first}, with interactions {total}", names.join(", ")));
+        }
+        match self.is_of_model() {
+            false => section.detail(lines),
+            true => section.brief(lines),
+        }
+    }
+
+    /// Where contributions come from that are not the surface's.
+    fn of_model(&self, of: &SobolIndices) -> String {
+        // An estimate below 0 is 0 within its error.
+        let rest = of.interactions.map(|share| format!("{} %", percent(share.max(0.0))));
+        match (of.source, rest) {
+            (_, None) => {
+                "contributions unknown: the surface is not trusted, and no sample of the model has them".to_owned()
+            }
+            (IndexSource::Ranks, Some(rest)) => {
+                format!("contributions by the ranks of the model's points; interactions and what is left: {rest}")
+            }
+            (_, Some(rest)) => {
+                format!("contributions by points of the model; interactions have {rest} of the variance")
+            }
+        }
+    }
+
     pub(super) fn interaction_table(&self) -> DataTable {
         let news = self.interactions.iter().filter(|pair| pair.share.is_none_or(|share| share >= NEWS)).count();
-        let most = [news.min(INTERACTIONS), news.min(INTERACTIONS_OF_PAGE)];
+        let trusted = !self.is_of_model();
+        let most = [if trusted { news.min(INTERACTIONS) } else { 0 }, news.min(INTERACTIONS_OF_PAGE)];
         let both = |pair: &&Interaction| {
             let [a, b] = &pair.dimensions;
             Cell {
@@ -521,6 +589,16 @@ fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
         row(law.to_owned(), &probability),
         row("quantiles".to_owned(), &|(_, value)| Cell::number(*value, |value| beside(value, sigma))),
     ])
+}
+
+/// A share of parts: in percent, or per million where few.
+fn risk(share: f64) -> String {
+    /// From here on percent are read more easily.
+    const FEW: f64 = 1e-3;
+    match share {
+        share if share > 0.0 && share < FEW => format!("{} ppm", significant(1e6 * share, 3)),
+        share => format!("{} %", significant(100.0 * share, 4)),
+    }
 }
 
 /// Beside sigma, where nothing but zeros is 0.

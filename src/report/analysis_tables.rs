@@ -3,7 +3,7 @@
 use super::figures::{Figures, Named};
 use super::requirement::loud;
 use super::{DimensionReport, Report, WarningReport};
-use crate::analysis::CharacteristicAnalysis;
+use crate::analysis::{CharacteristicAnalysis, EstimatedShare, InspectionRisks};
 use crate::capability::{Capability, Law};
 use crate::document::number::{UNKNOWN, carried, index, limits};
 use crate::document::{Blocks, Cell, Column, Columns, DataTable, Document, Line, Value};
@@ -82,6 +82,9 @@ impl Report {
             .data("normal_yield", move |one| fit(one, Capability::yield_))
             .data("normal_ppm_below", move |one| fit(one, Capability::ppm_below))
             .data("normal_ppm_above", move |one| fit(one, Capability::ppm_above))
+            .data("guard", |one| Cell::data(one.inspection.as_ref().and_then(|of| of.guard)))
+            .data("false_accept", |one| Cell::data(risk(one, |of| of.false_accept)))
+            .data("false_reject", |one| Cell::data(risk(one, |of| of.false_reject)))
             .table("characteristics", &self.analysis.characteristics)
             .of_sections()
     }
@@ -131,4 +134,9 @@ impl Report {
             .data("message", |one| Cell::text(&one.message))
             .table("warnings", &self.warnings)
     }
+}
+
+/// A share of an inspection, where there is one.
+fn risk(one: &CharacteristicAnalysis, share: fn(&InspectionRisks) -> Option<EstimatedShare>) -> Option<f64> {
+    Some(share(one.inspection.as_ref()?)?.value)
 }

@@ -1,7 +1,7 @@
 //! What of a characteristic is drawn as bars: contributions to the variance, and intervals beside the limits.
 
 use super::figures::{Figures, Named};
-use crate::analysis::CharacteristicAnalysis;
+use crate::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::document::number::{NEWS, beside, percent};
 use crate::document::{Bar, Bars, Extent, Fill, Line, Tone};
 use crate::extremes::Extremes;
@@ -16,6 +16,9 @@ const FAR: f64 = 2.0;
 /// The strongest contributions to the variance, and what is left in words.
 pub(super) fn pareto(one: &CharacteristicAnalysis) -> (Bars, Option<String>) {
     type Share = (String, [f64; 3]);
+    if one.is_of_model() {
+        return (pareto_of_model(one), None);
+    }
     let own = one
         .sensitivities
         .iter()
@@ -58,6 +61,35 @@ pub(super) fn pareto(one: &CharacteristicAnalysis) -> (Bars, Option<String>) {
         ],
     };
     (bars, (!words.is_empty()).then(|| words.join("; ")))
+}
+
+/// The same of the model: by itself, and with interactions.
+fn pareto_of_model(one: &CharacteristicAnalysis) -> Bars {
+    let share = |row: &Sensitivity| {
+        let first = row.first_order?.value;
+        Some((row.dimension.clone(), [first, row.total.map_or(first, |total| total.value.max(first))]))
+    };
+    let mut all: Vec<(String, [f64; 2])> =
+        one.sensitivities.iter().filter_map(share).filter(|(_, [_, total])| *total > 0.5 * NEWS).collect();
+    all.sort_by(|a, b| b.1[1].total_cmp(&a.1[1]));
+    all.truncate(BARS);
+    let longest = all.first().map_or(1.0, |(_, [_, total])| *total).max(f64::MIN_POSITIVE);
+    let length = |share: f64| (1e4 * (share / longest).max(0.0)).round() / 1e2;
+    let row = |(name, [first, total]): (String, [f64; 2])| Bar {
+        name,
+        parts: vec![
+            (Fill::Linear, [0.0, length(first)]),
+            (Fill::Interaction, [length(first), length(total - first.max(0.0))]),
+        ],
+        text: format!("{} to {} %", percent(first), percent(total)),
+        remark: Line::default(),
+    };
+    Bars {
+        caption: format!("Contributions to the variance of {} by the model, strongest first", one.name()),
+        rows: all.into_iter().map(row).collect(),
+        marks: Vec::new(),
+        legend: vec![(Fill::Linear, "by itself"), (Fill::Interaction, "with others")],
+    }
 }
 
 /// The ranges below a density: mean \u{b1} 3 sigma, RSS, and the worst case as well as it is known.

@@ -57,12 +57,13 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
         extremes: "/worst_case/extremes", bounds: "/worst_case/bounds", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
         mean_shift_rss: "/mean_shift_rss", sensitivities: "/sensitivities/1", interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
         possible_interactions: "/possible_interactions", left_out_share: "/left_out_share", constant: "/constant",
-        verification: "/verification",
+        verification: "/verification", indices: "/sobol", inspection: "/inspection",
     });
     let sensitivity = json.pointer("/sensitivities/0").unwrap();
     complete!(sensitivity, &one.sensitivities[0] => Sensitivity {
         dimension: "/dimension", first: "/first", second: "/second", exact: "/exact", rounding: "/rounding", steps: "/steps",
         linear_share: "/linear_share", curvature_share: "/curvature_share", mean_shift: "/mean_shift",
+        first_order: "/first_order", total: "/total",
     });
     let interaction = json.pointer("/interactions/0").unwrap();
     complete!(interaction, &one.interactions[0] => Interaction {
@@ -76,7 +77,7 @@ fn simulated(json: &Value, one: &SimulatedCharacteristic) {
         characteristic: "/name", samples: "/samples", failed: "/failed", error: "/error", mean: "/mean", sigma: "/sigma",
         skewness: "/skewness", kurtosis: "/kurtosis", quantiles: "/distribution/quantiles", yield_: "/yield",
         below: "/ppm_below", above: "/ppm_above", cp: "/cp", cpk: "/cpk", unfinished: "/unfinished", range: "/range",
-        histogram: "/histogram", control: "/control",
+        histogram: "/histogram", control: "/control", indices: "/sobol",
     });
 }
 

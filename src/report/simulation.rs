@@ -9,14 +9,14 @@ use super::requirement::{judged, lines};
 use super::{About, DimensionReport, Head, WarningReport, correlation};
 use crate::capability::Law;
 use crate::correlation::Pair;
-use crate::document::number::{estimated, index, known, limits, plain, significant, uncertainty, yielded};
+use crate::document::number::{estimated, index, known, limits, percent, plain, significant, uncertainty, yielded};
 use crate::document::rejects::Rejects;
 use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Line, Section, SpreadChart};
 use crate::moments::Moments;
 use crate::pearson::Pearson;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, one_error};
-use crate::simulation::{SimulatedCharacteristic, Simulation, YieldEstimate};
+use crate::simulation::{IndexEstimate, SampledFactor, SimulatedCharacteristic, Simulation, YieldEstimate};
 
 /// The report of a simulation, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]
@@ -80,6 +80,7 @@ impl SimulatedCharacteristic {
         section.blocks = findings(warnings, |name| name == Some(self.name()));
         section.table(self.estimates());
         section.table(self.histogram_table());
+        self.sobol(&mut section);
         if self.samples == 0 {
             section.note("no point has a value");
             return section;
@@ -155,6 +156,38 @@ impl SimulatedCharacteristic {
             .data("interval_high", |row| Cell::data(row.2.map(|[_, high]| high)))
             .table("estimates", moments.into_iter().chain(quantiles).chain(rest))
             .seen((0..seen).collect())
+    }
+
+    /// Sobol' indices with their 95 % intervals (table `sobol`), the strongest first.
+    fn sobol(&self, section: &mut Section) {
+        let Some(of) = &self.indices else { return };
+        let mut order: Vec<usize> = (0..of.len()).collect();
+        order.sort_by(|&a, &b| of[b].total.value.total_cmp(&of[a].total.value));
+        let value = |of: IndexEstimate| Cell::number(of.value, |value| estimated(value, Some(of.standard_error)));
+        let interval = |of: IndexEstimate| {
+            let [low, high] = of.interval.map(|end| estimated(end, Some(of.standard_error)));
+            Cell::text(format!("{low} .. {high}"))
+        };
+        section.gap();
+        section.table(
+            Columns::default()
+                .data("characteristic", |_| Cell::text(self.name()))
+                .named("inputs", "input", |factor: &&SampledFactor| Cell::name(&factor.dimensions.join(", ")))
+                .column("first_order", "first order", move |factor| value(factor.first_order))
+                .shown("95 % interval", move |factor| interval(factor.first_order))
+                .column("total", "total", move |factor| value(factor.total))
+                .shown("95 % interval", move |factor| interval(factor.total))
+                .data("first_order_error", |factor| Cell::data(factor.first_order.standard_error))
+                .data("first_order_low", |factor| Cell::data(factor.first_order.interval[0]))
+                .data("first_order_high", |factor| Cell::data(factor.first_order.interval[1]))
+                .data("total_error", |factor| Cell::data(factor.total.standard_error))
+                .data("total_low", |factor| Cell::data(factor.total.interval[0]))
+                .data("total_high", |factor| Cell::data(factor.total.interval[1]))
+                .table("sobol", of)
+                .seen(order),
+        );
+        let rest = 1.0 - of.iter().map(|factor| factor.first_order.value).sum::<f64>();
+        section.note(format!("Sobol' indices, parts of the variance: interactions have {} %", percent(rest)));
     }
 
     fn histogram_table(&self) -> DataTable {

@@ -2,7 +2,7 @@
 
 use super::DimensionReport;
 use super::figures::Figures;
-use crate::analysis::{CharacteristicAnalysis, Sensitivity};
+use crate::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
 use crate::document::number::{UNKNOWN, carried, percent, plain, shape_with, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
 use crate::method::{ErrorEstimate, ErrorSource};
@@ -15,6 +15,8 @@ const ROWS: usize = 6;
 const SAME: f64 = 1e-3;
 /// Sigmas on either side that stand for the band of a dimension without a tolerance.
 const BAND: f64 = 3.0;
+/// Interactions of one dimension that are worth a column, by the variance.
+const TOTAL: f64 = 0.01;
 /// A second derivative or a slope within this many of its rounding errors is 0.
 const ROUNDINGS: f64 = 2.0;
 
@@ -99,6 +101,22 @@ impl CharacteristicAnalysis {
             .table(DataTable::untitled(rows.into_iter().chain(linear_row)).at_most([ROWS, usize::MAX], String::new()));
     }
 
+    /// Whether its contributions are those of the model, in place of a surface that is not trusted.
+    pub(super) fn is_of_model(&self) -> bool {
+        let sampled = self.indices.as_ref().is_some_and(|of| of.source != IndexSource::Surface);
+        sampled && self.sensitivities.iter().all(|row| row.linear_share.is_none())
+    }
+
+    /// Whether a dimension does visibly more together with others than by itself.
+    pub(super) fn has_totals(&self) -> bool {
+        // Contributions of a linear method stand beside no indices of the model.
+        if self.indices.as_ref().is_some_and(|of| of.source != IndexSource::Surface) && !self.is_of_model() {
+            return false;
+        }
+        let more = |row: &Sensitivity| Some(total(row)? - part(row)?);
+        self.sensitivities.iter().filter_map(more).any(|more| more >= TOTAL)
+    }
+
     /// The strongest contributors, each with its own spread and what it does here.
     pub(super) fn contributors(&self, dimensions: &[DimensionReport]) -> DataTable {
         type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
@@ -107,7 +125,7 @@ impl CharacteristicAnalysis {
         // Those that do nothing here are no contributors.
         let does = |&index: &usize| part(all[index].0) != Some(0.0) || effect(&all[index]) != Some(0.0);
         let mut view: Vec<usize> = (0..all.len()).filter(does).collect();
-        let size = |index: usize| part(all[index].0).unwrap_or(-1.0);
+        let size = |index: usize| size(all[index].0);
         view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
         let rest = &view[view.len().min(CONTRIBUTORS)..];
         let together: f64 = rest.iter().filter_map(|&index| part(all[index].0)).sum();
@@ -127,6 +145,7 @@ impl CharacteristicAnalysis {
             })
             .shown("effect", move |row| shown(effect(row), |effect| significant(effect, 3)))
             .shown("contrib. %", move |row| shown(part(row.0), percent))
+            .shown_if(self.has_totals(), "total %", move |row| shown(total(row.0), percent))
             .table("", all.iter().copied())
             .seen(view)
             .at_most([CONTRIBUTORS, 0], rest)
@@ -148,9 +167,22 @@ pub(super) fn matters(row: &Sensitivity, dimension: &DimensionReport) -> bool {
     dimension.sigma > 0.0 || row.first.is_some_and(|first| first != 0.0)
 }
 
-/// The share of the variance of a dimension by itself, by slope and curvature; None where the slope's is unknown.
+/// The share of the variance of a dimension by itself, by slope and curvature; by the model where its surface is not trusted. None where
+/// neither is known.
 pub(super) fn part(row: &Sensitivity) -> Option<f64> {
-    Some(row.linear_share? + row.curvature_share.unwrap_or(0.0))
+    let of_surface = row.linear_share.map(|linear| linear + row.curvature_share.unwrap_or(0.0));
+    of_surface.or(row.first_order.map(|index| index.value))
+}
+
+/// The same with every interaction in which it has a part.
+pub(super) fn total(row: &Sensitivity) -> Option<f64> {
+    row.total.map(|index| index.value)
+}
+
+/// By what rows are ordered: of the model with its interactions, which may be all that a dimension does.
+pub(super) fn size(row: &Sensitivity) -> f64 {
+    let of_model = total(row).filter(|_| row.linear_share.is_none());
+    of_model.or(part(row)).unwrap_or(-1.0)
 }
 
 /// A derivative to so many digits; within its own rounding error it is shown as 0.

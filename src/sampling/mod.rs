@@ -5,6 +5,7 @@ mod estimate;
 mod fine;
 mod joint;
 mod normals;
+mod ranks;
 mod sobol;
 mod summary;
 
@@ -14,5 +15,6 @@ pub(crate) use estimate::{FEWEST, of_moments, one_error};
 pub use fine::{Fine, Scale};
 pub(crate) use joint::Joint;
 pub(crate) use normals::Normals;
+pub use ranks::rank_first;
 pub use sobol::{SOBOL_DIMENSIONS, Sobol};
 pub use summary::Summary;

@@ -5,6 +5,7 @@ use serde::{Serialize, Serializer};
 use super::control::Twin;
 use super::count::{Count, Replicate};
 use super::difference::{Controlled, Difference, Shares, carried, moments as controlled, shares};
+use super::indices::SampledFactor;
 use super::replicate::of_replicates;
 use super::shape::value;
 use crate::assembly::EvaluationError;
@@ -79,6 +80,9 @@ pub struct SimulatedCharacteristic {
     /// The surrogate that stood beside the model; None where none was asked for, or it does not vary.
     #[cfg_attr(feature = "cli", schemars(with = "Option<super::shape::ControlShape>"))]
     pub control: Option<SurrogateControl>,
+    /// Its Sobol' indices, of every input; None where none were asked for, or the sample does not tell.
+    #[serde(rename = "sobol")]
+    pub indices: Option<Vec<SampledFactor>>,
 }
 
 /// What a surrogate as control variate has done.
@@ -200,6 +204,7 @@ impl SimulatedCharacteristic {
                 sigma: reduction(plain[1], sigma),
                 carried: fewer(carried(differences)),
             }),
+            indices: None,
         }
     }
 }

@@ -4,6 +4,7 @@ mod characteristic;
 mod control;
 mod count;
 mod difference;
+mod indices;
 mod replicate;
 mod shape;
 mod surrogates;
@@ -16,6 +17,7 @@ pub(crate) use written::SimulatedShape;
 
 pub use crate::sampling::{Estimate, Sampler, SamplingError};
 pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
+pub use indices::{IndexEstimate, SampledFactor};
 
 use std::time::Duration;
 
@@ -67,6 +69,10 @@ pub struct SimulationOptions {
     pub control: Option<Options>,
     /// The share of assemblies that must keep the limits of all characteristics at once.
     pub target_joint_yield: Option<f64>,
+    /// Whether there are Sobol' indices too, by exchanging inputs at so many base points, n of them: n (N + 2) evaluations more.
+    pub sobol: Option<u64>,
+    /// Most evaluations of these; without it a costly model is evaluated 10 000 times for them at most.
+    pub budget: Option<u64>,
 }
 
 impl Default for SimulationOptions {
@@ -79,6 +85,8 @@ impl Default for SimulationOptions {
             until_yield: None,
             control: None,
             target_joint_yield: None,
+            sobol: None,
+            budget: None,
         }
     }
 }
@@ -123,6 +131,20 @@ impl SimulationOptions {
     #[must_use]
     pub fn with_target_joint_yield(mut self, share: f64) -> Self {
         self.target_joint_yield = Some(share);
+        self
+    }
+
+    /// With Sobol' indices by so many base points.
+    #[must_use]
+    pub fn with_sobol(mut self, points: u64) -> Self {
+        self.sobol = Some(points);
+        self
+    }
+
+    /// With at most so many evaluations for Sobol' indices.
+    #[must_use]
+    pub fn with_budget(mut self, evaluations: u64) -> Self {
+        self.budget = Some(evaluations);
         self
     }
 
@@ -260,6 +282,21 @@ pub enum SimulationError {
         /// The greatest.
         most: u64,
     },
+    /// Sobol' indices of a costly model.
+    #[error(
+        "Sobol' indices of {factors} inputs at {points} points take {evaluations} evaluations (points x (inputs + 2)), and {most} are \
+         allowed: choose fewer points or a greater budget"
+    )]
+    CostlyIndices {
+        /// Base points.
+        points: u64,
+        /// Inputs that vary by themselves.
+        factors: usize,
+        /// Evaluations that they take together.
+        evaluations: u64,
+        /// Evaluations that are allowed.
+        most: u64,
+    },
     /// A yield is wanted where there is no limit.
     #[error("a yield is to be known that well, but no characteristic asked for has a limit")]
     NoLimits,
@@ -304,11 +341,36 @@ pub fn simulate_with(
     if options.until_yield.is_some() && !problem.characteristics().iter().any(|one| one.limits().exist()) {
         return Err(SimulationError::NoLimits);
     }
+    if let Some(points) = options.sobol {
+        indices::affordable(problem, points, options.budget)?;
+    }
     let begun = Instant::now();
     let draws = Draws::new(problem.dimensions(), problem.correlation(), options.sampler, options.seed)?;
     problem.function().prepare(problem.outputs()).map_err(|error| SimulationError::Model { error })?;
     let control = options.control.as_ref().map(|asked| Control::of(problem, asked, options, run)).transpose()?;
-    Ok(drawn(problem, options, (&draws, control.as_ref()), run, (begun, pace)))
+    let found = drawn(problem, options, (&draws, control.as_ref()), run, (begun, pace));
+    Ok(match options.sobol {
+        Some(points) if !found.run.unfinished() => found.with_indices(problem, (points, options.seed), run, pace),
+        _ => found,
+    })
+}
+
+impl Simulation {
+    /// With Sobol' indices.
+    fn with_indices(
+        mut self,
+        problem: &Problem,
+        (points, seed): (u64, u64),
+        run: &Run<'_>,
+        pace: &dyn Fn(Pace),
+    ) -> Self {
+        let origins: Vec<f64> =
+            self.characteristics.iter().map(|one| one.mean.map_or(0.0, |mean| mean.value)).collect();
+        let (found, spent) = indices::indices(problem, (points, seed), &origins, run, pace);
+        self.characteristics.iter_mut().zip(found).for_each(|(one, found)| one.indices = found);
+        self.run = RunSummary { evaluator: problem.evaluator(), ..self.run.and(&spent) };
+        self
+    }
 }
 
 /// Samples the model beside the surrogates of an analysis that has been made; those that it has not stand beside nothing.

@@ -12,6 +12,7 @@ use super::error::{Fault, Faults, StudyFault, fault};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
 use super::implicit::{implicit, placed};
+use super::inspected::inspected;
 use super::joint;
 use super::loss::{losses, setups};
 use super::model::{ModelOf, model, process, signature};
@@ -328,7 +329,7 @@ fn characteristic(
         }
         characteristic = characteristic.with_target_yield(*target.get_ref()).map_err(at)?;
     }
-    Ok(characteristic)
+    inspected(characteristic, entry, key)
 }
 
 fn compose(

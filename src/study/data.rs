@@ -6,10 +6,9 @@ use std::sync::Arc;
 use super::files::{FileRole, NamedFile};
 use super::place::{Place, Unread};
 use crate::names::nearest;
+use crate::table::{DELIMITERS, NumberFault, Style, delimiter, records};
 use crate::warning::Warning;
 
-/// Between columns, in the order in which they are tried: a comma may be a decimal one.
-const DELIMITERS: [u8; 3] = [b'\t', b';', b','];
 /// What stands where nothing was measured, in any case of letters.
 const MISSING: [&str; 5] = ["", "-", "na", "n/a", "nan"];
 
@@ -340,7 +339,7 @@ impl Table {
     /// Blank lines count as nothing; there are no comments.
     fn parse(text: &str) -> Result<Self, (Option<u64>, DataProblem)> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let delimiter = delimiter(text);
+        let delimiter = delimiter(text, DELIMITERS);
         let mut rows = records(text, delimiter);
         let Some((_, header)) = rows.next() else { return Err((None, DataProblem::Empty)) };
         let names: Vec<String> = header.iter().map(str::to_owned).collect();
@@ -383,61 +382,30 @@ impl Table {
     fn numbers(&self, index: usize) -> Result<Column, (u64, DataProblem)> {
         let name = self.names[index].clone();
         let mut column = Column { name, values: Vec::new(), lines: Vec::new(), missing: Vec::new() };
-        // The first line with a decimal point, and with a decimal comma.
-        let mut marks: [Option<u64>; 2] = [None, None];
+        let mut cells: Vec<(u64, &str)> = Vec::new();
         for (line, row) in &self.rows {
             let text = row.get(index).unwrap_or("");
-            if MISSING.contains(&text.to_lowercase().as_str()) {
-                column.missing.push(*line);
-                continue;
+            match MISSING.contains(&text.to_lowercase().as_str()) {
+                true => column.missing.push(*line),
+                false => cells.push((*line, text)),
             }
-            let comma = text.contains(',');
-            let no_number =
-                || (*line, DataProblem::NoNumber { text: text.to_owned(), comma: comma && !self.decimal_commas });
-            if comma && !self.decimal_commas {
-                return Err(no_number());
-            }
-            let point = if comma { text.replacen(',', ".", 1) } else { text.to_owned() };
-            let value: f64 = point.parse().map_err(|_| no_number())?;
-            if !value.is_finite() {
-                return Err((*line, DataProblem::NotFinite { text: text.to_owned() }));
-            }
-            if point.contains('.') {
-                marks[usize::from(comma)].get_or_insert(*line);
-                if let Some(other) = marks[usize::from(!comma)] {
-                    return Err((*line, DataProblem::TwoMarks { text: text.to_owned(), comma, other }));
-                }
-            }
+        }
+        let style = Style::of(cells.iter().map(|(_, text)| *text), !self.decimal_commas);
+        for (place, &(line, text)) in cells.iter().enumerate() {
+            let value = style.number(place, text).map_err(|found| {
+                let text = text.to_owned();
+                let problem = match found {
+                    NumberFault::NoNumber { comma } => DataProblem::NoNumber { text, comma },
+                    NumberFault::NotFinite => DataProblem::NotFinite { text },
+                    NumberFault::TwoMarks { comma, other } => {
+                        DataProblem::TwoMarks { text, comma, other: cells[other].0 }
+                    }
+                };
+                (line, problem)
+            })?;
             column.values.push(value);
-            column.lines.push(*line);
+            column.lines.push(line);
         }
         Ok(column)
     }
-}
-
-/// What separates the columns: the first candidate that splits the header and the row after it alike, or else the header
-/// alone. A comma where nothing does: there is one column.
-fn delimiter(text: &str) -> u8 {
-    let cells = |delimiter: u8| {
-        let mut rows = records(text, delimiter).map(|(_, row)| row.len());
-        (rows.next().unwrap_or(0), rows.next())
-    };
-    let splits = |delimiter: &u8| cells(*delimiter).0 > 1;
-    let alike = |delimiter: &u8| {
-        let (header, row) = cells(*delimiter);
-        header > 1 && row == Some(header)
-    };
-    let found = DELIMITERS.iter().find(|delimiter| alike(delimiter));
-    found.or_else(|| DELIMITERS.iter().find(|delimiter| splits(delimiter))).copied().unwrap_or(b',')
-}
-
-fn records(text: &str, delimiter: u8) -> impl Iterator<Item = (u64, csv::StringRecord)> + '_ {
-    let reader = csv::ReaderBuilder::new()
-        .delimiter(delimiter)
-        .has_headers(false)
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    // UTF-8 in memory, with rows of any length, has no errors left.
-    reader.into_records().filter_map(Result::ok).map(|row| (row.position().map_or(0, csv::Position::line), row))
 }

@@ -13,6 +13,7 @@ use crate::characteristic::LimitsError;
 use crate::correlation::Refusal;
 use crate::dimension::DimensionFault;
 use crate::fits::FitError;
+use crate::inspection::InspectionError;
 use crate::method::MethodError;
 use crate::names::UnknownName;
 use crate::problem::ProblemError;
@@ -483,6 +484,9 @@ pub enum StudyFault {
         /// The most.
         most: f64,
     },
+    /// An inspection is impossible.
+    #[error(transparent)]
+    Inspection(#[from] InspectionError),
     /// A requirement is impossible.
     #[error(transparent)]
     Requirement(#[from] RequirementError),

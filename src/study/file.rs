@@ -4,6 +4,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
+use super::guard::GuardEntry;
 use super::price::{CostEntry, LossEntry, RequireEntry};
 #[cfg(feature = "cli")]
 use super::registry;
@@ -320,6 +321,10 @@ pub(super) struct CharacteristicEntry {
     pub(super) target_yield: Option<Spanned<f64>>,
     /// A requirement, for allocate in place of its target_yield, for --check in addition to it: worst case, rss, or a number.
     pub(super) require: Option<Spanned<RequireEntry>>,
+    /// The standard deviation of the gauge by which parts are accepted: the report then has the risks of that.
+    pub(super) gauge: Option<Spanned<f64>>,
+    /// By how much the limits are tightened for acceptance, or `{ false_accept = 0.001 }` for the share of all parts that may be bad and accepted.
+    pub(super) guard: Option<Spanned<GuardEntry>>,
 }
 
 /// `[model]`.

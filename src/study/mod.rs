@@ -54,7 +54,11 @@ mod externals;
 mod file;
 mod files;
 mod grades;
+mod guard;
 mod implicit;
+#[cfg(feature = "cli")]
+pub(crate) mod import;
+mod inspected;
 mod joint;
 mod lines;
 mod loss;

@@ -8,6 +8,7 @@ use crate::assembly::implicit::ConditionsError;
 use crate::characteristic::LimitsError;
 use crate::dimension::DimensionFault;
 use crate::distribution::DistributionError;
+use crate::inspection::InspectionError;
 use crate::requirement::RequirementError;
 use crate::warning::Advice;
 
@@ -73,7 +74,9 @@ impl StudyFault {
             Self::Cost(CostError::Rising { .. }) => {
                 Some("leave out the dearer process that holds less, or correct its cost".into())
             }
-            Self::Requirement(RequirementError::NoLimits { .. }) => Some("write lower, upper or both".into()),
+            Self::Inspection(InspectionError::NoLimits) | Self::Requirement(RequirementError::NoLimits { .. }) => {
+                Some("write lower, upper or both".into())
+            }
             Self::Requirement(RequirementError::ImpossibleYield { value }) if *value >= 1.0 => {
                 Some("only a worst case promises that: require = \"worst-case\"".into())
             }

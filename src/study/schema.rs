@@ -10,6 +10,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
 use super::file::{ConstantEntry, Entries, FormulaEntry, PairsEntry, StudyFile, TermEntry, UnknownEntry};
+use super::guard::{GuardEntry, GuardTable};
 use super::price::{RequireEntry, RequireTable};
 use super::together::{CorrelationEntry, Correlations, JointEntry, Joints};
 use super::values::{Deviation, NominalEntry, ToleranceEntry};
@@ -265,6 +266,18 @@ impl JsonSchema for RequireEntry {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         json_schema!({
             "anyOf": [{ "type": "string", "enum": REQUIREMENTS }, generator.subschema_for::<RequireTable>()],
+        })
+    }
+}
+
+impl JsonSchema for GuardEntry {
+    fn schema_name() -> Cow<'static, str> {
+        "Guard".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "anyOf": [{ "type": "number", "minimum": 0 }, generator.subschema_for::<GuardTable>()],
         })
     }
 }

@@ -19,6 +19,7 @@ mod shares;
 mod sides;
 mod space;
 mod strata;
+mod weighted;
 
 pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
 pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
@@ -26,10 +27,13 @@ pub use outputs::OutputCorrelation;
 pub(crate) use outputs::output_correlations;
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
+pub(crate) use space::{Columns, Space};
+pub(crate) use weighted::WeightedSample;
 
 use serde::Serialize;
 
 use crate::assembly::Run;
+use crate::correlation::factors;
 use crate::problem::Problem;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
@@ -90,6 +94,8 @@ pub struct SampledFigures {
     pub switches: Option<Vec<FoundSwitch>>,
     /// Whether the model told all of its switches.
     pub switches_complete: bool,
+    /// The sample itself, of a characteristic that is inspected.
+    pub(crate) sample: Option<WeightedSample>,
 }
 
 impl Verified {
@@ -199,9 +205,24 @@ pub(crate) fn variance_shares_during(
     if problem.correlation().is_some() {
         return None;
     }
+    let found = factor_shares(problem, characteristic, seed, run)?;
+    Some(found.into_iter().map(|(factor, shares)| (factor[0], shares)).collect())
+}
+
+/// [`variance_shares`] of factors: dimensions that vary together are exchanged together. By the dimensions of every factor on which the
+/// characteristic depends.
+pub(crate) fn factor_shares(
+    problem: &Problem,
+    characteristic: usize,
+    seed: u64,
+    run: &Run<'_>,
+) -> Option<Vec<(Vec<usize>, [Share; 2])>> {
     let model = Model::new(problem, characteristic).during(run);
-    let found = model.dimensions().zip(shares::shares(&model, seed)?).collect();
-    (!model.stopped()).then_some(found)
+    let dimensions: Vec<usize> = model.dimensions().collect();
+    let places = factors(problem.correlation(), &dimensions);
+    let found = shares::shares(&model, &places, seed)?;
+    let named = places.into_iter().map(|factor| factor.into_iter().map(|place| dimensions[place]).collect());
+    (!model.stopped()).then(|| named.zip(found).collect())
 }
 
 /// One characteristic, by a seed and so many points in the core, beside its surface over these dimensions; None where the run was stopped
@@ -243,6 +264,7 @@ pub(crate) fn verify_characteristic(
         valid: Verified { value: figures.valid.0, error: figures.valid.1 },
         switches: sides.switches,
         switches_complete: sides.complete,
+        sample: problem.characteristics()[c].inspection().map(|_| sample.kept()),
     })
 }
 
@@ -268,5 +290,6 @@ fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
         valid: Verified { value: f64::from(u8::from(known)), error: 0.0 },
         switches: None,
         switches_complete: true,
+        sample: None,
     }
 }

@@ -20,6 +20,7 @@ use super::model::Model;
 use super::sides::{Sides, sides};
 use super::space::Columns;
 use super::strata::{HalfSpace, between, unit};
+use super::weighted::WeightedSample;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
 
@@ -179,6 +180,12 @@ impl Sample {
         let student = student(REPLICATES);
         // As for a share: that no point disagrees does not mean that none does.
         Some(std::array::from_fn(|i| Verified { value: values[i], error: (student * errors[i]).hypot(self.one) }))
+    }
+
+    /// All of it, for shares that are asked for later.
+    pub(super) fn kept(self) -> WeightedSample {
+        let parts = self.parts.into_iter().map(|part| (part.replicate, part.values, part.weights));
+        WeightedSample::new(parts, REPLICATES, self.one)
     }
 
     /// Whether no point has a value.

@@ -32,17 +32,18 @@ pub(super) fn most(inputs: usize) -> usize {
     EVALUATIONS.max(REPLICATES * FEWEST * (inputs + 2))
 }
 
-/// First-order and total shares of every variable; None for too many of them, and where nothing varies.
-pub(super) fn shares(model: &Model<'_>, seed: u64) -> Option<Vec<[Share; 2]>> {
-    let n = model.len();
-    if n == 0 || n > MOST {
+/// First-order and total shares of every factor, which is a variable or some that are exchanged together; None for too many variables,
+/// and where nothing varies.
+pub(super) fn shares(model: &Model<'_>, factors: &[Vec<usize>], seed: u64) -> Option<Vec<[Share; 2]>> {
+    let n = factors.len();
+    if n == 0 || model.len() > MOST {
         return None;
     }
     let rows = (EVALUATIONS / (REPLICATES * (n + 2))).max(FEWEST);
     let rows = if rows.is_power_of_two() { rows } else { rows.next_power_of_two() / 2 };
-    let normals = Normals::new(2 * n, seed);
+    let normals = Normals::new(2 * model.len(), seed);
     let sums: Vec<Vec<f64>> =
-        (0..REPLICATES).into_par_iter().map(|r| exchanged(model, &normals, r as u64, rows)).collect();
+        (0..REPLICATES).into_par_iter().map(|r| exchanged(model, factors, &normals, (r as u64, rows))).collect();
     let rows: Vec<Vec<f64>> = (0..1 + 2 * n).map(|sum| sums.iter().map(|of| of[sum]).collect()).collect();
     let of = |total: &[f64]| total[1..].iter().map(|sum| sum / total[0]).collect::<Vec<f64>>();
     let (values, errors, wide) = (of(&totals(&rows)), jackknife(of, &rows), student(REPLICATES));
@@ -50,25 +51,34 @@ pub(super) fn shares(model: &Model<'_>, seed: u64) -> Option<Vec<[Share; 2]>> {
     values.iter().all(|value| value.is_finite()).then(|| (0..n).map(|j| [share(j), share(n + j)]).collect())
 }
 
-/// The variance, then for every variable the covariance of what it makes by itself, then half the mean square of what it changes.
-fn exchanged(model: &Model<'_>, normals: &Normals, replicate: u64, rows: usize) -> Vec<f64> {
-    let n = model.len();
+/// The variance, then for every factor the covariance of what it makes by itself, then half the mean square of what it changes.
+fn exchanged(
+    model: &Model<'_>,
+    factors: &[Vec<usize>],
+    normals: &Normals,
+    (replicate, rows): (u64, usize),
+) -> Vec<f64> {
+    let n = factors.len();
     let mut first: Columns = normals.columns((1 << 34) + replicate, rows);
-    let second: Columns = first.split_off(n);
+    let mut second: Columns = first.split_off(model.len());
     let (a, b) = (model.values(&first), model.values(&second));
     let both = || a.iter().chain(&b).filter(|y| y.is_finite());
     let count = both().count() as f64;
     let mean = both().sum::<f64>() / count;
     let variance = both().map(|y| (y - mean).powi(2)).sum::<f64>() / count;
     let mut sums = vec![variance; 1 + 2 * n];
-    for j in 0..n {
-        let kept = std::mem::replace(&mut first[j], second[j].clone());
+    for (j, factor) in factors.iter().enumerate() {
+        exchange(factor, &mut first, &mut second);
         let c = model.values(&first);
-        first[j] = kept;
+        exchange(factor, &mut first, &mut second);
         let valid = || a.iter().zip(&b).zip(&c).filter(|((a, b), c)| a.is_finite() && b.is_finite() && c.is_finite());
         let count = valid().count() as f64;
         sums[1 + j] = valid().map(|((a, b), c)| (b - mean) * (c - a)).sum::<f64>() / count;
         sums[1 + n + j] = valid().map(|((a, _), c)| 0.5 * (c - a).powi(2)).sum::<f64>() / count;
     }
     sums
+}
+
+fn exchange(factor: &[usize], first: &mut Columns, second: &mut Columns) {
+    factor.iter().for_each(|&variable| std::mem::swap(&mut first[variable], &mut second[variable]));
 }

@@ -31,9 +31,9 @@ const LAYERS: &[&[&str]] = &[
     &["warning"],
     &["correlation"],
     &["dimension", "characteristic"],
-    &["distribution", "fits", "requirement"],
+    &["distribution", "fits", "requirement", "inspection"],
     &["pearson", "method_kind"],
-    &["names", "elementary", "summary", "time", "unit"],
+    &["names", "elementary", "summary", "time", "unit", "table"],
     &["shape"],
 ];
 

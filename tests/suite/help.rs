@@ -71,6 +71,7 @@ fn every_command_refuses_what_is_wrong() {
         &["models", "rocket"],
         &["expand", "nowhere.toml"],
         &["init", "no-such-folder/gap"],
+        &["import", "no-such.csv"],
         &["workbench", "nowhere.toml"],
         &["serve", "nowhere"],
         &["schema", "-o", "/nowhere/study.schema.json"],

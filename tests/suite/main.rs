@@ -40,7 +40,9 @@ mod hosted;
 mod hostile;
 mod html;
 mod implicit;
+mod import;
 mod init;
+mod inspection;
 mod intervals;
 mod joint;
 mod journal;
@@ -74,6 +76,7 @@ mod schema;
 mod serve;
 mod several;
 mod simulation;
+mod sobol;
 mod stack;
 #[cfg(unix)]
 mod storm;

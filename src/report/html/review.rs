@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::super::Report;
 use super::super::figures::{Figures, Named};
+use super::super::statistics::part;
 use crate::analysis::CharacteristicAnalysis;
 use crate::capability::Capability;
 use crate::document::number::{beside, index, percent, plain, significant, yielded};
@@ -111,11 +112,7 @@ fn side(one: &CharacteristicAnalysis) -> Option<String> {
 
 /// What makes most of the variance.
 fn driver(one: &CharacteristicAnalysis) -> Option<String> {
-    let share = |linear: Option<f64>, curved: Option<f64>| Some(linear? + curved.unwrap_or(0.0));
-    let all = one
-        .sensitivities
-        .iter()
-        .filter_map(|row| Some((&row.dimension, share(row.linear_share, row.curvature_share)?)));
+    let all = one.sensitivities.iter().filter_map(|row| Some((&row.dimension, part(row)?)));
     let (name, share) = all.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let percent = (100.0 * share).round();
     (share >= 0.2).then(|| format!("<em>{}</em> makes {percent} % of its variance.", escaped(name)))

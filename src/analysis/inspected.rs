@@ -1,0 +1,152 @@
+//! The risks of an inspection: from the law that the yield comes from, beside the sample of the model where there is one.
+
+use super::inspection_risks::InspectionRisks;
+use super::sobol::EstimatedShare;
+use super::{CharacteristicAnalysis, YieldSource};
+use crate::capability::{Law, Risks, Tails, guard_for};
+use crate::characteristic::SpecLimits;
+use crate::distribution::standard_normal;
+use crate::inspection::{Guard, Inspection};
+use crate::law::SurfaceLaw;
+use crate::verification::WeightedSample;
+
+/// Of a characteristic whose yield is settled; None without an inspection, and where nothing is known of its distribution.
+pub(super) fn inspected(one: &CharacteristicAnalysis, surface: Option<&SurfaceLaw>) -> Option<InspectionRisks> {
+    let inspection = one.characteristic.inspection()?;
+    let limits = one.characteristic.limits();
+    let fit = one.law.as_ref().and_then(|law| law.as_ref().ok());
+    // The law of a surface that does not vary is a step, of which the integrals are worse than the closed form.
+    let surface = surface.filter(|_| !matches!(fit, Some(Law::Point { .. })));
+    match (surface, fit) {
+        (Some(surface), _) => {
+            let (below, above) = (|x: f64| surface.below(x).value, |x: f64| surface.above(x).value);
+            Some(by(one, inspection, limits, &Tails { below: &below, above: &above }, surface_error(one)))
+        }
+        (None, Some(Law::Point { at })) => {
+            let (below, above) = (|x: f64| f64::from(u8::from(*at < x)), |x: f64| f64::from(u8::from(*at > x)));
+            let at = *at;
+            let exact = |limits: SpecLimits, guard: f64| of_point(at, limits, inspection.gauge(), guard);
+            let guard = guard(inspection, limits, &Tails { below: &below, above: &above });
+            Some(told(one, inspection, guard, guard.map(|guard| (exact(limits, guard), [Some(0.0); 2]))))
+        }
+        (None, Some(fit)) => {
+            let (below, above) = (|x: f64| fit.below(x), |x: f64| fit.above(x));
+            Some(by(one, inspection, limits, &Tails { below: &below, above: &above }, None))
+        }
+        (None, None) => None,
+    }
+}
+
+/// The numerical error of the law of the surface, where that is all that there is.
+fn surface_error(one: &CharacteristicAnalysis) -> Option<f64> {
+    let proven = one.yield_source == Some(YieldSource::Proof);
+    one.surface_law.filter(|_| proven).map(|law| law.error())
+}
+
+fn guard(inspection: Inspection, limits: SpecLimits, tails: &Tails<'_>) -> Option<f64> {
+    match inspection.guard() {
+        Guard::Width(width) => Some(width),
+        Guard::FalseAccept(rate) => guard_for(tails, limits, inspection.gauge(), rate),
+    }
+}
+
+/// By a law, beside the sample of the model where there is one: without a surface the sample has the say.
+fn by(
+    one: &CharacteristicAnalysis,
+    inspection: Inspection,
+    limits: SpecLimits,
+    tails: &Tails<'_>,
+    proven: Option<f64>,
+) -> InspectionRisks {
+    let (gauge, guard) = (inspection.gauge(), guard(inspection, limits, tails));
+    let sample = one.verification.as_ref().and_then(|of| of.sample.as_deref());
+    let of = |guard: f64| {
+        let mut risks = Risks::of(tails, limits, gauge, guard);
+        // A part that is proven to keep its limits is never bad.
+        if let Some(rejected) = one.capability.and_then(|of| of.rejected()).filter(|_| proven.is_some()) {
+            risks.false_accept = risks.false_accept.min(rejected);
+        }
+        let Some(sample) = sample else {
+            let error = proven.or(one.error_estimate.as_ref().and_then(|of| of.yield_));
+            return (risks, [error.map(|error| error + risks.error); 2]);
+        };
+        let found = of_sample(sample, limits, gauge, guard);
+        if one.surface_law.is_none() {
+            (risks.false_accept, risks.false_reject) = (found[0].value, found[1].value);
+        }
+        let errors = [found[0].error_of(risks.false_accept), found[1].error_of(risks.false_reject)];
+        (risks, errors.map(Some))
+    };
+    told(one, inspection, guard, guard.map(of))
+}
+
+/// The same means over points of the model.
+fn of_sample(
+    sample: &WeightedSample,
+    limits: SpecLimits,
+    gauge: f64,
+    guard: f64,
+) -> [crate::verification::Verified; 2] {
+    let accepted = |x: f64| acceptance(x, limits, gauge, guard);
+    let bad = |x: f64| if limits.contains(x) { 0.0 } else { accepted(x) };
+    let good = |x: f64| if limits.contains(x) { 1.0 - accepted(x) } else { 0.0 };
+    sample.shares([&bad, &good])
+}
+
+fn of_point(x: f64, limits: SpecLimits, gauge: f64, guard: f64) -> Risks {
+    let accepted = acceptance(x, limits, gauge, guard);
+    let good = limits.contains(x);
+    Risks {
+        false_accept: if good { 0.0 } else { accepted },
+        false_reject: if good { 1.0 - accepted } else { 0.0 },
+        error: 0.0,
+    }
+}
+
+/// The probability that a part with this true value is accepted.
+fn acceptance(x: f64, limits: SpecLimits, gauge: f64, guard: f64) -> f64 {
+    let below = |end: f64| match gauge > 0.0 {
+        true => standard_normal::cdf((end - x) / gauge),
+        false => f64::from(u8::from(x <= end)),
+    };
+    let strictly_below = |end: f64| match gauge > 0.0 {
+        true => standard_normal::cdf((end - x) / gauge),
+        false => f64::from(u8::from(x < end)),
+    };
+    let [low, high] = [limits.lower().map(|lower| lower + guard), limits.upper().map(|upper| upper - guard)];
+    (high.map_or(1.0, below) - low.map_or(0.0, strictly_below)).max(0.0)
+}
+
+fn told(
+    one: &CharacteristicAnalysis,
+    inspection: Inspection,
+    guard: Option<f64>,
+    found: Option<(Risks, [Option<f64>; 2])>,
+) -> InspectionRisks {
+    let limits = one.characteristic.limits();
+    let tightened = |limit: Option<f64>, sign: f64| Some(limit? + sign * guard?);
+    let share = |value: f64, error: Option<f64>| Some(EstimatedShare { value: value.clamp(0.0, 1.0), error });
+    let yield_ = one.capability.and_then(|of| of.yield_());
+    let yield_error = match one.constant {
+        true => Some(0.0),
+        false => one.error_estimate.as_ref().and_then(|of| of.yield_),
+    };
+    let accepted = found.zip(yield_).map(|((risks, errors), yield_)| {
+        let error = yield_error.zip(errors[0]).zip(errors[1]);
+        let error = error.map(|((yield_, accept), reject)| yield_.hypot(accept).hypot(reject));
+        EstimatedShare { value: (yield_ - risks.false_reject + risks.false_accept).clamp(0.0, 1.0), error }
+    });
+    let among =
+        found.zip(accepted).filter(|(_, accepted)| accepted.value > 0.0).and_then(|((risks, errors), accepted)| {
+            share(risks.false_accept / accepted.value, errors[0].map(|error| error / accepted.value))
+        });
+    InspectionRisks {
+        gauge: inspection.gauge(),
+        guard,
+        acceptance: [tightened(limits.lower(), 1.0), tightened(limits.upper(), -1.0)],
+        false_accept: found.and_then(|(risks, errors)| share(risks.false_accept, errors[0])),
+        false_reject: found.and_then(|(risks, errors)| share(risks.false_reject, errors[1])),
+        accepted,
+        bad_among_accepted: among,
+    }
+}

@@ -1,0 +1,26 @@
+//! The risks of an inspection, as results have them.
+
+use serde::Serialize;
+
+use super::sobol::EstimatedShare;
+
+/// The risks of an inspection with a gauge that errs. Shares are of all parts unless something else is said.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct InspectionRisks {
+    /// The standard deviation of the gauge.
+    pub gauge: f64,
+    /// By how much the limits are tightened; None where no guard reaches the rate that is wanted.
+    pub guard: Option<f64>,
+    /// The tightened limits.
+    pub acceptance: [Option<f64>; 2],
+    /// Bad and accepted: the consumer's risk.
+    pub false_accept: Option<EstimatedShare>,
+    /// Good and rejected: the producer's risk.
+    pub false_reject: Option<EstimatedShare>,
+    /// Accepted.
+    pub accepted: Option<EstimatedShare>,
+    /// Of the accepted parts, those that are bad.
+    pub bad_among_accepted: Option<EstimatedShare>,
+}

@@ -1,0 +1,74 @@
+//! The points of a costly model's sample, kept for who asks more of them than moments.
+
+use std::sync::{Mutex, PoisonError};
+
+use crate::assembly::{AssemblyFunction, Request, Responses, Run, Signature};
+use crate::problem::Problem;
+use crate::sampling::rank_first;
+use crate::verification::Share;
+
+/// Points that are kept: a costly model is seldom asked for more.
+const MOST: usize = 1 << 14;
+
+/// A model that keeps what it is asked and what it answers.
+///
+/// A costly model is asked one batch after the other, so that the order of the points does not depend on threads.
+pub(super) struct Recorded {
+    problem: Problem,
+    kept: Mutex<Kept>,
+}
+
+/// A column for every dimension of the problem, and one for every output asked.
+#[derive(Default)]
+struct Kept {
+    x: Vec<Vec<f64>>,
+    y: Vec<Vec<f64>>,
+}
+
+impl Recorded {
+    pub(super) fn new(problem: &Problem) -> Self {
+        Self { problem: problem.clone(), kept: Mutex::default() }
+    }
+
+    /// Forgets what was asked so far: another sample begins.
+    pub(super) fn clear(&self) {
+        *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = Kept::default();
+    }
+
+    /// First-order indices of these dimensions, of a characteristic by its place.
+    pub(super) fn ranks(&self, c: usize, dimensions: &[usize]) -> Vec<(usize, Share)> {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let of = |&d: &usize| ranked(d, kept.x.get(d)?, kept.y.get(c)?);
+        dimensions.iter().filter_map(of).collect()
+    }
+}
+
+/// The index of a dimension by the ranks of a sample.
+pub(super) fn ranked(dimension: usize, x: &[f64], y: &[f64]) -> Option<(usize, Share)> {
+    let (value, error) = rank_first(x, y)?;
+    Some((dimension, Share { value, error }))
+}
+
+impl AssemblyFunction for Recorded {
+    fn signature(&self) -> &Signature {
+        self.problem.function().signature()
+    }
+
+    fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        self.problem.function().evaluate(request, run, out);
+        if request.outputs != self.problem.outputs() {
+            return;
+        }
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = &mut *kept;
+        kept.x.resize_with(request.points.dimensions(), Vec::new);
+        kept.y.resize_with(out.outputs(), Vec::new);
+        let rows = out.rows().min(MOST.saturating_sub(kept.y.first().map_or(0, Vec::len)));
+        for (d, column) in kept.x.iter_mut().enumerate() {
+            column.extend_from_slice(&request.points.column(d)[..rows]);
+        }
+        for (output, column) in kept.y.iter_mut().enumerate() {
+            column.extend((0..rows).map(|row| out.value(row, output).unwrap_or(f64::NAN)));
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! `sensitol import`: a stack-up table as a study.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::{Exit, Failure};
+use super::output::Destination;
+use super::shared_args::OUTPUT;
+use crate::names::nearest;
+use crate::study::Study;
+use crate::study::import::{ImportFault, ImportProblem, ROLES, Role, Sheet, import, named};
+
+#[derive(Debug, Args)]
+pub(super) struct ImportArgs {
+    /// The table: .csv, .tsv or .txt, or - for what stands on stdin, such as cells copied from a spreadsheet
+    pub(super) table: PathBuf,
+
+    /// The header of a column in the table's own words, such as nominal=Wert; of name, part, description, drawing, direction, factor, nominal, upper,
+    /// lower, minus, tolerance, unit, distribution, cp and sigma (repeatable)
+    #[arg(long, value_name = "ROLE=HEADER", value_parser = column)]
+    pub(super) column: Vec<(Role, String)>,
+
+    /// The name of the characteristic that the dimensions add up to
+    #[arg(long, value_name = "NAME", default_value = "gap")]
+    pub(super) name: String,
+
+    /// Write to a file instead of stdout; an existing file is never overwritten
+    #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
+    pub(super) output: Option<PathBuf>,
+}
+
+fn column(text: &str) -> Result<(Role, String), String> {
+    let Some((role, header)) = text.split_once('=') else {
+        return Err("write a role and a header, such as nominal=Nennmaß".to_owned());
+    };
+    let found = named(role.trim()).ok_or_else(|| {
+        let known = ROLES.map(|(_, name, _)| name);
+        let meant = nearest(role, known).map(|name| format!("did you mean `{name}`? ")).unwrap_or_default();
+        format!("{meant}the roles are {}", known.join(", "))
+    })?;
+    Ok((found, header.trim().to_owned()))
+}
+
+pub(super) fn run(asked: &ImportArgs) -> Result<Exit, Failure> {
+    let failed = |reason: String| Failure::Import { path: asked.table.clone(), reason, help: None };
+    let destination = match &asked.output {
+        Some(path) if path.exists() => return Err(Failure::Exists { path: path.clone() }),
+        Some(path) => Destination::file(path)?,
+        None => Destination::Stdout,
+    };
+    let sheet = sheet(&asked.table).map_err(failed)?;
+    let imported = import(&sheet, &asked.column, &asked.name).map_err(|fault: ImportFault| Failure::Import {
+        path: asked.table.clone(),
+        reason: fault.to_string(),
+        help: fault.problem.help().map(|help| match fault.problem {
+            ImportProblem::NoHeader => format!("{help}; or --column nominal=HEADER"),
+            _ => help,
+        }),
+    })?;
+    let from = match asked.table.to_str() {
+        Some("-") | None => "a table".to_owned(),
+        Some(_) => asked.table.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+    };
+    let mut text = format!(
+        "# Imported from {from}. Limits of the characteristic are not in the table: write lower, upper or both.\n"
+    );
+    imported.notes.iter().for_each(|note| text += &format!("# {}\n", one_line(note)));
+    text += "\n";
+    text += &imported.study;
+    // A study that cannot be analysed is told of here, and not when it is.
+    Study::from_toml(&text, &asked.output.as_deref().unwrap_or(Path::new("imported study")).display().to_string())?;
+    destination.write(&text)?;
+    Ok(Exit::Done)
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn sheet(path: &Path) -> Result<Sheet, String> {
+    let mut bytes = Vec::new();
+    match path.to_str() {
+        Some("-") => {
+            std::io::stdin().lock().read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        }
+        _ => bytes = std::fs::read(path).map_err(|error| error.to_string())?,
+    }
+    let text = String::from_utf8(bytes).map_err(|_| {
+        "it is not text in UTF-8: save it as CSV in UTF-8, or copy the cells and paste them into `sensitol import -`"
+            .to_owned()
+    })?;
+    Ok(Sheet::of_text(&text))
+}

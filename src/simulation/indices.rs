@@ -1,0 +1,238 @@
+//! Sobol' indices of the model itself, by exchanging inputs between two samples.
+//!
+//! ```text
+//! first order  S_j = (E[b c] - m^2) / (E[(b^2 + c^2)/2] - m^2)     m = E[(b + c)/2]       Janon and others 2014
+//! total        T_j = E[(a - c)^2] / (2 V)                                                  Jansen 1999
+//! ```
+//!
+//! with the model's values `a` and `b` at two independent sets of Sobol' points and `c` at the points of the first whose input j is that of
+//! the second: n (N + 2) evaluations for N factors. A factor is a dimension, or dimensions that vary together. Standard errors are those
+//! of the jackknife over 16 scramblings, intervals by Student's quantile. An index near 0 may come out negative: it is within its
+//! error, and stays as it is.
+
+use rayon::prelude::*;
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::{Pace, REPLICATES, SimulationError};
+use crate::assembly::{Request, Responses, Run};
+use crate::correlation::factors;
+use crate::problem::Problem;
+use crate::sampling::Normals;
+use crate::summary::RunSummary;
+use crate::time::Instant;
+use crate::verification::{Columns, Space, jackknife, totals};
+
+/// Evaluations of a costly model without a budget, at most.
+const UNASKED: u64 = 10_000;
+/// Numbers of one scrambling, at most: some 64 megabytes.
+const NUMBERS: usize = 1 << 23;
+/// The streams of the points, apart from those of other samples.
+const STREAM: u64 = 1 << 36;
+/// The probability below the upper end of a 95 % interval.
+const UPPER: f64 = 0.975;
+
+/// An index with what the sample leaves uncertain of it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct IndexEstimate {
+    /// The estimate; of an index near 0 it may be below.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// Its 95 % interval.
+    pub interval: [f64; 2],
+}
+
+/// The indices of one factor.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SampledFactor {
+    /// The dimension, or those that vary together.
+    pub dimensions: Vec<String>,
+    /// The part of the variance that it explains by itself.
+    pub first_order: IndexEstimate,
+    /// The same with every interaction in which it has a part.
+    pub total: IndexEstimate,
+}
+
+/// The dimensions of every factor, and how many base points there are in each scrambling.
+fn design(problem: &Problem, points: u64) -> (Vec<usize>, Vec<Vec<usize>>, usize) {
+    let varies = |&d: &usize| problem.dimensions()[d].sigma() > 0.0;
+    let varying: Vec<usize> = (0..problem.dimensions().len()).filter(varies).collect();
+    let places = factors(problem.correlation(), &varying);
+    let most = (NUMBERS / (2 * varying.len()).max(1)).max(2);
+    let rows = usize::try_from(points.div_ceil(REPLICATES)).unwrap_or(usize::MAX).clamp(2, most);
+    let rows = if rows.is_power_of_two() { rows } else { (rows.next_power_of_two()).min(most.next_power_of_two() / 2) };
+    (varying, places, rows)
+}
+
+/// Refuses more evaluations than are allowed.
+pub(super) fn affordable(problem: &Problem, points: u64, budget: Option<u64>) -> Result<(), SimulationError> {
+    let (_, factors, rows) = design(problem, points);
+    let base = REPLICATES * rows as u64;
+    let evaluations = base.saturating_mul(factors.len() as u64 + 2);
+    let costly = problem.function().signature().costly;
+    let most = budget.unwrap_or(if costly { UNASKED } else { u64::MAX });
+    match evaluations > most {
+        true => Err(SimulationError::CostlyIndices { points: base, factors: factors.len(), evaluations, most }),
+        false => Ok(()),
+    }
+}
+
+/// The indices of every characteristic, and what they took; None for one that does not vary, and for all of them where the run was stopped.
+/// Points without a value are left out.
+///
+/// Shapes: `origins` has a value near the mean of every characteristic.
+pub(super) fn indices(
+    problem: &Problem,
+    (points, seed): (u64, u64),
+    origins: &[f64],
+    run: &Run<'_>,
+    pace: &dyn Fn(Pace),
+) -> (Vec<Option<Vec<SampledFactor>>>, RunSummary) {
+    let begun = Instant::now();
+    let (varying, factors, rows) = design(problem, points);
+    let none = || vec![None; problem.characteristics().len()];
+    if varying.is_empty() {
+        return (none(), RunSummary::default());
+    }
+    let exchange = Exchange { problem, space: Space::new(problem, &varying), factors: &factors, rows, origins, run };
+    let normals = Normals::new(2 * varying.len(), seed);
+    let expected = (REPLICATES as usize * rows * (factors.len() + 2)) as f64;
+    let one = |replicate: u64| exchange.replicate(&normals, replicate);
+    let replicates: Vec<Replicate> = match problem.function().signature().costly {
+        false => (0..REPLICATES).into_par_iter().map(one).collect(),
+        // One batch after the other: the workers of an external model share each.
+        true => (0..REPLICATES)
+            .map(|replicate| {
+                let samples = replicate * (rows * (factors.len() + 2)) as u64;
+                pace(Pace { samples, expected, elapsed: begun.elapsed() });
+                one(replicate)
+            })
+            .collect(),
+    };
+    let summary = replicates.iter().fold(RunSummary::default(), |sum, replicate| sum.and(&replicate.run));
+    let unanswered = replicates.iter().any(|replicate| replicate.open);
+    let summary =
+        RunSummary { wall: begun.elapsed(), seed: Some(seed), stopped: unanswered.then(|| run.why_open()), ..summary };
+    if unanswered {
+        return (none(), summary);
+    }
+    let of = |c: usize| {
+        let sums: Vec<&[f64]> = replicates.iter().map(|replicate| replicate.sums[c].as_slice()).collect();
+        estimated(problem, &varying, &factors, &sums)
+    };
+    ((0..problem.characteristics().len()).map(of).collect(), summary)
+}
+
+struct Exchange<'p> {
+    problem: &'p Problem,
+    space: Space<'p>,
+    factors: &'p [Vec<usize>],
+    rows: usize,
+    /// Values near the means, about which sums are taken so that nothing large is squared.
+    origins: &'p [f64],
+    run: &'p Run<'p>,
+}
+
+/// The sums of one scrambling.
+struct Replicate {
+    /// Of every characteristic: points, their sum and squares; then of every factor points, sums of means, products, mean squares, and
+    /// squared differences.
+    sums: Vec<Vec<f64>>,
+    run: RunSummary,
+    /// Whether a point was not evaluated.
+    open: bool,
+}
+
+/// Sums of the whole, and of every factor.
+const WHOLE: usize = 3;
+const OF_FACTOR: usize = 5;
+
+impl Exchange<'_> {
+    fn replicate(&self, normals: &Normals, replicate: u64) -> Replicate {
+        let mut first = normals.columns(STREAM + replicate, self.rows);
+        let mut second = first.split_off(self.space.len());
+        let (mut run, mut open) = (RunSummary::default(), false);
+        let mut evaluate = |z: &Columns| {
+            let begun = Instant::now();
+            let points = self.space.points(z);
+            let mut out = Responses::open(points.rows(), self.problem.outputs().len());
+            if !self.run.stopped() {
+                let request = Request::values(&points, self.problem.outputs());
+                self.problem.function().evaluate(&request, self.run, &mut out);
+            }
+            run = run.and(&out.summary(begun.elapsed()));
+            open |= (0..out.rows()).any(|row| (0..out.outputs()).any(|output| out.is_open(row, output)));
+            (0..out.outputs()).map(|output| out.column(output).to_vec()).collect::<Vec<_>>()
+        };
+        let (a, b) = (evaluate(&first), evaluate(&second));
+        let of_whole = |c: usize| {
+            let values = || a[c].iter().chain(&b[c]).filter(|y| y.is_finite()).map(|y| y - self.origins[c]);
+            vec![values().count() as f64, values().sum(), values().map(|y| y * y).sum()]
+        };
+        let mut sums: Vec<Vec<f64>> = (0..a.len()).map(of_whole).collect();
+        for factor in self.factors {
+            exchange(factor, &mut first, &mut second);
+            let exchanged = evaluate(&first);
+            exchange(factor, &mut first, &mut second);
+            for (c, sums) in sums.iter_mut().enumerate() {
+                let mut own = [0.0; OF_FACTOR];
+                for ((&a, &b), &y) in a[c].iter().zip(&b[c]).zip(&exchanged[c]) {
+                    if a.is_finite() && b.is_finite() && y.is_finite() {
+                        let (b, y, d) = (b - self.origins[c], y - self.origins[c], a - y);
+                        let added = [1.0, 0.5 * (b + y), b * y, 0.5 * (b * b + y * y), d * d];
+                        own.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
+                    }
+                }
+                sums.extend(own);
+            }
+        }
+        Replicate { sums, run, open }
+    }
+}
+
+fn exchange(factor: &[usize], first: &mut Columns, second: &mut Columns) {
+    factor.iter().for_each(|&variable| std::mem::swap(&mut first[variable], &mut second[variable]));
+}
+
+/// None where nothing varies.
+fn estimated(
+    problem: &Problem,
+    varying: &[usize],
+    factors: &[Vec<usize>],
+    sums: &[&[f64]],
+) -> Option<Vec<SampledFactor>> {
+    let rows: Vec<Vec<f64>> =
+        (0..WHOLE + OF_FACTOR * factors.len()).map(|sum| sums.iter().map(|of| of[sum]).collect()).collect();
+    let all = totals(&rows);
+    let figures = |sums: &[f64]| -> Vec<f64> {
+        let variance = sums[2] / sums[0] - (sums[1] / sums[0]).powi(2);
+        let of = |own: &[f64]| {
+            let [n, middle, product, square, difference] = [own[0], own[1], own[2], own[3], own[4]];
+            let square_of_mean = (middle / n).powi(2);
+            let first = (product / n - square_of_mean) / (square / n - square_of_mean);
+            [first, 0.5 * difference / n / variance]
+        };
+        sums[WHOLE..].chunks_exact(OF_FACTOR).flat_map(of).collect()
+    };
+    let (values, errors) = (figures(&all), jackknife(figures, &rows));
+    let freedom = (REPLICATES - 1) as f64;
+    let times = StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| law.inverse_cdf(UPPER));
+    let estimate = |index: usize| {
+        let (value, standard_error) = (values[index], errors[index]);
+        let half = times * standard_error;
+        IndexEstimate { value, standard_error, interval: [value - half, value + half] }
+    };
+    let name = |&place: &usize| problem.dimensions()[varying[place]].name().to_owned();
+    let factor = |(j, places): (usize, &Vec<usize>)| SampledFactor {
+        dimensions: places.iter().map(name).collect(),
+        first_order: estimate(2 * j),
+        total: estimate(2 * j + 1),
+    };
+    let known = values.iter().chain(&errors).all(|value| value.is_finite());
+    known.then(|| factors.iter().enumerate().map(factor).collect())
+}

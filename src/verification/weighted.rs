@@ -1,0 +1,36 @@
+//! A sample in strata that is kept, for shares that are asked for after it was drawn.
+
+use super::Verified;
+use super::figures::{jackknife, student, totals};
+
+/// Values with their weights, by randomisation.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct WeightedSample {
+    /// Of every stratum of a randomisation: which, the values, and their weights.
+    parts: Vec<(usize, Vec<f64>, Vec<f64>)>,
+    replicates: usize,
+    /// The weight of one point: what no point shows may be as much.
+    one: f64,
+}
+
+impl WeightedSample {
+    pub(super) fn new(parts: impl Iterator<Item = (usize, Vec<f64>, Vec<f64>)>, replicates: usize, one: f64) -> Self {
+        Self { parts: parts.collect(), replicates, one }
+    }
+
+    /// The means of functions with values from 0 to 1, over the points that have a value.
+    pub(crate) fn shares<const N: usize>(&self, of: [&dyn Fn(f64) -> f64; N]) -> [Verified; N] {
+        let mut sums = vec![vec![0.0; self.replicates]; N + 1];
+        for (replicate, values, weights) in &self.parts {
+            for (&y, weight) in values.iter().zip(weights).filter(|(y, _)| y.is_finite()) {
+                for (sum, of) in sums.iter_mut().zip(of) {
+                    sum[*replicate] += weight * of(y);
+                }
+                sums[N][*replicate] += weight;
+            }
+        }
+        let means = |total: &[f64]| total[..N].iter().map(|sum| sum / total[N]).collect::<Vec<f64>>();
+        let (values, errors, wide) = (means(&totals(&sums)), jackknife(means, &sums), student(self.replicates));
+        std::array::from_fn(|i| Verified { value: values[i], error: (wide * errors[i]).hypot(self.one) })
+    }
+}
