@@ -31,6 +31,7 @@ mod tail;
 mod trapezoidal;
 mod triangular;
 mod truncated_normal;
+mod two_values;
 mod uniform;
 mod weibull;
 pub(crate) mod ziggurat;
@@ -56,6 +57,7 @@ pub use standard_moments::StandardMoments;
 pub use trapezoidal::Trapezoidal;
 pub use triangular::Triangular;
 pub use truncated_normal::TruncatedNormal;
+pub use two_values::TwoValues;
 pub use uniform::Uniform;
 pub use weibull::Weibull;
 

@@ -12,7 +12,7 @@ use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, shift
 use crate::dimension::DimensionFault;
 use crate::distribution::{
     Beta, CentralMoments, Distribution, DistributionError, Exponential, Gamma, Lognormal, Normal, Rayleigh,
-    Trapezoidal, Triangular, TruncatedNormal, Uniform, Weibull,
+    Trapezoidal, Triangular, TruncatedNormal, TwoValues, Uniform, Weibull,
 };
 use crate::names::nearest;
 
@@ -30,9 +30,12 @@ pub(super) fn distribution(
         Kind::Moments => moments(entry, nominal),
         Kind::Normal => normal(entry, nominal, tolerance),
         Kind::Mixture => mixture(entry, nominal, tolerance),
-        over @ (Kind::TruncatedNormal | Kind::Uniform | Kind::Triangular | Kind::Trapezoidal | Kind::Beta) => {
-            over_band(over, entry, nominal, tolerance)
-        }
+        over @ (Kind::TruncatedNormal
+        | Kind::Uniform
+        | Kind::TwoPoint
+        | Kind::Triangular
+        | Kind::Trapezoidal
+        | Kind::Beta) => over_band(over, entry, nominal, tolerance),
         Kind::Lognormal => {
             with_tail(entry, nominal, tolerance, |o, mean, sigma| shared(Lognormal::new(o, mean, sigma)))
         }
@@ -140,6 +143,7 @@ fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option
             let alpha = parameter(entry, "alpha", |entry| &entry.alpha)?;
             shared(Beta::about(middle, half, alpha, parameter(entry, "beta", |entry| &entry.beta)?))
         }
+        Kind::TwoPoint => shared(TwoValues::about(middle, half)),
         _ => shared(Uniform::about(middle, half)),
     };
     let distribution = placed(entry, distribution)?;
