@@ -25,6 +25,18 @@ pub(crate) fn shortened_to(text: &str, most: usize) -> String {
     format!("{head}…{tail}")
 }
 
+/// The endings of the name of a geometric element in those of the dimensions that it is made of.
+pub(crate) const ELEMENT_PARTS: [&str; 6] = [".unit", ".unit_x", ".unit_y", ".pin_x", ".pin_y", ".slot"];
+
+/// The geometric element that a dimension is a part of; its own name where it is none. Of one that is measured from another, the name
+/// that the study gives it.
+pub(crate) fn element(dimension: &str) -> &str {
+    match ELEMENT_PARTS.iter().find_map(|part| dimension.strip_suffix(part)) {
+        Some(element) => element.strip_suffix(".own").unwrap_or(element),
+        None => dimension,
+    }
+}
+
 /// The known name most similar to `typed`, if any is similar enough to be meant.
 ///
 /// Differences in case, and between `-` and `_`, count little.

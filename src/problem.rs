@@ -18,6 +18,8 @@ pub struct Problem {
     /// For every characteristic, the output of the function that it is.
     outputs: Vec<usize>,
     function: Arc<dyn AssemblyFunction>,
+    /// Pairs of dimensions, by name, whose product the function is known to have.
+    products: Arc<[(String, String)]>,
 }
 
 /// Why dimensions, function and characteristics do not fit together.
@@ -112,7 +114,14 @@ impl Problem {
         };
         let characteristics: Vec<Characteristic> = signature.outputs.iter().map(characteristic).collect();
         let outputs = (0..characteristics.len()).collect();
-        let problem = Self { dimensions, correlation: None, characteristics, outputs, function: Arc::new(function) };
+        let problem = Self {
+            dimensions,
+            correlation: None,
+            characteristics,
+            outputs,
+            function: Arc::new(function),
+            products: Arc::new([]),
+        };
         problem.checked()
     }
 
@@ -173,6 +182,18 @@ impl Problem {
         // Correlation is of standardised variables: it does not see where a dimension is.
         problem.dimensions[place] = dimension;
         problem
+    }
+
+    /// Pairs of dimensions, by name, whose product the function is known to have.
+    pub(crate) fn products(&self) -> &[(String, String)] {
+        &self.products
+    }
+
+    /// Knows that these pairs of dimensions interact: every method of second order that takes differences takes in their exact mixed
+    /// derivative, without an evaluation, where the function knows it.
+    #[cfg(feature = "study")]
+    pub(crate) fn with_products(self, products: Vec<(String, String)>) -> Self {
+        Self { products: products.into(), ..self }
     }
 
     /// With another function of the same signature.

@@ -1,10 +1,14 @@
 //! Where the results of an analysis rest on something that does not hold.
 
+use std::collections::HashSet;
+
 use super::characteristic::missing;
 use super::{CharacteristicAnalysis, Missing, trust};
 use crate::capability::Law;
+use crate::dimension::Dimension;
 use crate::evaluation::history;
 use crate::method::{Basis, Lacking, Order, Outcome};
+use crate::names::element;
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::surrogate::Surrogate;
@@ -92,11 +96,18 @@ fn not_resampled(problem: &Problem, outcome: &Outcome) -> Option<Warning> {
     (!dimensions.is_empty()).then_some(Warning::NoSamplingInterval { dimensions, correlated })
 }
 
-/// Dimensions that vary and on which no characteristic can depend.
+/// Dimensions that vary and on which no characteristic can depend, but for those of a zone or a geometric element of which another one
+/// matters.
 fn unused(problem: &Problem) -> Option<Warning> {
     let dependence = problem.dependence();
-    let idle = |&d: &usize| !dependence.iter().any(|row| row[d]);
-    let idle = (0..problem.dimensions().len()).filter(idle);
+    let used = |d: &usize| dependence.iter().any(|row| row[*d]);
+    let all = problem.dimensions();
+    let of_used = || (0..all.len()).filter(used).map(|d| &all[d]);
+    let zones: HashSet<&str> = of_used().filter_map(Dimension::zone).collect();
+    let elements: HashSet<&str> = of_used().map(|of| element(of.name())).collect();
+    let beside =
+        |of: &Dimension| of.zone().is_some_and(|zone| zones.contains(zone)) || elements.contains(element(of.name()));
+    let idle = (0..all.len()).filter(|d| !used(d) && !beside(&all[*d]));
     let dimensions: Vec<String> = idle.map(|d| problem.dimensions()[d].name().to_owned()).collect();
     (!dimensions.is_empty()).then_some(Warning::UnusedDimension { dimensions })
 }

@@ -25,22 +25,78 @@ pub(super) struct Least {
     pub(super) better: Option<Vec<f64>>,
 }
 
+/// Circular zones of some dimensions: a box counts as far as it lies within them.
+#[derive(Clone, Copy)]
+pub(super) struct Zones<'z> {
+    /// The dimensions of every zone.
+    pub(super) places: &'z [Vec<usize>],
+    /// The bands of all dimensions, whose ends are those of the zones.
+    pub(super) bands: &'z [[f64; 2]],
+}
+
+/// A box that is farther outside than rounding is left out.
+const EDGE: f64 = 1e-12;
+
+impl Zones<'_> {
+    /// Nothing is left out.
+    pub(super) const NONE: Self = Self { places: &[], bands: &[] };
+
+    /// Least and greatest distance of a box from the middle of a zone, in its radii.
+    fn reach(&self, zone: &[usize], region: &[[f64; 2]]) -> [f64; 2] {
+        let of = |&d: &usize| {
+            let [lower, upper] = self.bands[d];
+            let (centre, half) = (middle(lower, upper), 0.5 * (upper - lower));
+            let ends = region[d].map(|x| (x - centre) / half);
+            let near = if ends[0] <= 0.0 && ends[1] >= 0.0 { 0.0 } else { ends[0].abs().min(ends[1].abs()) };
+            [near, ends[0].abs().max(ends[1].abs())]
+        };
+        zone.iter().map(of).fold([0.0; 2], |[near, far], [a, b]| [f64::hypot(near, a), f64::hypot(far, b)])
+    }
+
+    fn leave_out(&self, region: &[[f64; 2]]) -> bool {
+        self.places.iter().any(|zone| self.reach(zone, region)[0] > 1.0 + EDGE)
+    }
+
+    /// The place on the edge of a zone in the direction of one outside; the point itself where it is within all zones.
+    fn nearest(&self, point: &[f64]) -> Vec<f64> {
+        let region: Region = point.iter().map(|&x| [x, x]).collect();
+        let mut within = point.to_vec();
+        for zone in self.places {
+            let radius = self.reach(zone, &region)[1];
+            if radius > 1.0 {
+                for &d in zone {
+                    let centre = middle(self.bands[d][0], self.bands[d][1]);
+                    within[d] = centre + (point[d] - centre) / (radius * (1.0 + EDGE));
+                }
+            }
+        }
+        within
+    }
+
+    /// Whether every place along a dimension of a box is within its zone.
+    fn free(&self, d: usize, region: &[[f64; 2]]) -> bool {
+        let of = |zone: &&Vec<usize>| zone.contains(&d);
+        self.places.iter().filter(of).all(|zone| self.reach(zone, region)[1] <= 1.0)
+    }
+}
+
 /// How often a box that has lost dimensions is looked at again before it is split.
 const AGAIN: usize = 4;
 
 /// Bounds the least value of `bounds` over `region`, until it is certain to be no more than `allowed` below `best`, or `limit`
 /// boxes have been looked at, or `stop` says so.
 ///
-/// A dimension along which the value only rises or only falls is held at the end where it is least.
+/// A dimension along which the value only rises or only falls is held at the end where it is least, where no zone ends before.
 pub(super) fn least(
     bounds: &dyn Fn(&[[f64; 2]]) -> Bounds,
     region: &[[f64; 2]],
+    zones: Zones<'_>,
     best: f64,
     allowed: f64,
     limit: usize,
     stop: &dyn Fn() -> bool,
 ) -> Least {
-    let mut search = Search { bounds, best, allowed, stop, boxes: 0, better: None };
+    let mut search = Search { bounds, zones, best, allowed, stop, boxes: 0, better: None };
     let mut open: BinaryHeap<Open> = search.examine(region.to_vec(), f64::NEG_INFINITY).into_iter().collect();
     // The least bound of the boxes that cannot be split.
     let mut lower = f64::INFINITY;
@@ -59,6 +115,7 @@ pub(super) fn least(
 
 struct Search<'b> {
     bounds: &'b dyn Fn(&[[f64; 2]]) -> Bounds,
+    zones: Zones<'b>,
     best: f64,
     allowed: f64,
     stop: &'b dyn Fn() -> bool,
@@ -77,22 +134,28 @@ struct Open {
 impl Search<'_> {
     /// None when nothing in the box has a value.
     fn examine(&mut self, mut region: Region, above: f64) -> Option<Open> {
+        if self.zones.leave_out(&region) {
+            return None;
+        }
         let mut found = self.look(&region);
         for _ in 0..AGAIN {
             if found.value.is_empty() {
                 return None;
             }
             // The bounds of a long formula of many dimensions are many operations: a stop is heard between two of them.
-            if !found.value.is_whole() || (self.stop)() || !hold(&mut region, &found.slopes) {
+            if !found.value.is_whole() || (self.stop)() || !hold(&mut region, &found.slopes, self.zones) {
                 break;
             }
             found = self.look(&region);
         }
         let middle: Vec<f64> = region.iter().map(|&[lower, upper]| middle(lower, upper)).collect();
         let at = self.look(&middle.iter().map(|&x| [x, x]).collect::<Region>()).value;
-        if at.upper() < self.best - self.allowed {
-            self.best = at.upper();
-            self.better = Some(middle.clone());
+        let within = self.zones.nearest(&middle);
+        let place = |point: &[f64]| point.iter().map(|&x| [x, x]).collect::<Region>();
+        let reached = if within == middle { at } else { self.look(&place(&within)).value };
+        if reached.upper() < self.best - self.allowed {
+            self.best = reached.upper();
+            self.better = Some(within);
         }
         let mut lower = above.max(found.value.lower());
         let mut swing = vec![f64::INFINITY; region.len()];
@@ -117,9 +180,11 @@ impl Search<'_> {
 }
 
 /// Holds every dimension whose slope has one sign at the end where the value is least; says whether there was any.
-fn hold(region: &mut Region, slopes: &[Interval]) -> bool {
+fn hold(region: &mut Region, slopes: &[Interval], zones: Zones<'_>) -> bool {
     let mut held = false;
-    for (band, slope) in region.iter_mut().zip(slopes).filter(|(band, _)| band[0] < band[1]) {
+    let free: Vec<bool> = (0..region.len()).map(|d| zones.free(d, region)).collect();
+    let moving = region.iter_mut().zip(slopes).zip(free).filter(|((band, _), free)| *free && band[0] < band[1]);
+    for ((band, slope), _) in moving {
         if slope.lower() >= 0.0 {
             band[1] = band[0];
             held = true;

@@ -27,6 +27,8 @@ const BOXES: usize = 20_000;
 /// Boxes of either side where nobody asked for a proof: a twentieth of those of a search.
 const ENCLOSING: usize = 1000;
 const FEW: usize = 10;
+/// More of them where a circular zone ends: boxes along its edge, whose number goes with the root of the accuracy.
+const ROUND: usize = 4;
 
 /// A point on the edge of a zone is within it.
 const ON_THE_EDGE: f64 = 1e-12;
@@ -206,20 +208,21 @@ impl Task {
     pub(super) fn enclose(&self, problem: &Problem, allowed: f64, run: &Run<'_>) -> Option<ExtremesProof> {
         let region = self.bands();
         self.bounds(problem, &region)?;
-        let limit = ENCLOSING * FEW / region.len().max(FEW);
+        let round = if self.zones.is_empty() { 1 } else { ROUND };
+        let limit = round * ENCLOSING * FEW / region.len().max(FEW);
         let side = |sign: f64| {
             let bounds = |region: &[[f64; 2]]| {
                 let bounds = self.bounds(problem, region).expect("a function has bounds everywhere or nowhere");
                 if sign > 0.0 { bounds } else { bounds.negated() }
             };
-            proof::least(&bounds, &region, f64::INFINITY, allowed, limit, &|| run.stopped())
+            let zones = proof::Zones { places: &self.zones, bands: &region };
+            proof::least(&bounds, &region, zones, f64::INFINITY, allowed, limit, &|| run.stopped())
         };
         let (below, above) = (side(1.0), side(-1.0));
         let near = |least: &proof::Least| least.lower >= least.best - allowed;
         Some(ExtremesProof {
             bounds: [below.lower, -above.lower],
-            // A corner of the box of a circular zone is no place of the zone.
-            proven: self.zones.is_empty() && near(&below) && near(&above),
+            proven: near(&below) && near(&above),
             boxes: below.boxes + above.boxes,
         })
     }
@@ -247,7 +250,7 @@ impl Task {
                 let bounds = everywhere(region).expect("a function has bounds everywhere or nowhere");
                 if sign > 0.0 { bounds } else { bounds.negated() }
             };
-            proof::least(&bounds, &region, sign * best, allowed, limit, &|| run.stopped())
+            proof::least(&bounds, &region, proof::Zones::NONE, sign * best, allowed, limit, &|| run.stopped())
         };
         let (below, above) = (side(1.0, least), side(-1.0, greatest));
         let proof = ExtremesProof {
@@ -323,5 +326,6 @@ fn zones(problem: &Problem, dimensions: &[usize]) -> Vec<Vec<usize>> {
             None => zones.push((zone, vec![j])),
         }
     }
-    zones.into_iter().map(|(_, places)| places).collect()
+    // One coordinate alone goes from end to end: its zone says no more than its band.
+    zones.into_iter().map(|(_, places)| places).filter(|places| places.len() > 1).collect()
 }

@@ -65,6 +65,41 @@ impl ExactDerivatives {
         }
     }
 
+    /// The pairs of positions that the problem knows to interact, in order.
+    pub(super) fn known_pairs(problem: &Problem, plan: &DifferencePlan, options: &Options) -> Vec<(usize, usize)> {
+        if options.derivatives == Some(DerivativeSource::Difference) {
+            return Vec::new();
+        }
+        let position = |name: &String| {
+            let of = |&d: &usize| problem.dimensions()[d].name() == name;
+            plan.varying().iter().position(of)
+        };
+        let pair = |(a, b): &(String, String)| {
+            let (j, k) = (position(a)?, position(b)?);
+            (j != k).then_some((j.min(k), j.max(k)))
+        };
+        let mut pairs: Vec<(usize, usize)> = problem.products().iter().filter_map(pair).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    /// The mixed derivatives of these pairs, in sigmas, for every characteristic whose function knows them.
+    pub(super) fn mixed_of(
+        problem: &Problem,
+        plan: &DifferencePlan,
+        pairs: &[(usize, usize)],
+    ) -> Vec<Vec<((usize, usize), Mixed)>> {
+        let nothing = Self { first: Vec::new(), second: Vec::new(), mixed: Vec::new() };
+        let mut all = vec![Some(nothing); problem.characteristics().len()];
+        Self::add_pairs(&mut all, problem, plan, pairs);
+        let of = |exact: &Self| {
+            let mixed = exact.mixed(plan, pairs).into_iter();
+            pairs.iter().zip(mixed).filter_map(|(&pair, mixed)| Some((pair, mixed?))).collect()
+        };
+        all.iter().map(|exact| exact.as_ref().map_or_else(Vec::new, of)).collect()
+    }
+
     /// One dimension's own part, in sigmas: a parabola, a straight line where the curvature does not exist.
     pub(super) fn part(&self, plan: &DifferencePlan, dimension: usize) -> Option<Univariate> {
         let scale = plan.axis(dimension).scale;

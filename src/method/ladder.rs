@@ -10,7 +10,7 @@ use crate::assembly::Run;
 use crate::evaluation::{Evaluated, evaluate};
 use crate::moments::Interactions;
 use crate::names::nearest;
-use crate::plan::{DifferencePlan, Layout, Mixed, PairChoice, Plan, Point, Spread, Stencil};
+use crate::plan::{DifferencePlan, KnownAnswers, Layout, Mixed, PairChoice, Plan, Point, Spread, Stencil};
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
@@ -192,7 +192,12 @@ impl Ladder {
         }
         let mut all = ExactDerivatives::of(problem, plan);
         if options.derivatives.is_none() {
-            let pairs = plan.pairs(Some(&evaluated.known));
+            let mut pairs = plan.pairs(Some(&evaluated.known));
+            if self.order == Order::Second {
+                let known = ExactDerivatives::known_pairs(problem, plan, options);
+                let more: Vec<_> = known.into_iter().filter(|pair| !pairs.contains(pair)).collect();
+                pairs.extend(more);
+            }
             ExactDerivatives::add_pairs(&mut all, problem, plan, &pairs);
             return Ok((pairs, all));
         }
@@ -208,6 +213,26 @@ impl Ladder {
             }
         }
         Ok((pairs, all))
+    }
+
+    /// Mixed derivatives by differences; of pairs that are known to interact and were not evaluated, the exact ones.
+    fn differences_of(
+        &self,
+        plan: &DifferencePlan,
+        known: &KnownAnswers,
+        c: usize,
+        pairs: &[(usize, usize)],
+        exact: Option<&ExactDerivatives>,
+    ) -> Vec<Option<Mixed>> {
+        let evaluated = plan.pairs(Some(known)).len();
+        let mut mixed = plan.mixed(known, c, &pairs[..evaluated.min(pairs.len())]);
+        if pairs.len() > mixed.len() {
+            let exact = exact.filter(|exact| exact.mixed.len() == pairs.len()).map(|exact| exact.mixed(plan, pairs));
+            let nothing = Some(Mixed { value: 0.0, complete: true });
+            let rest = (mixed.len()..pairs.len()).map(|index| exact.as_ref().and_then(|all| all[index]).or(nothing));
+            mixed.extend(rest.collect::<Vec<_>>());
+        }
+        mixed
     }
 
     fn fit(
@@ -240,8 +265,10 @@ impl Ladder {
             _ => plan.part(known, c, d),
         };
         let parts: Vec<Option<Univariate>> = parts.unwrap_or_else(|| (0..dimensions).map(part).collect());
-        let mixed = mixed
-            .unwrap_or_else(|| exactly.map_or_else(|| plan.mixed(known, c, pairs), |exact| exact.mixed(plan, pairs)));
+        let mixed = mixed.unwrap_or_else(|| match (exactly, &derivatives) {
+            (Some(exact), _) => exact.mixed(plan, pairs),
+            (None, exact) => self.differences_of(plan, known, c, pairs, exact.as_ref()),
+        });
         let used = |&d: &usize| match self.order {
             Order::First => parts[d].map(|part| Univariate::of_coefficients(&[part.slope()])),
             Order::Second => parts[d],

@@ -6,6 +6,7 @@ use crate::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
 use crate::document::number::{UNKNOWN, carried, percent, plain, shape_with, significant};
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
 use crate::method::{ErrorEstimate, ErrorSource};
+use crate::names::element;
 
 /// Contributors that a terminal names.
 const CONTRIBUTORS: usize = 6;
@@ -117,39 +118,87 @@ impl CharacteristicAnalysis {
         self.sensitivities.iter().filter_map(more).any(|more| more >= TOTAL)
     }
 
-    /// The strongest contributors, each with its own spread and what it does here.
+    /// The strongest contributors, each with its own spread and what it does here. The parts of a geometric element are one.
     pub(super) fn contributors(&self, dimensions: &[DimensionReport]) -> DataTable {
-        type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
-        let all: Vec<Row<'_>> =
-            self.sensitivities.iter().zip(dimensions).filter(|(row, of)| matters(row, of)).collect();
+        let mut all: Vec<Contributor<'_>> = Vec::new();
+        for row in self.sensitivities.iter().zip(dimensions).filter(|(row, of)| matters(row, of)) {
+            let name = element(&row.0.dimension);
+            match all.iter_mut().find(|known| known.name == name) {
+                Some(known) => known.parts.push(row),
+                None => all.push(Contributor { name, parts: vec![row] }),
+            }
+        }
         // Those that do nothing here are no contributors.
-        let does = |&index: &usize| part(all[index].0) != Some(0.0) || effect(&all[index]) != Some(0.0);
-        let mut view: Vec<usize> = (0..all.len()).filter(does).collect();
-        let size = |index: usize| size(all[index].0);
+        for one in &mut all {
+            if one.parts.iter().any(does) {
+                one.parts.retain(does);
+            }
+        }
+        let mut view: Vec<usize> = (0..all.len()).filter(|&index| all[index].parts.iter().any(does)).collect();
+        let size = |index: usize| all[index].size();
         view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
         let rest = &view[view.len().min(CONTRIBUTORS)..];
-        let together: f64 = rest.iter().filter_map(|&index| part(all[index].0)).sum();
+        let together: f64 = rest.iter().filter_map(|&index| all[index].part()).sum();
         let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));
         let shown = |value: Option<f64>, text: fn(f64) -> String| Cell::number(value, text);
+        let unknown = || Cell::text(UNKNOWN.to_owned());
         Columns::default()
-            .named("", "contributor", |row: &Row<'_>| Cell::name(&row.0.dimension))
-            .shown("mean", |row| Cell::number(row.1.mean, plain))
-            .shown("tolerance", |row| {
-                let unit = row.1.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
-                Cell::text(format!("{}{unit}", row.1.tolerance()))
+            .named("", "contributor", |one: &&Contributor<'_>| Cell::name(one.name))
+            .shown("mean", |one| one.alone().map_or_else(unknown, |row| Cell::number(row.1.mean, plain)))
+            .shown("tolerance", |one| {
+                let Some((_, dimension)) = one.alone() else { return Cell::text(UNKNOWN.to_owned()) };
+                let unit = dimension.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
+                Cell::text(format!("{}{unit}", dimension.tolerance()))
             })
-            .shown("sigma", move |row| shown(Some(row.1.sigma), |sigma| significant(sigma, 3)))
-            .shown("sensitivity", |row| {
-                let rounding = row.0.rounding.map(|rounding| rounding[0]);
-                Cell::both(Value::Number(row.0.first), derivative(row.0.first, rounding, 4))
+            .shown("sigma", move |one| shown(one.alone().map(|row| row.1.sigma), |sigma| significant(sigma, 3)))
+            .shown("sensitivity", |one| {
+                let Some((row, _)) = one.alone() else { return Cell::text(UNKNOWN.to_owned()) };
+                let rounding = row.rounding.map(|rounding| rounding[0]);
+                Cell::both(Value::Number(row.first), derivative(row.first, rounding, 4))
             })
-            .shown("effect", move |row| shown(effect(row), |effect| significant(effect, 3)))
-            .shown("contrib. %", move |row| shown(part(row.0), percent))
-            .shown_if(self.has_totals(), "total %", move |row| shown(total(row.0), percent))
-            .table("", all.iter().copied())
+            .shown("effect", move |one| shown(one.alone().and_then(effect), |effect| significant(effect, 3)))
+            .shown("contrib. %", move |one| shown(one.part(), percent))
+            .shown_if(self.has_totals(), "total %", move |one| shown(one.total(), percent))
+            .table("", all.iter())
             .seen(view)
             .at_most([CONTRIBUTORS, 0], rest)
     }
+}
+
+/// A sensitivity, and the dimension that it is of.
+type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
+
+/// A dimension, or a geometric element with the parts of it that do something here.
+struct Contributor<'r> {
+    name: &'r str,
+    parts: Vec<Row<'r>>,
+}
+
+impl<'r> Contributor<'r> {
+    /// The one part that there is.
+    fn alone(&self) -> Option<&Row<'r>> {
+        if let [row] = &self.parts[..] { Some(row) } else { None }
+    }
+
+    /// The share of the variance; None where a part's is unknown.
+    fn part(&self) -> Option<f64> {
+        self.parts.iter().map(|row| part(row.0)).sum()
+    }
+
+    /// The share with every interaction; None of an element of several parts, whose own interactions would count twice.
+    fn total(&self) -> Option<f64> {
+        self.alone().and_then(|row| total(row.0))
+    }
+
+    /// The order of rows.
+    fn size(&self) -> f64 {
+        self.alone().map_or_else(|| self.part().unwrap_or(-1.0), |row| size(row.0))
+    }
+}
+
+/// Whether a dimension does something here.
+fn does(row: &Row<'_>) -> bool {
+    part(row.0) != Some(0.0) || effect(row) != Some(0.0)
 }
 
 /// How far the characteristic moves where this dimension alone goes to the end of its band that moves it more, by slope and curvature.

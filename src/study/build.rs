@@ -9,6 +9,7 @@ use super::data::Data;
 use super::dimension;
 use super::drive;
 use super::error::{Fault, Faults, StudyFault, fault};
+use super::expand::{Closing, Elements};
 use super::file::{CharacteristicEntry, Entries, StudyFile};
 use super::files::{self, NamedFile};
 use super::implicit::{implicit, placed};
@@ -30,7 +31,7 @@ use crate::characteristic::{Characteristic, LimitsError, SpecLimits};
 use crate::dimension::Dimension;
 use crate::method::Options;
 use crate::models::{self, Model};
-use crate::names::{is_hidden, nearest};
+use crate::names::{element, is_hidden, nearest};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::warning::{NameKind, Warning, aggregated};
@@ -50,7 +51,12 @@ pub(super) struct Built {
     pub(super) files: Vec<NamedFile>,
 }
 
-pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Result<Built, Faults> {
+pub(super) fn build(
+    file: &StudyFile,
+    source: &Source,
+    mut data: Data<'_>,
+    elements: &Elements,
+) -> Result<Built, Faults> {
     let evaluated = model(file.model.as_ref(), source)?;
     let program = evaluated.as_ref().is_some_and(ModelOf::is_external);
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
@@ -90,13 +96,15 @@ pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Re
     warnings.extend(outside_limits(file));
     warnings.extend(of_units);
     warnings.extend(full_turns(&dimensions, &composite));
-    idle_formula(program, &composite, &written)?;
-    warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used));
+    warnings.extend(elements.closing.iter().map(|closing| interference(closing, &dimensions, &blocks)));
+    idle_formula(program, &composite, &written, &elements.made)?;
+    warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used, &elements.made));
     let problem = Problem::new(holding(file, dimensions)?, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
     let (problem, of_rows) = correlated(problem, &file.correlation.0, &blocks)?;
     warnings.extend(of_rows);
+    let problem = super::options::products(&file.analysis, problem)?;
     let options = super::options::options(&file.analysis, &problem)?;
     let costs = costs(file, source, &problem)?;
     let (losses, setups) = (losses(file, &problem)?, setups(file)?);
@@ -105,6 +113,34 @@ pub(super) fn build(file: &StudyFile, source: &Source, mut data: Data<'_>) -> Re
     let mut files = data.files();
     files.extend(file.model.iter().flat_map(|entry| files::of_model(entry.get_ref(), source.place.path())));
     Ok(Built { problem, options, costs, losses, setups, requirements, warnings, data: data.bytes(), files })
+}
+
+/// The share of pairs of a float that do not go together.
+fn interference(closing: &Closing, dimensions: &[Dimension], blocks: &[joint::Block]) -> Warning {
+    /// Places of the pin's distribution at which that of the hole is asked.
+    const PLACES: u32 = 4096;
+    let dimension = |name: &str| {
+        let name = name.trim_matches('`');
+        let alone = !blocks.iter().any(|block| block.dimensions.iter().any(|of| of == name));
+        dimensions.iter().find(|dimension| dimension.name() == name && alone)
+    };
+    // A size that does not vary stands as a number.
+    let fixed = |text: &str| match dimension(text) {
+        Some(dimension) => dimension.distribution().is_none().then(|| dimension.nominal()),
+        None => text.parse().ok(),
+    };
+    let law = |text: &str| dimension(text).and_then(|dimension| dimension.distribution()?.probability());
+    let Closing { element, hole, pin } = closing;
+    let share = match (fixed(hole), law(hole), fixed(pin), law(pin)) {
+        (_, Some(hole), Some(pin), _) => Some(hole.cdf(pin)),
+        (Some(hole), _, _, Some(pin)) => Some(pin.sf(hole)),
+        (_, Some(hole), _, Some(pin)) => {
+            let place = |index: u32| pin.quantile((f64::from(index) + 0.5) / f64::from(PLACES));
+            Some((0..PLACES).map(|index| hole.cdf(place(index))).sum::<f64>() / f64::from(PLACES))
+        }
+        _ => None,
+    };
+    Warning::Interference { element: element.clone(), share }
 }
 
 /// Dimensions that are spread evenly over full turns inside a sine or cosine.
@@ -199,7 +235,11 @@ fn dimensions(file: &StudyFile, model: Option<&Model>, data: &mut Data<'_>) -> R
             let below = if found.key.is_empty() { String::new() } else { format!(".{}", found.key) };
             // A fault of the line as a whole is shown at the dimension's name.
             let span = found.span.filter(|span| !span.is_empty()).unwrap_or_else(|| name.span());
-            Fault { span: Some(span), key: format!("dimensions.{}{below}", name.get_ref()), fault: found.fault }
+            Fault {
+                span: Some(span),
+                key: format!("dimensions.{}{below}", element(name.get_ref())),
+                fault: found.fault,
+            }
         });
         dimensions.extend(faults.take(of_line).into_iter().flatten().map(with_unit));
     }
@@ -441,13 +481,16 @@ fn outside_limits(file: &StudyFile) -> Option<Warning> {
 }
 
 /// Beside a program a formula that nothing needs was meant to drive it.
-fn idle_formula(program: bool, composite: &Composite, written: &Written<'_>) -> Result<(), Faults> {
+fn idle_formula(program: bool, composite: &Composite, written: &Written<'_>, made: &[String]) -> Result<(), Faults> {
     if !program {
         return Ok(());
     }
     let mut faults = Faults::default();
     for (index, _) in composite.used().0.iter().enumerate().filter(|(_, needed)| !**needed) {
         let name = written.formulas[index].name.clone();
+        if made.contains(&name) {
+            continue;
+        }
         faults.0.push(written.at(index, StudyFault::IdleFormula { name }));
     }
     faults.none()
@@ -460,10 +503,12 @@ fn unused(
     composite: &Composite,
     written: &Written<'_>,
     used: &dyn Fn(&str) -> bool,
+    made: &[String],
 ) -> Vec<Warning> {
     let (needed, solved) = composite.used();
-    let idle_formulas =
-        (written.formulas.iter().zip(needed)).filter(|(_, needed)| !needed).map(|(named, _)| named.name.clone());
+    let idle_formulas = (written.formulas.iter().zip(needed))
+        .filter(|(named, needed)| !needed && !made.contains(&named.name))
+        .map(|(named, _)| named.name.clone());
     let idle_unknowns = (file.unknowns.names().into_iter()).filter(|_| !solved).map(|name| name.get_ref().clone());
     let is_input = |name: &str| match model {
         None => false,

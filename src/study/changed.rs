@@ -120,5 +120,6 @@ fn merged(given: AnalysisEntry, own: AnalysisEntry) -> AnalysisEntry {
         seed: given.seed.or(own.seed),
         verify: given.verify.or(own.verify),
         target_joint_yield: given.target_joint_yield.or(own.target_joint_yield),
+        products: given.products.or(own.products),
     }
 }

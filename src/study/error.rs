@@ -354,6 +354,36 @@ pub enum StudyFault {
         /// The others of the same rows.
         others: String,
     },
+    /// A feature whose size gives a bonus, and that has no band.
+    #[error("`{name}` has no band: its maximum material is unknown")]
+    NoMaterial {
+        /// The dimension.
+        name: String,
+    },
+    /// A hole that no pin passes.
+    #[error("hole {} is smaller than pin {}: nothing floats", band(hole), band(pin))]
+    NothingFloats {
+        /// Least and greatest size of the hole.
+        hole: [f64; 2],
+        /// And of the pin.
+        pin: [f64; 2],
+    },
+    /// A zone that is wider than its feature is long.
+    #[error("length {length} is below the zone {zone}")]
+    LengthBelowZone {
+        /// The length.
+        length: f64,
+        /// The zone.
+        zone: f64,
+    },
+    /// A fastener of more or fewer than two places or holes.
+    #[error("`{key}` names {found}, and a fastener holds two parts together")]
+    FastenerPair {
+        /// `places` or `holes`.
+        key: String,
+        /// How many there are.
+        found: usize,
+    },
     /// Units that do not go together.
     #[error("{what}")]
     Units {
@@ -493,6 +523,12 @@ pub enum StudyFault {
     /// Dimensions, model and characteristics do not fit together.
     #[error(transparent)]
     Problem(#[from] ProblemError),
+}
+
+/// From the least to the greatest size.
+fn band([least, greatest]: &[f64; 2]) -> String {
+    let plain = |value: &f64| format!("{value:.6}").trim_end_matches('0').trim_end_matches('.').to_owned();
+    if least == greatest { plain(least) } else { format!("{} .. {}", plain(least), plain(greatest)) }
 }
 
 /// The way back to the first of these names.

@@ -4,18 +4,17 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
+pub(super) use super::analysis_entry::{AnalysisEntry, PairsEntry};
 use super::guard::GuardEntry;
 use super::price::{CostEntry, LossEntry, RequireEntry};
 #[cfg(feature = "cli")]
 use super::registry;
 use super::spanned::Spanned;
 use super::together::{Correlations, Joints};
-use serde::de::{IgnoredAny, MapAccess, SeqAccess, Visitor, value};
+use serde::de::{IgnoredAny, MapAccess, Visitor, value};
 use serde::{Deserialize, Deserializer};
 
 use super::values::{NominalEntry, ToleranceEntry};
-#[cfg(feature = "cli")]
-use crate::method::{ACCURACY, Options};
 
 /// A whole study file.
 /// The section `[about]`.
@@ -135,8 +134,84 @@ pub(super) struct DimensionEntry {
     #[serde(default, rename = "from")]
     #[cfg_attr(feature = "cli", schemars(schema_with = "registry::names"))]
     pub(super) _from: Option<IgnoredAny>,
-    /// Diameter of the circular zone of a position, in place of a tolerance: two dimensions, NAME_x and NAME_y.
+    /// Diameter of the circular zone of a position, in place of a tolerance: two dimensions, NAME_x and NAME_y. A table where the size of
+    /// a feature widens the zone: { zone = 0.2, hole = "D", at = "MMC" }.
+    #[serde(default)]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::position"))]
     pub(super) position: Option<Spanned<f64>>,
+    /// Play between a hole and a pin, { hole = "A", pin = "B", law = "uniform" }: NAME is the radial clearance times where the pin lies.
+    #[serde(default, rename = "float")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::float"))]
+    pub(super) _float: Option<IgnoredAny>,
+    /// A part on a round pin and in a slot: NAME_x, NAME_y and the rotation NAME_rot.
+    #[serde(default, rename = "locate")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::locate"))]
+    pub(super) _locate: Option<IgnoredAny>,
+    /// Zone of a profile: the offset of a face, and with length its tilt NAME_tilt, which shares the zone. A table where it is not equal on
+    /// both sides: { zone = 0.4, outward = 0.3 }.
+    #[serde(default, rename = "profile")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::profile"))]
+    pub(super) _profile: Option<IgnoredAny>,
+    /// Zone of a perpendicularity over a length: an angle in rad, or NAME_x and NAME_y of an axis.
+    #[serde(default, rename = "perpendicularity")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _perpendicularity: Option<IgnoredAny>,
+    /// The same of a parallelism.
+    #[serde(default, rename = "parallelism")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _parallelism: Option<IgnoredAny>,
+    /// The same of an angularity.
+    #[serde(default, rename = "angularity")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _angularity: Option<IgnoredAny>,
+    /// Zone of a flatness: half of it on either side, or all of it with side = "out".
+    #[serde(default, rename = "flatness")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _flatness: Option<IgnoredAny>,
+    /// The same of a straightness.
+    #[serde(default, rename = "straightness")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _straightness: Option<IgnoredAny>,
+    /// The same of a roundness.
+    #[serde(default, rename = "roundness")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _roundness: Option<IgnoredAny>,
+    /// The same of a cylindricity.
+    #[serde(default, rename = "cylindricity")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _cylindricity: Option<IgnoredAny>,
+    /// Runout: the axis lies in a circle of this diameter about the datum's, NAME_x and NAME_y.
+    #[serde(default, rename = "runout")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _runout: Option<IgnoredAny>,
+    /// The same of a total runout.
+    #[serde(default, rename = "total_runout")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _total_runout: Option<IgnoredAny>,
+    /// The same of a coaxiality.
+    #[serde(default, rename = "coaxiality")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _coaxiality: Option<IgnoredAny>,
+    /// The same of a concentricity.
+    #[serde(default, rename = "concentricity")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _concentricity: Option<IgnoredAny>,
+    /// Zone of a symmetry: half of it on either side of the middle.
+    #[serde(default, rename = "symmetry")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _symmetry: Option<IgnoredAny>,
+    /// Over which length a profile or an orientation holds.
+    #[serde(default, rename = "length")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::zone"))]
+    pub(super) _length: Option<IgnoredAny>,
+    /// Whether an orientation is that of an axis, in a cylindrical zone.
+    #[serde(default, rename = "axis")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::truth"))]
+    pub(super) _axis: Option<IgnoredAny>,
+    /// "out" where a form deviation only adds to a size.
+    #[serde(default, rename = "side")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::side"))]
+    pub(super) _side: Option<IgnoredAny>,
     /// The unit of its numbers: a label, checked or converted as `units` says.
     pub(super) unit: Option<String>,
     /// How it is distributed: the name of a kind, or a table with its parameters.
@@ -311,6 +386,11 @@ pub(super) struct TermEntry(pub(super) String);
 pub(super) struct CharacteristicEntry {
     /// A formula of dimensions, constants, formulas and outputs of the model; without one it is an output of that name.
     pub(super) formula: Option<Spanned<String>>,
+    /// The play that a fastener has left, in place of a formula: { kind = "fixed", hole = "h", pin = "p", places = ["hp", "tp"] }, or
+    /// kind = "floating" with two holes.
+    #[serde(default, rename = "fastener")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::fastener"))]
+    pub(super) _fastener: Option<IgnoredAny>,
     /// The unit of the result and its limits: a label, checked or converted as `units` says.
     pub(super) unit: Option<String>,
     /// Lower limit; without a limit there is no yield.
@@ -361,65 +441,6 @@ pub(super) struct ModelEntry {
     pub(super) verify: Option<Spanned<u64>>,
     /// Files that the model depends on, relative to the study's folder: with other contents nothing kept in the journal is used.
     pub(super) files: Option<Vec<Spanned<String>>>,
-}
-
-/// `[analysis]`.
-#[derive(Debug, Default, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, expecting = "a table of options")]
-pub(super) struct AnalysisEntry {
-    /// The method.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::methods(), "default" = Options::default().method.name())))]
-    pub(super) method: Option<Spanned<String>>,
-    /// Wanted relative error of sigma, for auto.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = ACCURACY)))]
-    pub(super) accuracy: Option<Spanned<f64>>,
-    /// Wanted error of the skewness, for auto.
-    pub(super) accuracy_skewness: Option<Spanned<f64>>,
-    /// Wanted error of the kurtosis, for auto.
-    pub(super) accuracy_kurtosis: Option<Spanned<f64>>,
-    /// Wanted error of the yield, a share such as 1e-5, for auto.
-    pub(super) accuracy_yield: Option<Spanned<f64>>,
-    /// Most evaluations that may be spent; a method that needs more is an error, auto stays below. Without it a method that needs more
-    /// than 1000000 is an error.
-    pub(super) budget: Option<Spanned<u64>>,
-    /// Evaluate at so many sigma on either side, in place of the nodes that suit each distribution.
-    pub(super) step: Option<Spanned<f64>>,
-    /// The interactions that six-n examines: strongest, adjacent, or a list of pairs of names.
-    pub(super) pairs: Option<Spanned<PairsEntry>>,
-    /// How six-n evaluates an interaction.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::stencils())))]
-    pub(super) stencil: Option<Spanned<String>>,
-    /// How many nodes the quadrature rules of dimension-reduction have, univariate or bivariate.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = [3, 5, 7], "default" = 5)))]
-    pub(super) nodes: Option<Spanned<u64>>,
-    /// Sensitivities of all dimensions, at two evaluations more for each without tolerance, or of the varying ones alone.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::sensitivities(), "default" = "varying")))]
-    pub(super) sensitivities: Option<Spanned<String>>,
-    /// Where derivatives come from, for sensitivities and moments alike. Left out: exact sensitivities where the model gives them,
-    /// moments by differences.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::derivatives())))]
-    pub(super) derivatives: Option<Spanned<String>>,
-    /// Whether the true extremes in the box of the tolerance bands are searched too.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = false)))]
-    pub(super) extremes: Option<bool>,
-    /// Seed of random numbers, for what draws some.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = Options::SEED)))]
-    pub(super) seed: Option<Spanned<u64>>,
-    /// The share of assemblies that must keep the limits of all characteristics at once, between 0 and 1; what --check looks at too, and what
-    /// allocate keeps.
-    pub(super) target_joint_yield: Option<Spanned<f64>>,
-    /// How many check points of a costly model verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
-    /// verification.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = Options::VERIFY)))]
-    pub(super) verify: Option<u64>,
-}
-
-/// `"strongest"`, `"adjacent"` or `[["a", "b"], ["c", "d"]]`.
-#[derive(Debug)]
-pub(super) enum PairsEntry {
-    Word(String),
-    Listed(Vec<(String, String)>),
 }
 
 impl<T> Default for Entries<T> {
@@ -479,28 +500,6 @@ impl<'de> Deserialize<'de> for WordOrTable {
             }
         }
         deserializer.deserialize_any(Distribution)
-    }
-}
-
-impl<'de> Deserialize<'de> for PairsEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Pairs;
-        impl<'de> Visitor<'de> for Pairs {
-            type Value = PairsEntry;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("\"strongest\", \"adjacent\", or pairs of dimensions such as [[\"a\", \"b\"]],")
-            }
-
-            fn visit_str<E>(self, word: &str) -> Result<Self::Value, E> {
-                Ok(PairsEntry::Word(word.to_owned()))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
-                Vec::deserialize(value::SeqAccessDeserializer::new(seq)).map(PairsEntry::Listed)
-            }
-        }
-        deserializer.deserialize_any(Pairs)
     }
 }
 

@@ -10,7 +10,7 @@
 //! |---|---|---|
 //! | `normal` | the band's middle plus `shift`; `sigma`, or half the band by `sigmas` (3) or `cp` (1) | |
 //! | `truncated-normal` | the same before the cut at the band; both follow | |
-//! | `uniform` | follow from the band | |
+//! | `uniform`, `two-point` | follow from the band: alike everywhere in it, or at one of its ends | |
 //! | `triangular` | follow from the band | `mode`: a value within the band, its middle by default |
 //! | `trapezoidal` | follow from the band | `top`: the share of the band over which it is flat |
 //! | `beta` | follow from the band | `alpha`, `beta`: the exponents at the lower and the upper end |
@@ -40,6 +40,7 @@
 //! # Ok::<(), sensitol::StudyError>(())
 //! ```
 
+mod analysis_entry;
 mod build;
 mod changed;
 mod correlation;
@@ -297,7 +298,7 @@ impl Study {
         if let Some(parameter) = parameter {
             sweep::as_dimension(&mut file, parameter).map_err(|fault| failed(fault.into()))?;
         }
-        let built = build::build(&file, &source, data).map_err(failed)?;
+        let built = build::build(&file, &source, data, &expanded.elements).map_err(failed)?;
         let mut hash = Sha256::new_with_prefix(text.as_bytes());
         built.data.iter().for_each(|bytes| hash.update(bytes));
         Ok(Self {

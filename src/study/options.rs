@@ -7,7 +7,7 @@ use super::file::{AnalysisEntry, PairsEntry};
 use super::spanned::Spanned;
 use super::words::SENSITIVITIES;
 use crate::method::{Accuracies, MethodError, Options, Pairs};
-use crate::names::UnknownName;
+use crate::names::{UnknownName, nearest};
 use crate::problem::Problem;
 
 /// What stands for this word under a key of `[analysis]`.
@@ -28,6 +28,23 @@ fn joint_target(target: &Spanned<f64>, problem: &Problem) -> Result<f64, Fault> 
         return Err(at(StudyFault::MissingKey { key: "lower".into(), instead }));
     }
     Ok(value)
+}
+
+/// The problem with the pairs that are known to interact.
+pub(super) fn products(entry: &AnalysisEntry, problem: Problem) -> Result<Problem, Fault> {
+    let Some(pairs) = &entry.products else { return Ok(problem) };
+    let known: Vec<String> = problem.dimensions().iter().map(|dimension| dimension.name().to_owned()).collect();
+    let name = |name: &Spanned<String>| {
+        if known.contains(name.get_ref()) {
+            return Ok(name.get_ref().clone());
+        }
+        let nearest = nearest(name.get_ref(), known.iter().map(String::as_str)).map(str::to_owned);
+        let (what, found, known) = ("dimension", name.get_ref().clone(), known.clone());
+        let unknown = StudyFault::UnknownWord { what, found, nearest, known };
+        Err(fault(name.span(), "analysis.products", unknown))
+    };
+    let pairs = pairs.get_ref().iter().map(|(a, b)| Ok((name(a)?, name(b)?))).collect::<Result<Vec<_>, Fault>>()?;
+    Ok(problem.with_products(pairs))
 }
 
 pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Options, Fault> {

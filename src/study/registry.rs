@@ -75,6 +75,96 @@ pub(super) fn names(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" }, "minItems": 1 }] })
 }
 
+/// A zone or a length.
+pub(super) fn zone(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "number", "minimum": 0 })
+}
+
+pub(super) fn truth(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "boolean" })
+}
+
+/// Where form deviations lie.
+pub(super) fn side(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "string", "enum": ["out"] })
+}
+
+fn size(what: &str) -> Value {
+    json!({ "description": what, "type": "number", "minimum": 0 })
+}
+
+fn diameter(what: &str) -> Value {
+    json!({ "description": what, "anyOf": [{ "type": "string" }, { "type": "number", "minimum": 0 }] })
+}
+
+/// A table with some keys that it needs, and no others than these.
+fn table(properties: Value, required: &[&str]) -> Value {
+    json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
+}
+
+/// A diameter, or a table with a feature whose size widens the zone.
+pub(super) fn position(_: &mut SchemaGenerator) -> Schema {
+    let name = |what: &str| json!({ "description": what, "type": "string" });
+    let frame = table(
+        json!({
+            "zone": size("Diameter of the zone at the size that `at` names."),
+            "hole": name("A hole whose size gives the bonus."),
+            "pin": name("A pin whose size gives the bonus."),
+            "at": { "description": "Regardless of size, at maximum or at least material.", "enum": ["RFS", "MMC", "LMC"], "default": "RFS" },
+            "most": size("The most that the bonus adds."),
+        }),
+        &["zone"],
+    );
+    json_schema!({ "anyOf": [{ "type": "number" }, frame] })
+}
+
+/// Play between two sizes.
+pub(super) fn float(_: &mut SchemaGenerator) -> Schema {
+    let laws = json!({
+        "description": "Where the pin lies: evenly along a line, on either side, always on one, evenly in the hole, on its wall in any direction.",
+        "enum": ["uniform", "contact", "+", "-", "disc", "rim"],
+        "default": "uniform",
+    });
+    let sizes = json!({ "hole": diameter("The hole."), "pin": diameter("The pin."), "law": laws });
+    Schema::try_from(table(sizes, &["hole", "pin"])).unwrap_or_default()
+}
+
+/// A round pin and a slot.
+pub(super) fn locate(_: &mut SchemaGenerator) -> Schema {
+    let sizes = json!({
+        "hole": diameter("The round hole."),
+        "pin": diameter("The pin in it."),
+        "slot": diameter("The width of the slot."),
+        "pin2": diameter("The pin in the slot."),
+        "distance": diameter("From one pin to the other."),
+    });
+    Schema::try_from(table(sizes, &["hole", "pin", "slot", "pin2", "distance"])).unwrap_or_default()
+}
+
+/// A zone, or a table with its part outside of the material.
+pub(super) fn profile(_: &mut SchemaGenerator) -> Schema {
+    let frame = table(
+        json!({ "zone": size("Width of the zone."), "outward": size("Its part outside of the material.") }),
+        &["zone"],
+    );
+    json_schema!({ "anyOf": [{ "type": "number", "minimum": 0 }, frame] })
+}
+
+/// A fixed or floating fastener.
+pub(super) fn fastener(_: &mut SchemaGenerator) -> Schema {
+    let two = |what: &str| json!({ "description": what, "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 });
+    let keys = json!({
+        "kind": { "description": "A pin or stud that stands in one part, or a bolt through holes of two.", "enum": ["fixed", "floating"] },
+        "hole": diameter("The clearance hole of a fixed fastener."),
+        "holes": two("The two holes of a floating fastener."),
+        "pin": diameter("The pin, stud or bolt."),
+        "places": two("The positions of the two features; of a fixed fastener that of the threads is the second."),
+        "projection": size("How far a fixed fastener stands out of its threads, where the zone is not a projected one."),
+        "depth": size("The depth of the threads."),
+    });
+    Schema::try_from(table(keys, &["kind", "pin", "places"])).unwrap_or_default()
+}
+
 /// Tables of numbers by name, or a file of them.
 pub(super) fn configurations(_: &mut SchemaGenerator) -> Schema {
     let place = json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });

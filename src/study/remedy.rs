@@ -108,6 +108,13 @@ impl StudyFault {
             Self::CorrelationBesideRows { inside, .. } => {
                 Some(format!("leave the pair out, or write joint = false at `{inside}`"))
             }
+            Self::NoMaterial { .. } => Some("write its tolerance, limits or fit".into()),
+            Self::NothingFloats { .. } => Some("swap them, or write the clearance yourself: max(0, hole - pin)".into()),
+            Self::LengthBelowZone { .. } => Some("write the length over which the zone holds, in its unit".into()),
+            Self::FastenerPair { key, .. } => {
+                let names = if key == "holes" { "[\"d1\", \"d2\"]" } else { "[\"hole_place\", \"thread\"]" };
+                Some(format!("write {key} = {names}"))
+            }
             Self::Units { remedy, .. } => Some(remedy.clone()),
             Self::ReservedConfiguration => Some("choose another name".into()),
             Self::DimensionAndFormula { .. } => Some("leave one out".into()),

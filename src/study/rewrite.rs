@@ -206,7 +206,12 @@ impl Entry<'_> {
                     replace(self.deviation(&value.value, width, width, false));
                 }
                 ("tolerance", _) if scales => replace(half.clone()),
-                ("position", _) if scales => replace(cut(2.0 * width)),
+                // Written as zones; what is none of these bands has formulas of its own.
+                (
+                    "position" | "profile" | "symmetry" | "flatness" | "straightness" | "roundness" | "cylindricity"
+                    | "runout" | "total_runout" | "coaxiality" | "concentricity",
+                    Value::Number(_) | Value::Integer(_),
+                ) if scales => replace(cut(2.0 * width)),
                 ("limits", _) => {
                     let [lower, upper] = self.band(factor);
                     let from = rounded(nominal.1 + lower, width, true);

@@ -22,6 +22,7 @@ pub(super) enum Kind {
     Normal,
     TruncatedNormal,
     Uniform,
+    TwoPoint,
     Triangular,
     Trapezoidal,
     Beta,
@@ -45,10 +46,11 @@ pub(super) type KnownKind = (&'static str, Kind, &'static [&'static str], &'stat
 
 const NOTHING: &str = "it has no parameters of its own";
 const ORIGIN: &str = "it knows `origin`";
-pub(super) const KINDS: [KnownKind; 17] = [
+pub(super) const KINDS: [KnownKind; 18] = [
     ("normal", Kind::Normal, &[], NOTHING),
     ("truncated-normal", Kind::TruncatedNormal, &[], NOTHING),
     ("uniform", Kind::Uniform, &[], NOTHING),
+    ("two-point", Kind::TwoPoint, &[], NOTHING),
     ("triangular", Kind::Triangular, &["mode"], "it knows `mode`"),
     ("trapezoidal", Kind::Trapezoidal, &["top"], "it knows `top`"),
     ("beta", Kind::Beta, &["alpha", "beta"], "it knows `alpha` and `beta`"),

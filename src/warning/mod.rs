@@ -64,6 +64,13 @@ warnings! {
         /// The dimensions.
         dimensions: Vec<String>,
     };
+    /// The bands of a float let the pin be larger than its hole.
+    Interference = "interference" by study::interference {
+        /// The geometric element.
+        element: String,
+        /// The share of pairs whose pin is larger than its hole; None where their distributions do not say.
+        share: Option<f64>,
+    };
     /// No characteristic of the study uses these constants, formulas or unknowns.
     UnusedName = "unused-name" by study::unused_name {
         /// What they are.

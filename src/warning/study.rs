@@ -69,6 +69,16 @@ pub(super) fn periodic_input(dimensions: &[String]) -> Text {
     .advise(Advice::Sample { points: None })
 }
 
+pub(super) fn interference(element: &str, share: &Option<f64>) -> Text {
+    let pairs = match share {
+        Some(share) if *share < 1e-4 => "Less than 0.01 % of the pairs do not go together".to_owned(),
+        Some(share) => format!("{:.2} % of the pairs do not go together", 100.0 * share),
+        None => "Some pairs may not go together".to_owned(),
+    };
+    say(format!("{pairs}: the bands of `{element}` let the pin be larger than its hole. Its clearance is 0 there, which is a kink of the formula."))
+        .advise(Advice::CheckLimits)
+}
+
 pub(super) fn unused_name(kind: &NameKind, unused: &[String]) -> Text {
     let message = format!("No characteristic uses the {} {}.", kind.noun(unused.len()), names(unused));
     say(message).advise(Advice::CheckNames)

@@ -11,7 +11,7 @@ use super::support::close;
 
 /// Study, and the same written out: every figure is the same to the last digit.
 #[track_caller]
-fn same_as_expanded(text: &str, method: Method) {
+pub fn same_as_expanded(text: &str, method: Method) {
     let study = parse(text).unwrap_or_else(|error| panic!("{error}"));
     let expanded = parse(&study.expanded).unwrap_or_else(|error| panic!("{error}\n{}", study.expanded));
     assert_eq!(

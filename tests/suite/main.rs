@@ -33,6 +33,7 @@ mod figures;
 mod fits;
 mod formulas;
 mod generated_lists;
+mod geometry;
 mod gradients;
 mod help;
 mod history;

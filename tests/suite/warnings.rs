@@ -71,6 +71,8 @@ fn every() -> Vec<Warning> {
         Warning::RowsByCopula { dimensions: [text("bore"), text("pin")], correlation: [0.8581, 0.8422] },
         Warning::PeriodicInput { dimensions: names(1) },
         Warning::PeriodicInput { dimensions: names(2) },
+        Warning::Interference { element: text("ds"), share: Some(0.004) },
+        Warning::Interference { element: text("ds"), share: None },
         Warning::UnknownUnit { units: vec![text("furlong")] },
         Warning::UnmatchedRows { dimension: text("pin"), file: text("pin.csv"), unmatched: 1, lines: vec![12] },
         Warning::UnmatchedRows {

@@ -145,10 +145,11 @@ pub(super) struct Atoms {
 }
 
 /// From what is left at the points that check, a value for each, None where it is unknown; `together` is `l` where the probes
-/// have told it.
+/// have told it, and `pairs` are those that were examined.
 pub(super) fn atoms(
     plan: &DifferencePlan,
     bought: &ChosenPoints,
+    pairs: &[(usize, usize)],
     bends: &Bends,
     left: &[Option<f64>],
     together: Option<f64>,
@@ -157,7 +158,7 @@ pub(super) fn atoms(
     let mut left: Vec<Option<f64>> = left.to_vec();
     let mut found = None;
     if together.is_none() {
-        let products: Vec<f64> = places.iter().map(|u| bends.products(u, &bought.direct)).collect();
+        let products: Vec<f64> = places.iter().map(|u| bends.products(u, pairs)).collect();
         found = factor(&left, &products, true).filter(|fit| fit.left <= EXPLAINS).map(|fit| fit.factor);
         if let Some(factor) = found {
             left.iter_mut().zip(&products).for_each(|(left, product)| *left = left.map(|left| left - factor * product));
@@ -165,10 +166,10 @@ pub(super) fn atoms(
     }
     let all = together.or(found).filter(|together| *together != 0.0);
     let slopes = all.and_then(|together| {
-        let thirds: Vec<f64> = places.iter().map(|u| bends.thirds(u, together, &bought.direct)).collect();
+        let thirds: Vec<f64> = places.iter().map(|u| bends.thirds(u, together, pairs)).collect();
         let fit = factor(&left, &thirds, false)?;
         let fits = fit.left <= EXPLAINS_ODD && fit.factor > 0.0 && fit.factor <= LARGEST;
-        fits.then(|| bends.slopes_of_thirds(fit.factor * together, &bought.direct))
+        fits.then(|| bends.slopes_of_thirds(fit.factor * together, pairs))
     });
     Atoms { together: found, slopes }
 }

@@ -1,6 +1,6 @@
 //! The points that `auto` evaluates beside the axes.
 
-use crate::plan::Point;
+use crate::plan::{Mixed, Point};
 
 /// Every dimension up or down, and all turned round.
 #[derive(Debug, Clone)]
@@ -20,7 +20,30 @@ pub(super) struct ChosenPoints {
     pub(super) tails: Vec<(usize, [Point; 2])>,
     /// Pairs with two evaluations of their own.
     pub(super) direct: Vec<(usize, usize)>,
+    /// For every characteristic, pairs that are known to interact, with their exact mixed derivatives.
+    pub(super) given: Vec<Vec<((usize, usize), Mixed)>>,
     /// Probes that judge, and probes that are fitted.
     pub(super) judging: Vec<Probe>,
     pub(super) fitted: Vec<Probe>,
+}
+
+impl ChosenPoints {
+    /// Whether nothing is left to find out about a pair of one characteristic.
+    pub(super) fn knows(&self, c: usize, pair: (usize, usize)) -> bool {
+        self.direct.binary_search(&pair).is_ok() || self.gives(c, pair)
+    }
+
+    /// Whether a pair is known to interact, and how.
+    fn gives(&self, c: usize, pair: (usize, usize)) -> bool {
+        self.given.get(c).is_some_and(|given| given.iter().any(|(known, _)| *known == pair))
+    }
+
+    /// The pairs of one characteristic about which nothing is left to find out.
+    pub(super) fn known(&self, c: usize) -> Vec<(usize, usize)> {
+        let given = self.given.get(c).into_iter().flatten().map(|(pair, _)| *pair);
+        let mut all: Vec<(usize, usize)> = self.direct.iter().copied().chain(given).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
 }

@@ -5,7 +5,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::chosen::{ChosenPoints, Probe};
 use super::view::{View, skewed};
+use crate::method::Options;
 use crate::method::climbed::ClimbEnd;
+use crate::method::exact::ExactDerivatives;
 use crate::plan::{DifferencePlan, KnownAnswers, Plan, Point, Purpose, Stage, scattered};
 use crate::problem::Problem;
 
@@ -92,9 +94,9 @@ pub(super) struct Climb<'p> {
 }
 
 impl<'p> Climb<'p> {
-    pub(super) fn new(problem: &'p Problem, plan: DifferencePlan, accuracy: f64, budget: Option<usize>) -> Self {
+    pub(super) fn new(problem: &'p Problem, plan: DifferencePlan, accuracy: f64, options: &Options) -> Self {
         let refined = vec![false; plan.varying().len()];
-        let budget = budget.unwrap_or(usize::MAX);
+        let budget = options.budget.unwrap_or(usize::MAX);
         let mut climb = Self {
             problem,
             plan,
@@ -111,6 +113,10 @@ impl<'p> Climb<'p> {
             short_of_budget: false,
             rest: None,
         };
+        let known = ExactDerivatives::known_pairs(problem, &climb.plan, options);
+        if !known.is_empty() {
+            climb.bought.given = ExactDerivatives::mixed_of(problem, &climb.plan, &known);
+        }
         climb.spent = climb.plan.cost().0;
         if !climb.plan.varying().is_empty() {
             climb.check();
@@ -417,11 +423,10 @@ impl<'p> Climb<'p> {
         let mut ranked: Vec<(f64, usize, usize)> = Vec::new();
         for j in 0..self.positions() {
             for k in j + 1..self.positions() {
-                if self.bought.direct.binary_search(&(j, k)).is_ok() {
-                    continue;
-                }
                 let score = |view: &&View| {
-                    self.plan.joint(view.characteristic, j, k).then(|| view.shares[j][0] * view.shares[k][0])
+                    let c = view.characteristic;
+                    let open = self.plan.joint(c, j, k) && !self.bought.knows(c, (j, k));
+                    open.then(|| view.shares[j][0] * view.shares[k][0])
                 };
                 if let Some(score) = lacking.iter().filter_map(score).reduce(f64::max) {
                     ranked.push((score, j, k));

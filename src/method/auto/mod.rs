@@ -138,7 +138,7 @@ fn climb<'p>(problem: &'p Problem, options: &Options) -> Result<Climb<'p>, Metho
             return Err(MethodError::BadAccuracy { figure, accuracy });
         }
     }
-    Ok(Climb::new(problem, BASE.differences(problem, options)?, accuracy, options.budget))
+    Ok(Climb::new(problem, BASE.differences(problem, options)?, accuracy, options))
 }
 
 /// What the climb has found out.
@@ -178,7 +178,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
         direct: climb.bought.direct.len(),
         probes: climb.bought.judging.len() + climb.bought.fitted.len(),
         checks: climb.bought.checks.iter().flatten().filter(|point| known.tried(point)).count(),
-        all_pairs: climb.bought.direct.len() == plan.possible_pairs(),
+        all_pairs: (0..problem.characteristics().len()).all(|c| climb.bought.known(c).len() == plan.possible_pairs()),
         noise: of(|view| view.noise),
         tails: of(|view| view.tail),
         far: climb.bought.tails.clone(),

@@ -57,6 +57,7 @@ impl View {
                 products.insert(pair, mixed);
             }
         }
+        products.extend(bought.given.get(c).into_iter().flatten().copied());
         let mut base = centre;
         let left_by = |base: f64, parts: &[Option<Univariate>], products: &BTreeMap<(usize, usize), Mixed>| {
             let left = left_at(plan, known, c, bought, &surrogate_of(base, parts, products))?;
@@ -93,7 +94,7 @@ impl View {
         }
         let surrogate = surrogate_of(base, &parts, &products);
         let left = left_at(plan, known, c, bought, &surrogate)?;
-        let atoms = atoms(plan, bought, &bends, &left, together);
+        let atoms = atoms(plan, bought, &bought.known(c), &bends, &left, together);
         if let Some(together) = atoms.together {
             let slope = |j: usize| bends.slope(j);
             for j in 0..n {

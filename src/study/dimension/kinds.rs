@@ -12,7 +12,7 @@ use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, shift
 use crate::dimension::DimensionFault;
 use crate::distribution::{
     Beta, CentralMoments, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Lognormal, Normal,
-    Rayleigh, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull,
+    Rayleigh, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, TwoValues, UShaped, Uniform, Weibull,
 };
 use crate::names::nearest;
 
@@ -32,6 +32,7 @@ pub(super) fn distribution(
         Kind::Mixture => mixture(entry, nominal, tolerance),
         over @ (Kind::TruncatedNormal
         | Kind::Uniform
+        | Kind::TwoPoint
         | Kind::Triangular
         | Kind::Trapezoidal
         | Kind::Beta
@@ -183,6 +184,7 @@ fn over_band(kind: Kind, entry: &DimensionEntry, nominal: f64, tolerance: Option
             let inexactness = parameter(entry, "inexactness", |entry| &entry.inexactness)?;
             shared(CurvilinearTrapezoid::about(middle, half, inexactness))
         }
+        Kind::TwoPoint => shared(TwoValues::about(middle, half)),
         _ => shared(Uniform::about(middle, half)),
     };
     let distribution = placed(entry, distribution)?;

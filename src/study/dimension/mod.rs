@@ -113,6 +113,13 @@ fn nominal(entry: &DimensionEntry, model: Option<f64>, mean: Option<f64>, line: 
     })
 }
 
+/// Least and greatest value of a line; None without a band, and where the line is at fault, which is said where it is read.
+pub(super) fn limits(entry: &DimensionEntry) -> Option<[f64; 2]> {
+    let nominal = nominal(entry, None, None, &(0..0)).ok()?;
+    let [lower, upper] = tolerance::tolerance(entry, nominal).ok()??;
+    Some([nominal + lower, nominal + upper])
+}
+
 fn conflict(a: &'static str, b: &'static str, why: &str) -> StudyFault {
     StudyFault::Conflict { a, b, why: why.to_owned() }
 }

@@ -1,13 +1,10 @@
 //! Relative dimensions: `x2 = { nominal = 40, tolerance = 0.1, from = "x1" }` is `x1` plus a dimension of its own.
 
-use super::{Expanded, Origin, Tree, Value, wrong_type};
-use crate::assembly::formula::is_plain;
+use super::geometry::{Shape, place, shape, takes_from};
+use super::{Expanded, OWN, Origin, Tree, Value, quoted, wrong_type};
 use crate::names::nearest;
 use crate::study::error::{Fault, Faults, StudyFault, fault};
 use crate::study::tree::Key;
-
-/// What stands after the name of a relative dimension in that of its own part.
-const OWN: &str = ".own";
 
 /// What a dimension is relative to, before it is checked.
 struct Relative {
@@ -15,7 +12,7 @@ struct Relative {
     place: usize,
     name: String,
     bases: Vec<(String, std::ops::Range<usize>)>,
-    position: bool,
+    shape: Shape,
 }
 
 /// Replaces every relative dimension by a dimension of its own and a formula.
@@ -37,7 +34,7 @@ fn relatives(tree: &Tree, faults: &mut Faults) -> Option<Vec<Relative>> {
     let dimensions = tree.get("dimensions")?.entries();
     let mut relatives = Vec::new();
     for (place, (key, entry)) in dimensions.iter().enumerate() {
-        let Some(from) = entry.get("from") else { continue };
+        let Some(from) = entry.get("from").filter(|_| takes_from(entry)) else { continue };
         let at = format!("dimensions.{}.from", key.name);
         let expected = "the name of a dimension or formula such as \"x1\", or a list of such names";
         let texts: Option<Vec<_>> = match &from.value {
@@ -52,8 +49,7 @@ fn relatives(tree: &Tree, faults: &mut Faults) -> Option<Vec<Relative>> {
         };
         match texts {
             Some(bases) => {
-                let position = entry.get("position").is_some();
-                relatives.push(Relative { place, name: key.name.clone(), bases, position });
+                relatives.push(Relative { place, name: key.name.clone(), bases, shape: shape(entry) });
             }
             None => faults.0.push(wrong_type(from, at, expected)),
         }
@@ -82,14 +78,17 @@ fn checked(tree: &Tree, relative: &Relative, all: &[Relative]) -> Option<Fault> 
     }
     let formulas = tree.get("formulas").map_or(&[][..], Tree::entries);
     let characteristics = tree.get("characteristics").map_or(&[][..], Tree::entries);
-    let positions = || dimensions.iter().filter(|(_, entry)| entry.get("position").is_some());
-    let mut known: Vec<String> = match relative.position {
-        true => positions().map(|(key, _)| key.name.clone()).collect(),
-        false => (dimensions.iter().filter(|(_, entry)| entry.get("position").is_none()))
+    let places = || dimensions.iter().filter(|(_, entry)| shape(entry) != Shape::Scalar);
+    let axes = |(key, entry): &(Key, Tree)| {
+        shape(entry).axes().iter().map(|axis| format!("{}{axis}", key.name)).collect::<Vec<_>>()
+    };
+    let mut known: Vec<String> = match relative.shape {
+        Shape::Planar | Shape::Located => places().map(|(key, _)| key.name.clone()).collect(),
+        Shape::Scalar => (dimensions.iter().filter(|(_, entry)| shape(entry) == Shape::Scalar))
             .chain(formulas)
             .chain(characteristics.iter().filter(|(_, entry)| entry.get("formula").is_some()))
             .map(|(key, _)| key.name.clone())
-            .chain(positions().flat_map(|(key, _)| ["x", "y"].map(|axis| format!("{}_{axis}", key.name))))
+            .chain(places().flat_map(axes))
             .collect(),
     };
     known.retain(|known| known != name);
@@ -100,7 +99,7 @@ fn checked(tree: &Tree, relative: &Relative, all: &[Relative]) -> Option<Fault> 
         }
         if !known.contains(base) {
             let nearest = nearest(base, known.iter().map(String::as_str)).map(str::to_owned);
-            let what = if relative.position { "position" } else { "dimension or formula" };
+            let what = if relative.shape == Shape::Scalar { "dimension or formula" } else { "position" };
             return Some(at(StudyFault::UnknownWord { what, found: base.clone(), nearest, known }));
         }
         if let Some(path) = circle(name, base, all) {
@@ -134,6 +133,12 @@ fn replace(expanded: &mut Expanded, relative: &Relative) {
     let key = format!("dimensions.{}", relative.name);
     let mut span = 0..0;
     let mut from = 0..0;
+    let dimensions = expanded.tree.get("dimensions").map_or(&[][..], Tree::entries);
+    let located: Vec<String> = (dimensions.iter())
+        .filter(|(_, entry)| shape(entry) == Shape::Located)
+        .map(|(key, _)| key.name.clone())
+        .collect();
+    let at = dimensions.get(relative.place).and_then(|(_, entry)| place(entry.get("nominal")?)).unwrap_or([0.0; 2]);
     if let Some(dimensions) = expanded.tree.get_mut("dimensions").and_then(Tree::entries_mut) {
         let (name, entry) = &mut dimensions[relative.place];
         span = name.span.clone();
@@ -144,15 +149,21 @@ fn replace(expanded: &mut Expanded, relative: &Relative) {
         }
     }
     expanded.origins.push(Origin { section: "dimensions", name: own.clone(), key: key.clone(), span: span.clone() });
-    let axes: &[&str] = if relative.position { &["_x", "_y"] } else { &[""] };
-    for axis in axes {
+    for axis in relative.shape.axes() {
         let name = format!("{}{axis}", relative.name);
-        let terms =
-            relative.bases.iter().map(|(base, _)| base).chain([&own]).map(|term| quoted(&format!("{term}{axis}")));
+        let term = |term: &str| quoted(&format!("{term}{axis}"));
+        let of_base = |(base, _): &(String, std::ops::Range<usize>)| match located.contains(base) {
+            true => term(base) + &turned(base, axis, at),
+            false => term(base),
+        };
+        let terms = relative.bases.iter().map(of_base).chain([term(&own)]);
         let text = terms.collect::<Vec<_>>().join(" + ");
         if let Some(formulas) = expanded.tree.section("formulas") {
             let formula = Tree { span: from.clone(), value: Value::Text(text) };
             formulas.push((Key { span: span.clone(), name: name.clone() }, formula));
+        }
+        if relative.shape != Shape::Scalar {
+            expanded.elements.made.push(name.clone());
         }
         expanded.origins.push(Origin { section: "formulas", name, key: key.clone(), span: span.clone() });
     }
@@ -189,7 +200,14 @@ fn text(tree: &mut Tree, name: &str, own: &str) {
     }
 }
 
-/// A name as a formula writes it.
-fn quoted(name: &str) -> String {
-    if is_plain(name) { name.to_owned() } else { format!("`{name}`") }
+/// The part that the rotation of a located part adds to a coordinate of a feature at this nominal place.
+fn turned(base: &str, axis: &str, [x, y]: [f64; 2]) -> String {
+    let rotation = quoted(&format!("{base}_rot"));
+    // Along x a rotation moves a feature by -y, along y by x.
+    let lever = if axis == "_x" { -y } else { x };
+    match lever {
+        0.0 => String::new(),
+        lever if lever < 0.0 => format!(" - {rotation}*{:?}", -lever),
+        lever => format!(" + {rotation}*{lever:?}"),
+    }
 }

@@ -5,6 +5,7 @@
 
 mod configurations;
 mod from;
+mod geometry;
 mod joint;
 mod toml;
 
@@ -13,6 +14,7 @@ use std::ops::Range;
 use super::data::Data;
 use super::error::{Fault, Faults, StudyFault, fault};
 use super::tree::{Key, Tree, Value};
+use crate::assembly::formula::is_plain;
 
 /// A study in plain keys.
 pub(super) struct Expanded {
@@ -21,6 +23,25 @@ pub(super) struct Expanded {
     pub(super) configurations: Vec<String>,
     /// For every entry that an element declares, section and name, with the key of the element and its place.
     pub(super) origins: Vec<Origin>,
+    /// Things to know of its geometric elements.
+    pub(super) elements: Elements,
+}
+
+/// Things to know of geometric elements beside their plain lines.
+#[derive(Default)]
+pub(super) struct Elements {
+    /// Formulas of which the study need not use all.
+    pub(super) made: Vec<String>,
+    /// Sizes whose bands can close the clearance.
+    pub(super) closing: Vec<Closing>,
+}
+
+/// A hole and a pin that may be larger.
+pub(super) struct Closing {
+    pub(super) element: String,
+    /// Diameters as formulas.
+    pub(super) hole: String,
+    pub(super) pin: String,
 }
 
 /// Where an entry comes from.
@@ -34,10 +55,15 @@ pub(super) struct Origin {
 
 /// A study in plain keys, with the nominal values and constants of a configuration where one is asked for.
 pub(super) fn expand(tree: Tree, configuration: Option<&str>, data: &mut Data<'_>) -> Result<Expanded, Faults> {
-    let mut expanded = Expanded { tree, configurations: Vec::new(), origins: Vec::new() };
+    let mut expanded =
+        Expanded { tree, configurations: Vec::new(), origins: Vec::new(), elements: Elements::default() };
     configurations::expand(&mut expanded, configuration, data)?;
+    geometry::fasteners(&mut expanded)?;
     joint::expand(&mut expanded);
     from::expand(&mut expanded)?;
+    geometry::expand(&mut expanded)?;
+    // The blocks of elements.
+    joint::expand(&mut expanded);
     Ok(expanded)
 }
 
@@ -82,6 +108,14 @@ impl Tree {
         });
         entries[place].1.entries_mut()
     }
+}
+
+/// The ending of the name of a relative dimension's own part.
+const OWN: &str = ".own";
+
+/// A name as a formula writes it.
+fn quoted(name: &str) -> String {
+    if is_plain(name) { name.to_owned() } else { format!("`{name}`") }
 }
 
 /// A fault of a value that is of another kind.
