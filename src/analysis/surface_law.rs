@@ -99,7 +99,7 @@ impl SurfaceShares {
         let limits = problem.characteristics()[c].limits();
         let whole = match law(&surrogate, &inputs, correlation, (points, limits.exist())) {
             Ok(law) => law,
-            Err(LawError::NoVariance | LawError::NoEigenvalues) => {
+            Err(LawError::NoVariance | LawError::NoEigenvalues | LawError::LongTail { .. }) => {
                 return Some((Self::counted(problem, outcome, c, seed)?, None));
             }
             Err(_) => return None,

@@ -85,6 +85,14 @@ impl Input {
         Some(input)
     }
 
+    /// Whether its tails fall as so low a power that quadratures reach out farther than their nodes resolve: Student's distribution
+    /// with fewer than 18 degrees of freedom.
+    pub(super) fn falls_as_a_power(&self) -> bool {
+        /// In sigmas; the same distribution with 18 degrees ends at 157.
+        const FARTHEST: f64 = 200.0;
+        self.law.name() == "student" && self.ends[1] > FARTHEST
+    }
+
     pub(super) fn is_normal(&self) -> bool {
         self.normal
     }

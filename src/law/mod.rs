@@ -164,6 +164,12 @@ pub enum LawError {
         /// Position of the input.
         position: usize,
     },
+    /// An input whose tail falls as a power: no panels resolve both it and the middle.
+    #[error("input {position} has too long a tail for a transform")]
+    LongTail {
+        /// Position of the input among those that count.
+        position: usize,
+    },
     /// A coefficient that is not a finite number.
     #[error("a coefficient of the surface is not a finite number")]
     NotFinite,
@@ -286,6 +292,9 @@ impl SurfaceLaw {
             if let Some(single) = Direction::of(&surface, &members).and_then(Single::of) {
                 return with(Kind::Single(Box::new(single)), moments(surrogate, inputs, correlation.as_ref())?);
             }
+        }
+        if let Some(position) = surface.inputs.iter().position(|input| input.falls_as_a_power()) {
+            return Err(LawError::LongTail { position });
         }
         let (transform, left) = Transform::of(&surface, &surface.components(), options.trees);
         if left.is_empty() {
