@@ -104,7 +104,8 @@ fn unused(problem: &Problem) -> Option<Warning> {
     let of_used = || (0..all.len()).filter(used).map(|d| &all[d]);
     let zones: HashSet<&str> = of_used().filter_map(Dimension::zone).collect();
     let elements: HashSet<&str> = of_used().map(|of| element(of.name())).collect();
-    let beside = |of: &Dimension| of.zone().is_some_and(|zone| zones.contains(zone)) || elements.contains(element(of.name()));
+    let beside =
+        |of: &Dimension| of.zone().is_some_and(|zone| zones.contains(zone)) || elements.contains(element(of.name()));
     let idle = (0..all.len()).filter(|d| !used(d) && !beside(&all[*d]));
     let dimensions: Vec<String> = idle.map(|d| problem.dimensions()[d].name().to_owned()).collect();
     (!dimensions.is_empty()).then_some(Warning::UnusedDimension { dimensions })
