@@ -57,14 +57,16 @@ fn grouped(text: &str, mark: char) -> bool {
         && groups.all(|group| group.len() == 3 && figures(group))
 }
 
+/// Whether marks of thousands stand before the decimal mark only, three digits apart.
+fn fits(text: &str, decimal: char, mark: char) -> bool {
+    let (before, after) = text.split_once(decimal).unwrap_or((text, ""));
+    grouped(before, mark) && !after.contains(mark)
+}
+
 /// Whether a cell by itself shows that its decimal mark is the comma, or the point; None where it may be either, or no number at all.
 fn shows(text: &str) -> Option<bool> {
     let count = |mark: char| text.matches(mark).count();
-    let whole = |decimal: char, mark: char| {
-        let (before, after) = text.split_once(decimal)?;
-        let fits = grouped(before, mark) && !after.contains(mark);
-        fits.then_some(decimal == ',')
-    };
+    let whole = |decimal: char, mark: char| fits(text, decimal, mark).then_some(decimal == ',');
     match (count('.'), count(',')) {
         (1.., 1) if text.rfind('.') < text.rfind(',') => whole(',', '.'),
         (1, 1..) if text.rfind(',') < text.rfind('.') => whole('.', ','),
@@ -98,10 +100,10 @@ impl Style {
         let has = |mark: char| text.contains(mark);
         let no_number = NumberFault::NoNumber { comma: false };
         let plain = match self.shown {
-            Some((other, true)) if has('.') && !grouped(text.split(',').next().unwrap_or(""), '.') => {
+            Some((other, true)) if has('.') && !fits(&text, ',', '.') => {
                 return Err(if other == place { no_number } else { NumberFault::TwoMarks { comma: false, other } });
             }
-            Some((other, false)) if has(',') && !grouped(text.split('.').next().unwrap_or(""), ',') => {
+            Some((other, false)) if has(',') && !fits(&text, '.', ',') => {
                 return Err(if other == place { no_number } else { NumberFault::TwoMarks { comma: true, other } });
             }
             Some((_, true)) => text.replace('.', "").replacen(',', ".", 1),

@@ -20,7 +20,8 @@ pub(super) fn written(cell: &str) -> Option<Written> {
     let text: String = clean(cell).chars().filter(|c| !c.is_whitespace()).collect();
     let half = ["±", "+/-", "+-"].iter().find_map(|sign| text.strip_prefix(sign));
     let body = half.unwrap_or(&text);
-    let number = |text: &str| text.starts_with(|c: char| c.is_ascii_digit() || ['+', '-', '.', ','].contains(&c));
+    let begins = |c: char| c.is_ascii_digit() || ['+', '-', '.', ','].contains(&c);
+    let number = |text: &str| text.starts_with(begins) && text.chars().all(|c| begins(c) || ['e', 'E'].contains(&c));
     if let Some(percent) = body.strip_suffix('%') {
         return number(percent).then(|| Written::Percent(percent.to_owned()));
     }
