@@ -12,6 +12,7 @@ use crate::correlation::CorrelationError;
 use crate::dimension::DimensionError;
 use crate::distribution::DistributionError;
 use crate::fits::FitError;
+use crate::inspection::InspectionError;
 #[cfg(feature = "journal")]
 use crate::journal::JournalError;
 use crate::law::LawError;
@@ -41,6 +42,9 @@ pub enum Error {
     /// Limits or a target are impossible.
     #[error(transparent)]
     Limits(#[from] LimitsError),
+    /// A gauge or a guard band is impossible.
+    #[error(transparent)]
+    Inspection(#[from] InspectionError),
     /// A formula cannot be read.
     #[error(transparent)]
     Formula(#[from] FormulaError),

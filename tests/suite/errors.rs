@@ -41,6 +41,7 @@ fn every_error_of_the_library_becomes_the_one() {
         sensitol::correlation::CorrelationError,
         sensitol::distribution::DistributionError,
         sensitol::fits::FitError,
+        sensitol::inspection::InspectionError,
         sensitol::journal::JournalError,
         sensitol::UnknownName,
         sensitol::pearson::PearsonError,
