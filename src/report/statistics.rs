@@ -158,7 +158,8 @@ impl CharacteristicAnalysis {
             })
             .shown("effect", move |one| shown(one.alone().and_then(effect), |effect| significant(effect, 3)))
             .shown("contrib. %", move |one| shown(one.part(), percent))
-            .shown_if(self.has_totals(), "total %", move |one| shown(one.total(), percent))
+            // A column more does not fit into 80: the details have it.
+            .shown_if(self.is_of_model() && self.has_totals(), "total %", move |one| shown(one.total(), percent))
             .table("", all.iter())
             .seen(view)
             .at_most([CONTRIBUTORS, 0], rest)

@@ -1,4 +1,4 @@
-//! What a study can be asked for: the commands of the command line, with their options as JSON.
+//! Questions to a study: the commands of the command line, with their options as JSON.
 
 use serde::Deserialize;
 
@@ -23,7 +23,7 @@ const SAMPLES: u64 = 100_000;
 /// The same of rare events, of a cheap model and of a costly one.
 const RARE_SAMPLES: [u64; 2] = [10_000, 1000];
 
-/// What is asked.
+/// A question.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "command", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Asked {
@@ -76,9 +76,9 @@ pub enum Asked {
         confirm: Option<u64>,
         /// Relative costs in place of the study's own.
         cost: Option<CostName>,
-        /// What is sought in place of the least cost.
+        /// The goal in place of the least cost.
         goal: Option<GoalName>,
-        /// What may be spent on it.
+        /// The most that may be spent on it.
         cost_limit: Option<f64>,
     },
 }
@@ -95,7 +95,7 @@ pub enum CostName {
     EqualShares,
 }
 
-/// What is sought in place of the least cost.
+/// A goal in place of the least cost.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GoalName {
@@ -141,7 +141,7 @@ pub type Counted<'c> = &'c dyn Fn(u64, u64);
 /// Does what is asked of a study.
 ///
 /// # Errors
-/// What cannot be done with it.
+/// Of a question that cannot be answered.
 pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -> Result<TaskReport, Box<Error>> {
     let problem = &study.problem;
     let about = || About {
@@ -210,7 +210,7 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
             let goal = goal.zip(*cost_limit).map_or(Goal::LeastCost, |(goal, limit)| goal.within(limit));
             let task = study.allocation_task().relative_or_default(problem, basis, !recentre.is_empty()).towards(goal);
             let found = allocate_with(problem, &task, &options, run).map_err(boxed)?;
-            // What was stopped before the model had its say is no study yet.
+            // A run that was stopped before the model had its say is no study yet.
             let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
             let anew = confirmed.then(|| study.rewritten(&found.problem));
             let (anew, not_written) = match anew {

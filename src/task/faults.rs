@@ -27,7 +27,7 @@ fn one(error: &StudyError) -> Value {
     })
 }
 
-/// What else cannot be done.
+/// Any other error.
 pub(super) fn of_engine(error: &Error) -> Value {
     if let Error::Study(error) = error {
         return of_study(error);

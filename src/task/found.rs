@@ -1,4 +1,4 @@
-//! What a run found out: a report, shown as it is asked for.
+//! The report of a run, shown as it is asked for.
 
 use serde::Serialize;
 

@@ -21,7 +21,7 @@ pub struct Task {
     /// The text of the study.
     text: String,
     format: Format,
-    /// What stands for the file in messages.
+    /// The name in place of a file's in messages.
     name: String,
     /// The files that it names.
     #[serde(default)]
@@ -36,7 +36,7 @@ pub struct Task {
     forms: Vec<Form>,
 }
 
-/// What the text is written in.
+/// The format of the text.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Format {

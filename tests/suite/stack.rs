@@ -185,6 +185,9 @@ fn csv_and_json_say_the_same() {
                     "dimension_b" => &row["dimensions"][1],
                     "rounding_first" => &row["rounding"][0],
                     "rounding_second" => &row["rounding"][1],
+                    "first_order" | "total" => &row[key]["value"],
+                    "first_order_error" => &row["first_order"]["error"],
+                    "total_error" => &row["total"]["error"],
                     _ => match key.strip_prefix("normal_") {
                         Some(of_normal) => &row["normal_fit"][of_normal],
                         None => &row[key],

@@ -140,6 +140,8 @@ fn no_command_obeys_a_name() {
         &["man", HOSTILE],
         &["probe", "model.toml"],
         &["workbench", "bad.toml", "--page", HOSTILE],
+        &["serve", HOSTILE],
+        &["import", HOSTILE],
         &["evaluate", "bad.toml"],
         &["journal", "show", journal],
         &["journal", "show", HOSTILE],

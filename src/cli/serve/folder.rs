@@ -131,7 +131,7 @@ impl Folder {
         let there = std::fs::read(&path).ok().map(|bytes| hash(&bytes));
         let overwrite = query.get("overwrite") == Some("yes");
         if !overwrite && there.as_deref() != query.get("hash").filter(|hash| !hash.is_empty()) {
-            return Answer::refused(409, "the file is not the one that was opened: somebody has changed it");
+            return Answer::refused(409, "the file is not the one that was opened: another program has changed it");
         }
         // Whole or not at all.
         let folder = path.parent().unwrap_or(&self.root);

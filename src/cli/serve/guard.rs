@@ -69,7 +69,7 @@ impl Guard {
         Ok(Query { what: what.to_owned(), given })
     }
 
-    /// Whether this is how a browser names this server: a name that somebody else's DNS points here is not.
+    /// Whether this is how a browser names this server: a name that another site's DNS points here is not.
     fn is_own(&self, host: &str) -> bool {
         let port = self.at.port();
         host == self.at.to_string()

@@ -87,7 +87,7 @@ fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
     let at = |share: f64| if tail.upper { tail.law.upper_quantile(share) } else { tail.law.quantile(share) };
     let seen = [tail.surface, tail.model.map(|model| model.0), Some(beyond(tail.limit))];
     let least = seen.into_iter().flatten().filter(|share| *share > 0.0).fold(TO, f64::min);
-    // Further out than this nobody looks at a picture.
+    // Further out than this a picture says nothing.
     const FARTHEST: f64 = 1e-9;
     if least < FARTHEST {
         return None;

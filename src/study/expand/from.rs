@@ -5,6 +5,7 @@ use super::{Expanded, OWN, Origin, Tree, Value, quoted, wrong_type};
 use crate::names::nearest;
 use crate::study::error::{Fault, Faults, StudyFault, fault};
 use crate::study::tree::Key;
+use crate::unit::Unit;
 
 /// What a dimension is relative to, before it is checked.
 struct Relative {
@@ -139,6 +140,11 @@ fn replace(expanded: &mut Expanded, relative: &Relative) {
         .map(|(key, _)| key.name.clone())
         .collect();
     let at = dimensions.get(relative.place).and_then(|(_, entry)| place(entry.get("nominal")?)).unwrap_or([0.0; 2]);
+    // The lever of a rotation has the unit of the place; one that is not known says nothing.
+    let unit = match dimensions.get(relative.place).and_then(|(_, entry)| entry.get("unit")).map(|unit| &unit.value) {
+        Some(Value::Text(unit)) if Unit::parse(unit).is_some() => format!("[{unit}]"),
+        _ => String::new(),
+    };
     if let Some(dimensions) = expanded.tree.get_mut("dimensions").and_then(Tree::entries_mut) {
         let (name, entry) = &mut dimensions[relative.place];
         span = name.span.clone();
@@ -153,7 +159,7 @@ fn replace(expanded: &mut Expanded, relative: &Relative) {
         let name = format!("{}{axis}", relative.name);
         let term = |term: &str| quoted(&format!("{term}{axis}"));
         let of_base = |(base, _): &(String, std::ops::Range<usize>)| match located.contains(base) {
-            true => term(base) + &turned(base, axis, at),
+            true => term(base) + &turned(base, axis, at, &unit),
             false => term(base),
         };
         let terms = relative.bases.iter().map(of_base).chain([term(&own)]);
@@ -201,13 +207,13 @@ fn text(tree: &mut Tree, name: &str, own: &str) {
 }
 
 /// The part that the rotation of a located part adds to a coordinate of a feature at this nominal place.
-fn turned(base: &str, axis: &str, [x, y]: [f64; 2]) -> String {
+fn turned(base: &str, axis: &str, [x, y]: [f64; 2], unit: &str) -> String {
     let rotation = quoted(&format!("{base}_rot"));
     // Along x a rotation moves a feature by -y, along y by x.
     let lever = if axis == "_x" { -y } else { x };
     match lever {
         0.0 => String::new(),
-        lever if lever < 0.0 => format!(" - {rotation}*{:?}", -lever),
-        lever => format!(" + {rotation}*{lever:?}"),
+        lever if lever < 0.0 => format!(" - {rotation}*{:?}{unit}", -lever),
+        lever => format!(" + {rotation}*{lever:?}{unit}"),
     }
 }
