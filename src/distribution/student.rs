@@ -37,7 +37,7 @@ pub struct Student {
 #[derive(Debug, Clone, PartialEq)]
 enum Tail {
     /// With a kurtosis: Pearson's type VII.
-    Pearson(Pearson),
+    Pearson(Box<Pearson>),
     /// Without: series of the incomplete beta function.
     Series(Series),
 }
@@ -59,9 +59,9 @@ impl Student {
             return Err(DistributionError::NoSigma { degrees });
         }
         let law = if degrees > 4.0 {
-            Tail::Pearson(
+            Tail::Pearson(Box::new(
                 Pearson::with_excess(0.0, 1.0, 0.0, 6.0 / (degrees - 4.0)).map_err(DistributionError::Pearson)?,
-            )
+            ))
         } else {
             Tail::Series(Series::new(degrees))
         };

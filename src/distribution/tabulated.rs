@@ -253,8 +253,8 @@ impl Probability for Tabulated {
     fn quantile(&self, p: f64) -> f64 {
         match checked(p) {
             p if p.is_nan() => p,
-            p if p == 0.0 => self.values[0],
-            p if p == 1.0 => self.values[self.values.len() - 1],
+            0.0 => self.values[0],
+            1.0 => self.values[self.values.len() - 1],
             p => self.value_at(standard_normal::quantile(self.below + p * self.within)),
         }
     }
@@ -262,8 +262,8 @@ impl Probability for Tabulated {
     fn upper_quantile(&self, p: f64) -> f64 {
         match checked(p) {
             p if p.is_nan() => p,
-            p if p == 0.0 => self.values[self.values.len() - 1],
-            p if p == 1.0 => self.values[0],
+            0.0 => self.values[self.values.len() - 1],
+            1.0 => self.values[0],
             p => self.value_at(standard_normal::upper_quantile(self.above + p * self.within)),
         }
     }

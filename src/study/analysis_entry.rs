@@ -11,6 +11,9 @@ use super::spanned::Spanned;
 #[cfg(feature = "cli")]
 use crate::method::{ACCURACY, Options};
 
+/// Two names whose product is in the surface.
+pub(super) type Product = (Spanned<String>, Spanned<String>);
+
 /// `[analysis]`.
 #[derive(Debug, Default, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -37,7 +40,7 @@ pub(super) struct AnalysisEntry {
     pub(super) pairs: Option<Spanned<PairsEntry>>,
     /// Pairs of names of dimensions whose product a formula has, such as size and place of a bonus: every method of second order takes in
     /// their exact mixed derivative, without an evaluation. Geometric elements write their own.
-    pub(super) products: Option<Spanned<Vec<(Spanned<String>, Spanned<String>)>>>,
+    pub(super) products: Option<Spanned<Vec<Product>>>,
     /// How six-n evaluates an interaction.
     #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::stencils())))]
     pub(super) stencil: Option<Spanned<String>>,

@@ -152,7 +152,7 @@ fn curvilinear(d: f64) -> Case {
 /// With 25 degrees of freedom, so that the moments exist that rules of nine nodes take; scale 1.
 fn student() -> Case {
     // Gamma(13)/(Gamma(12.5) sqrt(25 pi)). Beyond 1e4 lies nothing that even the twentieth moment sees.
-    let density = |d: f64| 0.394_973_789_636_461_19 * (1.0 + d * d / 25.0).powf(-13.0);
+    let density = |d: f64| 0.394_973_789_636_461_2 * (1.0 + d * d / 25.0).powf(-13.0);
     let pieces = vec![Piece::new(-1e4, 0.0, move |_, d| density(d)), Piece::new(0.0, 1e4, move |d, _| density(d))];
     Case::new(Student::with_scale(0.0, 1.0, 25.0).unwrap(), pieces)
 }
