@@ -210,7 +210,7 @@ pub fn done(study: &Study, asked: &Asked, run: &Run<'_>, counted: Counted<'_>) -
             let goal = goal.zip(*cost_limit).map_or(Goal::LeastCost, |(goal, limit)| goal.within(limit));
             let task = study.allocation_task().relative_or_default(problem, basis, !recentre.is_empty()).towards(goal);
             let found = allocate_with(problem, &task, &options, run).map_err(boxed)?;
-            // A run that was stopped before the model had its say is no study yet.
+            // A run that was stopped before the model had its say is not a study yet.
             let confirmed = found.after.is_some() && found.status != Status::OutOfTime;
             let anew = confirmed.then(|| study.rewritten(&found.problem));
             let (anew, not_written) = match anew {

@@ -103,7 +103,7 @@ impl Folder {
             Err(refusal) => return refusal,
         };
         let Ok(text) = std::fs::read_to_string(&path) else {
-            return Answer::refused(404, "there is no such study, or it is no text");
+            return Answer::refused(404, "there is no such study, or it is not text");
         };
         let known = hash(text.as_bytes());
         let name = query.get("path").unwrap_or_default();

@@ -18,7 +18,7 @@ const SEEN: f64 = 0.01;
 const SHIFTS: usize = 12;
 /// A slope this near to 1 or -1 is that of a link of a chain.
 const STRAIGHT: f64 = 0.05;
-/// A chain of more links is no picture.
+/// A chain of more links is too long for a picture.
 const LINKS: usize = 24;
 /// The share from which a tail is drawn, and the least to which.
 const FROM: f64 = 0.1;
@@ -241,7 +241,7 @@ fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Optio
     })
 }
 
-/// The links as arrows from one to the next; None where the characteristic is no sum and difference of its dimensions.
+/// The links as arrows from one to the next; None where the characteristic is not a sum and difference of its dimensions.
 fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option<String> {
     let nominal = one.nominal?;
     let straight = |row: &&Sensitivity| row.first.is_some_and(|first| first != 0.0);
