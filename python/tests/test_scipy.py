@@ -96,7 +96,7 @@ def test_other_laws_are_tables(name):
     assert found.sigma == pytest.approx(math.sqrt(variance), rel=1e-5)
     assert found.skewness == pytest.approx(skewness, abs=1e-4)
     assert found.kurtosis == pytest.approx(excess + 3, abs=1e-3)
-    assert found["yield"].value == pytest.approx(1 - 1e-3, abs=1e-7)
+    assert found.yield_ == pytest.approx(1 - 1e-3, abs=1e-7)
 
 
 def test_a_table_is_its_quantiles():
@@ -108,7 +108,7 @@ def test_a_table_is_its_quantiles():
     )
     # P(x < e) is P(z < 1) of a normal distribution between -3 and 3: 0.84134 less 0.00135 by 0.9973.
     share = (ss.norm.cdf(1) - ss.norm.cdf(-3)) / (ss.norm.cdf(3) - ss.norm.cdf(-3))
-    assert study.analyze("full")["y"]["yield"].value == pytest.approx(share, abs=1e-12)
+    assert study.analyze("full")["y"].yield_ == pytest.approx(share, abs=1e-12)
 
 
 def test_laws_that_are_none():

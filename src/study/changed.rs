@@ -33,7 +33,8 @@ impl Study {
         let read = || -> Result<(_, _), Faults> {
             let keys = Tree::of_json(keys)?;
             let mut entry: AnalysisEntry = de::read(&keys).map_err(below_analysis)?;
-            let own = self.tree().map(|tree| de::read::<StudyFile>(&tree)).transpose()?;
+            // Written out: lines of geometric elements are not yet plain dimensions in the text itself.
+            let own = Tree::of_toml(&self.expanded).ok().map(|tree| de::read::<StudyFile>(&tree)).transpose()?;
             if let Some(own) = own {
                 entry = merged(entry, own.analysis);
             }
