@@ -86,8 +86,8 @@ pub struct Composite {
 struct Inner {
     function: Arc<dyn AssemblyFunction>,
     inputs: Vec<Source>,
-    /// What each of its inputs is multiplied by; empty where none is.
-    factors: Vec<f64>,
+    /// What each of its inputs is multiplied by, and each of its outputs; empty where none is.
+    factors: [Vec<f64>; 2],
     /// Where a costly model that formulas drive was sent for which point, by the bits of what it was sent.
     sent: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
 }
@@ -139,7 +139,7 @@ impl Composite {
         formulas.extend(conditions.iter().flat_map(Conditions::formulas));
         let names: Vec<String> = formulas.iter().map(|(name, _)| name.clone()).collect();
         let model =
-            model.map(|(function, inputs)| Inner { function, inputs, factors: Vec::new(), sent: Mutex::default() });
+            model.map(|(function, inputs)| Inner { function, inputs, factors: Default::default(), sent: Mutex::default() });
         let offers = model.as_ref().map_or(&[][..], |model| &model.function.signature().outputs);
         let given = inputs.len() + offers.len();
         let unknowns = conditions.as_ref().map_or(&[][..], Conditions::unknowns);
@@ -206,9 +206,9 @@ impl Composite {
         self.formulas.turning().into_iter().filter(|&(variable, _)| variable < dimensions).collect()
     }
 
-    /// With every input of the model multiplied by a factor; none where there are no factors.
+    /// With every input of the model multiplied by a factor, and every output; none where there are no factors.
     #[cfg(feature = "study")]
-    pub(crate) fn with_factors(mut self, factors: Vec<f64>) -> Self {
+    pub(crate) fn with_factors(mut self, factors: [Vec<f64>; 2]) -> Self {
         self.model.iter_mut().for_each(|model| model.factors.clone_from(&factors));
         self
     }

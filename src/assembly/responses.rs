@@ -221,6 +221,14 @@ impl Responses {
         self.errors.iter().map(|(&(row, output), error)| (row, output, error))
     }
 
+    /// Multiplies an output, and its slopes, by a factor.
+    pub(crate) fn multiply(&mut self, output: usize, factor: f64) {
+        let start = output * self.rows;
+        self.values[start..start + self.rows].iter_mut().for_each(|value| *value *= factor);
+        let of_output = self.gradients.iter_mut().filter(|((_, of), _)| *of == output);
+        of_output.for_each(|(_, gradient)| gradient.iter_mut().for_each(|slope| *slope *= factor));
+    }
+
     /// Takes over the answers of the rows from `first` on.
     pub(crate) fn adopt(&mut self, first: usize, block: Responses) {
         for output in 0..self.outputs {

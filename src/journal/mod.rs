@@ -82,7 +82,7 @@ impl Journaled {
         let files = files.iter().map(hash).collect::<Result<Vec<String>, EvaluationError>>()?;
         let constants: serde_json::Map<String, serde_json::Value> =
             self.process.greeting().constants.iter().map(|(name, value)| (name.clone(), (*value).into())).collect();
-        let identity = serde_json::json!({
+        let mut identity = serde_json::json!({
             "command": argv,
             "adapter": adapter.name,
             "version": adapter.version,
@@ -91,6 +91,10 @@ impl Journaled {
             "dimensions": inputs.iter().map(|input| &input.name).collect::<Vec<_>>(),
             "units": inputs.iter().map(|input| &input.unit).collect::<Vec<_>>(),
         });
+        // The same point is sent as other numbers then.
+        if self.process.converts() {
+            identity["units converted"] = true.into();
+        }
         Ok(identity.to_string())
     }
 

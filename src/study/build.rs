@@ -403,7 +403,7 @@ fn compose(
             Some((function, drive::of_built_in(model, dimensions, &constants, written)))
         }
         Some(ModelOf::Program(program)) => Some(sent_to(&|signature, greeting| {
-            process(program, signature, greeting, (source, units::held(file))).map_err(nowhere)
+            process(program, signature, greeting, (source, units::foreign(file))).map_err(nowhere)
         })?),
         Some(ModelOf::Host(host)) => Some(sent_to(&|signature, greeting| Ok(host.function(signature, greeting)))?),
     };

@@ -98,10 +98,19 @@ pub(super) fn of_program(
     let nominal = sources.iter().map(value).collect::<Result<Vec<f64>, Fault>>()?;
     let inputs = names.get_ref().iter().zip(&sources).map(|(name, source)| match *source {
         assembly::Source::Dimension(dimension) => input(&dimensions[dimension]),
-        _ => Input { name: name.get_ref().clone(), unit: None },
+        assembly::Source::Formula(formula) => {
+            Input { name: name.get_ref().clone(), unit: written.formulas[formula].unit.map(str::to_owned) }
+        }
+        assembly::Source::Fixed(_) => Input { name: name.get_ref().clone(), unit: of_constant(file, name.get_ref()) },
     });
     let greeting = Greeting { nominal, constants: Vec::new(), optional: Vec::new() };
     Ok(ToProgram { inputs: inputs.collect(), sources, greeting })
+}
+
+/// The unit of a constant.
+fn of_constant(file: &StudyFile, name: &str) -> Option<String> {
+    let constant = file.constants.0.iter().find(|(constant, _)| constant.get_ref() == name);
+    constant.and_then(|(_, one)| one.get_ref().unit.clone())
 }
 
 /// The names of `[model] inputs`, where the model is a program that has them.

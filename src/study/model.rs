@@ -11,7 +11,7 @@ use super::source::Source;
 use super::spanned::Spanned;
 #[cfg(feature = "process")]
 use crate::assembly::process::Process;
-use crate::assembly::process::{Greeting, Settings};
+use crate::assembly::process::{ForeignUnits, Greeting, Settings};
 use crate::assembly::{AssemblyFunction, GivenAnswers, Input, Output, Signature};
 use crate::models::Model;
 use crate::names::UnknownName;
@@ -161,7 +161,7 @@ pub(super) fn process(
     program: &Program,
     signature: Signature,
     greeting: Greeting,
-    (source, held): (&Source, bool),
+    (source, held): (&Source, ForeignUnits),
 ) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
     if let Some(table) = &source.externals.points {
         let given = GivenAnswers::new(signature, Arc::clone(table));
@@ -176,7 +176,7 @@ fn started(
     program: &Program,
     signature: Signature,
     greeting: Greeting,
-    (source, held): (&Source, bool),
+    (source, held): (&Source, ForeignUnits),
 ) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
     let settings = Settings { units: held, ..program.settings.clone() };
     let process = Process::new(signature, greeting, settings);
@@ -195,7 +195,7 @@ fn started(
     program: &Program,
     _: Signature,
     _: Greeting,
-    _: (&Source, bool),
+    _: (&Source, ForeignUnits),
 ) -> Result<Arc<dyn AssemblyFunction>, StudyFault> {
     let _ = &program.files;
     Err(StudyFault::NoPrograms { program: program.settings.argv.first().cloned().unwrap_or_default() })

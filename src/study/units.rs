@@ -10,8 +10,9 @@ use super::words::UNIT_MODES;
 use super::written::{Named, Written};
 use crate::assembly::Composite;
 use crate::assembly::formula::{Role, UnitFinding};
+use crate::assembly::process::ForeignUnits;
 use crate::dimension::Dimension;
-use crate::models::Model;
+use crate::models::{Model, ModelOutput};
 use crate::names::nearest;
 use crate::unit::{SAME, Unit};
 use crate::warning::Warning;
@@ -34,8 +35,8 @@ pub(super) struct Units {
     roles: Vec<Role>,
     /// Where they stand: key and text, and where the text stands in the file.
     places: Vec<Place>,
-    /// What the model's inputs are multiplied by.
-    factors: Vec<f64>,
+    /// What the model's inputs are multiplied by, and its outputs.
+    factors: [Vec<f64>; 2],
     source: Source,
 }
 
@@ -66,7 +67,12 @@ impl Units {
             of_unknowns.filter_map(|(name, one)| Some((name.get_ref().as_str(), one.get_ref().unit.as_deref()?))),
         );
         match model {
-            Some(model) => texts.extend(model.outputs.iter().map(|output| (output.name, output.unit))),
+            // Where it is converted, its name means the characteristic everywhere.
+            Some(model) => texts.extend(model.outputs.iter().map(|output| {
+                let asked = file.characteristics.0.iter().find(|(name, _)| name.get_ref() == output.name);
+                let asked = asked.and_then(|(_, one)| one.get_ref().unit.as_deref()).filter(|_| mode == Mode::Convert);
+                (output.name, asked.unwrap_or(output.unit))
+            })),
             // A program answers in the unit of the characteristic.
             None => texts.extend(file.characteristics.0.iter().filter_map(|(name, one)| {
                 let one = one.get_ref();
@@ -89,7 +95,7 @@ impl Units {
             unknown,
             roles: roles(model, written),
             places: places(&written.formulas, written.implicit.as_ref()),
-            factors: Vec::new(),
+            factors: Default::default(),
             source: source.clone(),
         };
         if let Some(model) = model.filter(|_| mode != Mode::Labels) {
@@ -141,19 +147,21 @@ impl Units {
         if quote.len() == 3 { body.strip_prefix('\n').unwrap_or(body).to_owned() } else { body.to_owned() }
     }
 
-    /// What the inputs of a built-in model are multiplied by; other units than its own are converted, or faults.
-    fn border(&self, file: &StudyFile, model: &Model) -> Result<Vec<f64>, Faults> {
+    /// What the inputs and the outputs of a built-in model are multiplied by; other units than its own are converted, or faults.
+    fn border(&self, file: &StudyFile, model: &Model) -> Result<[Vec<f64>; 2], Faults> {
         let mut faults = Faults::default();
         let mut differs = |name: &str, given: &str, own: &str, of: &str, span: std::ops::Range<usize>, key: String| {
             let (Some(unit), Some(models)) = (Unit::parse(given), Unit::parse(own)) else { return 1.0 };
             let factor = unit.scale / models.scale;
             let same = (factor - 1.0).abs() <= SAME;
-            if unit.same_kind(&models) && (same || self.mode == Mode::Convert && of == "input") {
+            // Of two temperature scales with other zeros there is a difference in place of a factor.
+            let kind = unit.same_kind(&models) && unit.point == models.point;
+            if kind && (same || self.mode == Mode::Convert && !unit.point) {
                 return if same { 1.0 } else { factor };
             }
-            let by = if unit.same_kind(&models) { format!(": factor {factor}") } else { String::new() };
+            let by = if kind { format!(": factor {factor}") } else { String::new() };
             let what = format!("the {of} `{name}` of the model {} is in {own}, unit says {given}{by}", model.name);
-            let remedy = match unit.same_kind(&models) && of == "input" {
+            let remedy = match kind && !unit.point {
                 true => format!("write it in {own}, or units = \"convert\" at the top"),
                 false => format!("write it in {own}"),
             };
@@ -175,18 +183,23 @@ impl Units {
                 differs(input.name, unit, input.unit, "input", span, format!("{section}.{}.unit", input.name))
             }));
         }
-        for (name, entry) in &file.characteristics.0 {
-            let output = model.outputs.iter().find(|output| output.name == name.get_ref());
-            if let (Some(output), Some(unit), None) = (output, &entry.get_ref().unit, &entry.get_ref().formula) {
+        let asked = |output: &ModelOutput| {
+            let (name, entry) = file.characteristics.0.iter().find(|(name, _)| name.get_ref() == output.name)?;
+            let entry = entry.get_ref();
+            Some((name, entry.unit.as_deref().filter(|_| entry.formula.is_none())?))
+        };
+        let outputs = model.outputs.iter().map(|output| {
+            asked(output).map_or(1.0, |(name, unit)| {
                 let key = format!("characteristics.{}.unit", name.get_ref());
-                differs(output.name, unit, output.unit, "output", name.span(), key);
-            }
-        }
-        faults.none().map(|()| factors)
+                differs(output.name, unit, output.unit, "output", name.span(), key).recip()
+            })
+        });
+        let outputs = outputs.collect();
+        faults.none().map(|()| [factors, outputs])
     }
 
-    /// What the model's inputs are multiplied by.
-    pub(super) fn factors(&self) -> Vec<f64> {
+    /// What the model's inputs are multiplied by, and its outputs.
+    pub(super) fn factors(&self) -> [Vec<f64>; 2] {
         self.factors.clone()
     }
 
@@ -216,9 +229,13 @@ impl Units {
     }
 }
 
-/// Whether the units of an external program are held against those of the study; a wrong mode is said elsewhere.
-pub(super) fn held(file: &StudyFile) -> bool {
-    mode(file).is_ok_and(|mode| mode != Mode::Labels)
+/// What becomes of an external program's units that are not the study's; a wrong mode is said elsewhere.
+pub(super) fn foreign(file: &StudyFile) -> ForeignUnits {
+    match mode(file) {
+        Ok(Mode::Warn | Mode::Check) => ForeignUnits::Refused,
+        Ok(Mode::Convert) => ForeignUnits::Converted,
+        Ok(Mode::Labels) | Err(_) => ForeignUnits::Ignored,
+    }
 }
 
 fn mode(file: &StudyFile) -> Result<Mode, Fault> {

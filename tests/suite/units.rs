@@ -220,14 +220,19 @@ fn the_units_of_a_program_are_held_against_the_study() {
         let output = super::cli::sensitol(&arguments).current_dir(folder.path()).output().unwrap();
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };
-    for mode in ["warn", "check", "convert"] {
+    for mode in ["warn", "check"] {
         let (code, error) = run(r#"{"a": "in"}"#, mode, "mm");
         assert_eq!(code, Some(2), "{error}");
         assert!(error.contains("the model has `a` in in, and the study in mm (factor 0.03937"), "{error}");
-        assert!(error.contains("write `a` in in, or units = \"labels\""), "{error}");
+        assert!(error.contains("write `a` in in, or units = \"convert\""), "{error}");
     }
-    let (code, error) = run(r#"{"y": "N"}"#, "warn", "mm");
-    assert!(code == Some(2) && error.contains("they measure different things; write `y` in N"), "{error}");
+    for mode in ["warn", "convert"] {
+        let (code, error) = run(r#"{"y": "N"}"#, mode, "mm");
+        assert!(code == Some(2) && error.contains("they measure different things; write `y` in N"), "{error}");
+        // Another zero is no factor.
+        let (code, error) = run(r#"{"a": "K"}"#, mode, "degC");
+        assert!(code == Some(2) && error.contains("write `a` in K"), "{error}");
+    }
     // The same unit, another spelling of one; no unit that is known; nothing that is a unit at all.
     for units in
         [r#"{"a": "mm", "y": "mm"}"#, r#"{"a": "furlong"}"#, r#"{"b": "in"}"#, "{}", "None", "[1, 2]", r#"{"a": 3}"#]
@@ -237,6 +242,89 @@ fn the_units_of_a_program_are_held_against_the_study() {
     }
     assert_eq!(run(r#"{"a": "m/s^2"}"#, "check", "m/s²").0, Some(0));
     assert_eq!(run(r#"{"a": "in"}"#, "labels", "mm").0, Some(0));
+}
+
+/// A program in inches and radians, with derivatives: the height of an arm of length `arm` that is tilted by `tilt`, on a shim.
+const IMPERIAL: &str = r#"
+import json, math, sys
+for line in sys.stdin:
+    told = json.loads(line)
+    if "id" not in told:
+        units = {"arm": "in", "shim": "in", "tilt": "rad", "height": "in"}
+        print(json.dumps({"ready": True, "units": units, "gradients": True}), flush=True)
+        names = told["dimensions"]
+    else:
+        x = dict(zip(names, told["x"]))
+        y = x["arm"] * math.sin(x["tilt"]) + x["shim"]
+        slopes = {"arm": math.sin(x["tilt"]), "shim": 1.0, "tilt": x["arm"] * math.cos(x["tilt"])}
+        print(json.dumps({"id": told["id"], "y": [y], "dy": [[slopes[name] for name in names]]}), flush=True)
+"#;
+
+/// The same study three times: of a program in other units, of a formula in the study's units, and of the program with numbers as they
+/// are, which must not find the answers of the first in the journal.
+#[test]
+fn a_program_in_other_units_is_converted() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("height.py"), IMPERIAL).unwrap();
+    let dimensions = "[dimensions]\narm = { nominal = 80, tolerance = 0.3, unit = \"mm\" }\n\
+                      shim = { nominal = 4, tolerance = 0.1, unit = \"mm\" }\ntilt = { nominal = 30, tolerance = 0.5, unit = \"deg\" }\n";
+    let program = "[model]\ncommand = [\"python3\", \"height.py\"]\n[characteristics]\nheight = { unit = \"mm\" }\n";
+    let run = |name: &str, mode: &str, rest: &str, method: &str| {
+        let text = format!("units = \"{mode}\"\n{dimensions}{rest}");
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let arguments = ["analyze", name, "--method", method, "--verify", "0", "--json", "-q"];
+        let output = super::cli::sensitol(&arguments).current_dir(folder.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    let formula = "[characteristics]\nheight = { formula = \"arm*sin(tilt) + shim\", unit = \"mm\" }\n";
+    for method in ["full", "second-order"] {
+        let [found, known] = [
+            run("study.toml", "convert", program, method),
+            run("formula.toml", "convert", formula, method),
+        ];
+        for key in ["nominal", "mean", "sigma"] {
+            let of = |report: &serde_json::Value| report["characteristics"][0][key].as_f64().unwrap();
+            // Second differences of the program lose half of the digits; the formula's are exact.
+            relative(of(&found), of(&known), if key == "nominal" { 1e-14 } else { 1e-6 });
+        }
+    }
+    let raw = run("study.toml", "labels", program, "full");
+    let nominal = raw["characteristics"][0]["nominal"].as_f64().unwrap();
+    relative(nominal, 80.0 * 30.0_f64.sin() + 4.0, 1e-14);
+}
+
+/// An output of a built-in model in another unit: the characteristic, and every formula that uses its name, have the unit asked for.
+#[test]
+fn outputs_of_built_in_models_are_converted() {
+    let study = |mode: &str, unit: &str, half: &str| {
+        format!(
+            "units = \"{mode}\"\n[model]\nbuiltin = \"engine-balance\"\n[dimensions]\nR = {{ tolerance = 0.00004, unit = \"m\" }}\n\
+             phi1 = {{ tolerance = 0.00872, unit = \"rad\" }}\n[characteristics]\nF = {{ unit = \"{unit}\" }}\n\
+             half = {{ formula = \"F/2\", unit = \"{half}\" }}\n"
+        )
+    };
+    let analysed = |text: &str| {
+        let analysis = analysed(text, Method::SecondOrder);
+        [0, 1].map(|index| {
+            let one = &analysis.characteristics[index];
+            let moments = one.moments.unwrap();
+            [one.nominal.unwrap(), moments.mean(), moments.sigma(), one.sensitivities[0].first.unwrap()]
+        })
+    };
+    let own = analysed(&study("check", "N", "N"));
+    for (unit, factor) in [("kN", 1e-3), ("lbf", 1.0 / 4.4482216152605)] {
+        let found = analysed(&study("convert", unit, "N"));
+        for figure in 0..4 {
+            // A product more than in N; differences of the model lose some digits of its slopes.
+            relative(found[0][figure], own[0][figure] * factor, 1e-9);
+            relative(found[1][figure], own[1][figure], 1e-9);
+        }
+    }
+    let refused = faults(&[&study("check", "kN", "N")]);
+    assert!(refused.contains("units = \"convert\" at the top"), "{refused}");
+    let refused = faults(&[&study("convert", "m", "N")]);
+    assert!(refused.contains("the output `F` of the model engine-balance is in N, unit says m"), "{refused}");
 }
 
 /// Dimensions in the units of a case, and a characteristic of this formula and unit.

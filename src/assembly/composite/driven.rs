@@ -76,7 +76,7 @@ impl Composite {
             }
         }
         let mut columns = Points::of_values(rows, model.inputs.len(), columns);
-        for (input, factor) in model.factors.iter().enumerate().filter(|(_, factor)| **factor != 1.0) {
+        for (input, factor) in model.factors[0].iter().enumerate().filter(|(_, factor)| **factor != 1.0) {
             columns.column_mut(input).iter_mut().for_each(|value| *value *= factor);
         }
         Sent { columns, errors }
@@ -170,8 +170,20 @@ impl Composite {
         Some((model.function.signature().inputs.clone(), Points::from_rows(&kept)))
     }
 
-    /// Asks the model for these of its outputs.
+    /// Asks the model for these of its outputs, in the units of the study.
     pub(super) fn ask_model(&self, points: &Points, run: &Run<'_>, needed: &[usize]) -> Responses {
+        let mut answers = self.ask_as_it_is(points, run, needed);
+        let factors = self.model.as_ref().map_or(&[][..], |model| &model.factors[1]);
+        for (column, output) in needed.iter().enumerate() {
+            if let Some(factor) = factors.get(*output).filter(|factor| **factor != 1.0) {
+                answers.multiply(column, *factor);
+            }
+        }
+        answers
+    }
+
+    /// Asks the model for these of its outputs, in its own units.
+    fn ask_as_it_is(&self, points: &Points, run: &Run<'_>, needed: &[usize]) -> Responses {
         let rows = points.rows();
         let mut answers = Responses::open(rows, needed.len());
         let Some(model) = self.model.as_ref().filter(|_| !needed.is_empty()) else { return answers };
@@ -239,7 +251,7 @@ impl Composite {
                 let slopes = self.slopes_of(&driving, points, row);
                 let mut passed = vec![0.0; self.signature.inputs.len()];
                 for (input, (source, slope)) in model.inputs.iter().zip(gradient).enumerate() {
-                    let slope = slope * model.factors.get(input).unwrap_or(&1.0);
+                    let slope = slope * model.factors[0].get(input).unwrap_or(&1.0);
                     match *source {
                         Source::Dimension(dimension) => passed[dimension] += slope,
                         Source::Fixed(_) => {}

@@ -17,6 +17,8 @@ mod account;
 #[cfg(feature = "process")]
 mod batch;
 #[cfg(feature = "process")]
+mod border;
+#[cfg(feature = "process")]
 mod child;
 mod error;
 #[cfg(feature = "process")]
@@ -41,4 +43,5 @@ pub use error::{Exit, ProcessError, ProcessFault, Quoted, StderrTail};
 pub use program::Process;
 #[cfg(feature = "journal")]
 pub(crate) use program::{Kept, Recheck};
+pub(crate) use settings::ForeignUnits;
 pub use settings::{Greeting, Listener, Settings};

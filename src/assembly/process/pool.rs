@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::account::EvaluatorAccount;
 use super::batch::Batch;
+use super::border::Border;
 use super::child::{Child, Event, What};
 use super::error::{ProcessError, ProcessFault, Quoted, StderrTail};
 use super::protocol::{Hello, Line, VERSION, request};
@@ -43,6 +44,8 @@ pub(super) struct Pool {
     unused: u32,
     useless: Option<ProcessError>,
     adapter: Option<ModelInfo>,
+    /// Whether numbers are converted on their way to the program and back.
+    pub(super) converts: bool,
     pub(super) reference: Reference,
     pub(super) account: EvaluatorAccount,
     /// Answers so far, of which some are replayed.
@@ -95,6 +98,7 @@ impl Pool {
             unused: 0,
             useless: None,
             adapter: None,
+            converts: false,
             reference: Reference::default(),
             account: EvaluatorAccount::default(),
             answers: Answers::default(),
@@ -227,7 +231,8 @@ impl Pool {
                 // One for each place that is known, where the program has several.
                 let places: Vec<Option<String>> = worker.places.iter().cloned().map(Some).collect();
                 for place in if places.is_empty() { vec![None] } else { places } {
-                    request(&mut lines, self.next_point, self.hello.nominal.iter().copied(), place.as_deref());
+                    let nominal = worker.border.out(self.hello.nominal.iter().copied());
+                    request(&mut lines, self.next_point, nominal, place.as_deref());
                     worker.sent(self.next_point, SENTINEL);
                     self.next_point += 1;
                     batch.sent += 1;
@@ -244,7 +249,7 @@ impl Pool {
             batch.sends(row);
             let columns = batch.points.dimensions();
             let point = (0..columns).map(|column| batch.points.column(column)[row]);
-            request(&mut lines, self.next_point, point, None);
+            request(&mut lines, self.next_point, worker.border.out(point), None);
             self.next_point += 1;
         };
         if worker.under_way.is_empty()
@@ -377,10 +382,14 @@ impl Pool {
                     message: format!("it speaks version {version} of the protocol, and this is version {VERSION}"),
                 },
                 line @ Line { ready: Some(true), .. } => {
-                    if let Some(fault) = self.hello.foreign_unit(&line.units).filter(|_| self.settings.units) {
-                        let stderr = child.kill().1;
-                        return self.lost_start(index, ProcessError { fault, stderr });
-                    }
+                    let border = match Border::of(&self.hello, &line.units, self.settings.units) {
+                        Ok(border) => border,
+                        Err(fault) => {
+                            let stderr = child.kill().1;
+                            return self.lost_start(index, ProcessError { fault, stderr });
+                        }
+                    };
+                    self.converts = !border.is_open();
                     let (name, version) = (line.name.clone(), line.version.clone());
                     let version = version.map(|version| match version {
                         serde_json::Value::String(text) => text,
@@ -394,7 +403,7 @@ impl Pool {
                         self.account.counts.lost_s += lost.elapsed().as_secs_f64();
                     }
                     let State::Starting(child, _) = std::mem::take(&mut slot.state) else { return Ok(()) };
-                    slot.state = State::Ready(Box::new(Worker::new(child, &line, self.next_point)));
+                    slot.state = State::Ready(Box::new(Worker::new(child, &line, border, self.next_point)));
                     return Ok(());
                 }
                 other => ProcessFault::NotReady { line: other.quoted.unwrap_or_else(|| Quoted(String::new())) },
@@ -430,10 +439,11 @@ impl Pool {
     fn answer(&mut self, index: usize, line: Result<Line, ProcessFault>, batch: &mut Option<Batch<'_>>) {
         let slot = &mut self.slots[index];
         let State::Ready(worker) = &mut slot.state else { return };
-        let line = match line {
+        let mut line = match line {
             Ok(line) => line,
             Err(fault) => return self.fail(index, fault, batch),
         };
+        worker.border.back(&mut line);
         if let Some(note) = &line.note
             && let Some(listener) = &self.settings.listener
         {

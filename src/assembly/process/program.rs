@@ -40,6 +40,12 @@ impl Process {
         self.with_pool(outputs, |pool| pool.prepare().cloned())
     }
 
+    /// Whether numbers are converted on their way to the program and back; known once it has started.
+    pub(crate) fn converts(&self) -> bool {
+        let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.as_ref().is_some_and(|pool| pool.converts)
+    }
+
     /// What became of its processes so far: nothing where none was started.
     pub(crate) fn account(&self) -> EvaluatorAccount {
         let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::error::{ProcessFault, Quoted};
-use crate::unit::Unit;
 
 /// The version that is spoken here.
 pub(super) const VERSION: u32 = 1;
@@ -129,26 +128,6 @@ impl Line {
 }
 
 impl Hello {
-    /// The first unit of the child that is not the study's: another kind, or another size. Units that are not known on either side
-    /// say nothing.
-    pub(super) fn foreign_unit(&self, child: &serde_json::Value) -> Option<ProcessFault> {
-        /// Factors to SI that are the same but for rounding.
-        const SAME: f64 = 1e-9;
-        let inputs = self.dimensions.iter().zip(&self.units);
-        let all = inputs.chain(self.characteristics.iter().zip(&self.asked_units));
-        all.filter_map(|(name, unit)| Some((name, unit.as_deref()?, child.get(name)?.as_str()?))).find_map(
-            |(name, study, own)| {
-                let (given, model) = (Unit::parse(study)?, Unit::parse(own)?);
-                let kind = given.same_kind(&model);
-                let factor = given.scale / model.scale;
-                let same = kind && (factor - 1.0).abs() <= SAME;
-                let factor = kind.then_some(factor);
-                let [name, study, own] = [name, study, own].map(str::to_owned);
-                (!same).then_some(ProcessFault::ForeignUnit { name, study, own, factor })
-            },
-        )
-    }
-
     pub(super) fn line(&self) -> Vec<u8> {
         let mut line = serde_json::to_vec(self).expect("names and numbers are JSON");
         line.push(b'\n');

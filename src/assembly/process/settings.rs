@@ -7,6 +7,17 @@ use std::time::Duration;
 /// Hears every line that a child writes to stderr.
 pub type Listener = Arc<dyn Fn(&str) + Send + Sync>;
 
+/// What becomes of a program's units that are not the study's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ForeignUnits {
+    /// Numbers are taken as they are.
+    Ignored,
+    /// The program is not used.
+    Refused,
+    /// Numbers of the same kind are converted on their way.
+    Converted,
+}
+
 /// How a program is run.
 #[derive(Clone)]
 #[non_exhaustive]
@@ -28,8 +39,8 @@ pub struct Settings {
     /// How many answers are replayed in a fresh process, reached from the nominal point in small steps, to see whether they depend on
     /// the points before them: by default 5 %, 5 at the least, and 2 more. 0 for none; only with `sentinels`.
     pub verify: Option<usize>,
-    /// Whether units that the program says it has must be those of the study; true unless given.
-    pub(crate) units: bool,
+    /// What becomes of units that the program says it has and that are not the study's.
+    pub(crate) units: ForeignUnits,
     /// Hears every line that a child writes to stderr.
     pub listener: Option<Listener>,
 }
@@ -46,7 +57,7 @@ impl Settings {
             retries: 1,
             sentinels: true,
             verify: None,
-            units: true,
+            units: ForeignUnits::Refused,
             listener: None,
         }
     }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::time::{Duration, Instant};
 
+use super::border::Border;
 use super::child::Child;
 use super::protocol::Line;
 use super::sentinel::SENTINEL;
@@ -50,10 +51,12 @@ pub(super) struct Worker {
     pub(super) cancelled: HashMap<u64, Option<usize>>,
     /// Where it said that it evaluates.
     pub(super) places: BTreeSet<String>,
+    /// Between its units and those of the study.
+    pub(super) border: Border,
 }
 
 impl Worker {
-    pub(super) fn new(child: Child, ready: &Line, first: u64) -> Self {
+    pub(super) fn new(child: Child, ready: &Line, border: Border, first: u64) -> Self {
         Self {
             child,
             window: ready.window.unwrap_or(1).max(1),
@@ -71,6 +74,7 @@ impl Worker {
             exclusive: false,
             cancelled: HashMap::new(),
             places: BTreeSet::new(),
+            border,
         }
     }
 
