@@ -18,6 +18,7 @@ mod gradients;
 mod hidden;
 mod ladder;
 mod narrow;
+mod principal;
 mod options;
 mod order;
 mod outcome;

@@ -4,29 +4,30 @@
 //! follow from the formulas, and its surface `q(z)` stands for the model: `q(z(x))` is made of formulas, and the same method over `x` then
 //! costs no evaluation. `full` takes `m^2 + m + 1` points in the place of `N^2 + N + 1`.
 //!
+//! Where two inputs are nearly alike (a correlation beyond 0.95), the surface is fitted along the principal axes of all of them.
+//!
 //! Check points, and whatever else looks at the result, ask the model itself.
 
 use std::sync::Arc;
 
+use super::principal::{Axes, Turned};
 use super::{DerivativeSource, Method, MethodError, Options, Outcome};
 use crate::assembly::{
-    AssemblyFunction, Composite, EvaluationError, ModelInfo, Points, Request, Responses, Run, Signature,
+    AssemblyFunction, Composite, EvaluationError, Input, ModelInfo, Points, Request, Responses, Run, Signature,
 };
 use crate::characteristic::Characteristic;
 use crate::dimension::Dimension;
 use crate::distribution::{Distribution, Normal, PearsonLaw};
 use crate::problem::Problem;
-use crate::sampling::{Draws, Joint, Portion, Sampler, Summary};
+use crate::sampling::{Draws, Portion, Sampler, Summary};
 use crate::surrogate::Surrogate;
 
 /// Points at which the formulas that drive the model are evaluated, to know how its inputs vary.
 const POINTS: usize = 1 << 13;
 /// An input whose sigma is below this part of its mean does not vary.
-const STILL: f64 = 1e-12;
+pub(super) const STILL: f64 = 1e-12;
 /// A nominal value so near to the mean, in sigmas, is where the surface is centred.
 const NEAR: f64 = 0.01;
-/// A correlation above this leaves the corners of a pair where no part is.
-const ALIKE: f64 = 0.95;
 
 /// The problem over the inputs of the model.
 pub(crate) struct Narrow<'p> {
@@ -34,7 +35,9 @@ pub(crate) struct Narrow<'p> {
     /// Its characteristics are the outputs of the model that are needed.
     pub(crate) problem: Problem,
     needed: Vec<usize>,
-    /// How many inputs of the model vary, and how many dimensions.
+    /// The axes along which it is fitted, where inputs vary nearly alike.
+    axes: Option<Arc<Axes>>,
+    /// How many inputs of the model vary, or along how many axes, and how many dimensions.
     pub(crate) inputs: usize,
     pub(crate) dimensions: usize,
 }
@@ -63,18 +66,31 @@ impl<'p> Narrow<'p> {
         let sent = composite.drivers(&draws.points(Portion { replicate: 0, first: 0, rows: POINTS }))?;
         let nominal: Vec<f64> = problem.dimensions().iter().map(|dimension| dimension.nominal()).collect();
         let nominal = composite.drivers(&Points::from_rows(&[nominal]))?;
+        let axes = Axes::of(&sent, &nominal.row(0)).map(Arc::new);
+        let (names, model): (Vec<String>, Arc<dyn AssemblyFunction>) = match &axes {
+            None => (names, model),
+            Some(axes) => {
+                let names: Vec<String> = (1..=axes.directions()).map(|axis| format!("axis {axis}")).collect();
+                let turned = Turned::new(model, Arc::clone(axes), &names);
+                (names, Arc::new(turned))
+            }
+        };
+        let [sent, nominal] = [sent, nominal].map(|points| match &axes {
+            None => points,
+            Some(axes) => axes.inward(&points),
+        });
         let inputs: Vec<Dimension> = (names.iter().enumerate())
             .map(|(index, name)| input(name, nominal.column(index)[0], sent.column(index)))
             .collect::<Option<_>>()?;
         let varying = inputs.iter().filter(|input| input.sigma() > 0.0).count();
-        if varying == 0 || varying >= dimensions || too_alike(&sent) {
+        if varying == 0 || varying >= dimensions {
             return None;
         }
         let outputs = &model.signature().outputs;
         let asked: Vec<Characteristic> =
             needed.iter().map(|&output| Characteristic::new(&outputs[output].name)).collect();
         let narrow = Problem::new(inputs, Passed(model)).ok()?.asking(asked).ok()?;
-        Some(Self { composite, problem: narrow, needed, inputs: varying, dimensions })
+        Some(Self { composite, problem: narrow, needed, axes, inputs: varying, dimensions })
     }
 
     /// Runs the method over the inputs of the model, and again over the dimensions with the surface in the place of the model. None where
@@ -99,6 +115,7 @@ impl<'p> Narrow<'p> {
         let surface = Surface {
             signature: Signature { costly: false, cheap: false, ..model.signature().clone() },
             outputs: self.needed.clone(),
+            axes: self.axes.clone(),
             varying: varying.iter().map(place).collect(),
             surrogates,
         };
@@ -113,17 +130,6 @@ impl<'p> Narrow<'p> {
         outcome.asked = options.method;
         Ok(Some(outcome))
     }
-}
-
-/// Whether two inputs vary so much alike that the corners of a pair lie where no part is.
-fn too_alike(sent: &Points) -> bool {
-    let mut pairs = (0..sent.dimensions()).flat_map(|j| (j + 1..sent.dimensions()).map(move |k| (j, k)));
-    pairs.any(|(j, k)| {
-        let rows: Vec<[f64; 2]> = sent.column(j).iter().zip(sent.column(k)).map(|(a, b)| [*a, *b]).collect();
-        let joint = Joint::of(&rows);
-        let [[aa, ab], [_, bb]] = *joint.products();
-        ab.abs() > ALIKE * aa.sqrt() * bb.sqrt() && aa > 0.0 && bb > 0.0
-    })
 }
 
 /// An input of the model by its nominal value and the moments of its values.
@@ -160,6 +166,10 @@ impl AssemblyFunction for Passed {
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         self.0.evaluate(request, run, out);
     }
+
+    fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
+        self.0.sent(points)
+    }
 }
 
 /// Surfaces in the place of a model.
@@ -167,6 +177,8 @@ struct Surface {
     signature: Signature,
     /// The outputs of the model that have one.
     outputs: Vec<usize>,
+    /// The axes of its inputs along which it was fitted.
+    axes: Option<Arc<Axes>>,
     /// The inputs that vary, with mean and sigma.
     varying: Vec<(usize, f64, f64)>,
     surrogates: Vec<Surrogate>,
@@ -178,7 +190,8 @@ impl AssemblyFunction for Surface {
     }
 
     fn evaluate(&self, request: &Request<'_>, _: &Run<'_>, out: &mut Responses) {
-        let points: &Points = request.points;
+        let along = self.axes.as_ref().map(|axes| axes.inward(request.points));
+        let points: &Points = along.as_ref().unwrap_or(request.points);
         let column = |&(d, mean, sigma): &(usize, f64, f64)| -> Vec<f64> {
             points.column(d).iter().map(|x| (x - mean) / sigma).collect()
         };
