@@ -118,6 +118,16 @@ impl Evaluated {
         }
     }
 
+    /// Counts what was evaluated before for another plan, whose answers are of no use here.
+    pub(crate) fn add_spent(&mut self, spent: Self) {
+        self.evaluations += spent.evaluations;
+        self.reused += spent.reused;
+        self.retried += spent.retried;
+        self.stages += spent.stages;
+        self.in_model += spent.in_model;
+        self.non_repeatable.extend(spent.non_repeatable);
+    }
+
     /// Counts an evaluation beside the plan.
     pub(crate) fn count(&mut self, out: &Responses, run: &Run<'_>) {
         let rows = out.answered().count();

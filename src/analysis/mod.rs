@@ -62,7 +62,9 @@ use serde::Serialize;
 
 use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, enclose, search};
-use crate::method::{Basis, ClimbEnd, DerivativeSource, Method, MethodError, Narrow, Options, Outcome, climb_until};
+use crate::method::{
+    Basis, ClimbEnd, DerivativeSource, Method, MethodError, Narrow, Narrowed, Options, Outcome, climb_until,
+};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::shape::through;
@@ -247,9 +249,14 @@ fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
 /// Runs the method, `auto` until the errors of other results than sigma are what is wanted too.
 fn run_method(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Outcome, MethodError> {
     let narrow = if options.accuracies.any() { None } else { Narrow::of(problem, options) };
-    if let Some(narrow) = narrow
-        && let Some(outcome) = narrow.run(problem, options, run)?
-    {
+    if let Some(narrow) = narrow {
+        let spent = match narrow.run(problem, options, run)? {
+            Narrowed::Fitted(outcome) => return Ok(*outcome),
+            Narrowed::Spent(spent) => spent,
+        };
+        let budget = options.budget.map(|budget| budget.saturating_sub(spent.evaluations).max(1));
+        let mut outcome = options.method.procedure().run(problem, &Options { budget, ..options.clone() }, run)?;
+        outcome.evaluated.add_spent(*spent);
         return Ok(outcome);
     }
     let climbs = options.method == Method::Auto && options.derivatives != Some(DerivativeSource::Exact);

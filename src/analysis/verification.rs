@@ -114,6 +114,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
     one.verification = Some(Verification {
         kind: VerificationKind::Exact { degree },
         points: 0,
+        failed: 0,
         valid: None,
         left: Some(0.0),
         figures: [None; 4],
@@ -186,6 +187,7 @@ fn sample(
     one.verification = Some(Verification {
         kind: VerificationKind::Sample,
         points: found.points,
+        failed: 0,
         valid: Some(found.valid),
         left: open,
         figures: [found.mean, found.sigma, found.skewness, found.kurtosis],
@@ -299,6 +301,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
     one.verification = Some(Verification {
         kind: VerificationKind::Checks,
         points: checked.count(),
+        failed: found.failed,
         valid: None,
         left: found.left,
         figures: [None; 4],
@@ -318,6 +321,10 @@ pub(super) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec
     let Some(verification) = &one.verification else { return Vec::new() };
     let characteristic = || one.characteristic.name().to_owned();
     let mut warnings = Vec::new();
+    if verification.failed > 0 {
+        let (failed, points) = (verification.failed, verification.points);
+        warnings.push(Warning::DomainEdgeWithin { characteristic: characteristic(), failed, points });
+    }
     for found in verification.switches.iter().flatten().filter(|found| found.probability >= SELDOM) {
         let (switch, probability) = (found.name.clone(), found.probability);
         let change = match found.crossing {

@@ -37,6 +37,9 @@ pub struct Verification {
     pub kind: VerificationKind,
     /// Points of the model that were evaluated for it.
     pub points: usize,
+    /// Check points without a value; of a sample `valid` tells.
+    #[serde(skip)]
+    pub(crate) failed: usize,
     /// The share of the assemblies that have a value; None where points do not tell.
     #[serde(rename = "valid_share")]
     pub valid: Option<Verified>,

@@ -138,8 +138,12 @@ impl Composite {
         let named = formulas.len();
         formulas.extend(conditions.iter().flat_map(Conditions::formulas));
         let names: Vec<String> = formulas.iter().map(|(name, _)| name.clone()).collect();
-        let model =
-            model.map(|(function, inputs)| Inner { function, inputs, factors: Default::default(), sent: Mutex::default() });
+        let model = model.map(|(function, inputs)| Inner {
+            function,
+            inputs,
+            factors: Default::default(),
+            sent: Mutex::default(),
+        });
         let offers = model.as_ref().map_or(&[][..], |model| &model.function.signature().outputs);
         let given = inputs.len() + offers.len();
         let unknowns = conditions.as_ref().map_or(&[][..], Conditions::unknowns);

@@ -18,6 +18,7 @@ use crate::assembly::{
 use crate::characteristic::Characteristic;
 use crate::dimension::Dimension;
 use crate::distribution::{Distribution, Normal, PearsonLaw};
+use crate::evaluation::Evaluated;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, Summary};
 use crate::surrogate::Surrogate;
@@ -40,6 +41,13 @@ pub(crate) struct Narrow<'p> {
     /// How many inputs of the model vary, or along how many axes, and how many dimensions.
     pub(crate) inputs: usize,
     pub(crate) dimensions: usize,
+}
+
+/// What came of it.
+pub(crate) enum Narrowed {
+    Fitted(Box<Outcome>),
+    /// Nothing but evaluations.
+    Spent(Box<Evaluated>),
 }
 
 impl<'p> Narrow<'p> {
@@ -93,20 +101,20 @@ impl<'p> Narrow<'p> {
         Some(Self { composite, problem: narrow, needed, axes, inputs: varying, dimensions })
     }
 
-    /// Runs the method over the inputs of the model, and again over the dimensions with the surface in the place of the model. None where
-    /// some output of the model has no surface; its points are then spent.
-    pub(crate) fn run(
-        &self,
-        problem: &Problem,
-        options: &Options,
-        run: &Run<'_>,
-    ) -> Result<Option<Outcome>, MethodError> {
+    /// Runs the method over the inputs of the model, and again over the dimensions with the surface in the place of the model.
+    ///
+    /// Not where an output of the model has no surface, or no value at some point: the method over the dimensions then says at which of
+    /// them, and what this one has spent is counted there.
+    pub(crate) fn run(&self, problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Narrowed, MethodError> {
         let over_inputs = options.method.procedure().run(&self.problem, options, run)?;
         let varying = over_inputs.plan.varying();
         let surrogates: Option<Vec<Surrogate>> = (over_inputs.fitted.iter())
             .map(|fitted| fitted.surrogate.clone().filter(|of| of.parts.iter().all(Option::is_some)))
             .collect();
-        let Some(surrogates) = surrogates else { return Ok(None) };
+        let failed = over_inputs.evaluated.known.errors().next().is_some();
+        let Some(surrogates) = surrogates.filter(|_| !failed) else {
+            return Ok(Narrowed::Spent(Box::new(over_inputs.evaluated)));
+        };
         let place = |&d: &usize| {
             let input = &self.problem.dimensions()[d];
             (d, input.mean(), input.sigma())
@@ -128,7 +136,7 @@ impl<'p> Narrow<'p> {
         outcome.evaluated = over_inputs.evaluated;
         (outcome.evaluated.known, outcome.evaluated.gradients) = (known, gradients);
         outcome.asked = options.method;
-        Ok(Some(outcome))
+        Ok(Narrowed::Fitted(Box::new(outcome)))
     }
 }
 

@@ -50,9 +50,13 @@ impl Axes {
         Some(Self {
             centre: centre.to_vec(),
             outward: Mat::from_fn(m, order.len(), |input, k| sigma[input] * entry(input, k)),
-            inward: Mat::from_fn(order.len(), m, |k, input| {
-                if sigma[input] > 0.0 { entry(input, k) / sigma[input] } else { 0.0 }
-            }),
+            inward: Mat::from_fn(
+                order.len(),
+                m,
+                |k, input| {
+                    if sigma[input] > 0.0 { entry(input, k) / sigma[input] } else { 0.0 }
+                },
+            ),
         })
     }
 

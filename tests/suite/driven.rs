@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use assert_cmd::Command;
 use sensitol::assembly::formula::Formula;
 use sensitol::assembly::{
-    AssemblyFunction, Composite, Input, Parts, Points, Request, Responses, Run, Signature, Source,
+    AssemblyFunction, Composite, EvaluationError, Input, Parts, Points, Request, Responses, Run, Signature, Source,
 };
 use sensitol::{Analysis, Dimension, Method, Options, Problem, Study, analyze};
 
@@ -209,10 +209,11 @@ fn points_are_written_as_they_are_sent() {
     close(report["characteristics"][0]["sensitivities"][1]["first"].as_f64().unwrap(), -1.02, 1e-12, 1.0);
 }
 
-/// A costly product of its two inputs, which counts what it is asked.
+/// A costly product of its two inputs, which counts what it is asked and has no value where its first input is greater than `most`.
 struct Product {
     signature: Signature,
     asked: Arc<AtomicUsize>,
+    most: f64,
 }
 
 impl AssemblyFunction for Product {
@@ -224,7 +225,10 @@ impl AssemblyFunction for Product {
         self.asked.fetch_add(request.points.rows(), Ordering::Relaxed);
         for row in 0..request.points.rows() {
             let z = request.points.row(row);
-            out.set(row, 0, z[0] * z[1]);
+            match z[0] > self.most {
+                true => out.fail(row, 0, EvaluationError::NotFinite { value: f64::NAN }),
+                false => out.set(row, 0, z[0] * z[1]),
+            }
         }
     }
 }
@@ -232,29 +236,43 @@ impl AssemblyFunction for Product {
 /// Twelve dimensions, of which six each drive an input of a costly model.
 fn narrow(tolerance: f64) -> (Problem, Arc<AtomicUsize>) {
     let names: Vec<String> = (0..12).map(|i| format!("x{i}")).collect();
-    driving(tolerance, &names[0..6].join(" + "), &names[6..12].join(" + "))
+    driving(tolerance, f64::INFINITY, [&names[0..6].join(" + "), &names[6..12].join(" + ")])
 }
 
 /// Twelve dimensions that drive the two inputs of a costly model by these formulas; `z` is twice the product of the inputs.
-fn driving(tolerance: f64, p: &str, q: &str) -> (Problem, Arc<AtomicUsize>) {
+fn driving(tolerance: f64, most: f64, [p, q]: [&str; 2]) -> (Problem, Arc<AtomicUsize>) {
     let asked = Arc::new(AtomicUsize::new(0));
     let signature = Signature { costly: true, ..Signature::of_names(["p", "q"], ["y"]) };
-    let model = Product { signature, asked: Arc::clone(&asked) };
+    let model = Product { signature, asked: Arc::clone(&asked), most };
     let names: Vec<String> = (0..12).map(|i| format!("x{i}")).collect();
     let formula = |text: &str| Formula::parse(text).unwrap();
     let parts = Parts {
         inputs: names.iter().map(|name| Input { name: name.clone(), unit: None }).collect(),
         model: Some((Arc::new(model), vec![Source::Formula(0), Source::Formula(1)])),
-        formulas: vec![
-            ("p".into(), formula(p)),
-            ("q".into(), formula(q)),
-            ("z".into(), formula("2*y")),
-        ],
+        formulas: vec![("p".into(), formula(p)), ("q".into(), formula(q)), ("z".into(), formula("2*y"))],
         outputs: vec![("z".into(), None)],
         ..Parts::default()
     };
     let dimensions = names.iter().map(|name| Dimension::normal(name, 1.0, tolerance).unwrap());
     (Problem::new(dimensions, Composite::new(parts).unwrap()).unwrap(), asked)
+}
+
+/// Where the model has no value at a point of its inputs, the dimensions are fitted over, which says where; what was spent before counts.
+/// Where only check points have none, that is said too.
+#[test]
+fn points_without_a_value_are_said_whatever_the_side() {
+    let names: Vec<String> = (0..12).map(|i| format!("x{i}")).collect();
+    let (sum, rest) = (names[0..6].join(" + "), names[6..12].join(" + "));
+    // The sum p has sigma 0.245: its upper node lies at 6.42.
+    let codes = |analysis: &Analysis| analysis.warnings.iter().map(|warning| warning.code()).collect::<Vec<_>>();
+    let (problem, asked) = driving(0.3, 6.3, [&sum, &rest]);
+    let analysis = analyze(&problem, &Options::from(Method::Full).with_verify(0)).unwrap();
+    assert_eq!(analysis.run.evaluations as usize, asked.load(Ordering::Relaxed));
+    assert!(codes(&analysis).contains(&"failed-points"), "{:?}", analysis.warnings);
+    let (problem, _) = driving(0.3, 6.43, [&sum, &rest]);
+    let analysis = analyze(&problem, &Method::Full.into()).unwrap();
+    assert!(analysis.characteristics[0].without_value > 0);
+    assert_eq!(codes(&analysis), ["domain-edge-within"]);
 }
 
 /// Inputs that vary nearly alike, and exactly alike, are fitted along their principal axes: 7 evaluations for two axes, 3 for one, where
@@ -271,7 +289,7 @@ fn inputs_that_vary_alike_are_fitted_along_their_axes() {
         (format!("{sum} + {c}*({rest})"), 7, 2.0 * (36.0 + v + c * 36.0), 4.0 * alike, 2.0 * (12.0 + c * 6.0)),
         (format!("2*({sum}) + 0*({rest})"), 3, 4.0 * (36.0 + v), 16.0 * (144.0 * v + 2.0 * v * v), 48.0),
     ] {
-        let (problem, asked) = driving(0.3, &sum, &second);
+        let (problem, asked) = driving(0.3, f64::INFINITY, [&sum, &second]);
         let full = Options::from(Method::Full).with_verify(0);
         assert_eq!(full.cost(&problem).unwrap().evaluations as u64, evaluations, "{second}");
         let analysis = analyze(&problem, &full).unwrap();

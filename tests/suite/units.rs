@@ -279,10 +279,8 @@ fn a_program_in_other_units_is_converted() {
     };
     let formula = "[characteristics]\nheight = { formula = \"arm*sin(tilt) + shim\", unit = \"mm\" }\n";
     for method in ["full", "second-order"] {
-        let [found, known] = [
-            run("study.toml", "convert", program, method),
-            run("formula.toml", "convert", formula, method),
-        ];
+        let [found, known] =
+            [run("study.toml", "convert", program, method), run("formula.toml", "convert", formula, method)];
         for key in ["nominal", "mean", "sigma"] {
             let of = |report: &serde_json::Value| report["characteristics"][0][key].as_f64().unwrap();
             // Second differences of the program lose half of the digits; the formula's are exact.

@@ -215,7 +215,9 @@ fn by(factor: Option<f64>) -> String {
 /// How the two come together.
 fn in_own(name: &str, own: &str, factor: Option<f64>) -> String {
     match factor {
-        Some(_) => format!("write `{name}` in {own}, or units = \"convert\" at the top; \"labels\" takes numbers as they are"),
+        Some(_) => {
+            format!("write `{name}` in {own}, or units = \"convert\" at the top; \"labels\" takes numbers as they are")
+        }
         None => format!("they measure different things; write `{name}` in {own}"),
     }
 }
