@@ -159,18 +159,23 @@ impl DifferencePlan {
 
     fn add_pairs(&self, stage: &mut Builder<'_>) {
         let nodes = self.pair_nodes(stage.known);
-        let (pairs, corners) = (self.pairs(Some(stage.known)), self.layout.stencil.corners());
+        let pairs = self.pairs(Some(stage.known));
         if !stage.known.tried(&Point::Centre) {
-            stage.stage.points.reserve_exact(pairs.len() * corners.len());
+            stage.stage.points.reserve_exact(pairs.len() * self.layout.stencil.evaluations());
         }
         for (j, k) in pairs {
-            for &corner in corners {
+            for &corner in self.layout.stencil.corners(self.opposite(j, k)) {
                 // No two pairs have a point in common; half a million of them need no set.
                 if let Some(point) = self.corner(&nodes, j, k, corner).filter(|point| *point != self.nominal) {
                     stage.add_distinct(point, Purpose::Pair);
                 }
             }
         }
+    }
+
+    /// Whether one of the two is large where the other is small.
+    fn opposite(&self, j: usize, k: usize) -> bool {
+        self.inputs.correlation().is_some_and(|correlation| correlation.of(j, k) < 0.0)
     }
 
     fn corner(&self, nodes: &[PairNodes], j: usize, k: usize, (of_j, of_k): (Side, Side)) -> Option<Point> {
@@ -283,11 +288,11 @@ impl DifferencePlan {
                 [Side::Left, Side::Right].map(|side| self.axis_value(known, characteristic, j, nodes[j].on(side)?))
             })
             .collect();
-        let corners = self.layout.stencil.corners();
         let mixed = |&(j, k): &(usize, usize)| {
             if !self.joint(characteristic, j, k) {
                 return Some(Mixed { value: 0.0, complete: true });
             }
+            let corners = self.layout.stencil.corners(self.opposite(j, k));
             let (mut sum, mut weight, mut found) = (0.0, 0.0, 0);
             for &(of_j, of_k) in corners {
                 let corner =
@@ -305,7 +310,7 @@ impl DifferencePlan {
         pairs.iter().map(mixed).collect()
     }
 
-    /// For every pair its corners, where they have values, both up and both down first, then up and down, down and up: the two
+    /// For every pair its corners, where they have values, the two of the stencil of two points first: the two
     /// places in sigmas, and the difference of which [`mixed`](Self::mixed) is made.
     pub(crate) fn twists(
         &self,
@@ -316,7 +321,7 @@ impl DifferencePlan {
         let nodes = self.pair_nodes(known);
         let centre = known.value(&Point::Centre, characteristic);
         let twist = |&(j, k): &(usize, usize)| {
-            let corners = Stencil::FourPoint.corners();
+            let corners = Stencil::FourPoint.corners(self.opposite(j, k));
             std::array::from_fn(|i| {
                 let (of_j, of_k) = corners[i];
                 let at = known.value(&self.corner(&nodes, j, k, (of_j, of_k))?, characteristic)?;

@@ -53,15 +53,17 @@ impl Stencil {
         }
     }
 
-    /// The corners, as the side of the first and of the second dimension.
-    pub(super) fn corners(self) -> &'static [(Side, Side)] {
-        const ALL: [(Side, Side); 4] = [
+    /// The corners, as the side of the first and of the second dimension: two lie where dimensions with a correlation of this sign are.
+    pub(super) fn corners(self, opposite: bool) -> &'static [(Side, Side)] {
+        const ALIKE: [(Side, Side); 4] = [
             (Side::Right, Side::Right),
             (Side::Left, Side::Left),
             (Side::Right, Side::Left),
             (Side::Left, Side::Right),
         ];
-        &ALL[..self.evaluations()]
+        const OPPOSITE: [(Side, Side); 4] = [ALIKE[2], ALIKE[3], ALIKE[0], ALIKE[1]];
+        let all = if opposite { &OPPOSITE } else { &ALIKE };
+        &all[..self.evaluations()]
     }
 }
 

@@ -349,6 +349,23 @@ fn correlations_at_fault() {
     insta::assert_snapshot!(super::studies::faults(&texts.each_ref().map(String::as_str)));
 }
 
+/// Where one input is large as the other is small, the corners of a pair lie where parts are: a model that has no value where both are
+/// large is never asked there. `x y` of normals of means 5, sigma 1 and correlation r: mean 25 + r, variance 50 (1 + r) + 1 + r^2.
+#[test]
+fn corners_lie_where_parts_are() {
+    let r: f64 = -0.9;
+    let dimensions = ["x", "y"].map(|name| Dimension::normal(name, 5.0, 3.0).unwrap());
+    let product = |x: &[f64]| if x[0] + x[1] > 12.0 { f64::NAN } else { x[0] * x[1] };
+    let problem =
+        Problem::new(dimensions, Closure::scalar("z", product)).unwrap().correlated(&[pair("x", "y", r)]).unwrap();
+    let analysis = analyze(&problem, &Method::Full.into()).unwrap();
+    assert_eq!(analysis.run.failed, 0, "{:?}", analysis.warnings);
+    let moments = analysis.characteristics[0].moments.unwrap();
+    // The surface is the product; its coefficients are differences of values near 25.
+    relative(moments.mean(), 25.0 + r, 1e-12);
+    relative(moments.sigma(), (50.0 * (1.0 + r) + 1.0 + r * r).sqrt(), 1e-10);
+}
+
 /// What does not vary has no moments to share.
 #[test]
 fn a_constant_stays_constant() {
