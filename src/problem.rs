@@ -66,9 +66,6 @@ pub enum ProblemError {
         /// The state.
         state: String,
     },
-    /// A program in several states at once.
-    #[error("an external program answers for one configuration at a time: name one of them")]
-    StatesOfProgram,
 }
 
 fn list(names: &[String]) -> String {
@@ -236,7 +233,7 @@ impl Problem {
     /// With every characteristic once in each state: problems of the same dimensions with other nominal values, or other functions.
     ///
     /// # Errors
-    /// When a dimension varies otherwise about its nominal value in a state, or an external program answers.
+    /// When a dimension varies otherwise about its nominal value in a state.
     #[cfg(feature = "study")]
     pub(crate) fn in_states(&self, states: &[(&str, &Self)]) -> Result<Self, ProblemError> {
         /// What decimal numbers leave, relative to the half band and to the nominal value.
@@ -244,9 +241,6 @@ impl Problem {
         let mut all = Vec::new();
         let mut characteristics = Vec::new();
         for &(name, problem) in states {
-            if problem.function.signature().costly {
-                return Err(ProblemError::StatesOfProgram);
-            }
             let mut moved = Vec::new();
             for (own, there) in self.dimensions.iter().zip(&problem.dimensions) {
                 let by = there.nominal() - own.nominal();
@@ -262,7 +256,7 @@ impl Problem {
                 moved.push(by);
             }
             let (function, outputs) = (Arc::clone(&problem.function), problem.outputs.clone());
-            all.push(State { name: name.to_owned(), function, moved, outputs });
+            all.push(State::new(name, function, moved, outputs));
             let renamed = |one: &Characteristic| one.clone().renamed(Self::in_state(one.name(), name));
             characteristics.extend(problem.characteristics.iter().map(renamed));
         }

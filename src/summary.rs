@@ -105,6 +105,19 @@ pub struct EvaluatorSummary {
 }
 
 impl EvaluatorSummary {
+    /// With those of another model.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            starts: self.starts + other.starts,
+            crashes: self.crashes + other.crashes,
+            timeouts: self.timeouts + other.timeouts,
+            garbage: self.garbage + other.garbage,
+            retried: self.retried + other.retried,
+            lost_s: self.lost_s + other.lost_s,
+            unconfirmed: self.unconfirmed + other.unconfirmed,
+        }
+    }
+
     /// Failures of processes, of every kind.
     pub(crate) fn failures(&self) -> u64 {
         self.crashes + self.timeouts + self.garbage

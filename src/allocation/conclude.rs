@@ -206,7 +206,9 @@ impl Driver<'_> {
             self.spent.run.stopped.get_or_insert(StopReason::Budget);
             return Ok(());
         }
-        let options = SimulationOptions { samples, seed: self.options.seed, ..SimulationOptions::default() };
+        let target_joint_yield = allocation.joint_requirement.as_ref().map(|one| one.requirement.amount());
+        let seed = self.options.seed;
+        let options = SimulationOptions { samples, seed, target_joint_yield, ..SimulationOptions::default() };
         let simulation = simulate_with(problem, &options, self.run, &|_| {})?;
         self.spent.run = self.spent.run.and(&simulation.run);
         let cheap = !problem.function().signature().costly && self.options.analysis.budget.is_none();
@@ -223,6 +225,8 @@ impl Driver<'_> {
                 _ => Some(found.judge_widely(one.requirement)),
             };
         }
+        let joint = simulation.joint_requirement.map(Judged::widely);
+        allocation.joint_requirement.iter_mut().for_each(|one| one.sampled = joint);
         allocation.confirmation = Some(simulation);
         Ok(())
     }
@@ -347,7 +351,12 @@ pub(super) fn doubts(problem: &Problem, priced: &[Priced], allocation: &Allocati
         Some(Warning::ConfirmationMisses { characteristic, requirement, required, interval })
     };
     let bent = (!bent.is_empty()).then_some(Warning::CostNotConvex { dimensions: bent });
-    not_confirmed.into_iter().chain(bent).chain(allocation.requirements.iter().filter_map(refuted)).collect()
+    let together = allocation.joint_requirement.as_ref().and_then(|one| {
+        let Judged { interval: Some(interval), verdict: Verdict::Missed, .. } = one.sampled? else { return None };
+        Some(Warning::JointConfirmationMisses { required: one.requirement.amount(), interval })
+    });
+    let refuted = allocation.requirements.iter().filter_map(refuted).chain(together);
+    not_confirmed.into_iter().chain(bent).chain(refuted).collect()
 }
 
 /// Nominal values that differ.

@@ -150,6 +150,10 @@ pub struct JointKept {
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "After"))]
     pub after: Option<Judged>,
+    /// The verdict of a sample of the model there; None without one.
+    #[serde(serialize_with = "sampled")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<Sampled>"))]
+    pub sampled: Option<Judged>,
 }
 
 /// What a requirement costs: by how much the cost falls per unit by which something gives way.

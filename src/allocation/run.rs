@@ -107,7 +107,7 @@ impl Driver<'_> {
             requirements: required(&self.task.requirements, &first),
             joint_requirement: self.task.joint_target(problem, self.options).and_then(|_| {
                 let before = first.analysis.joint_requirement?;
-                Some(JointKept { requirement: before.requirement, before, after: None })
+                Some(JointKept { requirement: before.requirement, before, after: None, sampled: None })
             }),
             prices: Vec::new(),
             proof: Proof::default(),

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, PoisonError};
 
+use super::request::bits;
 use super::{AssemblyFunction, EvaluationError, ModelInfo, NoColumn, Request, Responses, Run, Signature};
 
 /// Coordinates are the same when they differ by no more than this part of themselves: a spreadsheet keeps 15 digits.
@@ -92,11 +93,6 @@ impl GivenAnswers {
         };
         self.exact.get(&bits(point)).copied().or_else(|| self.table.rows.iter().position(near))
     }
-}
-
-/// 0 has one sign only.
-fn bits(point: &[f64]) -> Vec<u64> {
-    point.iter().map(|x| (x + 0.0).to_bits()).collect()
 }
 
 impl AssemblyFunction for GivenAnswers {

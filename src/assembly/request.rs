@@ -108,3 +108,8 @@ impl<'a> Request<'a> {
         Self { points, outputs }
     }
 }
+
+/// A point to be looked up by; 0 has one sign only.
+pub(super) fn bits(point: &[f64]) -> Vec<u64> {
+    point.iter().map(|x| (x + 0.0).to_bits()).collect()
+}

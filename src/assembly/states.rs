@@ -1,10 +1,13 @@
 //! An assembly function in several states at once: each output once in every state.
 
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
+use super::process::EvaluatorAccount;
+use super::request::bits;
 use super::{
-    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, Output, Points, Request, Responses,
-    Run, Signature, Switches,
+    AssemblyFunction, Bounds, Derivatives, Directions, EvaluationError, ModelInfo, NonRepeatable, Output, Points,
+    Request, Responses, Run, Signature, Switches,
 };
 use crate::warning::Warning;
 
@@ -15,6 +18,8 @@ pub(crate) struct State {
     pub(crate) moved: Vec<f64>,
     /// The outputs that are asked of it.
     pub(crate) outputs: Vec<usize>,
+    /// Where a costly function was asked for which point, by the bits of where.
+    asked: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
 }
 
 /// The outputs of every state in turn, named `output [state]`, of the inputs of the first state.
@@ -66,6 +71,23 @@ impl States {
 }
 
 impl State {
+    pub(crate) fn new(name: &str, function: Arc<dyn AssemblyFunction>, moved: Vec<f64>, outputs: Vec<usize>) -> Self {
+        Self { name: name.to_owned(), function, moved, outputs, asked: Mutex::default() }
+    }
+
+    fn remember(&self, points: &Points, of: &Points) {
+        let mut asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+        for row in 0..points.rows() {
+            asked.entry(bits(&points.row(row))).or_insert_with(|| of.row(row));
+        }
+    }
+
+    /// The point for which this one was asked.
+    fn asked_for(&self, point: &[f64]) -> Vec<f64> {
+        let asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+        asked.get(&bits(point)).cloned().unwrap_or_else(|| point.to_vec())
+    }
+
     fn points(&self, points: &Points) -> Points {
         Points::written(points.rows(), points.dimensions(), |d, column| {
             column.iter_mut().zip(points.column(d)).for_each(|(to, from)| *to = from + self.moved[d]);
@@ -93,10 +115,22 @@ impl AssemblyFunction for States {
     }
 
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
+        let mut spent = 0;
         for (state, asked, own) in self.by_state(request.outputs) {
             let points = state.points(request.points);
             let mut answers = Responses::open(points.rows(), own.len());
+            if self.signature.costly {
+                state.remember(&points, request.points);
+            }
             state.function.evaluate(&Request::values(&points, &own), run, &mut answers);
+            spent += answers.answered().count() as i64 + answers.extra() + answers.count_reused() as i64;
+            out.reused(answers.count_reused());
+            out.retried(answers.count_retried());
+            out.note_non_repeatable(answers.non_repeatable().iter().map(|doubt| NonRepeatable {
+                suspects: doubt.suspects.iter().map(|point| state.asked_for(point)).collect(),
+                ..doubt.clone()
+            }));
+            answers.revoked().iter().for_each(|point| out.revoke(state.asked_for(point)));
             for (column, &place) in asked.iter().enumerate() {
                 for row in 0..points.rows() {
                     match (answers.value(row, column), answers.error(row, column)) {
@@ -107,6 +141,14 @@ impl AssemblyFunction for States {
                 }
             }
         }
+        // A point of a costly model is one evaluation in every state; of a cheap one they count as one.
+        if self.signature.costly {
+            out.spent(spent - out.answered().count() as i64);
+        }
+    }
+
+    fn account(&self) -> Option<EvaluatorAccount> {
+        self.states.iter().filter_map(|state| state.function.account()).reduce(EvaluatorAccount::and)
     }
 
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {

@@ -76,7 +76,8 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     }
     let incomplete = allocation.before.characteristics.iter().any(|one| one.moments.is_none());
     // Who asks for a confirmation wants to know that there is none.
-    let refuted = report.warnings.iter().any(|warning| warning.code == "confirmation-misses");
+    let refutes = ["confirmation-misses", "joint-confirmation-misses"];
+    let refuted = report.warnings.iter().any(|warning| refutes.contains(&warning.code));
     let exit = match allocation.status {
         _ if incomplete && !allocation.run.unfinished() => Exit::NoResult,
         Status::Optimal | Status::LocalOptimum | Status::AlmostOptimal if refuted => Exit::Missed,

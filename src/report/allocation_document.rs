@@ -235,9 +235,13 @@ impl AllocationReport {
         let of = |judged: &Judged| judged.value.and_then(finite).map_or("unknown".to_owned(), yielded);
         let said =
             Line::from(format!("joint yield {}: {} before, ", yielded(one.requirement.amount()), of(&one.before)));
-        section.line(match &one.after {
+        let said = match &one.after {
             Some(after) => said.and(format!("{} after, ", of(after))).and(loud(after.verdict)),
             None => said.and(loud(one.before.verdict)),
+        };
+        section.line(match &one.sampled {
+            Some(sampled) => said.and(format!("; by a sample {}, ", of(sampled))).and(loud(sampled.verdict)),
+            None => said,
         });
     }
 

@@ -233,11 +233,9 @@ impl SimulatedCharacteristic {
         Judged::of(requirement, value, interval).unless(self.unfinished)
     }
 
-    /// The same by three errors on either side in place of two: many requirements are asked of a sample, each of them often just kept.
+    /// The same by three errors on either side.
     pub(crate) fn judge_widely(&self, requirement: Requirement) -> Judged {
-        let Judged { value, interval, .. } = self.judge(requirement);
-        let wider = value.zip(interval).map(|(value, ends)| ends.map(|end| value + 1.5 * (end - value)));
-        Judged::of(requirement, value, wider)
+        self.judge(requirement).widely()
     }
 
     /// The yield if every point without a value is rejected, and if none is; None where every point has a value.

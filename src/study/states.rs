@@ -9,7 +9,7 @@ impl Study {
     /// of them, by the same tolerances. Nominal values are those of the study itself; a configuration moves them, and sets constants.
     ///
     /// # Errors
-    /// When a dimension has another tolerance in one of them, as percent of a nominal value have, or an external program answers.
+    /// When a dimension has another tolerance in one of them, as percent of a nominal value have.
     ///
     /// ```
     /// use sensitol::Study;

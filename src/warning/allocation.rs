@@ -93,6 +93,17 @@ pub(super) fn confirmation_misses(
     .advise(Advice::RequireMore)
 }
 
+pub(super) fn joint_confirmation_misses(required: &f64, [low, high]: &[f64; 2]) -> Text {
+    let percent = |share: &f64| format!("{:.4} %", 100.0 * share);
+    say(format!(
+        "A sample of the model refutes the joint yield. Its interval is {} .. {}, and {} is required.",
+        percent(low),
+        percent(high),
+        percent(required)
+    ))
+    .advise(Advice::RequireMore)
+}
+
 pub(super) fn nothing_to_write() -> Text {
     say("No tolerances were found. The file to be written stays as it was.")
 }

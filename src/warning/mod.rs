@@ -622,6 +622,13 @@ warnings! {
         /// Its interval by the sample, three errors on either side.
         interval: [f64; 2],
     };
+    /// The same of the joint yield.
+    JointConfirmationMisses = "joint-confirmation-misses" by allocation::joint_confirmation_misses {
+        /// How much of it is required.
+        required: f64,
+        /// Its interval by the sample, three errors on either side.
+        interval: [f64; 2],
+    };
     /// There are no tolerances to write into a study.
     NothingToWrite = "nothing-to-write" by allocation::nothing_to_write;
     /// The study cannot be written with the tolerances that were found.

@@ -334,3 +334,49 @@ fn a_time_that_is_too_short_is_exit_4() {
     assert_eq!(report["status"], "out-of-time");
     assert_eq!(output.status.code(), Some(4), "{output:?}");
 }
+
+/// A program that answers in two configurations at once: the tolerances are those of the formula, every configuration is asked at every point,
+/// and a second run finds all answers in the journal.
+#[test]
+fn a_program_is_allocated_in_all_configurations() {
+    const PLAY: &str = r#"
+import json, sys
+for line in sys.stdin:
+    told = json.loads(line)
+    if "id" not in told:
+        names, shrinks = told["dimensions"], told["constants"]["shrinks"]
+        print(json.dumps({"ready": True, "name": "play"}), flush=True)
+    else:
+        x = dict(zip(names, told["x"]))
+        print(json.dumps({"id": told["id"], "y": [x["bore"] - x["pin"] - shrinks]}), flush=True)
+"#;
+    let folder = tempfile::tempdir().unwrap();
+    let study = |model: &str, play: &str| {
+        format!(
+            "{model}[dimensions]\nbore = {{ nominal = 30.0, tolerance = 0.02 }}\npin = {{ nominal = 29.9, tolerance = 0.02 }}\n\
+             [constants]\nshrinks = 0.0\n[characteristics]\nplay = {{ {play}lower = 0.0, upper = 0.2, target_yield = 0.999 }}\n\
+             [costs]\nbore = {{ model = \"reciprocal\", b = 0.02, min = 0.002, max = 0.2 }}\n\
+             pin = {{ model = \"reciprocal\", b = 0.05, min = 0.002, max = 0.2 }}\n\
+             [configurations]\ncold = {{ shrinks = 0.04 }}\nhot = {{ bore = 30.02 }}\n"
+        )
+    };
+    std::fs::write(folder.path().join("play.py"), PLAY).unwrap();
+    let program = "[model]\ncommand = [\"python3\", \"play.py\"]\nverify = 0\n";
+    std::fs::write(folder.path().join("program.toml"), study(program, "")).unwrap();
+    std::fs::write(folder.path().join("formula.toml"), study("", "formula = \"bore - pin - shrinks\", ")).unwrap();
+    let run = |name: &str| {
+        let arguments =
+            "allocate --configuration all --json -q -m second-order --verify 0 --confirm 0".split(' ').chain([name]);
+        let output = sensitol(&arguments.collect::<Vec<_>>()).current_dir(folder.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    let [found, known] = ["program.toml", "formula.toml"].map(run);
+    let cost = |report: &serde_json::Value| report["cost_after"].as_f64().unwrap();
+    // Differences of a linear program and exact slopes: roundings of values near 0.1 beside steps of 0.01.
+    relative(cost(&found), cost(&known), 1e-6);
+    assert_eq!(found["evaluations"].as_u64().unwrap() % 2, 0, "every configuration is asked");
+    let again = run("program.toml");
+    assert_eq!(again["evaluations"], 0);
+    assert_eq!(cost(&again), cost(&found));
+}

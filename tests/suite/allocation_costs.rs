@@ -410,3 +410,27 @@ fn points_within_the_bands_refute_a_worst_case() {
     assert!(sampled.value.unwrap() > 1.9, "{sampled:?}");
     assert!(found.warnings.iter().any(|warning| warning.code() == "confirmation-misses"), "{:?}", found.warnings);
 }
+
+/// A jump between the places that a surface is fitted to and the tail: 3.6 % of the assemblies lie beyond 1.8 sigma, and are rejected for it.
+#[test]
+fn a_sample_refutes_a_joint_yield() {
+    let function = Closure::new(["y", "z"], |x: &[f64]| [x[0], x[1] + if x[0] > 0.018 { 100.0 } else { 0.0 }]);
+    let dimensions = ["a", "b"].map(|name| Dimension::normal(name, 0.0, 0.03).unwrap());
+    let limits = SpecLimits::new(Some(-0.1), Some(0.1)).unwrap();
+    let asked = ["y", "z"].map(|name| Characteristic::new(name).with_limits(limits));
+    let problem = Problem::new(dimensions, function).unwrap().asking(asked).unwrap();
+    // The tolerances can hardly change: sigma stays 0.01.
+    let offer = || Offer::between(Curve::reciprocal(0.0, 0.1).unwrap(), 0.0299, 0.03).unwrap();
+    let priced = [0, 1].map(|d| Priced::new(vec![d], vec![offer()]).unwrap());
+    let task = AllocationTask::new(priced.to_vec(), vec![None, None]);
+    let mut analysis = Options::from(Method::SecondOrder).with_verify(0);
+    analysis.target_joint_yield = Some(0.99);
+    let options = AllocationOptions::default().with_analysis(analysis).with_confirm(20_000);
+    let found = allocate(&problem, &task, &options).unwrap();
+    let joint = found.joint_requirement.unwrap();
+    let sampled = joint.sampled.unwrap();
+    assert_eq!(sampled.verdict, Verdict::Missed, "{joint:?}");
+    // Beyond 1.8 sigma: 0.0359. Five standard errors of 20 000 points are 0.0066.
+    assert!((sampled.value.unwrap() - (1.0 - 0.0359)).abs() < 0.0066, "{sampled:?}");
+    assert!(found.warnings.iter().any(|warning| warning.code() == "joint-confirmation-misses"), "{:?}", found.warnings);
+}

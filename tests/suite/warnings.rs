@@ -276,6 +276,7 @@ fn every() -> Vec<Warning> {
         Warning::NotConfirmed,
         Warning::CostNotConvex { dimensions: names(1) },
         Warning::CostNotConvex { dimensions: names(2) },
+        Warning::JointConfirmationMisses { required: 0.99, interval: [0.96, 0.97] },
         Warning::ConfirmationMisses {
             characteristic: characteristic(),
             requirement: "yield",

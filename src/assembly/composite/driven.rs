@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use super::{Composite, CompositeError, Inner, Origin, SolvedRows, Source};
 use crate::assembly::formula::Jet;
+use crate::assembly::request::bits;
 use crate::assembly::{
     AssemblyFunction, EvaluationError, Input, NonRepeatable, Points, Request, Responses, Run, Signature,
 };
@@ -311,9 +312,4 @@ impl Inner {
         let sent = self.sent.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         sent.get(&bits(point)).cloned().unwrap_or_else(|| point.to_vec())
     }
-}
-
-/// 0 has one sign only.
-fn bits(point: &[f64]) -> Vec<u64> {
-    point.iter().map(|x| (x + 0.0).to_bits()).collect()
 }

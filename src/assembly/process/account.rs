@@ -46,6 +46,21 @@ impl OutdatedJournal {
 }
 
 impl EvaluatorAccount {
+    /// With that of another model of the same run.
+    pub(crate) fn and(mut self, other: Self) -> Self {
+        self.counts = self.counts.and(other.counts);
+        for (name, (points, seconds)) in other.places {
+            let place = self.places.entry(name).or_default();
+            *place = (place.0 + points, place.1 + seconds);
+        }
+        Self {
+            last: other.last.or(self.last),
+            outdated: self.outdated.or(other.outdated),
+            not_kept: self.not_kept.or(other.not_kept),
+            ..self
+        }
+    }
+
     /// Whether any process failed.
     pub(crate) fn has_failures(&self) -> bool {
         self.counts.failures() > 0

@@ -1,7 +1,7 @@
 //! Runs of a study that a page asks for.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -23,8 +23,7 @@ const BEAT: Duration = Duration::from_millis(500);
 
 /// A study in keys of JSON, or its faults.
 pub(super) fn keys(folder: &Folder, query: &Query, told: &str) -> Answer {
-    let asked = Task::read(told).map_err(|error| Answer::refused(400, &error.to_string()));
-    match asked.and_then(|task| Ok((task, folder.place(query)?))) {
+    match asked(folder, query, told) {
         Ok((task, path)) => {
             let place = TaskPlace { folder: parent(&path), ..TaskPlace::default() };
             Answer::json(task.study(&place))
@@ -35,8 +34,7 @@ pub(super) fn keys(folder: &Folder, query: &Query, told: &str) -> Answer {
 
 /// Does a task, telling the page how far it is; ends it when the page has gone.
 pub(super) fn run(folder: &Folder, query: &Query, told: &str, request: Request) {
-    let asked = Task::read(told).map_err(|error| Answer::refused(400, &error.to_string()));
-    let (task, path) = match asked.and_then(|task| Ok((task, folder.place(query)?))) {
+    let (task, path) = match asked(folder, query, told) {
         Ok(asked) => asked,
         Err(refusal) => return refusal.send(request),
     };
@@ -88,6 +86,12 @@ pub(super) fn run(folder: &Folder, query: &Query, told: &str, request: Request) 
     lines.into_inner().unwrap_or_else(PoisonError::into_inner).end();
 }
 
-fn parent(path: &std::path::Path) -> PathBuf {
-    path.parent().map_or_else(|| PathBuf::from("."), std::path::Path::to_path_buf)
+/// What a page asks for, and the study's file.
+fn asked(folder: &Folder, query: &Query, told: &str) -> Result<(Task, PathBuf), Answer> {
+    let task = Task::read(told).map_err(|error| Answer::refused(400, &error.to_string()))?;
+    Ok((task, folder.place(query)?))
+}
+
+fn parent(path: &Path) -> PathBuf {
+    path.parent().map_or_else(|| PathBuf::from("."), Path::to_path_buf)
 }
