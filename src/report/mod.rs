@@ -14,6 +14,7 @@ mod figures;
 mod head;
 #[cfg(feature = "html")]
 pub mod html;
+mod labels;
 mod output_correlation;
 mod rare;
 mod requirement;
@@ -52,6 +53,7 @@ use crate::analysis::Analysis;
 use crate::correlation::Pair;
 use crate::dimension::Dimension;
 use crate::document::number::{UNKNOWN, band, significant};
+use crate::labels::Labels;
 use crate::problem::Problem;
 use crate::warning::{Advice, Warning};
 
@@ -97,6 +99,9 @@ pub struct DimensionReport {
     pub mean: f64,
     /// Its standard deviation.
     pub sigma: f64,
+    /// Texts beside its name.
+    #[serde(flatten)]
+    pub(crate) labels: Labels,
 }
 
 /// A warning.
@@ -174,6 +179,7 @@ impl DimensionReport {
             distribution: dimension.distribution().map(|distribution| distribution.name()),
             mean: dimension.mean(),
             sigma: dimension.sigma(),
+            labels: dimension.labels().clone(),
         }
     }
 

@@ -47,6 +47,7 @@ mod inspection;
 mod intervals;
 mod joint;
 mod journal;
+mod labels;
 mod law;
 mod law_quantiles;
 mod long_runs;
