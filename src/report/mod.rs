@@ -24,6 +24,8 @@ mod stack;
 mod statistics;
 mod sweep;
 mod to_document;
+#[cfg(feature = "xlsx")]
+mod xlsx;
 
 pub use crate::document::csv::csv;
 pub use crate::document::markdown::markdown;
@@ -46,6 +48,8 @@ pub use sweep::SweepReport;
 #[cfg(feature = "cli")]
 pub(crate) use sweep::SweptReport;
 pub use to_document::ToDocument;
+#[cfg(feature = "xlsx")]
+pub(crate) use xlsx::analyze_xlsx;
 
 use serde::Serialize;
 
