@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::inspection::{Inspection, InspectionError};
+use crate::labels::Labels;
 use crate::requirement::{Requirement, RequirementError};
 
 /// A key characteristic: its name, its unit, and the limits it should keep.
@@ -30,6 +31,8 @@ pub struct Characteristic {
     // Stands in results with what it does.
     #[serde(skip)]
     inspection: Option<Inspection>,
+    #[serde(flatten)]
+    labels: Labels,
 }
 
 impl Characteristic {
@@ -42,6 +45,7 @@ impl Characteristic {
             target_yield: None,
             requirement: None,
             inspection: None,
+            labels: Labels::default(),
         }
     }
 
@@ -49,6 +53,18 @@ impl Characteristic {
     #[cfg(feature = "study")]
     pub(crate) fn renamed(self, name: String) -> Self {
         Self { name, ..self }
+    }
+
+    /// With texts for reports.
+    #[cfg(feature = "study")]
+    pub(crate) fn with_labels(self, labels: Labels) -> Self {
+        Self { labels, ..self }
+    }
+
+    /// Its texts for reports.
+    #[cfg(feature = "report")]
+    pub(crate) fn labels(&self) -> &Labels {
+        &self.labels
     }
 
     /// With a unit, which is shown and never converted.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::distribution::{Distribution, DistributionError, Normal, Uniform, finite, positive};
 use crate::fits::HeldEnd;
+use crate::labels::Labels;
 
 /// Without a tolerance band, three sigma on either side take its place in RSS and worst case.
 const SIGMAS_OF_AN_UNBOUNDED_DIMENSION: f64 = 3.0;
@@ -29,6 +30,8 @@ pub struct Dimension {
     step: Option<f64>,
     zone: Option<Arc<str>>,
     held: Option<HeldEnd>,
+    #[cfg_attr(not(feature = "report"), allow(dead_code, reason = "reports show them"))]
+    labels: Labels,
 }
 
 /// Why a dimension cannot be.
@@ -120,9 +123,17 @@ impl Dimension {
         distribution: Result<Option<Arc<dyn Distribution>>, DimensionFault>,
     ) -> Result<Self, DimensionError> {
         match check(nominal, tolerance, distribution) {
-            Ok(distribution) => {
-                Ok(Self { name, unit: None, nominal, tolerance, distribution, step: None, zone: None, held: None })
-            }
+            Ok(distribution) => Ok(Self {
+                name,
+                unit: None,
+                nominal,
+                tolerance,
+                distribution,
+                step: None,
+                zone: None,
+                held: None,
+                labels: Labels::default(),
+            }),
             Err(fault) => Err(DimensionError { name, fault }),
         }
     }
@@ -280,6 +291,18 @@ impl Dimension {
     /// Its step in sigmas, where one was given.
     pub(crate) fn step(&self) -> Option<f64> {
         self.step
+    }
+
+    /// With texts for reports.
+    #[cfg(feature = "study")]
+    pub(crate) fn with_labels(self, labels: Labels) -> Self {
+        Self { labels, ..self }
+    }
+
+    /// Its texts for reports.
+    #[cfg(feature = "report")]
+    pub(crate) fn labels(&self) -> &Labels {
+        &self.labels
     }
 
     /// The circular zone that it shares with other coordinates, where there is one.

@@ -101,6 +101,7 @@ pub mod inspection;
 pub mod internals;
 #[cfg(feature = "journal")]
 pub mod journal;
+mod labels;
 mod law;
 pub mod method;
 mod method_kind;

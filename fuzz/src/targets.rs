@@ -20,7 +20,7 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
     Target { name: "study_toml", run: study_toml },
     Target { name: "study_json", run: study_json },
     Target { name: "formula", run: formula },
@@ -30,6 +30,7 @@ pub const TARGETS: [Target; 9] = [
     Target { name: "pearson", run: pearson },
     Target { name: "fits", run: fits },
     Target { name: "command_line", run: command_line },
+    Target { name: "import", run: import },
 ];
 
 fn text(bytes: &[u8]) -> Option<&str> {
@@ -196,11 +197,24 @@ fn command_line(bytes: &[u8]) {
     let _: ExitCode = sensitol::cli::run(all.into_iter().map(Into::into));
 }
 
+/// A table or a workbook is refused or becomes a study, which is read again.
+fn import(bytes: &[u8]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    std::fs::write(at("table"), bytes).expect("a file");
+    let words = ["sensitol", "import", &at("table"), "-o", &at("study.toml"), "--color", "never"].map(str::to_owned);
+    let _: ExitCode = sensitol::cli::run(words.into_iter().map(Into::into));
+    if Path::new(&at("study.toml")).exists() {
+        assert!(Study::read(Path::new(&at("study.toml"))).is_ok(), "the imported study cannot be read");
+    }
+}
+
 /// No word that writes elsewhere, and no number that asks for hours.
 fn harmless(word: &str) -> bool {
     let long = word.chars().filter(char::is_ascii_digit).count() > 4;
-    let file =
-        ["-o", "--out", "--csv", "--svg", "--html", "--write", "--journal"].iter().any(|flag| word.starts_with(flag));
+    let file = ["-o", "--out", "--csv", "--svg", "--html", "--xlsx", "--write", "--journal"]
+        .iter()
+        .any(|flag| word.starts_with(flag));
     let path = word.contains('/') && Path::new(word).parent().is_some_and(|parent| parent.components().count() > 0);
     !(long || file || path)
 }

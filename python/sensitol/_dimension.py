@@ -66,6 +66,8 @@ class Dimension(_Entry):
         The name of a kind, a dict with its parameters, a frozen distribution of scipy.stats, or a 1-D array of measured values.
     limits, fit, position, unit, sigma, sigmas, cp, shift, moments, measured, column, model, step
         The keys of a study file.
+    description, part, drawing, revision, feature
+        Texts that reports show beside the name.
     """
 
     _measured: bytes | None
@@ -89,6 +91,11 @@ class Dimension(_Entry):
         column: str | None = None,
         model: str | None = None,
         step: Number | None = None,
+        description: str | None = None,
+        part: str | None = None,
+        drawing: str | None = None,
+        revision: str | None = None,
+        feature: str | None = None,
     ) -> None:
         from . import _scipy
 
@@ -108,6 +115,11 @@ class Dimension(_Entry):
             "column": column,
             "model": model,
             "step": step,
+            "description": description,
+            "part": part,
+            "drawing": drawing,
+            "revision": revision,
+            "feature": feature,
         }
         values: bytes | None = None
         if _scipy.is_frozen(distribution):
@@ -185,7 +197,8 @@ def rows(values: Any, names: list[str], where: str) -> bytes:
 class Characteristic(_Entry):
     """An output: what is asked of the assembly.
 
-    Without a formula it is the output of the model that has its name.
+    Without a formula it is the output of the model that has its name. `description`, `part`, `drawing`, `revision` and `feature` are
+    texts that reports show beside its name.
     """
 
     def __init__(
@@ -197,11 +210,17 @@ class Characteristic(_Entry):
         upper: Number | None = None,
         target_yield: Number | None = None,
         require: Any = None,
+        description: str | None = None,
+        part: str | None = None,
+        drawing: str | None = None,
+        revision: str | None = None,
+        feature: str | None = None,
     ) -> None:
         if formula is not None and not isinstance(formula, str):
             raise TypeError(f"a formula is text, got {type(formula).__name__}; a function goes to Study(model=...)")
         keys = {"formula": formula, "unit": unit, "lower": lower, "upper": upper, "target_yield": target_yield}
-        super().__init__({**keys, "require": require})
+        labels = {"description": description, "part": part, "drawing": drawing, "revision": revision, "feature": feature}
+        super().__init__({**keys, "require": require, **labels})
 
 
 def plain(value: Any, path: str) -> Any:

@@ -461,10 +461,16 @@ class CharacteristicResult(Record):
     """Distance of the nearer limit by three sigma."""
     cpk_percentile: Optional[float]
     """Distance of the nearer limit from the median by that of the quantile on its side."""
+    description: Optional[str]
+    """A few words on its meaning."""
     distribution: Optional[Law]
     """The distribution that has these moments, or why none has."""
+    drawing: Optional[str]
+    """The number of its drawing."""
     error_estimate: Optional[ErrorEstimate]
     """How far these results may be off; None without moments."""
+    feature: Optional[str]
+    """The feature of the part, or its number on the drawing."""
     inflated_rss: Optional[float]
     """1.5 times the RSS (Bender 1962, 1968)."""
     inspection: Optional[InspectionRisks]
@@ -501,6 +507,8 @@ class CharacteristicResult(Record):
     """Its value at the nominal dimensions."""
     normal_fit: Optional[Capability]
     """How the normal distribution with the same mean and sigma would."""
+    part: Optional[str]
+    """The part that it belongs to."""
     pearson_fit: Optional[Capability]
     """How the distribution with its moments keeps them: the Pearson fit."""
     possible_interactions: int
@@ -511,6 +519,8 @@ class CharacteristicResult(Record):
     """Assemblies below the lower limit, per million."""
     requirements: List[Judged]
     """Everything that is required of it, the target yield included."""
+    revision: Optional[str]
+    """The revision of the drawing."""
     rss: Optional[float]
     """`sqrt(t'R t)` with `t` = slope x half band (three sigma where a dimension has no band) and the correlation
     `R`: without correlation the root of the sum of squares.
@@ -679,14 +689,24 @@ class DesignPoint(Record):
 class DimensionResult(Record):
     """One dimension as the analysis took it."""
 
+    description: Optional[str]
+    """A few words on its meaning."""
     distribution: Optional[str]
     """The kind of its distribution; null when it does not vary."""
+    drawing: Optional[str]
+    """The number of its drawing."""
+    feature: Optional[str]
+    """The feature of the part, or its number on the drawing."""
     mean: float
     """Its mean."""
     name: str
     """Its name."""
     nominal: float
     """The value on the drawing."""
+    part: Optional[str]
+    """The part that it belongs to."""
+    revision: Optional[str]
+    """The revision of the drawing."""
     sigma: float
     """Its standard deviation."""
     tolerance: Optional[List[float]]
@@ -1064,18 +1084,28 @@ class RareCharacteristic(Record):
     """Rejects above the upper limit; null without one."""
     below: Optional[Beyond]
     """Rejects below the lower limit; null without one."""
+    description: Optional[str]
+    """A few words on its meaning."""
+    drawing: Optional[str]
+    """The number of its drawing."""
     error: Optional[str]
     """Why not, of the first of them."""
     failed: int
     """Points at which it has no value."""
+    feature: Optional[str]
+    """The feature of the part, or its number on the drawing."""
     lower: Optional[float]
     """Lower limit."""
     met: Optional[bool]
     """Whether the interval of the yield lies above the target (true), below (false), or around it (null)."""
     name: str
     """Its name."""
+    part: Optional[str]
+    """The part that it belongs to."""
     requirements: List[Judged]
     """Everything that is required of it, the target yield included."""
+    revision: Optional[str]
+    """The revision of the drawing."""
     target_yield: Optional[float]
     """The share of assemblies that must keep the limits."""
     unfinished: bool
@@ -1386,12 +1416,18 @@ class SimulatedCharacteristic(Record):
     """Width of the limits by six sigma; None unless there are two, and where nothing varies."""
     cpk: Optional[float]
     """Distance of the nearer limit by three sigma."""
+    description: Optional[str]
+    """A few words on its meaning."""
     distribution: Empirical
     """The sample's own distribution."""
+    drawing: Optional[str]
+    """The number of its drawing."""
     error: Optional[str]
     """Why not, of the first of them."""
     failed: int
     """Points at which it has none."""
+    feature: Optional[str]
+    """The feature of the part, or its number on the drawing."""
     histogram: Optional[Histogram]
     """The sample, counted in some tens of intervals."""
     kurtosis: Optional[float]
@@ -1404,6 +1440,8 @@ class SimulatedCharacteristic(Record):
     """Whether the interval of the yield lies above the target (true), below (false), or around it (null)."""
     name: str
     """Its name."""
+    part: Optional[str]
+    """The part that it belongs to."""
     ppm_above: Optional[float]
     """Assemblies above the upper limit, per million."""
     ppm_below: Optional[float]
@@ -1412,6 +1450,8 @@ class SimulatedCharacteristic(Record):
     """The least and the greatest value seen."""
     requirements: List[Judged]
     """Everything that is required of it, the target yield included."""
+    revision: Optional[str]
+    """The revision of the drawing."""
     samples: int
     """Points at which it has a value."""
     sigma: Optional[float]

@@ -111,6 +111,17 @@ def test_sections_of_a_study_are_arguments():
         study.replace(loss={"z": {"k": 1.0}})
 
 
+def test_labels_are_texts_that_reports_show():
+    labels = {"description": "bored", "part": "housing", "drawing": "4711", "revision": "B", "feature": "7"}
+    study = st.Study(
+        dimensions={"a": st.Dimension(10, 0.3, **labels)},
+        characteristics={"y": st.Characteristic("2*a", description="twice")},
+    )
+    assert {**study.to_dict()["dimensions"]["a"]} == {"nominal": 10, "tolerance": 0.3, **labels}
+    assert st.Study.from_toml(study.to_toml()).to_dict() == study.to_dict()
+    assert study.analyze("full").to_dict()["dimensions"][0]["part"] == "housing"
+
+
 def test_numbers_of_numpy_are_numbers():
     study = st.Study(
         dimensions={"a": st.Dimension(np.float32(10), np.array([-0.25, 0.5])), "b": st.Dimension(np.int64(3))},

@@ -21,7 +21,7 @@ use crate::document::terminal::text;
 use crate::document::{Detail, Style};
 use crate::method::Narrow;
 use crate::report::html::{WhatIf, analyze_html};
-use crate::report::{Report, csv_file_names, csv_files, stack_csv, stack_document};
+use crate::report::{Report, analyze_xlsx, csv_file_names, csv_files, stack_csv, stack_document};
 use crate::study::Study;
 use crate::warning::{Counted, Warning};
 
@@ -33,6 +33,7 @@ pub(super) fn run(path: &Path, asked: &AnalyzeArgs, look: Look) -> Result<Exit, 
     asked.points.iter().for_each(|points| files.reads(points, "read by --points"));
     let destination = files.output(&asked.output)?;
     let mut beside = Beside::open(&mut files, &study, asked.csv.as_deref(), asked.html.as_deref())?;
+    beside.workbook = files.file(asked.xlsx.as_deref())?;
     beside.missing = files.file(asked.write_missing.as_deref())?;
     let show = |report: &Report| destination.write(&printed(report, asked, look));
     analyzed(&study, asked, beside, given.as_deref(), look, show)
@@ -65,6 +66,7 @@ pub(super) fn read(
 pub(super) struct Beside {
     folder: Option<CsvFolder>,
     page: Option<Destination>,
+    pub(super) workbook: Option<Destination>,
     missing: Option<Destination>,
 }
 
@@ -77,7 +79,7 @@ impl Beside {
         html: Option<&Path>,
     ) -> Result<Self, Failure> {
         let names = csv_file_names(study.problem.characteristics().iter().map(Characteristic::name));
-        Ok(Self { folder: files.folder(csv, &names)?, page: files.file(html)?, missing: None })
+        Ok(Self { folder: files.folder(csv, &names)?, page: files.file(html)?, workbook: None, missing: None })
     }
 }
 
@@ -114,6 +116,10 @@ pub(super) fn analyzed(
     let written = written.and(files.page.map_or(Ok(()), |page| {
         let what_if = WhatIf::of(&study.problem, &analysis, &study.lines, &study.costs);
         page.write(&analyze_html(&report, Some(&what_if)))
+    }));
+    let written = written.and(files.workbook.map_or(Ok(()), |workbook| {
+        let bytes = analyze_xlsx(&report).map_err(|error| Failure::Workbook { reason: error.to_string() })?;
+        workbook.write_bytes(&bytes)
     }));
     let points = given.map(Table::missing).unwrap_or_default();
     let written =

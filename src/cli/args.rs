@@ -97,7 +97,7 @@ pub(super) enum Command {
     /// A row names the columns: name and nominal, and as far as there are direction or factor, tolerance or upper and lower deviation,
     /// unit, distribution, part, description. Numbers have decimal points or commas.
     #[command(
-        after_help = "Examples:\n  sensitol import stack.csv -o stack.toml\n  sensitol import stack.csv --column nominal=Wert --name play"
+        after_help = "Examples:\n  sensitol import stack.csv -o stack.toml\n  sensitol import stack.csv --column nominal=Wert --name play\n  sensitol import stack-up.xlsx --sheet Stack -o stack.toml"
     )]
     Import(ImportArgs),
     /// Writes a page that edits and analyses studies in a browser, offline
@@ -195,6 +195,10 @@ pub(super) struct AnalyzeArgs {
     /// Write the tables of the report as CSV files into DIR, which is made where it is missing; several studies: into DIR/STUDY
     #[arg(long, value_name = "DIR", help_heading = OUTPUT)]
     pub(super) csv: Option<PathBuf>,
+
+    /// Write the report as a workbook: the stack with live formulas, results, contributions and inputs; several studies: a folder, STUDY.xlsx
+    #[arg(long, value_name = "FILE.xlsx", conflicts_with = "compare", help_heading = OUTPUT)]
+    pub(super) xlsx: Option<PathBuf>,
 
     /// Exit with 1 when a requirement is missed or inconclusive
     #[arg(long)]

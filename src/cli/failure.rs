@@ -115,6 +115,8 @@ pub(super) enum Failure {
     Import { path: PathBuf, reason: String, help: Option<String> },
     #[error("the table cannot be written: {reason}")]
     Table { reason: String },
+    #[error("{reason}")]
+    Workbook { reason: String },
     #[error("--check has nothing to check: no characteristic asked for has a target_yield or a require")]
     NothingToCheck,
     #[error("--pairs {text}: {fault}")]
@@ -147,8 +149,8 @@ pub(super) enum Failure {
     AskedTwice { path: PathBuf },
     #[error("{path} is a file, and --csv needs a folder", path = path.display())]
     NoFolder { path: PathBuf },
-    #[error("--html {path} is {what}, and several studies need a folder for their pages", path = path.display())]
-    NoFolderOfPages { path: PathBuf, what: &'static str },
+    #[error("{flag} {path} is {what}, and several studies need a folder for their {files}", path = path.display())]
+    NoFolderOfPages { flag: &'static str, path: PathBuf, what: &'static str, files: &'static str },
     #[error("{first} and {second} would both write {name}: analyse them in two calls, or rename one", first = first.display(), second = second.display())]
     SameName { first: PathBuf, second: PathBuf, name: String },
     #[error("--points is of one study, and there are {count}: analyse each in a call of its own")]

@@ -10,17 +10,23 @@ use super::output::Destination;
 use super::shared_args::OUTPUT;
 use crate::names::nearest;
 use crate::study::Study;
-use crate::study::import::{ImportFault, ImportProblem, ROLES, Role, Sheet, import, named};
+use crate::study::import::{
+    ImportFault, ImportProblem, ROLES, Role, Sheet, WorkbookFault, has_header, import, is_workbook, named, workbook,
+};
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArgs {
-    /// The table: .csv, .tsv or .txt, or - for what stands on stdin, such as cells copied from a spreadsheet
+    /// The table: .xlsx, .csv, .tsv or .txt, or - for what stands on stdin, such as cells copied from a spreadsheet
     pub(super) table: PathBuf,
 
-    /// The header of a column in the table's own words, such as nominal=Wert; of name, part, description, drawing, direction, factor, nominal, upper,
+    /// The header of a column in the table's own words, such as nominal=Wert; of name, part, description, drawing, revision, feature, direction, factor, nominal, upper,
     /// lower, minus, tolerance, unit, distribution, cp and sigma (repeatable)
     #[arg(long, value_name = "ROLE=HEADER", value_parser = column)]
     pub(super) column: Vec<(Role, String)>,
+
+    /// The sheet of a workbook; without it the first one whose columns are known
+    #[arg(long, value_name = "NAME")]
+    pub(super) sheet: Option<String>,
 
     /// The name of the characteristic that the dimensions add up to
     #[arg(long, value_name = "NAME", default_value = "gap")]
@@ -44,13 +50,12 @@ fn column(text: &str) -> Result<(Role, String), String> {
 }
 
 pub(super) fn run(asked: &ImportArgs) -> Result<Exit, Failure> {
-    let failed = |reason: String| Failure::Import { path: asked.table.clone(), reason, help: None };
     let destination = match &asked.output {
         Some(path) if path.exists() => return Err(Failure::Exists { path: path.clone() }),
         Some(path) => Destination::file(path)?,
         None => Destination::Stdout,
     };
-    let sheet = sheet(&asked.table).map_err(failed)?;
+    let (of_book, sheet) = sheet(asked)?;
     let imported = import(&sheet, &asked.column, &asked.name).map_err(|fault: ImportFault| Failure::Import {
         path: asked.table.clone(),
         reason: fault.to_string(),
@@ -64,7 +69,8 @@ pub(super) fn run(asked: &ImportArgs) -> Result<Exit, Failure> {
         Some(_) => asked.table.file_name().unwrap_or_default().to_string_lossy().into_owned(),
     };
     let mut text = format!(
-        "# Imported from {from}. Limits of the characteristic are not in the table: write lower, upper or both.\n"
+        "# Imported from {from}{}. Limits of the characteristic are not in the table: write lower, upper or both.\n",
+        of_book.map(|name| format!(", sheet {}", one_line(&name))).unwrap_or_default()
     );
     imported.notes.iter().for_each(|note| text += &format!("# {}\n", one_line(note)));
     text += "\n";
@@ -79,17 +85,28 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn sheet(path: &Path) -> Result<Sheet, String> {
+/// The table, and of a workbook the name of the sheet that holds it.
+fn sheet(asked: &ImportArgs) -> Result<(Option<String>, Sheet), Failure> {
+    let failed = |reason: String, help: Option<String>| Failure::Import { path: asked.table.clone(), reason, help };
     let mut bytes = Vec::new();
-    match path.to_str() {
-        Some("-") => {
-            std::io::stdin().lock().read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-        }
-        _ => bytes = std::fs::read(path).map_err(|error| error.to_string())?,
+    let read = match asked.table.to_str() {
+        Some("-") => std::io::stdin().lock().read_to_end(&mut bytes).map(|_| ()),
+        _ => std::fs::read(&asked.table).map(|all| bytes = all),
+    };
+    read.map_err(|error| failed(error.to_string(), None))?;
+    if is_workbook(&bytes) {
+        let fits = |sheet: &Sheet| has_header(sheet, &asked.column);
+        let found = workbook(bytes, asked.sheet.as_deref(), fits);
+        return found
+            .map(|(name, sheet)| (Some(name), sheet))
+            .map_err(|fault: WorkbookFault| failed(fault.to_string(), fault.help()));
+    }
+    if asked.sheet.is_some() {
+        return Err(failed("--sheet is for workbooks, and this is a table of text".to_owned(), None));
     }
     let text = String::from_utf8(bytes).map_err(|_| {
-        "it is not text in UTF-8: save it as CSV in UTF-8, or copy the cells and paste them into `sensitol import -`"
-            .to_owned()
+        let help = "save it as .xlsx or as CSV in UTF-8, or copy the cells and paste them into `sensitol import -`";
+        failed("it is neither a workbook nor text in UTF-8".to_owned(), Some(help.to_owned()))
     })?;
-    Ok(Sheet::of_text(&text))
+    Ok((None, Sheet::of_text(&text)))
 }

@@ -225,19 +225,18 @@ impl Destination {
         Ok(Self::File { path: path.to_owned() })
     }
 
-    pub(super) fn write(self, text: &str) -> Result<(), Failure> {
+    /// Writes these bytes as they are.
+    pub(super) fn write_bytes(self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
             Self::Stdout => {
                 let mut stdout = std::io::stdout().lock();
-                // A file or a pipe gets every byte; a terminal would obey some of them.
-                let text = if stdout.is_terminal() { Cow::from(shown(text)) } else { Cow::from(text) };
-                stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
+                stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
                     ErrorKind::BrokenPipe => Failure::ClosedPipe,
                     _ => Failure::Stdout(error),
                 })
             }
             Self::Special { path, mut file } => {
-                let written = file.write_all(text.as_bytes()).and_then(|()| file.flush());
+                let written = file.write_all(bytes).and_then(|()| file.flush());
                 match written {
                     Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::ClosedPipe),
                     written => written.map_err(|error| Failure::Unwritable { path, error }),
@@ -245,12 +244,19 @@ impl Destination {
             }
             Self::File { path } => {
                 let written = temporary(&path).and_then(|file| {
-                    std::fs::write(&file, text)?;
+                    std::fs::write(&file, bytes)?;
                     file.persist(&path).map_err(|error| error.error)
                 });
                 written.map_err(|error| Failure::Unwritable { path, error: bare(error) })
             }
         }
+    }
+
+    pub(super) fn write(self, text: &str) -> Result<(), Failure> {
+        // A file or a pipe gets every byte; a terminal would obey some of them.
+        let terminal = matches!(self, Self::Stdout) && std::io::stdout().is_terminal();
+        let text = if terminal { Cow::from(shown(text)) } else { Cow::from(text) };
+        self.write_bytes(text.as_bytes())
     }
 }
 

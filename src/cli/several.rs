@@ -70,7 +70,7 @@ pub(super) fn analyze(paths: &[PathBuf], asked: &AnalyzeArgs, look: Look) -> Res
     if asked.points.is_some() {
         return Err(Failure::PointsOfOne { count: all.len() });
     }
-    let stems = match asked.csv.is_some() || asked.html.is_some() {
+    let stems = match asked.csv.is_some() || asked.html.is_some() || asked.xlsx.is_some() {
         true => {
             let of_paths = stems(paths)?;
             let of = |one: &Asked<'_>| {
@@ -170,7 +170,10 @@ fn open(
     asked: &AnalyzeArgs,
     files: &mut Files,
 ) -> Result<Vec<Ready>, Failure> {
-    asked.html.as_deref().map(folder_of_pages).transpose()?;
+    let pages = |path: &Path| folder_of(path, "--html", ["the name of one page", "pages"], &["html", "htm"]);
+    asked.html.as_deref().map(pages).transpose()?;
+    let books = |path: &Path| folder_of(path, "--xlsx", ["the name of one workbook", "workbooks"], &["xlsx"]);
+    asked.xlsx.as_deref().map(books).transpose()?;
     asked.csv.as_deref().map(CsvFolder::make).transpose()?;
     let of = |(stem, study): (&String, Result<Study, Failure>)| {
         let study = match study {
@@ -179,23 +182,30 @@ fn open(
         };
         let tables = asked.csv.as_deref().map(|folder| folder.join(stem));
         let page = asked.html.as_deref().map(|folder| folder.join(format!("{stem}.html")));
-        let beside = Beside::open(files, &study, tables.as_deref(), page.as_deref())?;
+        let mut beside = Beside::open(files, &study, tables.as_deref(), page.as_deref())?;
+        let workbook = asked.xlsx.as_deref().map(|folder| folder.join(format!("{stem}.xlsx")));
+        beside.workbook = files.file(workbook.as_deref())?;
         Ok(Ok((study, beside)))
     };
     stems.iter().zip(studies).map(of).collect()
 }
 
-/// The folder, made where it is missing; the name of a page is most likely meant as one.
-fn folder_of_pages(path: &Path) -> Result<(), Failure> {
+/// The folder, made where it is missing; a name that ends as `one` file of that kind does is most likely meant as one.
+fn folder_of(
+    path: &Path,
+    flag: &'static str,
+    [one, files]: [&'static str; 2],
+    endings: &[&str],
+) -> Result<(), Failure> {
     if path.is_dir() {
         return Ok(());
     }
-    let wrong = |what| Err(Failure::NoFolderOfPages { path: path.to_owned(), what });
+    let wrong = |what| Err(Failure::NoFolderOfPages { flag, path: path.to_owned(), what, files });
     if path.exists() {
         return wrong("a file");
     }
-    if path.extension().is_some_and(|extension| extension == "html" || extension == "htm") {
-        return wrong("the name of one page");
+    if path.extension().and_then(|ending| ending.to_str()).is_some_and(|ending| endings.contains(&ending)) {
+        return wrong(one);
     }
     std::fs::create_dir_all(path).map_err(|error| Failure::Unwritable { path: path.to_owned(), error })
 }

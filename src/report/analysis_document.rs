@@ -60,6 +60,7 @@ impl Report {
         if let Some(line) = together(&self.analysis.correlations) {
             document.wrapped(2, line);
         }
+        self.labels().into_iter().for_each(|table| document.detail(table));
         let all = self.analysis.characteristics.iter().zip(self.stacks());
         document.sections = all.map(|(one, stack)| self.section(one, &stack)).collect();
         document.head.extend(
@@ -72,6 +73,7 @@ impl Report {
     fn section(&self, one: &CharacteristicAnalysis, stack: &Stack) -> Section {
         let mut section = Section::of(one.name(), one.unit());
         section.blocks = findings(&self.warnings, |name| name == Some(one.name()));
+        one.characteristic.labels().line().into_iter().for_each(|line| section.wrapped(2, line));
         if one.limited() {
             section.words = format!(", limits {}", limits(one.lower(), one.upper()));
         }

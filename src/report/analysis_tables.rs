@@ -85,6 +85,7 @@ impl Report {
             .data("guard", |one| Cell::data(one.inspection.as_ref().and_then(|of| of.guard)))
             .data("false_accept", |one| Cell::data(risk(one, |of| of.false_accept)))
             .data("false_reject", |one| Cell::data(risk(one, |of| of.false_reject)))
+            .labels(|one| one.characteristic.labels())
             .table("characteristics", &self.analysis.characteristics)
             .of_sections()
     }
@@ -123,6 +124,7 @@ impl Report {
             .data("distribution", |one| Cell::optional(one.distribution))
             .data("mean", |one| Cell::data(one.mean))
             .data("sigma", |one| Cell::data(one.sigma))
+            .labels(|one| &one.labels)
             .table("dimensions", &self.dimensions)
     }
 

@@ -14,6 +14,7 @@ mod figures;
 mod head;
 #[cfg(feature = "html")]
 pub mod html;
+mod labels;
 mod output_correlation;
 mod rare;
 mod requirement;
@@ -23,6 +24,8 @@ mod stack;
 mod statistics;
 mod sweep;
 mod to_document;
+#[cfg(feature = "xlsx")]
+mod xlsx;
 
 pub use crate::document::csv::csv;
 pub use crate::document::markdown::markdown;
@@ -45,6 +48,8 @@ pub use sweep::SweepReport;
 #[cfg(feature = "cli")]
 pub(crate) use sweep::SweptReport;
 pub use to_document::ToDocument;
+#[cfg(feature = "xlsx")]
+pub(crate) use xlsx::analyze_xlsx;
 
 use serde::Serialize;
 
@@ -52,6 +57,7 @@ use crate::analysis::Analysis;
 use crate::correlation::Pair;
 use crate::dimension::Dimension;
 use crate::document::number::{UNKNOWN, band, significant};
+use crate::labels::Labels;
 use crate::problem::Problem;
 use crate::warning::{Advice, Warning};
 
@@ -97,6 +103,9 @@ pub struct DimensionReport {
     pub mean: f64,
     /// Its standard deviation.
     pub sigma: f64,
+    /// Texts beside its name.
+    #[serde(flatten)]
+    pub(crate) labels: Labels,
 }
 
 /// A warning.
@@ -174,6 +183,7 @@ impl DimensionReport {
             distribution: dimension.distribution().map(|distribution| distribution.name()),
             mean: dimension.mean(),
             sigma: dimension.sigma(),
+            labels: dimension.labels().clone(),
         }
     }
 

@@ -356,7 +356,7 @@ fn characteristic(
         let at = entry.upper.as_ref().or(entry.lower.as_ref()).expect("limits that exist are at fault");
         fault(at.span(), format!("{key}.upper"), error)
     })?;
-    let mut characteristic = Characteristic::new(name).with_limits(limits);
+    let mut characteristic = Characteristic::new(name).with_limits(limits).with_labels(entry.labels());
     if let Some(unit) = unit {
         characteristic = characteristic.with_unit(unit);
     }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
+use super::about::AboutEntry;
 pub(super) use super::analysis_entry::{AnalysisEntry, PairsEntry};
 use super::guard::GuardEntry;
 use super::price::{CostEntry, LossEntry, RequireEntry};
@@ -17,32 +18,6 @@ use serde::{Deserialize, Deserializer};
 use super::values::{NominalEntry, ToleranceEntry};
 
 /// A whole study file.
-/// The section `[about]`.
-#[derive(Debug, Default, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct AboutEntry {
-    /// The part or assembly.
-    part: Option<String>,
-    /// The number of the drawing.
-    drawing: Option<String>,
-    /// The revision of the drawing.
-    revision: Option<String>,
-    /// Who made the study.
-    author: Option<String>,
-    /// Anything else, in one line.
-    note: Option<String>,
-}
-
-impl AboutEntry {
-    /// The cells that have a text, in their order on a drawing.
-    pub(super) fn cells(self) -> Vec<(&'static str, String)> {
-        let Self { part, drawing, revision, author, note } = self;
-        let all = [("Part", part), ("Drawing", drawing), ("Revision", revision), ("Author", author), ("Note", note)];
-        all.into_iter().filter_map(|(name, text)| Some((name, text?))).collect()
-    }
-}
-
 #[derive(Debug, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "cli", schemars(title = "Study of sensitol", extend("required" = ["dimensions", "characteristics"])))]
@@ -245,6 +220,16 @@ pub(super) struct DimensionEntry {
     pub(super) model: Option<Spanned<String>>,
     /// Evaluation step in sigmas, in place of the nodes that suit the distribution.
     pub(super) step: Option<Spanned<f64>>,
+    /// A few words on its meaning: shown in reports, of no meaning to the analysis, as part, drawing, revision and feature.
+    pub(super) description: Option<String>,
+    /// The part that it belongs to.
+    pub(super) part: Option<String>,
+    /// The number of its drawing.
+    pub(super) drawing: Option<String>,
+    /// The revision of the drawing.
+    pub(super) revision: Option<String>,
+    /// The feature of the part, or its number on the drawing.
+    pub(super) feature: Option<String>,
 }
 
 impl PartEntry {
@@ -405,6 +390,16 @@ pub(super) struct CharacteristicEntry {
     pub(super) gauge: Option<Spanned<f64>>,
     /// By how much the limits are tightened for acceptance, or `{ false_accept = 0.001 }` for the share of all parts that may be bad and accepted.
     pub(super) guard: Option<Spanned<GuardEntry>>,
+    /// A few words on its meaning: shown in reports, of no meaning to the analysis, as part, drawing, revision and feature.
+    pub(super) description: Option<String>,
+    /// The part that it belongs to.
+    pub(super) part: Option<String>,
+    /// The number of its drawing.
+    pub(super) drawing: Option<String>,
+    /// The revision of the drawing.
+    pub(super) revision: Option<String>,
+    /// The feature of the part, or its number on the drawing.
+    pub(super) feature: Option<String>,
 }
 
 /// `[model]`.

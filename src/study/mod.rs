@@ -40,6 +40,7 @@
 //! # Ok::<(), sensitol::StudyError>(())
 //! ```
 
+mod about;
 mod analysis_entry;
 mod build;
 mod changed;
@@ -61,6 +62,7 @@ mod implicit;
 pub(crate) mod import;
 mod inspected;
 mod joint;
+mod labels;
 mod lines;
 mod loss;
 mod model;

@@ -33,7 +33,7 @@ const LAYERS: &[&[&str]] = &[
     &["dimension", "characteristic"],
     &["distribution", "fits", "requirement", "inspection"],
     &["pearson", "method_kind"],
-    &["names", "elementary", "summary", "time", "unit", "table"],
+    &["names", "elementary", "summary", "time", "unit", "table", "labels"],
     &["shape"],
 ];
 

@@ -20,11 +20,11 @@ fn commands() -> Vec<Vec<String>> {
 
 /// Says on the terminal, whatever is captured, that something could not be tested.
 #[expect(clippy::explicit_write, reason = "what eprintln! says is not shown when a test passes")]
-fn skipped(what: &str) {
+pub fn skipped(what: &str) {
     writeln!(std::io::stderr(), "SKIPPED: {what}").unwrap();
 }
 
-fn installed(program: &str) -> bool {
+pub fn installed(program: &str) -> bool {
     let found = Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     found.is_ok()
 }

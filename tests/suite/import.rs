@@ -105,7 +105,7 @@ fn a_file_is_written_once() {
     assert!(again.status.code() == Some(2) && String::from_utf8(again.stderr).unwrap().contains("is there already"));
     std::fs::write(path("stack.xlsx"), [0x50, 0x4b, 0xff, 0xfe]).unwrap();
     let error = String::from_utf8(sensitol(&["import", &path("stack.xlsx")]).output().unwrap().stderr).unwrap();
-    assert!(error.contains("save it as CSV in UTF-8"), "{error}");
+    assert!(error.contains("save it as .xlsx or as CSV in UTF-8"), "{error}");
 }
 
 /// Points that were calculated in a German spreadsheet come back with semicolons and decimal commas.

@@ -82,7 +82,8 @@ fn built(
         None => Dimension::fixed(name, nominal),
         Some(distribution) => Dimension::distributed(name, nominal, tolerance, distribution),
     }
-    .map_err(whole)?;
+    .map_err(whole)?
+    .with_labels(entry.labels());
     if let Some(unit) = &entry.unit {
         dimension = dimension.with_unit(unit);
     }

@@ -13,6 +13,10 @@ pub(crate) enum Role {
     Description,
     /// Its drawing.
     Drawing,
+    /// The revision of that.
+    Revision,
+    /// The feature of the part, or its number on the drawing.
+    Feature,
     /// Whether it adds or subtracts.
     Direction,
     /// By what it is multiplied.
@@ -38,7 +42,7 @@ pub(crate) enum Role {
 }
 
 /// Every role with its name and its headers, as [`plain`] leaves them.
-pub(crate) const ROLES: [(Role, &str, &[&str]); 15] = [
+pub(crate) const ROLES: [(Role, &str, &[&str]); 17] = [
     (Role::Name, "name", &["name", "dimension", "bezeichnung", "mass", "masz", "massbezeichnung", "symbol", "id"]),
     (Role::Part, "part", &["part", "component", "bauteil", "teil", "komponente"]),
     (
@@ -47,6 +51,8 @@ pub(crate) const ROLES: [(Role, &str, &[&str]); 15] = [
         &["description", "remark", "comment", "beschreibung", "bemerkung", "kommentar", "benennung"],
     ),
     (Role::Drawing, "drawing", &["drawing", "drawing no", "zeichnung", "zeichnungsnummer", "zeichnungsnr"]),
+    (Role::Revision, "revision", &["revision", "rev", "anderungsindex", "anderungsstand"]),
+    (Role::Feature, "feature", &["feature", "balloon", "merkmal", "merkmalsnummer", "merkmalsnr"]),
     (Role::Direction, "direction", &["direction", "sign", "richtung", "vorzeichen", "+/-"]),
     (Role::Factor, "factor", &["factor", "lever", "sensitivity", "coefficient", "hebel", "faktor", "hebelarm"]),
     (
@@ -109,6 +115,9 @@ pub(crate) fn role(header: &Content) -> Option<(Role, Option<String>)> {
     let (name, unit) = plain(text);
     ROLES.iter().find(|(_, _, headers)| headers.contains(&name.as_str())).map(|(role, ..)| (*role, unit))
 }
+
+/// The roles that are texts of a dimension, in the order of its keys.
+pub(super) const LABELLED: [Role; 5] = [Role::Description, Role::Part, Role::Drawing, Role::Revision, Role::Feature];
 
 /// The role of this name.
 pub(crate) fn named(name: &str) -> Option<Role> {

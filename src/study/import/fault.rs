@@ -43,6 +43,21 @@ pub(crate) enum ImportProblem {
         /// Whether a decimal comma is the reason.
         comma: bool,
     },
+    /// A date where something else belongs.
+    #[error("the cell holds a date: spreadsheets make one of 1-2")]
+    Date,
+    /// The result of a formula that cannot be computed.
+    #[error("the cell holds the error {text}")]
+    Error {
+        /// Such as #REF!.
+        text: String,
+    },
+    /// A percentage where a number belongs.
+    #[error("`{text} %` is a percentage, where a number belongs")]
+    Percent {
+        /// The percentage.
+        text: String,
+    },
     /// Two styles of numbers.
     #[error("`{text}` has another decimal mark than {other}")]
     TwoMarks {
@@ -113,6 +128,9 @@ impl ImportProblem {
                 "decimal commas need semicolons or tabs between the columns".to_owned()
             }
             Self::NoNumber { .. } => "write a number, or leave the nominal value of a heading empty".to_owned(),
+            Self::Date => "format the cell as text or number, and write it again".to_owned(),
+            Self::Error { .. } => "correct its formula, or write the value".to_owned(),
+            Self::Percent { .. } => "percent of the nominal value belongs into the column of tolerances".to_owned(),
             Self::TwoMarks { .. } => "write all numbers of the table alike".to_owned(),
             Self::NoName => "write a name, or leave the nominal value of a total empty".to_owned(),
             Self::NameTwice { .. } => "one of the two needs another name".to_owned(),

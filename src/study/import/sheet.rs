@@ -9,6 +9,28 @@ pub(crate) enum Content {
     Empty,
     /// Text, numbers too: their style belongs to the whole table.
     Text(String),
+    /// A number of a workbook, and whether it is shown in percent.
+    Number {
+        /// As it is: 2 % are 0.02.
+        value: f64,
+        /// Whether 0.02 is shown as 2 %.
+        percent: bool,
+    },
+    /// A date or a time.
+    Date,
+    /// The result of a formula that cannot be computed, such as #REF!.
+    Error(String),
+}
+
+impl Content {
+    /// Text and plain numbers, for a column of words.
+    pub(super) fn words(&self) -> Option<String> {
+        match self {
+            Self::Text(text) => Some(text.clone()),
+            Self::Number { value, .. } => Some(value.to_string()),
+            Self::Empty | Self::Date | Self::Error(_) => None,
+        }
+    }
 }
 
 /// The rows of a table that is to become a study.

@@ -3,11 +3,12 @@
 use std::fmt::Write;
 
 use super::super::write::{inline, name as key, number, quoted};
-use super::columns::{ROLES, Role, role};
+use super::columns::{LABELLED, ROLES, Role, role};
 use super::fault::{ImportFault, ImportProblem};
 use super::sheet::{Content, Sheet, address};
 use super::tolerance::{Written, written};
 use crate::assembly::formula::is_plain;
+use crate::labels::LABELS;
 use crate::table::{NumberFault, Style};
 
 /// Rows in which the header is sought.
@@ -32,10 +33,12 @@ pub(crate) struct Imported {
     pub(crate) notes: Vec<String>,
 }
 
-/// A number as text, with its cell.
+/// A number with its cell.
 struct Figure {
     cell: String,
+    /// Empty of a number that a workbook holds as such.
     text: String,
+    value: Option<f64>,
 }
 
 /// Numbers that are read together, because their style belongs to all of them.
@@ -45,20 +48,34 @@ struct Figures(Vec<Figure>);
 impl Figures {
     /// Keeps a number to be read later, by its place.
     fn keep(&mut self, cell: &str, text: &str) -> usize {
-        self.0.push(Figure { cell: cell.to_owned(), text: text.to_owned() });
+        self.0.push(Figure { cell: cell.to_owned(), text: text.to_owned(), value: None });
         self.0.len() - 1
     }
 
-    fn keep_content(&mut self, cell: &str, content: &Content) -> Option<usize> {
-        match content {
-            Content::Empty => None,
+    /// Keeps a number as it is.
+    fn keep_value(&mut self, cell: &str, value: f64) -> usize {
+        self.0.push(Figure { cell: cell.to_owned(), text: String::new(), value: Some(value) });
+        self.0.len() - 1
+    }
+
+    fn keep_content(&mut self, cell: &str, content: &Content) -> Result<Option<usize>, ImportFault> {
+        Ok(match content {
+            Content::Empty | Content::Date | Content::Error(_) => None,
             Content::Text(text) => Some(self.keep(cell, text)),
-        }
+            Content::Number { value, percent: false } => Some(self.keep_value(cell, *value)),
+            Content::Number { value, percent: true } => {
+                let text = in_percent(*value).to_string();
+                return Err(ImportFault::of(cell.to_owned(), ImportProblem::Percent { text }));
+            }
+        })
     }
 
     fn read(self, commas_separate: bool) -> Result<Vec<f64>, ImportFault> {
         let style = Style::of(self.0.iter().map(|figure| figure.text.as_str()), commas_separate);
         let of = |(place, figure): (usize, &Figure)| {
+            if let Some(value) = figure.value {
+                return Ok(value);
+            }
             style.number(place, &figure.text).map_err(|fault| {
                 let text = figure.text.clone();
                 let problem = match fault {
@@ -73,6 +90,11 @@ impl Figures {
         };
         self.0.iter().enumerate().map(of).collect()
     }
+}
+
+/// 0.02 are 2 %, without what rounding leaves.
+fn in_percent(value: f64) -> f64 {
+    format!("{:.13e}", 100.0 * value).parse().unwrap_or(100.0 * value)
 }
 
 /// A tolerance, its numbers by their places.
@@ -96,7 +118,8 @@ struct Row {
     cp: Option<usize>,
     unit: Option<String>,
     distribution: Option<&'static str>,
-    remark: String,
+    /// Its texts, in the order of their keys.
+    labels: [Option<String>; 5],
 }
 
 /// The columns of a table by their roles.
@@ -163,6 +186,11 @@ impl Header {
     }
 }
 
+/// Whether a row names the columns that are needed.
+pub(crate) fn has_header(sheet: &Sheet, named: &[(Role, String)]) -> bool {
+    header(sheet, named).is_ok()
+}
+
 /// The first row in which name and nominal value have their columns.
 fn header(sheet: &Sheet, named: &[(Role, String)]) -> Result<Header, ImportFault> {
     let none = |problem| ImportFault { cell: None, problem };
@@ -225,10 +253,7 @@ enum Read {
 fn row(header: &Header, line: u64, content: &[Content], figures: &mut Figures) -> Result<Read, ImportFault> {
     let of = |role: Role| header.column(role).and_then(|column| content.get(column)).unwrap_or(&Content::Empty);
     let at = |role: Role, problem: ImportProblem| ImportFault::of(header.cell(role, line), problem);
-    let text = |role: Role| match of(role) {
-        Content::Empty => None,
-        Content::Text(text) => Some(text.clone()),
-    };
+    let text = |role: Role| of(role).words();
     if matches!(of(Role::Nominal), Content::Empty) {
         let words: Vec<&str> = content
             .iter()
@@ -237,10 +262,18 @@ fn row(header: &Header, line: u64, content: &[Content], figures: &mut Figures) -
         let blank = content.iter().all(|cell| *cell == Content::Empty);
         return Ok(if blank { Read::Blank } else { Read::Heading(words.join(" ")) });
     }
+    for &(_, column) in &header.columns {
+        let problem = match content.get(column) {
+            Some(Content::Date) => ImportProblem::Date,
+            Some(Content::Error(text)) => ImportProblem::Error { text: text.clone() },
+            _ => continue,
+        };
+        return Err(ImportFault::of(address(line, column), problem));
+    }
     let name = text(Role::Name).ok_or_else(|| at(Role::Name, ImportProblem::NoName))?;
     // A backquote ends a name in formulas.
     let name = name.replace('`', "'").split_whitespace().collect::<Vec<_>>().join(" ");
-    let nominal = figures.keep_content(&header.cell(Role::Nominal, line), of(Role::Nominal));
+    let nominal = figures.keep_content(&header.cell(Role::Nominal, line), of(Role::Nominal))?;
     let nominal = nominal.ok_or_else(|| at(Role::Nominal, ImportProblem::NoDimension))?;
     let sign = match text(Role::Direction) {
         None => 1.0,
@@ -267,12 +300,12 @@ fn row(header: &Header, line: u64, content: &[Content], figures: &mut Figures) -
         }
     };
     let mut figure = |role: Role| figures.keep_content(&header.cell(role, line), of(role));
-    let (factor, sigma, cp) = (figure(Role::Factor), figure(Role::Sigma), figure(Role::Cp));
-    let remarks = [Role::Part, Role::Description, Role::Drawing].into_iter().filter_map(text);
-    let remark = remarks.collect::<Vec<String>>().join(", ");
+    let (factor, sigma, cp) = (figure(Role::Factor)?, figure(Role::Sigma)?, figure(Role::Cp)?);
+    let one_line = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let labels = LABELLED.map(|role| text(role).map(one_line));
     let unit = text(Role::Unit).or_else(|| header.unit.clone());
     let band = band(header, line, &of, figures)?;
-    Ok(Read::Dimension(Box::new(Row { name, nominal, band, sign, factor, sigma, cp, unit, distribution, remark })))
+    Ok(Read::Dimension(Box::new(Row { name, nominal, band, sign, factor, sigma, cp, unit, distribution, labels })))
 }
 
 fn band<'c>(
@@ -283,8 +316,8 @@ fn band<'c>(
 ) -> Result<Band, ImportFault> {
     let cell = |role: Role| header.cell(role, line);
     let lower_role = if matches!(of(Role::Minus), Content::Empty) { Role::Lower } else { Role::Minus };
-    let upper = figures.keep_content(&cell(Role::Upper), of(Role::Upper));
-    let lower = figures.keep_content(&cell(lower_role), of(lower_role));
+    let upper = figures.keep_content(&cell(Role::Upper), of(Role::Upper))?;
+    let lower = figures.keep_content(&cell(lower_role), of(lower_role))?;
     let tolerance = of(Role::Tolerance);
     if *tolerance != Content::Empty && (upper.is_some() || lower.is_some()) {
         let other = cell(if upper.is_some() { Role::Upper } else { lower_role });
@@ -292,8 +325,11 @@ fn band<'c>(
     }
     match (upper, lower) {
         (Some(upper), Some(lower)) => {
-            let signed =
-                matches!(of(lower_role), Content::Text(text) if text.trim().starts_with(['+', '-', '\u{2212}']));
+            let signed = match of(lower_role) {
+                Content::Text(text) => text.trim().starts_with(['+', '-', '\u{2212}']),
+                Content::Number { value, .. } => *value < 0.0,
+                _ => false,
+            };
             return Ok(Band::Deviations { upper, lower, unsigned: lower_role == Role::Minus && !signed });
         }
         (None, None) => {}
@@ -303,7 +339,14 @@ fn band<'c>(
         }
     }
     let at = cell(Role::Tolerance);
-    let Content::Text(text) = tolerance else { return Ok(Band::None) };
+    let text = match tolerance {
+        Content::Text(text) => text,
+        Content::Number { value, percent: false } => return Ok(Band::Half(figures.keep_value(&at, *value))),
+        Content::Number { value, percent: true } => {
+            return Ok(Band::Percent(figures.keep_value(&at, in_percent(*value))));
+        }
+        Content::Empty | Content::Date | Content::Error(_) => return Ok(Band::None),
+    };
     let found =
         written(text).ok_or_else(|| ImportFault::of(at.clone(), ImportProblem::NoTolerance { text: text.clone() }))?;
     Ok(match found {
@@ -319,7 +362,10 @@ fn study(rows: &[Row], values: &[f64], output: &str) -> Result<String, ImportFau
     let wide = rows.iter().map(|row| key(&row.name).chars().count()).max().unwrap_or(0);
     for row in rows {
         let mut pairs = vec![format!("nominal = {}", number(values[row.nominal]))];
-        let both = |low: f64, high: f64| format!("tolerance = [{}, {}]", number(low.min(high)), number(low.max(high)));
+        let both = |low: f64, high: f64| match low == -high {
+            true => format!("tolerance = {}", number(high.abs())),
+            false => format!("tolerance = [{}, {}]", number(low.min(high)), number(low.max(high))),
+        };
         pairs.extend(match &row.band {
             Band::None => None,
             Band::Half(half) => Some(format!("tolerance = {}", number(values[*half].abs()))),
@@ -337,14 +383,10 @@ fn study(rows: &[Row], values: &[f64], output: &str) -> Result<String, ImportFau
         );
         pairs.extend(row.sigma.map(|sigma| format!("sigma = {}", number(values[sigma]))));
         pairs.extend(row.cp.map(|cp| format!("cp = {}", number(values[cp]))));
+        let labels = LABELS.into_iter().zip(&row.labels);
+        pairs.extend(labels.filter_map(|(key, text)| Some(format!("{key} = {}", quoted(text.as_ref()?)))));
         let pad = wide - key(&row.name).chars().count();
-        let _ = write!(text, "{}{:pad$} = {}", key(&row.name), "", inline(pairs));
-        match row.remark.as_str() {
-            "" => text.push('\n'),
-            remark => {
-                let _ = writeln!(text, "   # {}", remark.split_whitespace().collect::<Vec<_>>().join(" "));
-            }
-        }
+        let _ = writeln!(text, "{}{:pad$} = {}", key(&row.name), "", inline(pairs));
     }
     let mut formula = String::new();
     for row in rows {

@@ -4,6 +4,7 @@ use super::line::{Diameter, Line, Part};
 use super::plain::{Of, Plain, key, number, pair, text};
 use super::size;
 use crate::assembly::formula::Formula;
+use crate::labels::LABELS;
 use crate::study::error::{Fault, StudyFault};
 use crate::study::expand::{Closing, Tree, quoted};
 use crate::study::tree::Key;
@@ -164,15 +165,15 @@ fn alone(line: &Line<'_>, element: &'static str) -> Result<(), Fault> {
         "model",
         "step",
     ];
-    let valid = [element, "unit"];
+    let valid: Vec<&str> = [element, "unit"].into_iter().chain(LABELS).collect();
     for (found, _) in line.entry.entries() {
         if let Some(&key) = NONE.iter().find(|key| **key == found.name) {
             let to = format!("a `{element}`");
             return Err(line.at_key(key, StudyFault::DoesNotApply { key, to, instead: BESIDE }));
         }
         if !valid.contains(&found.name.as_str()) {
-            let nearest = crate::names::nearest(&found.name, valid).map(str::to_owned);
-            let valid = valid.map(str::to_owned).to_vec();
+            let nearest = crate::names::nearest(&found.name, valid.iter().copied()).map(str::to_owned);
+            let valid = valid.into_iter().map(str::to_owned).collect();
             let unknown = StudyFault::UnknownKey { key: found.name.clone(), nearest, valid };
             return Err(line.at_key(&found.name, unknown));
         }

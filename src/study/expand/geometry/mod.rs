@@ -20,6 +20,7 @@ mod zones;
 pub(super) use line::place;
 
 use super::{Expanded, Origin, Tree, Value};
+use crate::labels::LABELS;
 use crate::study::error::{Fault, Faults, StudyFault};
 use crate::study::tree::Key;
 use line::Line;
@@ -152,7 +153,7 @@ pub(super) fn expand(expanded: &mut Expanded) -> Result<(), Faults> {
         };
         made.dimensions.iter().for_each(|(key, _)| origin("dimensions", &key.name));
         made.formulas.iter().for_each(|(key, _)| origin("formulas", &key.name));
-        dimensions.extend(made.dimensions);
+        dimensions.extend(made.dimensions.into_iter().map(|(key, made)| (key, labelled(made, entry))));
         formulas.extend(made.formulas);
         blocks.extend(made.blocks);
         products.extend(made.products);
@@ -176,6 +177,14 @@ pub(super) fn expand(expanded: &mut Expanded) -> Result<(), Faults> {
     add_products(&mut expanded.tree, products);
     expanded.origins.extend(origins);
     Ok(())
+}
+
+/// A dimension that stands for a part of this line, with the line's texts.
+fn labelled(mut made: Tree, line: &Tree) -> Tree {
+    let missing = |(key, _): &&(Key, Tree)| LABELS.contains(&key.name.as_str()) && made.get(&key.name).is_none();
+    let labels: Vec<(Key, Tree)> = line.entries().iter().filter(missing).cloned().collect();
+    made.entries_mut().into_iter().for_each(|keys| keys.extend(labels.iter().cloned()));
+    made
 }
 
 /// Blocks of elements stand behind those of the study.
