@@ -523,6 +523,11 @@ class CharacteristicResult(Record):
     """Standard deviation."""
     sigma_level: Optional[float]
     """Sigmas of a normal beyond which, on one side, as many lie as are rejected."""
+    six_sigma: Optional[float]
+    """`sqrt(sum of (slope x sigma/(1 - k))^2)` with sigma of a lot and the shift `k` of its mean in half bands, by
+    `cpk`, `drift` or `shift` (Harry and Stewart 1988): a sigma, not an interval. None where every mean is in the
+    middle of its band, or one at its end.
+    """
     skewness: Optional[float]
     """Third standardised moment."""
     sobol: Optional[SobolIndices]

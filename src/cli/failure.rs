@@ -115,7 +115,7 @@ pub(super) enum Failure {
     Import { path: PathBuf, reason: String, help: Option<String> },
     #[error("the table cannot be written: {reason}")]
     Table { reason: String },
-    #[error("--check has nothing to check: no characteristic asked for has a target_yield or a require")]
+    #[error("--check has nothing to check: no characteristic asked for has a target_yield, a target_cpk or a require")]
     NothingToCheck,
     #[error("--pairs {text}: {fault}")]
     Pairs { text: String, fault: &'static str },

@@ -293,7 +293,10 @@ impl CharacteristicAnalysis {
         lines(self.requirements()).for_each(|line| section.note(line));
         self.inspected(section);
         let mut detail = Vec::new();
-        let quantiles = join(vec![named("Cp", of(|of| of.cp_percentile)), named("Cpk", of(|of| of.cpk_percentile))]);
+        // Of measured values they are performance indices, not those of a process in control.
+        let names = if self.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
+        let indices = [of(|of| of.cp_percentile), of(|of| of.cpk_percentile)];
+        let quantiles = join(names.into_iter().zip(indices).map(|(name, index)| named(name, index)).collect());
         if !quantiles.is_empty() {
             detail.note(format!("by quantiles (ISO 22514-2): {quantiles}"));
         }

@@ -43,6 +43,7 @@
 mod analysis_entry;
 mod build;
 mod changed;
+mod conventions;
 mod correlation;
 mod costs;
 mod data;
@@ -64,6 +65,7 @@ mod joint;
 mod lines;
 mod loss;
 mod model;
+mod named_values;
 mod options;
 mod place;
 mod price;
