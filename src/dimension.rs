@@ -39,6 +39,8 @@ pub(crate) struct Convention {
     pub(crate) rss_factor: Option<RssFactor>,
     /// The part of its half band by which its mean may be off; None for the usual one.
     pub(crate) mean_shift: Option<f64>,
+    /// Degrees of freedom of its standard uncertainty; None where nothing is said of them.
+    pub(crate) degrees: Option<f64>,
     /// The lots of its process; None where that follows from the distribution.
     pub(crate) lot: Option<Lot>,
 }

@@ -64,7 +64,7 @@ class Dimension(_Entry):
         sigma a dimension is constant.
     distribution
         The name of a kind, a dict with its parameters, a frozen distribution of scipy.stats, or a 1-D array of measured values.
-    limits, fit, position, unit, sigma, sigmas, cp, cpk, side, drift, process, shift, rss_factor, mean_shift, moments,
+    limits, fit, position, unit, sigma, sigmas, cp, cpk, side, drift, process, shift, rss_factor, mean_shift, degrees, moments,
     measured, column, model, step
         The keys of a study file.
     """
@@ -91,6 +91,7 @@ class Dimension(_Entry):
         shift: Number | None = None,
         rss_factor: Number | None = None,
         mean_shift: Number | None = None,
+        degrees: Number | None = None,
         moments: Sequence[Number] | None = None,
         measured: str | None = None,
         column: str | None = None,
@@ -116,6 +117,7 @@ class Dimension(_Entry):
             "shift": shift,
             "rss_factor": rss_factor,
             "mean_shift": mean_shift,
+            "degrees": degrees,
             "moments": moments,
             "measured": measured,
             "column": column,

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use serde::{Serialize, Serializer};
 
+use super::coverage_intervals::CoverageIntervals;
 use super::errors::of_yield;
 use super::inspection_risks::InspectionRisks;
 use super::linear::Linear;
@@ -82,6 +83,8 @@ pub struct CharacteristicAnalysis {
     #[serde(rename = "normal_fit")]
     #[cfg_attr(feature = "cli", schemars(with = "Option<CapabilityShape>"))]
     pub normal: Option<Capability>,
+    /// Intervals that hold the share of assemblies that was asked for; None where none was.
+    pub coverage: Option<CoverageIntervals>,
     /// The risks of its inspection; None without a gauge.
     pub inspection: Option<InspectionRisks>,
     /// How far the results may be off because measured dimensions are known by samples; None where there are none.
@@ -367,6 +370,7 @@ impl CharacteristicAnalysis {
             normal,
             law,
             sampling: None,
+            coverage: None,
             inspection: None,
             characteristic,
             worst_case: middle

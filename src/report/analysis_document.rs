@@ -227,9 +227,23 @@ impl CharacteristicAnalysis {
             section.note(format!("the surface law is counted at {points} points of the surface"));
         }
         section.table(self.quantile_data());
+        self.covered(section);
         if self.limited() {
             self.kept(section);
         }
+    }
+
+    /// The intervals that hold a share of assemblies.
+    fn covered(&self, section: &mut Section) {
+        let Some(of) = &self.coverage else { return };
+        let share = plain(100.0 * of.probability);
+        let scale = self.sigma().filter(|sigma| *sigma > 0.0);
+        let interval = |ends: [f64; 2]| {
+            let [from, to] = ends.map(|end| scale.map_or_else(|| plain(end), |sigma| beside(end, sigma)));
+            format!("{from} .. {to}")
+        };
+        section.note(format!("{share} % lie within {} (equal tails)", interval(of.equal_tails)));
+        section.note(format!("  the shortest such interval is {}, by {}", interval(of.shortest), of.source.words()));
     }
 
     /// The density, over the sample of the model where there is one.

@@ -5,6 +5,7 @@ mod allocation_document;
 mod analysis_document;
 mod analysis_tables;
 mod bars;
+mod budget;
 mod compare;
 #[cfg(test)]
 mod complete;
@@ -32,10 +33,12 @@ pub use crate::document::{Detail, Document, Style};
 pub use allocation::{AllocationReport, WrittenAnew};
 #[cfg(feature = "cli")]
 pub(crate) use analysis_document::law_text;
+pub(crate) use budget::budget_document;
+pub use budget::{Budget, BudgetRow};
 pub use compare::CompareReport;
 pub use csv::{CsvFile, csv_files};
 #[cfg(feature = "cli")]
-pub(crate) use csv::{csv_file_names, csv_tables, stack_csv, stack_csv_of_studies};
+pub(crate) use csv::{budget_csv_of_studies, csv_file_names, csv_tables, stack_csv, stack_csv_of_studies};
 pub use difference::DifferenceReport;
 pub(crate) use head::Head;
 pub use rare::RareReport;
@@ -97,6 +100,8 @@ pub struct DimensionReport {
     pub mean: f64,
     /// Its standard deviation.
     pub sigma: f64,
+    /// Degrees of freedom of its standard uncertainty; null where the study says none.
+    pub degrees: Option<f64>,
 }
 
 /// A warning.
@@ -174,6 +179,7 @@ impl DimensionReport {
             distribution: dimension.distribution().map(|distribution| distribution.name()),
             mean: dimension.mean(),
             sigma: dimension.sigma(),
+            degrees: dimension.convention().degrees,
         }
     }
 

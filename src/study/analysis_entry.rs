@@ -69,6 +69,9 @@ pub(super) struct AnalysisEntry {
     /// The part of every half band by which its mean may be off in the mean-shift RSS, from 0 to 1.
     #[cfg_attr(feature = "cli", schemars(extend("default" = 0.5)))]
     pub(super) mean_shift: Option<Spanned<f64>>,
+    /// The share that coverage intervals and expanded uncertainties hold, from 0.5 to below 1: every characteristic then has the interval with
+    /// equal tails and the shortest.
+    pub(super) coverage: Option<Spanned<f64>>,
     /// How many check points of a costly model verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
     /// verification.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::VERIFY)))]

@@ -123,6 +123,7 @@ fn merged(given: AnalysisEntry, own: AnalysisEntry) -> AnalysisEntry {
         verify: given.verify.or(own.verify),
         target_joint_yield: given.target_joint_yield.or(own.target_joint_yield),
         products: given.products.or(own.products),
+        coverage: given.coverage.or(own.coverage),
         rss_factor: given.rss_factor.or(own.rss_factor),
         mean_shift: given.mean_shift.or(own.mean_shift),
     }

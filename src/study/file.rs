@@ -108,7 +108,7 @@ pub(super) struct StudyFile {
     /// Capabilities of processes, by name, for dimensions with that `process`: turning = { cp = 1.33, cpk = 1.0 }; or processes = "shop.toml", a file
     /// of such lines.
     #[serde(default, rename = "processes")]
-    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::processes"))]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::processes::<DistributionEntry>"))]
     pub(super) _processes: Option<IgnoredAny>,
     /// A built-in model or an external program, evaluated next to the formulas.
     pub(super) model: Option<Spanned<ModelEntry>>,
@@ -245,6 +245,8 @@ pub(super) struct DimensionEntry {
     pub(super) rss_factor: Option<Spanned<f64>>,
     /// The part of its half band by which its mean may be off in the mean-shift RSS, from 0 to 1; that of [analysis] unless given.
     pub(super) mean_shift: Option<Spanned<f64>>,
+    /// Degrees of freedom of its standard uncertainty, for the budget that `analyze --gum` prints; infinite unless given.
+    pub(super) degrees: Option<Spanned<f64>>,
     /// How far the mean lies off the middle of the band; of a kind with a tail, off the nominal.
     #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
     pub(super) shift: Option<Spanned<f64>>,

@@ -179,7 +179,9 @@ pub(super) fn configurations(_: &mut SchemaGenerator) -> Schema {
 }
 
 /// Lines of processes, or a file of such lines; keys as at a dimension.
-pub(super) fn processes(_: &mut SchemaGenerator) -> Schema {
+pub(super) fn processes<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
+    let mut law = distribution::<T>(generator).to_value();
+    law["description"] = json!("How it is distributed.");
     let number = |what: &str| json!({ "description": what, "type": "number" });
     let process = json!({
         "type": "object",
@@ -190,7 +192,7 @@ pub(super) fn processes(_: &mut SchemaGenerator) -> Schema {
             "sigmas": number("How many sigma half a band has."),
             "drift": number("How far the mean of a lot lies off the mean of all, at most."),
             "side": { "description": "Where the mean lies.", "type": "string", "enum": ["+", "-"] },
-            "distribution": { "description": "How it is distributed.", "anyOf": [{ "type": "string" }, { "type": "object" }] },
+            "distribution": law,
         },
         "additionalProperties": false,
     });

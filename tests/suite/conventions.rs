@@ -151,6 +151,31 @@ fn a_process_places_the_mean() {
     assert_eq!(one(centred).six_sigma, None);
 }
 
+/// With half the tolerance cp and cpk are the same, in the problem and in the study written anew.
+#[test]
+fn capabilities_stay_where_a_tolerance_changes() {
+    for (line, mean, sigma) in [
+        ("cp = 2, cpk = 1.5, side = \"+\"", 10.2 + 0.075, 0.05),
+        ("cp = 2, cpk = 1.5", 10.2, f64::hypot(0.05, 0.075)),
+        // A drift and a shift stay as they are.
+        ("cp = 2, drift = 0.3", 10.2, f64::hypot(0.05, 0.3 / 3f64.sqrt())),
+        ("cp = 2, shift = 0.05, drift = 0.3", 10.25, f64::hypot(0.05, 0.3 / 3f64.sqrt())),
+    ] {
+        let text = format!(
+            "[dimensions]\na = {{ nominal = 10, tolerance = [-0.4, 0.8], {line} }}\n[characteristics]\ny = {{ formula = \"2*a\" }}\n"
+        );
+        let study = parse(&text).unwrap();
+        let half = study.problem.dimensions()[0].scaled(0.5).unwrap().unwrap();
+        let wanted = study.problem.clone().with_dimensions(vec![half]).unwrap();
+        let written = parse(&study.rewritten(&wanted).unwrap().text).unwrap();
+        for problem in [&wanted, &written.problem] {
+            let found = &problem.dimensions()[0];
+            close(found.mean(), mean, 1e-14, 1.0);
+            relative(found.sigma(), sigma, 1e-12);
+        }
+    }
+}
+
 const SHOP: &str = "turning = { cp = 2, cpk = 1.5, side = \"+\" }\nlapping = { sigma = 0.05, drift = 0.03 }\nsawing = { distribution = \"uniform\" }\n";
 
 /// A database of processes, in the study and beside it: the line's own keys win.
@@ -277,4 +302,116 @@ fn drifting_meets_its_limits() {
     let wide = Drifting::new(0.0, 1.0, 1e4).unwrap();
     near(&wide, 5e3, 0.25);
     relative(wide.sigma(), (1.0f64 + 1e8 / 3.0).sqrt(), 1e-15);
+}
+
+/// GUM H.1: the contributions, u_c, effective degrees, factor and expanded uncertainty as printed.
+#[test]
+fn a_printed_budget_of_uncertainty() {
+    let case = case("gum-h1");
+    let study = Study::read(&repository("examples/measurement-uncertainty/gauge-block-gum.toml")).unwrap();
+    let analysis = analyze(&study.problem, &study.options).unwrap();
+    let budget = Report::of(&study.problem, &analysis, About::default()).budgets().remove(0);
+    let printed = |key: &str| case["printed"][key]["value"].as_f64().unwrap();
+    let of = |name: &str| budget.rows.iter().find(|row| row.dimension.name == name).unwrap();
+    let terms = case["inputs"]["c u"].as_array().unwrap();
+    let all = ["LS", "D0", "d1", "d2", "alpha", "theta0", "dalpha", "dtheta"];
+    for (name, printed) in all.into_iter().zip(terms) {
+        // Printed to 0.1 nm, the last two from rounded factors: 0.58e-6 for 1e-6/sqrt 3 moves one by 0.4 %.
+        close(of(name).contribution.unwrap(), printed.as_f64().unwrap(), 0.1, 1.0);
+    }
+    for (name, printed) in all.into_iter().zip(case["inputs"]["degrees"].as_array().unwrap()) {
+        assert_eq!(of(name).degrees, printed.as_f64().unwrap_or(f64::INFINITY), "{name}");
+    }
+    close(budget.combined.unwrap(), printed("u_c"), 0.5, 1.0);
+    let degrees = budget.degrees.unwrap();
+    assert_eq!(degrees.floor(), printed("effective degrees"));
+    // Of the printed terms: they are rounded to 0.1 of 32, to the fourth power.
+    relative(degrees, case["exact"]["effective degrees"].as_f64().unwrap(), 0.02);
+    // scipy's quantile; the inversion of the library is accurate to 1e-8.
+    relative(budget.factor.unwrap(), case["exact"]["coverage factor"].as_f64().unwrap(), 1e-7);
+    close(budget.expanded.unwrap(), printed("expanded"), 0.5, 1.0);
+    close(budget.estimate.unwrap(), 50_000_838.0, 0.5, 1.0);
+}
+
+/// By hand: a Student distribution counts with its scale, infinite degrees have the factor of the normal law, correlation takes the
+/// degrees away.
+#[test]
+fn budgets_by_hand() {
+    let budget = |text: &str| {
+        let study = parse(text).unwrap();
+        let analysis = analyze(&study.problem, &study.options).unwrap();
+        Report::of(&study.problem, &analysis, About::default()).budgets().remove(0)
+    };
+    let of = |a: &str, rest: &str| {
+        budget(&format!(
+            "[dimensions]\na = {{ nominal = 1, {a} }}\nb = {{ nominal = 1, sigma = 4 }}\n[characteristics]\ny = {{ formula = \"a - b\" }}\n{rest}"
+        ))
+    };
+    let plain = of("sigma = 3", "");
+    // Slopes of 1 are exact, so only roundings remain; 1.959963984540054 is the normal 97.5 % by mpmath.
+    relative(plain.combined.unwrap(), 5.0, 1e-12);
+    assert_eq!((plain.degrees, plain.probability), (Some(f64::INFINITY), 0.95));
+    relative(plain.expanded.unwrap(), 5.0 * 1.959_963_984_540_054, 1e-12);
+    // (5/3)^4 10 = 77.16.
+    for a in ["sigma = 3, degrees = 10", "distribution = { kind = \"student\", degrees = 10, scale = 3 }"] {
+        let counted = of(a, "");
+        relative(counted.combined.unwrap(), 5.0, 1e-12);
+        relative(counted.degrees.unwrap(), 10.0 * (5.0f64 / 3.0).powi(4), 1e-11);
+    }
+    let correlated = of("sigma = 3, degrees = 10", "[[correlation]]\nbetween = [\"a\", \"b\"]\nvalue = 0.5\n");
+    // 9 + 16 - 2 0.5 3 4.
+    relative(correlated.combined.unwrap(), 13f64.sqrt(), 1e-12);
+    assert_eq!((correlated.degrees, correlated.factor, correlated.expanded), (None, None, None));
+    assert_eq!(of("sigma = 3", "[analysis]\ncoverage = 0.9\n").probability, 0.9);
+}
+
+/// Intervals that hold 95 %: of a gamma distribution in closed form, of four rectangles as GUM Supplement 1, table 3, prints it.
+#[test]
+fn coverage_intervals_hold_their_share() {
+    let gamma = "[dimensions]\na = { nominal = 3, sigma = 1.7320508075688772, distribution = { kind = \"gamma\", origin = 0 } }\n\
+                 [characteristics]\ny = { formula = \"a\" }\n[analysis]\ncoverage = 0.95\n";
+    let coverage = |text: &str| {
+        let study = parse(text).unwrap_or_else(|error| panic!("{error}"));
+        analyze(&study.problem, &study.options).unwrap().characteristics.remove(0).coverage.unwrap()
+    };
+    let ends = |value: &serde_json::Value| [0, 1].map(|i| value[i].as_f64().unwrap());
+    let exact = &case("shortest-gamma")["exact"];
+    let found = coverage(gamma);
+    for (found, expected) in found.equal_tails.into_iter().zip(ends(&exact["symmetric"])) {
+        // Quantiles are sought to 1e-7 sigma.
+        close(found, expected, 1e-6, 1.0);
+    }
+    let shortest = ends(&exact["shortest"]);
+    // The width is flat about its least: it is known to 1e-6, and the place to its root.
+    close(found.shortest[1] - found.shortest[0], shortest[1] - shortest[0], 1e-5, 1.0);
+    found.shortest.into_iter().zip(shortest).for_each(|(found, expected)| close(found, expected, 5e-3, 1.0));
+    let four = "[dimensions]\na = { nominal = 0, tolerance = 1.7320508075688772, distribution = \"uniform\" }\n\
+                b = { nominal = 0, tolerance = 1.7320508075688772, distribution = \"uniform\" }\n\
+                c = { nominal = 0, tolerance = 1.7320508075688772, distribution = \"uniform\" }\n\
+                d = { nominal = 0, tolerance = 1.7320508075688772, distribution = \"uniform\" }\n\
+                [characteristics]\ny = { formula = \"a + b + c + d\" }\n[analysis]\ncoverage = 0.95\n";
+    let printed = &case("gum-s1-9-2-3")["printed"]["95 % interval half width"];
+    let half = printed["value"].as_f64().unwrap();
+    for [low, high] in [coverage(four).equal_tails, coverage(four).shortest] {
+        close(high, half, printed["tolerance"].as_f64().unwrap(), 1.0);
+        close(low, -half, printed["tolerance"].as_f64().unwrap(), 1.0);
+    }
+}
+
+#[test]
+fn uncertainties_at_fault() {
+    let text = |a: &str, analysis: &str| {
+        format!(
+            "[dimensions]\na = {{ nominal = 1, {a} }}\n[characteristics]\ny = {{ formula = \"a\" }}\n[analysis]\n{analysis}\n"
+        )
+    };
+    for (a, analysis, expected) in [
+        ("sigma = 1, degrees = 0", "", "dimensions.a.degrees: 0 is not 1 or above"),
+        ("distribution = { kind = \"student\", degrees = 5, scale = 1 }, degrees = 5", "", "say the same thing"),
+        ("sigma = 1", "coverage = 95", "analysis.coverage: 95 is not from 0.5 to below 1"),
+        ("sigma = 1", "coverage = 0.4", "analysis.coverage: 0.4 is not from 0.5 to below 1"),
+    ] {
+        let found = faults(&[&text(a, analysis)]);
+        assert!(found.contains(expected), "{a} {analysis}: {found}");
+    }
 }

@@ -29,8 +29,9 @@ use super::circles::{Sources, code, paths, uses};
 ///
 /// `TwoValues` and its `new` came with play that lies on either side.
 ///
-/// `Drifting` and its `new` are processes whose mean drifts.
-const MOST: usize = 573;
+/// `Drifting` and its `new` are processes whose mean drifts. Five came with measurement uncertainty: `CoverageIntervals` and their option, `Budget`,
+/// `BudgetRow`, and `Report::budgets`.
+const MOST: usize = 578;
 
 const KINDS: &[&str] = &["fn", "const fn", "struct", "enum", "trait", "const", "static", "type"];
 

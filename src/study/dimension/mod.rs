@@ -108,7 +108,21 @@ fn convention(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Result<Con
         }
         _ => None,
     };
-    Ok(Convention { rss_factor, mean_shift, lot })
+    Ok(Convention { rss_factor, mean_shift, degrees: degrees(entry)?, lot })
+}
+
+/// Degrees of freedom for a budget of uncertainty: as given, or those of a Student distribution.
+fn degrees(entry: &DimensionEntry) -> Result<Option<f64>, Fault> {
+    let of_law = entry.distribution.as_ref().and_then(|law| law.get_ref().degrees.as_ref());
+    let Some(given) = &entry.degrees else { return Ok(of_law.map(|degrees| *degrees.get_ref())) };
+    if of_law.is_some() {
+        let why = "say the same thing: leave one out";
+        return Err(fault(given.span(), "degrees", conflict("distribution.degrees", "degrees", why)));
+    }
+    match *given.get_ref() {
+        value if value >= 1.0 => Ok(Some(value)),
+        value => Err(fault(given.span(), "degrees", StudyFault::OutOfRange { value, range: "1 or above" })),
+    }
 }
 
 /// As given, or of the model, or the middle of the limits, or the mean of what was measured.
