@@ -1,7 +1,7 @@
 //! What processes hold, and the inflations of the RSS: printed stacks, and every form by hand.
 
 use sensitol::distribution::{Distribution, Drifting};
-use sensitol::report::{About, Report, TotalKind};
+use sensitol::report::{About, Detail, Report, Style, ToDocument, TotalKind, text};
 use sensitol::study::StudyText;
 use sensitol::{CharacteristicAnalysis, Method, Options, Study, analyze};
 
@@ -76,11 +76,17 @@ fn a_printed_calibration_of_a_gauge_block() {
     let printed =
         |key: &str| [&case["printed"][key]["value"], &case["printed"][key]["tolerance"]].map(|v| v.as_f64().unwrap());
     let study = Study::read(&repository("examples/measurement-uncertainty/gauge-block.toml")).unwrap();
-    let options = Options::from(Method::Full).with_verify(0);
+    let options = Options::from(Method::Full).with_verify(0).with_coverage(0.99);
     let found = analyze(&study.problem, &options).unwrap().characteristics.remove(0);
     let moments = found.moments.unwrap();
     let ([mean, of_mean], [sigma, of_sigma]) = (printed("mean"), printed("sigma"));
     assert!((moments.mean() - mean).abs() <= of_mean && (moments.sigma() - sigma).abs() <= of_sigma, "{moments:?}");
+    for interval in [found.coverage.unwrap().equal_tails, found.coverage.unwrap().shortest] {
+        for (end, printed) in interval.into_iter().zip(case["printed"]["99 % interval"].as_array().unwrap()) {
+            // Printed to 1 nm. 65 536 points leave 0.7 nm at a tail of 0.5 %; the shortest is flat about its place.
+            close(end, printed["value"].as_f64().unwrap(), 3.0, 1.0);
+        }
+    }
     // The printed ends are whole nanometres: half of one moves a share of 99 % by 4e-4, and 65 536 counted points by as much.
     let law = found.surface_law.unwrap();
     close(1.0 - law.below.unwrap().value - law.above.unwrap().value, 0.99, 1.5e-3, 1.0);
@@ -414,4 +420,23 @@ fn uncertainties_at_fault() {
         let found = faults(&[&text(a, analysis)]);
         assert!(found.contains(expected), "{a} {analysis}: {found}");
     }
+}
+
+/// Indices by quantiles are those of a process where it is assumed, and those of a performance where it was measured.
+#[test]
+fn measured_values_have_a_performance() {
+    let report = |line: &str| {
+        let written = format!(
+            "[dimensions]\na = {{ {line} }}\n[characteristics]\ny = {{ formula = \"a\", lower = 0, upper = 3 }}\n"
+        );
+        let values: String = (0..40).map(|i| format!("{}\n", 1.0 + 0.01 * f64::from((7 * i) % 40))).collect();
+        let study = Study::from_text(StudyText::toml("study.toml", written).with_file("a.csv", format!("a\n{values}")));
+        let study = study.unwrap_or_else(|error| panic!("{error}"));
+        let analysis = analyze(&study.problem, &Options::from(Method::SecondOrder)).unwrap();
+        let report = Report::of(&study.problem, &analysis, About::default());
+        text(&report.document(), Style { detail: Detail::Full, unicode: true, color: false, width: 100 })
+    };
+    let (assumed, measured) = (report("nominal = 1, tolerance = 0.3"), report("measured = \"a.csv\", nominal = 1"));
+    assert!(assumed.contains("by quantiles (ISO 22514-2): Cp ") && !assumed.contains("Ppk"), "{assumed}");
+    assert!(measured.contains("by quantiles (ISO 22514-2): Pp ") && measured.contains("Ppk"), "{measured}");
 }
