@@ -32,6 +32,40 @@ pub struct Dimension {
     held: Option<HeldEnd>,
     #[cfg_attr(not(feature = "report"), allow(dead_code, reason = "reports show them"))]
     labels: Labels,
+    convention: Convention,
+}
+
+/// How the inflations of the RSS and a budget of uncertainty take a dimension beside its band.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Convention {
+    /// The factor of its part; None for the usual one.
+    pub(crate) rss_factor: Option<RssFactor>,
+    /// The part of its half band by which its mean may be off; None for the usual one.
+    pub(crate) mean_shift: Option<f64>,
+    /// Degrees of freedom of its standard uncertainty; None where nothing is said of them.
+    pub(crate) degrees: Option<f64>,
+    /// The lots of its process; None where that follows from the distribution.
+    pub(crate) lot: Option<Lot>,
+}
+
+/// How the parts of one lot of a process lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Lot {
+    /// Their sigma, in half bands.
+    pub(crate) sigma: f64,
+    /// How far the mean of all lots lies off the middle, in half bands.
+    pub(crate) off: f64,
+    /// How much further the mean of one lot may lie off, in the dimension's unit: it stays where the tolerance changes.
+    pub(crate) further: f64,
+}
+
+/// The factor of a dimension in the inflated RSS.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum RssFactor {
+    /// This.
+    Factor(f64),
+    /// As worst case and RSS suggest.
+    Modified,
 }
 
 /// Why a dimension cannot be.
@@ -133,6 +167,7 @@ impl Dimension {
                 zone: None,
                 held: None,
                 labels: Labels::default(),
+                convention: Convention::default(),
             }),
             Err(fault) => Err(DimensionError { name, fault }),
         }
@@ -256,6 +291,29 @@ impl Dimension {
     pub fn within_zone(mut self, zone: impl Into<Arc<str>>) -> Self {
         self.zone = Some(zone.into());
         self
+    }
+
+    /// Taken so by the inflations of the RSS.
+    #[cfg_attr(not(feature = "study"), allow(dead_code))]
+    pub(crate) fn with_convention(self, convention: Convention) -> Self {
+        Self { convention, ..self }
+    }
+
+    /// How they take it.
+    pub(crate) fn convention(&self) -> &Convention {
+        &self.convention
+    }
+
+    /// Sigma of a lot, and how far its mean may lie off the middle of the band, in half bands.
+    pub(crate) fn lot(&self) -> [f64; 2] {
+        let ([lower, upper], half) = (self.reach(), self.half_band());
+        if half == 0.0 {
+            return [0.0; 2];
+        }
+        match self.convention.lot {
+            Some(lot) => [lot.sigma * half, lot.off + lot.further / half],
+            None => [self.sigma(), (self.mean() - self.nominal - 0.5 * (lower + upper)).abs() / half],
+        }
     }
 
     /// Its name.

@@ -64,7 +64,8 @@ class Dimension(_Entry):
         sigma a dimension is constant.
     distribution
         The name of a kind, a dict with its parameters, a frozen distribution of scipy.stats, or a 1-D array of measured values.
-    limits, fit, position, unit, sigma, sigmas, cp, shift, moments, measured, column, model, step
+    limits, fit, position, unit, sigma, sigmas, cp, cpk, side, drift, process, shift, rss_factor, mean_shift, degrees, moments,
+    measured, column, model, step
         The keys of a study file.
     description, part, drawing, revision, feature
         Texts that reports show beside the name.
@@ -85,7 +86,14 @@ class Dimension(_Entry):
         sigma: Number | None = None,
         sigmas: Number | None = None,
         cp: Number | None = None,
+        cpk: Number | None = None,
+        side: str | None = None,
+        drift: Number | None = None,
+        process: str | None = None,
         shift: Number | None = None,
+        rss_factor: Number | None = None,
+        mean_shift: Number | None = None,
+        degrees: Number | None = None,
         moments: Sequence[Number] | None = None,
         measured: str | None = None,
         column: str | None = None,
@@ -109,7 +117,14 @@ class Dimension(_Entry):
             "sigma": sigma,
             "sigmas": sigmas,
             "cp": cp,
+            "cpk": cpk,
+            "side": side,
+            "drift": drift,
+            "process": process,
             "shift": shift,
+            "rss_factor": rss_factor,
+            "mean_shift": mean_shift,
+            "degrees": degrees,
             "moments": moments,
             "measured": measured,
             "column": column,
@@ -209,6 +224,7 @@ class Characteristic(_Entry):
         lower: Number | None = None,
         upper: Number | None = None,
         target_yield: Number | None = None,
+        target_cpk: Number | None = None,
         require: Any = None,
         description: str | None = None,
         part: str | None = None,
@@ -220,7 +236,7 @@ class Characteristic(_Entry):
             raise TypeError(f"a formula is text, got {type(formula).__name__}; a function goes to Study(model=...)")
         keys = {"formula": formula, "unit": unit, "lower": lower, "upper": upper, "target_yield": target_yield}
         labels = {"description": description, "part": part, "drawing": drawing, "revision": revision, "feature": feature}
-        super().__init__({**keys, "require": require, **labels})
+        super().__init__({**keys, "target_cpk": target_cpk, "require": require, **labels})
 
 
 def plain(value: Any, path: str) -> Any:

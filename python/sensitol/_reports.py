@@ -453,6 +453,8 @@ class CharacteristicResult(Record):
 
     constant: bool
     """Whether it can depend on nothing that varies, so that its one value is all that there is."""
+    coverage: Optional[CoverageIntervals]
+    """Intervals that hold the share of assemblies that was asked for; None where none was."""
     cp: Optional[float]
     """Width of the limits by six sigma."""
     cp_percentile: Optional[float]
@@ -472,7 +474,7 @@ class CharacteristicResult(Record):
     feature: Optional[str]
     """The feature of the part, or its number on the drawing."""
     inflated_rss: Optional[float]
-    """1.5 times the RSS (Bender 1962, 1968)."""
+    """1.5 times the RSS (Bender 1962, 1968), or by the factors of the study."""
     inspection: Optional[InspectionRisks]
     """The risks of its inspection; None without a gauge."""
     interactions: List[Interaction]
@@ -533,6 +535,11 @@ class CharacteristicResult(Record):
     """Standard deviation."""
     sigma_level: Optional[float]
     """Sigmas of a normal beyond which, on one side, as many lie as are rejected."""
+    six_sigma: Optional[float]
+    """`sqrt(sum of (slope x sigma/(1 - k))^2)` with sigma of a lot and the shift `k` of its mean in half bands, by
+    `cpk`, `drift` or `shift` (Harry and Stewart 1988): a sigma, not an interval. None where every mean is in the
+    middle of its band, or one at its end.
+    """
     skewness: Optional[float]
     """Third standardised moment."""
     sobol: Optional[SobolIndices]
@@ -677,6 +684,19 @@ class Control(Record):
     """By how much standard errors have shrunk."""
 
 
+class CoverageIntervals(Record):
+    """Two intervals that hold a share `p` of all assemblies. Source: JCGM 101:2008, 5.3.2 to 5.3.4 and 7.7."""
+
+    equal_tails: List[float]
+    """With as many assemblies below as above."""
+    probability: float
+    """The share of assemblies that each holds."""
+    shortest: List[float]
+    """The shortest of all."""
+    source: Literal['proof', 'samples', 'surface-law', 'pearson']
+    """Where they come from: a surface that is trusted, else points of the model, else the Pearson fit."""
+
+
 class DesignPoint(Record):
     """The most likely assembly at a limit."""
 
@@ -691,6 +711,8 @@ class DimensionResult(Record):
 
     description: Optional[str]
     """A few words on its meaning."""
+    degrees: Optional[float]
+    """Degrees of freedom of its standard uncertainty; null where the study says none."""
     distribution: Optional[str]
     """The kind of its distribution; null when it does not vary."""
     drawing: Optional[str]
@@ -1804,7 +1826,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "AllocationResultRequirements": {"sampled": AllocationResultRequirementsSampled},
     "AnalysisResult": {"account": Account, "characteristic_correlation": OutputCorrelation, "characteristics": CharacteristicResult, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": Verified, "warnings": ReportedWarning},
     "Beyond": {"design_point": DesignPoint},
-    "CharacteristicResult": {"distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
+    "CharacteristicResult": {"coverage": CoverageIntervals, "distribution": Law, "error_estimate": ErrorEstimate, "inspection": InspectionRisks, "interactions": Interaction, "interactions_remainder": Remainder, "least_squares": Residual, "model_sampling": SampledModel, "normal_fit": Capability, "pearson_fit": Capability, "requirements": Judged, "sampling_interval": SamplingInterval, "sensitivities": Sensitivity, "sobol": SobolIndices, "surface_law": SurfaceLaw, "surrogate_sampling": Sampled, "verification": Verification, "worst_case": WorstCase},
     "ComparedCharacteristic": {"methods": ComparedMethod, "reference": SimulatedCharacteristic},
     "ComparedMethod": {"error_vs_reference": ErrorVsReference, "run": RunSummary},
     "ComparisonResult": {"characteristics": ComparedCharacteristic, "evaluator": EvaluatorSummary, "not_run": NotRun},

@@ -63,6 +63,8 @@ class Study:
     joint
         Blocks of dimensions that vary together as a whole: ``{"of": ["x", "y"], "law": "disc"}``, or measured parts, one a row:
         ``{"of": ["x", "y"], "measured": array}`` with an array of shape (parts, dimensions) or the name of a CSV file.
+    processes
+        Capabilities of processes, by name: ``{"turning": {"cp": 1.33, "cpk": 1.0}}``, or the name of a file with such lines.
     loss, setup, about, units
         The sections of a study file of these names.
 
@@ -91,6 +93,7 @@ class Study:
         analysis: Entries | None = None,
         configurations: Entries | None = None,
         joint: Iterable[Mapping[str, Any]] | None = None,
+        processes: Entries | str | None = None,
         loss: Entries | None = None,
         setup: Entries | None = None,
         about: Entries | None = None,
@@ -107,6 +110,7 @@ class Study:
         data["characteristics"] = _entries(characteristics, "characteristics", Characteristic, files)
         data["correlation"] = _correlation(correlation)
         data["joint"] = _joint(joint, files)
+        data["processes"] = processes
         data["costs"], data["loss"], data["setup"] = costs, loss, setup
         data["about"], data["units"] = about, units
         host: Model | None = None
@@ -304,7 +308,7 @@ class Study:
         model = self._model
         sections = (
             *("title", "constants", "formulas", "unknowns", "equations", "loops", "costs", "loss", "setup"),
-            *("about", "units", "analysis", "configurations"),
+            *("about", "units", "analysis", "configurations", "processes"),
         )
         for key, value in {**(entries or {}), **more}.items():
             if key in data.get("dimensions", {}):
@@ -603,8 +607,9 @@ class Study:
 
 def _on_disk(data: Mapping[str, Any], folder: Path, files: dict[str, bytes]) -> None:
     """Beside files in memory the engine looks for none in the folder: those that the study names there are read."""
-    for entry in [*data.get("dimensions", {}).values(), *(data.get("joint") or ())] if files else ():
-        name = entry.get("measured") if isinstance(entry, Mapping) else None
+    entries = [*data.get("dimensions", {}).values(), *(data.get("joint") or ())]
+    names = [entry.get("measured") for entry in entries if isinstance(entry, Mapping)]
+    for name in [*names, data.get("processes")] if files else ():
         if isinstance(name, str) and name not in files and os.path.isfile(os.path.join(folder, name)):
             with open(os.path.join(folder, name), "rb") as file:
                 files[name] = file.read()

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use serde::{Serialize, Serializer};
 
+use super::coverage_intervals::CoverageIntervals;
 use super::errors::of_yield;
 use super::inspection_risks::InspectionRisks;
 use super::linear::Linear;
@@ -82,6 +83,8 @@ pub struct CharacteristicAnalysis {
     #[serde(rename = "normal_fit")]
     #[cfg_attr(feature = "cli", schemars(with = "Option<CapabilityShape>"))]
     pub normal: Option<Capability>,
+    /// Intervals that hold the share of assemblies that was asked for; None where none was.
+    pub coverage: Option<CoverageIntervals>,
     /// The risks of its inspection; None without a gauge.
     pub inspection: Option<InspectionRisks>,
     /// How far the results may be off because measured dimensions are known by samples; None where there are none.
@@ -106,11 +109,14 @@ pub struct CharacteristicAnalysis {
     /// `sqrt(t'R t)` with `t` = slope x half band (three sigma where a dimension has no band) and the correlation `R`:
     /// without correlation the root of the sum of squares.
     pub rss: Option<f64>,
-    /// 1.5 times the RSS (Bender 1962, 1968).
+    /// 1.5 times the RSS (Bender 1962, 1968), or by the factors of the study.
     pub inflated_rss: Option<f64>,
     /// RSS with means that are off by half their half bands, 1.5 sigma of 3, all the wrong way:
     /// `0.5 sum of |slope| x half band + 0.5 rss` (Greenwood and Chase 1987 with m = 0.5).
     pub mean_shift_rss: Option<f64>,
+    /// `sqrt(sum of (slope x sigma/(1 - k))^2)` with sigma of a lot and the shift `k` of its mean in half bands, by `cpk`, `drift` or `shift`
+    /// (Harry and Stewart 1988): a sigma, not an interval. None where every mean is in the middle of its band, or one at its end.
+    pub six_sigma: Option<f64>,
     /// For every dimension of the problem, in order.
     pub sensitivities: Vec<Sensitivity>,
     /// The interactions examined, strongest first.
@@ -364,6 +370,7 @@ impl CharacteristicAnalysis {
             normal,
             law,
             sampling: None,
+            coverage: None,
             inspection: None,
             characteristic,
             worst_case: middle
@@ -374,6 +381,7 @@ impl CharacteristicAnalysis {
             rss: linear.map(|linear| linear.rss),
             inflated_rss: linear.map(|linear| linear.inflated_rss),
             mean_shift_rss: linear.map(|linear| linear.mean_shift_rss),
+            six_sigma: linear.and_then(|linear| linear.six_sigma),
             extremes: None,
             bounds: None,
             sensitivities,

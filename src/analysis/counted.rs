@@ -27,13 +27,8 @@ pub(super) struct Counted {
     pub(super) points: usize,
 }
 
-/// Of one characteristic, with its quantiles at these probabilities; None where its inputs cannot be drawn, or a part of its surface is unknown.
-pub(super) fn counted(
-    problem: &Problem,
-    outcome: &Outcome,
-    (c, seed): (usize, u64),
-    quantiles: [(LawTail, f64); 7],
-) -> Option<Counted> {
+/// Values of the surface of one characteristic in order; None where its inputs cannot be drawn, or a part of its surface is unknown.
+pub(super) fn points(problem: &Problem, outcome: &Outcome, (c, seed): (usize, u64)) -> Option<Vec<f64>> {
     let surrogate = outcome.fitted[c].surrogate.as_ref()?;
     let varying = outcome.plan.varying();
     let sampler = if varying.len() <= SOBOL_DIMENSIONS { Sampler::Sobol } else { Sampler::Random };
@@ -47,6 +42,17 @@ pub(super) fn counted(
     };
     let mut values = (0..blocks).into_par_iter().map(values).collect::<Option<Vec<_>>>()?.concat();
     values.sort_unstable_by(f64::total_cmp);
+    Some(values)
+}
+
+/// Of one characteristic, with its quantiles at these probabilities; None without [`points`].
+pub(super) fn counted(
+    problem: &Problem,
+    outcome: &Outcome,
+    (c, seed): (usize, u64),
+    quantiles: [(LawTail, f64); 7],
+) -> Option<Counted> {
+    let values = points(problem, outcome, (c, seed))?;
     let limits = problem.characteristics()[c].limits();
     let below = limits.lower().map(|lower| values.partition_point(|&y| y < lower));
     let above = limits.upper().map(|upper| values.len() - values.partition_point(|&y| y <= upper));

@@ -4,6 +4,8 @@ mod account;
 mod bootstrap;
 mod characteristic;
 mod counted;
+mod coverage;
+mod coverage_intervals;
 mod errors;
 mod fallback;
 mod indices;
@@ -44,6 +46,7 @@ pub use crate::surrogate::Relocation;
 pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, Verified};
 pub use account::Account;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
+pub use coverage_intervals::CoverageIntervals;
 pub use inspection_risks::InspectionRisks;
 pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
@@ -180,7 +183,7 @@ pub(crate) fn analyze_keeping(
     if options.verification(signature) > 0 && !run.stopped() {
         enclose_all(problem, &outcome, &mut characteristics, run);
     }
-    let joint = settle::settle(problem, &outcome, (options.densities, seed), &mut characteristics);
+    let joint = settle::settle(problem, &outcome, options, &mut characteristics);
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
     let correlations = outputs::correlations(problem, &outcome, options, &characteristics);
     // The extremes say nothing of a share.

@@ -11,6 +11,7 @@
 //! agree on is exact, and only what they differ by is sampled.
 
 use super::CharacteristicAnalysis;
+use super::coverage::covered;
 use super::inspected::inspected;
 use super::surface_law::{SurfaceShares, density};
 use super::unverified::error_of_shares;
@@ -19,7 +20,7 @@ use super::yield_source::YieldSource;
 use crate::capability::{Capability, Law, percentiles};
 use crate::characteristic::SpecLimits;
 use crate::law::{Branch, SurfaceLaw, joint_yield};
-use crate::method::{ErrorEstimate, Outcome};
+use crate::method::{ErrorEstimate, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::one_error;
 use crate::verification::Verified;
@@ -37,9 +38,10 @@ struct Rejected {
 pub(super) fn settle(
     problem: &Problem,
     outcome: &Outcome,
-    (densities, seed): (bool, u64),
+    options: &Options,
     characteristics: &mut [CharacteristicAnalysis],
 ) -> Option<Verified> {
+    let (densities, seed) = (options.densities, options.seed.unwrap_or(Options::SEED));
     let mut laws: Vec<Option<SurfaceLaw>> = Vec::new();
     for (c, one) in characteristics.iter_mut().enumerate() {
         one.pearson = one.capability;
@@ -53,6 +55,9 @@ pub(super) fn settle(
             let quantiles = one.surface_law.as_ref().and_then(|law| law.quantiles.as_ref());
             one.density = laws[c].as_ref().filter(|_| densities).and_then(|law| density(law, quantiles));
         }
+        one.coverage = options.coverage.and_then(|probability| {
+            covered(problem, outcome, (c, seed), one, (probability, follows_from_a_surface(one)))
+        });
         let Some(found) = rejected(problem, outcome, c, one, laws[c].as_ref()) else { continue };
         one.yield_source = one.characteristic.limits().exist().then_some(found.source);
         one.capability = capability(one, found.beyond);

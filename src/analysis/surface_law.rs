@@ -207,6 +207,18 @@ pub(crate) fn surface_law(problem: &Problem, outcome: &Outcome, c: usize) -> Opt
     Some(law_over(&surrogate, &inputs, outcome.plan.inputs().correlation()))
 }
 
+/// The law of a characteristic's surface beside what it leaves out, as its quantiles are reported; None as [`surface_law`].
+pub(super) fn full_law(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Result<SurfaceLaw, LawError>> {
+    let unexplained = outcome.climbed.as_ref().and_then(|climbed| climbed.unexplained(c));
+    let (surrogate, inputs) = surface(problem, outcome, c, unexplained)?;
+    let correlation = outcome.plan.inputs().correlation();
+    if has_too_many_atoms(&surrogate, &inputs, correlation) {
+        return None;
+    }
+    let limits = problem.characteristics()[c].limits();
+    Some(law(&surrogate, &inputs, correlation, (points(&surrogate), limits.exist())))
+}
+
 /// The law of a surface over these inputs, with as many points as reports take.
 pub(crate) fn law_over(
     surrogate: &Surrogate,
@@ -289,22 +301,32 @@ pub(super) fn density(law: &SurfaceLaw, quantiles: Option<&[LawFigure; 7]>) -> O
 /// All quantiles of reports, sought from those of the Pearson fit, or of a normal distribution where nothing else has the moments; None
 /// where one of them is unknown.
 fn quantiles(law: &SurfaceLaw, fit: Option<&Law>) -> Option<[LawFigure; 7]> {
+    let found = law.quantiles(&sought(law, fit, &QUANTILES));
+    let known = found.iter().all(|figure| figure.value.is_finite());
+    found.try_into().ok().filter(|_| known)
+}
+
+/// Quantiles with these tails and probabilities, at most one half each; None where one of them is unknown.
+pub(super) fn quantiles_at(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Option<Vec<f64>> {
+    let found = law.quantiles(&sought(law, fit, of)).into_iter();
+    found.map(|figure| Some(figure.value).filter(|value| value.is_finite())).collect()
+}
+
+fn sought(law: &SurfaceLaw, fit: Option<&Law>, of: &[(LawTail, f64)]) -> Vec<Sought> {
     let normal = || Pearson::normal(law.mean(), law.sigma()).ok();
     let start = match fit {
         Some(Law::Pearson(fit)) => Some(fit.as_ref().clone()),
         _ => normal(),
     };
-    let sought = QUANTILES.map(|(tail, p)| {
+    let one = |&(tail, p): &(LawTail, f64)| {
         let near = start.as_ref().map(|fit| match tail {
             LawTail::Lower => fit.quantile(p),
             LawTail::Upper => fit.upper_quantile(p),
         });
         let density = start.as_ref().zip(near).map_or(f64::NAN, |(fit, near)| fit.pdf(near));
         Sought { tail, p, near: near.unwrap_or(f64::NAN), density }
-    });
-    let found = law.quantiles(&sought);
-    let known = found.iter().all(|figure| figure.value.is_finite());
-    found.try_into().ok().filter(|_| known)
+    };
+    of.iter().map(one).collect()
 }
 
 /// The results of the surface distribution, as they are written.

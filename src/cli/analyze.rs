@@ -21,7 +21,9 @@ use crate::document::terminal::text;
 use crate::document::{Detail, Style};
 use crate::method::Narrow;
 use crate::report::html::{WhatIf, analyze_html};
-use crate::report::{Report, analyze_xlsx, csv_file_names, csv_files, stack_csv, stack_document};
+use crate::report::{
+    Report, analyze_xlsx, budget_csv_of_studies, budget_document, csv_file_names, csv_files, stack_csv, stack_document,
+};
 use crate::study::Study;
 use crate::warning::{Counted, Warning};
 
@@ -84,6 +86,13 @@ impl Beside {
 }
 
 pub(super) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> String {
+    let budgets = || budget_document(&report.budgets());
+    match asked.gum {
+        Some(StackArg::Text) => return text(&budgets(), look.style(&asked.output)),
+        Some(StackArg::Csv) => return budget_csv_of_studies(&[(String::new(), report.budgets())]),
+        Some(StackArg::Markdown) => return markdown(&budgets()),
+        None => {}
+    }
     match asked.stack {
         None if asked.output.json && look.verbose => json(report),
         None if asked.output.json => json(&report.clone().shortened()),

@@ -188,6 +188,10 @@ pub(super) struct AnalyzeArgs {
     #[arg(long, value_name = "FORMAT", conflicts_with = "json", help_heading = OUTPUT)]
     pub(super) stack: Option<StackArg>,
 
+    /// Print the budget of measurement uncertainty of every characteristic instead of the report: text, csv or markdown
+    #[arg(long, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text", conflicts_with_all = ["json", "stack", "summary", "compare"], help_heading = OUTPUT)]
+    pub(super) gum: Option<StackArg>,
+
     /// Write the report as one HTML page, in which other tolerances can be tried; several studies: a folder of pages, STUDY.html
     #[arg(long, value_name = "FILE.html", help_heading = OUTPUT)]
     pub(super) html: Option<PathBuf>,

@@ -117,7 +117,7 @@ pub(super) enum Failure {
     Table { reason: String },
     #[error("{reason}")]
     Workbook { reason: String },
-    #[error("--check has nothing to check: no characteristic asked for has a target_yield or a require")]
+    #[error("--check has nothing to check: no characteristic asked for has a target_yield, a target_cpk or a require")]
     NothingToCheck,
     #[error("--pairs {text}: {fault}")]
     Pairs { text: String, fault: &'static str },

@@ -15,7 +15,7 @@ use super::interrupt;
 use super::output::{Destination, Look, error, json};
 use super::study::ALL;
 use crate::document::terminal::text;
-use crate::report::{Report, Stack, stack_csv_of_studies};
+use crate::report::{Budget, Report, Stack, budget_csv_of_studies, stack_csv_of_studies};
 use crate::study::{Externals, Study};
 use crate::summary::StopReason;
 use crate::warning::{Counted, Warning};
@@ -234,17 +234,23 @@ struct Printer<'a> {
     text: String,
     entries: Vec<Entry>,
     stacks: Vec<(String, Vec<Stack>)>,
+    budgets: Vec<(String, Vec<Budget>)>,
     /// Every configuration with its report, for the rows in the end.
     rows: Vec<(String, Report)>,
     shown: usize,
 }
 
+/// The format of a table that is asked for in place of the report.
+fn table(asked: &AnalyzeArgs) -> Option<StackArg> {
+    asked.stack.or(asked.gum)
+}
+
 impl<'a> Printer<'a> {
     fn open(asked: &'a AnalyzeArgs, look: Look<'a>, files: &mut Files) -> Result<Self, Failure> {
-        let whole = asked.output.json || asked.output.output.is_some() || asked.stack == Some(StackArg::Csv);
+        let whole = asked.output.json || asked.output.output.is_some() || table(asked) == Some(StackArg::Csv);
         let destination = whole.then(|| files.output(&asked.output)).transpose()?;
-        let (text, entries, stacks, rows) = (String::new(), Vec::new(), Vec::new(), Vec::new());
-        Ok(Self { asked, look, destination, text, entries, stacks, rows, shown: 0 })
+        let (text, entries, stacks, budgets, rows) = (String::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { asked, look, destination, text, entries, stacks, budgets, rows, shown: 0 })
     }
 
     fn show(&mut self, name: &str, report: &Report) -> Result<(), Failure> {
@@ -256,7 +262,11 @@ impl<'a> Printer<'a> {
             self.entries.push(Entry { study: name.to_owned(), outcome });
             return Ok(());
         }
-        let heading = match self.asked.stack {
+        let heading = match table(self.asked) {
+            Some(StackArg::Csv) if self.asked.gum.is_some() => {
+                self.budgets.push((name.to_owned(), report.budgets()));
+                return Ok(());
+            }
             Some(StackArg::Csv) => {
                 self.stacks.push((name.to_owned(), report.stacks()));
                 return Ok(());
@@ -277,7 +287,7 @@ impl<'a> Printer<'a> {
 
     /// Keeps the report of a configuration for its row.
     fn keep(&mut self, configuration: Option<&str>, report: &Report) {
-        let shown = !self.asked.output.json && self.asked.stack.is_none();
+        let shown = !self.asked.output.json && table(self.asked).is_none();
         self.rows.extend(configuration.filter(|_| shown).map(|name| (name.to_owned(), report.clone())));
     }
 
@@ -298,7 +308,8 @@ impl<'a> Printer<'a> {
             }
         }
         let Some(destination) = self.destination.filter(|_| self.shown > 0) else { return Ok(()) };
-        destination.write(&match self.asked.stack {
+        destination.write(&match table(self.asked) {
+            Some(StackArg::Csv) if self.asked.gum.is_some() => budget_csv_of_studies(&self.budgets),
             Some(StackArg::Csv) => stack_csv_of_studies(&self.stacks),
             _ if self.asked.output.json => json(&self.entries),
             _ => self.text,

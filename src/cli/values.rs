@@ -190,7 +190,7 @@ pub(super) enum DerivativesArg {
     Difference,
 }
 
-/// How a stack-up table is written.
+/// How a stack-up table or a budget is written.
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub(super) enum StackArg {
     /// For people

@@ -51,6 +51,8 @@ pub struct Options {
     pub verify: Option<usize>,
     /// The share of assemblies that must keep the limits of all characteristics at once.
     pub target_joint_yield: Option<f64>,
+    /// The share that coverage intervals hold, from 0.5 to below 1; without it there are none.
+    pub coverage: Option<f64>,
     /// Whether the densities of surface laws are tabulated, for those who draw them.
     pub densities: bool,
     /// Whether figures of a cheap model take the place of those of a surface that it refutes, as `auto` has it.
@@ -259,6 +261,13 @@ impl Options {
         self
     }
 
+    /// With the intervals that hold this share of assemblies, from 0.5 to below 1.
+    #[must_use]
+    pub fn with_coverage(mut self, share: f64) -> Self {
+        self.coverage = Some(share);
+        self
+    }
+
     /// With a table of the density of every surface law, or without one.
     #[must_use]
     pub fn with_densities(mut self, tabulated: bool) -> Self {
@@ -291,6 +300,7 @@ impl Default for Options {
             derivatives: None,
             verify: None,
             target_joint_yield: None,
+            coverage: None,
             densities: false,
             model_figures: false,
         }

@@ -229,9 +229,23 @@ impl CharacteristicAnalysis {
             section.note(format!("the surface law is counted at {points} points of the surface"));
         }
         section.table(self.quantile_data());
+        self.covered(section);
         if self.limited() {
             self.kept(section);
         }
+    }
+
+    /// The intervals that hold a share of assemblies.
+    fn covered(&self, section: &mut Section) {
+        let Some(of) = &self.coverage else { return };
+        let share = plain(100.0 * of.probability);
+        let scale = self.sigma().filter(|sigma| *sigma > 0.0);
+        let interval = |ends: [f64; 2]| {
+            let [from, to] = ends.map(|end| scale.map_or_else(|| plain(end), |sigma| beside(end, sigma)));
+            format!("{from} .. {to}")
+        };
+        section.note(format!("{share} % lie within {} (equal tails)", interval(of.equal_tails)));
+        section.note(format!("  the shortest such interval is {}, by {}", interval(of.shortest), of.source.words()));
     }
 
     /// The density, over the sample of the model where there is one.
@@ -295,7 +309,10 @@ impl CharacteristicAnalysis {
         lines(self.requirements()).for_each(|line| section.note(line));
         self.inspected(section);
         let mut detail = Vec::new();
-        let quantiles = join(vec![named("Cp", of(|of| of.cp_percentile)), named("Cpk", of(|of| of.cpk_percentile))]);
+        // Of measured values they are performance indices, not those of a process in control.
+        let names = if self.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
+        let indices = [of(|of| of.cp_percentile), of(|of| of.cpk_percentile)];
+        let quantiles = join(names.into_iter().zip(indices).map(|(name, index)| named(name, index)).collect());
         if !quantiles.is_empty() {
             detail.note(format!("by quantiles (ISO 22514-2): {quantiles}"));
         }

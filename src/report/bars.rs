@@ -117,12 +117,15 @@ pub(super) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
     let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
     let found = one.extremes.as_ref();
     let proven = if found.is_some_and(Extremes::proven) { "extremes, proven" } else { "extremes found" };
+    // Unless the study says otherwise.
+    let bender = one.rss.zip(one.inflated_rss).is_none_or(|(rss, inflated)| (inflated - 1.5 * rss).abs() <= 1e-9 * rss);
+    let inflated = if bender { "RSS x 1.5 (Bender)" } else { "RSS x factors" };
     let intervals: Vec<(&str, [f64; 2])> = [
         ("worst case, linear", one.worst_case),
         (proven, found.map(|found| [found.least.value, found.greatest.value])),
         ("no assembly lies beyond", one.proof().map(|proof| proof.bounds)),
         ("RSS", around(one.middle, one.rss)),
-        ("RSS x 1.5 (Bender)", around(one.middle, one.inflated_rss)),
+        (inflated, around(one.middle, one.inflated_rss)),
         ("RSS with shifted means", around(one.middle, one.mean_shift_rss)),
         ("mean \u{b1} 3 sigma", around(one.mean(), one.sigma().map(|sigma| 3.0 * sigma))),
     ]

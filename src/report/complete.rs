@@ -55,9 +55,9 @@ fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
         error_estimate: "/error_estimate", residual: "/least_squares", law: "/distribution", capability: "/cpk",
         normal: "/normal_fit", sampling: "/sampling_interval", worst_case: "/worst_case/linear",
         extremes: "/worst_case/extremes", bounds: "/worst_case/bounds", middle: "/middle", rss: "/rss", inflated_rss: "/inflated_rss",
-        mean_shift_rss: "/mean_shift_rss", sensitivities: "/sensitivities/1", interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
+        mean_shift_rss: "/mean_shift_rss", six_sigma: "/six_sigma", sensitivities: "/sensitivities/1", interactions: "/interactions/0", interactions_remainder: "/interactions_remainder",
         possible_interactions: "/possible_interactions", left_out_share: "/left_out_share", constant: "/constant",
-        verification: "/verification", indices: "/sobol", inspection: "/inspection",
+        verification: "/verification", indices: "/sobol", inspection: "/inspection", coverage: "/coverage",
     });
     let sensitivity = json.pointer("/sensitivities/0").unwrap();
     complete!(sensitivity, &one.sensitivities[0] => Sensitivity {

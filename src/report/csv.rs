@@ -1,6 +1,7 @@
 //! The tabular parts of reports as files of CSV.
 
 use super::Report;
+use super::budget::Budget;
 use super::figures::Named;
 use super::stack::{Stack, stack_document};
 use crate::document::csv::{csv, joined};
@@ -64,6 +65,16 @@ fn stack_file_names<'n>(characteristics: impl IntoIterator<Item = &'n str>) -> V
 /// and `upper` are its half width as deviations.
 pub fn stack_csv(stacks: &[Stack]) -> String {
     csv(&stack_document(stacks), "stack")
+}
+
+/// Budgets of one or several studies as one table, with the study's name in front where there are several.
+pub(crate) fn budget_csv_of_studies(studies: &[(String, Vec<Budget>)]) -> String {
+    let several = studies.len() > 1;
+    let tables: Vec<(&str, DataTable)> = studies
+        .iter()
+        .flat_map(|(study, budgets)| budgets.iter().flat_map(Budget::tables).map(move |table| (study.as_str(), table)))
+        .collect();
+    joined(tables.iter().map(|(study, table)| (several.then_some(["study", *study]), table)))
 }
 
 /// The stacks of several studies as one table, with the study's name before the columns of [`stack_csv`].

@@ -5,6 +5,7 @@ mod allocation_document;
 mod analysis_document;
 mod analysis_tables;
 mod bars;
+mod budget;
 mod compare;
 #[cfg(test)]
 mod complete;
@@ -35,10 +36,12 @@ pub use crate::document::{Detail, Document, Style};
 pub use allocation::{AllocationReport, WrittenAnew};
 #[cfg(feature = "cli")]
 pub(crate) use analysis_document::law_text;
+pub(crate) use budget::budget_document;
+pub use budget::{Budget, BudgetRow};
 pub use compare::CompareReport;
 pub use csv::{CsvFile, csv_files};
 #[cfg(feature = "cli")]
-pub(crate) use csv::{csv_file_names, csv_tables, stack_csv, stack_csv_of_studies};
+pub(crate) use csv::{budget_csv_of_studies, csv_file_names, csv_tables, stack_csv, stack_csv_of_studies};
 pub use difference::DifferenceReport;
 pub(crate) use head::Head;
 pub use rare::RareReport;
@@ -106,6 +109,8 @@ pub struct DimensionReport {
     /// Texts beside its name.
     #[serde(flatten)]
     pub(crate) labels: Labels,
+    /// Degrees of freedom of its standard uncertainty; null where the study says none.
+    pub degrees: Option<f64>,
 }
 
 /// A warning.
@@ -184,6 +189,7 @@ impl DimensionReport {
             mean: dimension.mean(),
             sigma: dimension.sigma(),
             labels: dimension.labels().clone(),
+            degrees: dimension.convention().degrees,
         }
     }
 

@@ -74,10 +74,12 @@ pub enum TotalKind {
     WorstCase,
     /// Root of the sum of squares.
     Rss,
-    /// 1.5 times that.
+    /// 1.5 times that, or by the factors of the study.
     InflatedRss,
-    /// RSS with every mean off by half its half band.
+    /// RSS with every mean off by half its half band, or by the shifts of the study.
     MeanShiftRss,
+    /// Three effective sigmas of processes whose means are off.
+    SixSigma,
     /// Three sigma about the mean, of the moments without curvature.
     FirstOrder,
     /// Three sigma about the mean, of the moments.
@@ -155,7 +157,7 @@ impl Stack {
         let first_order = [Method::Rss, Method::WorstCase].contains(&report.analysis.method);
         let worst_case = one.worst_case.map(|[lower, upper]| 0.5 * (upper - lower));
         let about_middle = |kind, half_width| StackTotal { kind, middle: one.middle, half_width };
-        let totals = vec![
+        let mut totals = vec![
             about_middle(TotalKind::WorstCase, worst_case),
             about_middle(TotalKind::Rss, one.rss),
             about_middle(TotalKind::InflatedRss, one.inflated_rss),
@@ -166,6 +168,9 @@ impl Stack {
                 half_width: one.sigma().map(|sigma| SIGMAS * sigma),
             },
         ];
+        if let Some(effective) = one.six_sigma {
+            totals.insert(4, about_middle(TotalKind::SixSigma, Some(SIGMAS * effective)));
+        }
         Self {
             characteristic: one.name().to_owned(),
             unit: one.unit().map(str::to_owned),
@@ -204,6 +209,7 @@ impl TotalKind {
             Self::Rss => "rss",
             Self::InflatedRss => "inflated rss",
             Self::MeanShiftRss => "mean-shift rss",
+            Self::SixSigma => "six sigma, shifted",
             Self::FirstOrder => "first order, 3 sigma",
             Self::SecondOrder => "second order, 3 sigma",
         }

@@ -63,6 +63,15 @@ pub(super) struct AnalysisEntry {
     /// The share of assemblies that must keep the limits of all characteristics at once, between 0 and 1; what --check looks at too, and what
     /// allocate keeps.
     pub(super) target_joint_yield: Option<Spanned<f64>>,
+    /// The factor of the inflated RSS, or "modified": 1 + (W - R)/(2 R (sqrt n - 1)) with the worst case W and the RSS R of n dimensions.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = 1.5)))]
+    pub(super) rss_factor: Option<Spanned<FactorEntry>>,
+    /// The part of every half band by which its mean may be off in the mean-shift RSS, from 0 to 1.
+    #[cfg_attr(feature = "cli", schemars(extend("default" = 0.5)))]
+    pub(super) mean_shift: Option<Spanned<f64>>,
+    /// The share that coverage intervals and expanded uncertainties hold, from 0.5 to below 1: every characteristic then has the interval with
+    /// equal tails and the shortest.
+    pub(super) coverage: Option<Spanned<f64>>,
     /// How many check points of a costly model verify every figure, 18 at most; a cheap model is sampled instead. 0 for no
     /// verification.
     #[cfg_attr(feature = "cli", schemars(extend("default" = Options::VERIFY)))]
@@ -74,6 +83,13 @@ pub(super) struct AnalysisEntry {
 pub(super) enum PairsEntry {
     Word(String),
     Listed(Vec<(String, String)>),
+}
+
+/// `1.5` or `"modified"`.
+#[derive(Debug, Clone)]
+pub(super) enum FactorEntry {
+    Number(f64),
+    Word(String),
 }
 
 impl<'de> Deserialize<'de> for PairsEntry {
@@ -95,5 +111,31 @@ impl<'de> Deserialize<'de> for PairsEntry {
             }
         }
         deserializer.deserialize_any(Pairs)
+    }
+}
+
+impl<'de> Deserialize<'de> for FactorEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Factor;
+        impl Visitor<'_> for Factor {
+            type Value = FactorEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number such as 1.5, or \"modified\",")
+            }
+
+            fn visit_str<E>(self, word: &str) -> Result<Self::Value, E> {
+                Ok(FactorEntry::Word(word.to_owned()))
+            }
+
+            fn visit_f64<E>(self, number: f64) -> Result<Self::Value, E> {
+                Ok(FactorEntry::Number(number))
+            }
+
+            fn visit_i64<E>(self, number: i64) -> Result<Self::Value, E> {
+                Ok(FactorEntry::Number(number as f64))
+            }
+        }
+        deserializer.deserialize_any(Factor)
     }
 }

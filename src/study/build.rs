@@ -99,7 +99,8 @@ pub(super) fn build(
     warnings.extend(elements.closing.iter().map(|closing| interference(closing, &dimensions, &blocks)));
     idle_formula(program, &composite, &written, &elements.made)?;
     warnings.extend(unused(file, evaluated.as_ref(), &composite, &written, &used, &elements.made));
-    let problem = Problem::new(holding(file, dimensions)?, composite)
+    let dimensions = super::conventions::taken(file, holding(file, dimensions)?)?;
+    let problem = Problem::new(dimensions, composite)
         .and_then(|problem| problem.asking(characteristics))
         .map_err(|error| Fault { span: None, key: String::new(), fault: Box::new(error.into()) })?;
     let (problem, of_rows) = correlated(problem, &file.correlation.0, &blocks)?;

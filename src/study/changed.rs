@@ -33,6 +33,7 @@ impl Study {
         let read = || -> Result<(_, _), Faults> {
             let keys = Tree::of_json(keys)?;
             let mut entry: AnalysisEntry = de::read(&keys).map_err(below_analysis)?;
+            super::conventions::only_in_study(&entry)?;
             // Written out: lines of geometric elements are not yet plain dimensions in the text itself.
             let own = Tree::of_toml(&self.expanded).ok().map(|tree| de::read::<StudyFile>(&tree)).transpose()?;
             if let Some(own) = own {
@@ -122,5 +123,8 @@ fn merged(given: AnalysisEntry, own: AnalysisEntry) -> AnalysisEntry {
         verify: given.verify.or(own.verify),
         target_joint_yield: given.target_joint_yield.or(own.target_joint_yield),
         products: given.products.or(own.products),
+        coverage: given.coverage.or(own.coverage),
+        rss_factor: given.rss_factor.or(own.rss_factor),
+        mean_shift: given.mean_shift.or(own.mean_shift),
     }
 }

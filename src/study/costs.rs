@@ -28,6 +28,15 @@ pub(super) fn requirement(
     entry: &CharacteristicEntry,
     key: &str,
 ) -> Result<Option<Requirement>, Fault> {
+    if let Some(target) = &entry.target_cpk {
+        let at = |found: StudyFault| fault(target.span(), format!("{key}.target_cpk"), found);
+        if entry.require.is_some() {
+            let why = "are two ways of saying what is required: leave one out".to_owned();
+            return Err(at(StudyFault::Conflict { a: "require", b: "target_cpk", why }));
+        }
+        let requirement = Requirement::Cpk(*target.get_ref());
+        return requirement.checked(characteristic.limits().exist()).map(Some).map_err(|error| at(error.into()));
+    }
     let Some(require) = &entry.require else { return Ok(characteristic.target_yield().map(Requirement::Yield)) };
     let at = |span: Range<usize>, found: StudyFault| fault(span, format!("{key}.require"), found);
     let (span, requirement) = match require.get_ref() {

@@ -297,13 +297,24 @@ impl<'s> Data<'s> {
     }
 
     fn table(&mut self, file: &str) -> Result<Table, DataFault> {
+        let text = self.text(file)?;
+        Table::parse(&text).map_err(|(line, problem)| DataFault {
+            file: file.to_owned(),
+            line,
+            column: None,
+            problem: Box::new(problem),
+        })
+    }
+
+    /// The text of a file.
+    pub(super) fn text(&mut self, file: &str) -> Result<String, DataFault> {
         let bytes = self.read(file)?;
-        let fault = |line, problem| DataFault { file: file.to_owned(), line, column: None, problem: Box::new(problem) };
         let text = std::str::from_utf8(&bytes).map_err(|error| {
             let line = bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
-            fault(Some(line), DataProblem::NotUtf8)
+            let problem = Box::new(DataProblem::NotUtf8);
+            DataFault { file: file.to_owned(), line: Some(line), column: None, problem }
         })?;
-        Table::parse(text).map_err(|(line, problem)| fault(line, problem))
+        Ok(text.to_owned())
     }
 
     fn read(&mut self, file: &str) -> Result<Arc<[u8]>, DataFault> {

@@ -459,6 +459,18 @@ pub enum StudyFault {
     /// A file of measured values cannot be used.
     #[error(transparent)]
     Data(#[from] DataFault),
+    /// A file of processes that cannot be used.
+    #[error("{file}{}{}: {fault}", line.map(|line| format!(", line {line}")).unwrap_or_default(), below(key))]
+    ProcessFile {
+        /// The file as the study names it.
+        file: String,
+        /// The line, from 1; None where the fault has none.
+        line: Option<usize>,
+        /// The key in it; empty where the fault has none.
+        key: String,
+        /// The fault.
+        fault: Box<StudyFault>,
+    },
     /// A dimension that would share its own tolerance.
     #[error("`{name}` is the dimension itself")]
     SameAsItself {
@@ -541,6 +553,11 @@ impl From<UnknownName> for StudyFault {
         let known = known.into_iter().map(str::to_owned).collect();
         Self::UnknownWord { what, found: name, nearest, known }
     }
+}
+
+/// A key after the place of a fault.
+fn below(key: &str) -> String {
+    if key.is_empty() { String::new() } else { format!(", {key}") }
 }
 
 /// A fault with its place and its key, on its way to becoming a [`StudyError`].

@@ -5,8 +5,9 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use super::about::AboutEntry;
-pub(super) use super::analysis_entry::{AnalysisEntry, PairsEntry};
+pub(super) use super::analysis_entry::{AnalysisEntry, FactorEntry, PairsEntry};
 use super::guard::GuardEntry;
+pub(super) use super::named_values::{ConstantEntry, UnknownEntry};
 use super::price::{CostEntry, LossEntry, RequireEntry};
 #[cfg(feature = "cli")]
 use super::registry;
@@ -79,6 +80,11 @@ pub(super) struct StudyFile {
     #[serde(default, rename = "configurations")]
     #[cfg_attr(feature = "cli", schemars(schema_with = "registry::configurations"))]
     pub(super) _configurations: Option<IgnoredAny>,
+    /// Capabilities of processes, by name, for dimensions with that `process`: turning = { cp = 1.33, cpk = 1.0 }; or processes = "shop.toml", a file
+    /// of such lines.
+    #[serde(default, rename = "processes")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::processes::<DistributionEntry>"))]
+    pub(super) _processes: Option<IgnoredAny>,
     /// A built-in model or an external program, evaluated next to the formulas.
     pub(super) model: Option<Spanned<ModelEntry>>,
     /// How the study is analysed; flags of the command line win.
@@ -183,10 +189,11 @@ pub(super) struct DimensionEntry {
     #[serde(default, rename = "axis")]
     #[cfg_attr(feature = "cli", schemars(schema_with = "registry::truth"))]
     pub(super) _axis: Option<IgnoredAny>,
-    /// "out" where a form deviation only adds to a size.
-    #[serde(default, rename = "side")]
+    /// "out" where a form deviation only adds to a size. Beside cp and cpk "+" or "-": where the mean lies; without it half of the parts lie on
+    /// either side.
+    #[serde(default)]
     #[cfg_attr(feature = "cli", schemars(schema_with = "registry::side"))]
-    pub(super) _side: Option<IgnoredAny>,
+    pub(super) side: Option<Spanned<String>>,
     /// The unit of its numbers: a label, checked or converted as `units` says.
     pub(super) unit: Option<String>,
     /// How it is distributed: the name of a kind, or a table with its parameters.
@@ -200,6 +207,21 @@ pub(super) struct DimensionEntry {
     pub(super) sigmas: Option<Spanned<f64>>,
     /// Process capability, another way to say sigmas: cp = sigmas/3.
     pub(super) cp: Option<Spanned<f64>>,
+    /// Process capability with the place of the mean. Alone: another way to say cp, and the mean lies in the middle. Beside cp: the mean lies
+    /// half a band times 1 - cpk/cp off the middle.
+    pub(super) cpk: Option<Spanned<f64>>,
+    /// How far the mean of a lot lies off the mean of all, at most: lots are uniform within it on either side.
+    pub(super) drift: Option<Spanned<f64>>,
+    /// A process of [processes]: its keys count where the dimension does not have them.
+    #[serde(default, rename = "process")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<String>"))]
+    pub(super) _process: Option<IgnoredAny>,
+    /// The factor of its part in the inflated RSS; that of [analysis] unless given.
+    pub(super) rss_factor: Option<Spanned<f64>>,
+    /// The part of its half band by which its mean may be off in the mean-shift RSS, from 0 to 1; that of [analysis] unless given.
+    pub(super) mean_shift: Option<Spanned<f64>>,
+    /// Degrees of freedom of its standard uncertainty, for the budget that `analyze --gum` prints; infinite unless given.
+    pub(super) degrees: Option<Spanned<f64>>,
     /// How far the mean lies off the middle of the band; of a kind with a tail, off the nominal.
     #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
     pub(super) shift: Option<Spanned<f64>>,
@@ -313,22 +335,6 @@ pub(super) struct PartEntry {
     pub(super) shift: Option<Spanned<f64>>,
 }
 
-/// One line of `[unknowns]`: `59.0` or `{ start = 59.0, lower = 0.0 }`.
-#[derive(Debug)]
-pub(super) struct UnknownEntry {
-    pub(super) start: f64,
-    pub(super) lower: Option<f64>,
-    pub(super) upper: Option<f64>,
-    pub(super) unit: Option<String>,
-}
-
-/// One line of `[constants]`: `205.0` or `{ value = 205.0, unit = "GPa" }`.
-#[derive(Debug)]
-pub(super) struct ConstantEntry {
-    pub(super) value: f64,
-    pub(super) unit: Option<String>,
-}
-
 /// One line of `[formulas]`: a text, or `{ formula = "a + b", unit = "mm" }`.
 #[derive(Debug)]
 pub(super) struct FormulaEntry {
@@ -384,6 +390,8 @@ pub(super) struct CharacteristicEntry {
     pub(super) upper: Option<Spanned<f64>>,
     /// The share of assemblies that must keep the limits, between 0 and 1; what --check looks at, and what allocate keeps.
     pub(super) target_yield: Option<Spanned<f64>>,
+    /// The least Cpk; the same as require = { cpk = 1.33 }.
+    pub(super) target_cpk: Option<Spanned<f64>>,
     /// A requirement, for allocate in place of its target_yield, for --check in addition to it: worst case, rss, or a number.
     pub(super) require: Option<Spanned<RequireEntry>>,
     /// The standard deviation of the gauge by which parts are accepted: the report then has the risks of that.
@@ -495,74 +503,6 @@ impl<'de> Deserialize<'de> for WordOrTable {
             }
         }
         deserializer.deserialize_any(Distribution)
-    }
-}
-
-impl<'de> Deserialize<'de> for UnknownEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Table {
-            start: f64,
-            lower: Option<f64>,
-            upper: Option<f64>,
-            unit: Option<String>,
-        }
-        struct Unknown;
-        impl<'de> Visitor<'de> for Unknown {
-            type Value = UnknownEntry;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a start value such as 59.0, or { start = 59.0, lower = 0.0, upper = 90.0 },")
-            }
-
-            fn visit_f64<E>(self, start: f64) -> Result<Self::Value, E> {
-                Ok(UnknownEntry { start, lower: None, upper: None, unit: None })
-            }
-
-            fn visit_i64<E>(self, start: i64) -> Result<Self::Value, E> {
-                Ok(UnknownEntry { start: start as f64, lower: None, upper: None, unit: None })
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
-                let Table { start, lower, upper, unit } = Table::deserialize(value::MapAccessDeserializer::new(map))?;
-                Ok(UnknownEntry { start, lower, upper, unit })
-            }
-        }
-        deserializer.deserialize_any(Unknown)
-    }
-}
-
-impl<'de> Deserialize<'de> for ConstantEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Table {
-            value: f64,
-            unit: Option<String>,
-        }
-        struct Constant;
-        impl<'de> Visitor<'de> for Constant {
-            type Value = ConstantEntry;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number, or { value = 205.0, unit = \"GPa\" },")
-            }
-
-            fn visit_f64<E>(self, value: f64) -> Result<Self::Value, E> {
-                Ok(ConstantEntry { value, unit: None })
-            }
-
-            fn visit_i64<E>(self, value: i64) -> Result<Self::Value, E> {
-                Ok(ConstantEntry { value: value as f64, unit: None })
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
-                let Table { value, unit } = Table::deserialize(value::MapAccessDeserializer::new(map))?;
-                Ok(ConstantEntry { value, unit })
-            }
-        }
-        deserializer.deserialize_any(Constant)
     }
 }
 

@@ -8,7 +8,7 @@
 //!
 //! | kind | mean and sigma | parameters |
 //! |---|---|---|
-//! | `normal` | the band's middle plus `shift`; `sigma`, or half the band by `sigmas` (3) or `cp` (1) | |
+//! | `normal` | the band's middle plus `shift`; `sigma`, or half the band by `sigmas` (3) or `cp` (1), alone or beside `cpk`; lots with a `drift` | |
 //! | `truncated-normal` | the same before the cut at the band; both follow | |
 //! | `uniform`, `two-point` | follow from the band: alike everywhere in it, or at one of its ends | |
 //! | `triangular` | follow from the band | `mode`: a value within the band, its middle by default |
@@ -44,6 +44,7 @@ mod about;
 mod analysis_entry;
 mod build;
 mod changed;
+mod conventions;
 mod correlation;
 mod costs;
 mod data;
@@ -66,6 +67,7 @@ mod labels;
 mod lines;
 mod loss;
 mod model;
+mod named_values;
 mod options;
 mod place;
 mod price;

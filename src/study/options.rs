@@ -72,6 +72,14 @@ pub(super) fn options(entry: &AnalysisEntry, problem: &Problem) -> Result<Option
     if let Some(target) = &entry.target_joint_yield {
         options.target_joint_yield = Some(joint_target(target, problem)?);
     }
+    if let Some(coverage) = &entry.coverage {
+        let value = *coverage.get_ref();
+        if !(0.5..1.0).contains(&value) {
+            let out = StudyFault::OutOfRange { value, range: "from 0.5 to below 1" };
+            return Err(fault(coverage.span(), "analysis.coverage", out));
+        }
+        options.coverage = Some(value);
+    }
     if let Some(method) = &entry.method {
         options.method = named(method, "method")?;
     }

@@ -84,9 +84,9 @@ pub(super) fn truth(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "boolean" })
 }
 
-/// Where form deviations lie.
+/// Where form deviations, or the mean of a process, lie.
 pub(super) fn side(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({ "type": "string", "enum": ["out"] })
+    json_schema!({ "type": "string", "enum": ["out", "+", "-"] })
 }
 
 fn size(what: &str) -> Value {
@@ -176,6 +176,30 @@ pub(super) fn configurations(_: &mut SchemaGenerator) -> Schema {
         },
         "additionalProperties": values,
     })
+}
+
+/// Lines of processes, or a file of such lines; keys as at a dimension.
+pub(super) fn processes<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
+    let mut law = distribution::<T>(generator).to_value();
+    law["description"] = json!("How it is distributed.");
+    let number = |what: &str| json!({ "description": what, "type": "number" });
+    let process = json!({
+        "type": "object",
+        "properties": {
+            "cp": number("Process capability: half a band over 3 sigma."),
+            "cpk": number("Process capability with the place of the mean."),
+            "sigma": number("Its standard deviation."),
+            "sigmas": number("How many sigma half a band has."),
+            "drift": number("How far the mean of a lot lies off the mean of all, at most."),
+            "side": { "description": "Where the mean lies.", "type": "string", "enum": ["+", "-"] },
+            "distribution": law,
+        },
+        "additionalProperties": false,
+    });
+    json_schema!({ "anyOf": [
+        { "description": "A file of lines such as turning = { cp = 1.33, cpk = 1.0 }.", "type": "string" },
+        { "type": "object", "additionalProperties": process },
+    ] })
 }
 
 /// The name of a kind, or a table with the parameters that it knows, of the type that has those of all kinds.

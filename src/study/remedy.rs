@@ -58,6 +58,7 @@ impl StudyFault {
                 DistributionError::InfiniteMoment { .. } | DistributionError::Pearson(_),
             )) => Some("leave model out: the values themselves have all moments".into()),
             Self::Data(fault) => fault.problem.help(),
+            Self::ProcessFile { fault, .. } => fault.help(),
             Self::Limits(LimitsError::ImpossibleYield { value }) if *value > 1.0 && *value <= 100.0 => {
                 Some(format!("write {} for {value} %", percent(*value)))
             }

@@ -9,7 +9,7 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Value, json};
 
-use super::file::{ConstantEntry, Entries, FormulaEntry, PairsEntry, StudyFile, TermEntry, UnknownEntry};
+use super::file::{ConstantEntry, Entries, FactorEntry, FormulaEntry, PairsEntry, StudyFile, TermEntry, UnknownEntry};
 use super::guard::{GuardEntry, GuardTable};
 use super::price::{RequireEntry, RequireTable};
 use super::together::{CorrelationEntry, Correlations, JointEntry, Joints};
@@ -255,6 +255,20 @@ impl JsonSchema for PairsEntry {
                 generator.subschema_for::<Vec<(String, String)>>(),
             ],
         })
+    }
+}
+
+impl JsonSchema for FactorEntry {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Factor".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "anyOf": [{ "type": "number", "exclusiveMinimum": 0 }, { "type": "string", "enum": ["modified"] }] })
     }
 }
 

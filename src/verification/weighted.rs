@@ -18,6 +18,16 @@ impl WeightedSample {
         Self { parts: parts.collect(), replicates, one }
     }
 
+    /// The finite values in order, with their weights.
+    pub(crate) fn sorted(&self) -> Vec<(f64, f64)> {
+        let of = |(_, values, weights): &(usize, Vec<f64>, Vec<f64>)| -> Vec<(f64, f64)> {
+            values.iter().copied().zip(weights.iter().copied()).filter(|(y, _)| y.is_finite()).collect()
+        };
+        let mut all: Vec<(f64, f64)> = self.parts.iter().flat_map(of).collect();
+        all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        all
+    }
+
     /// The means of functions with values from 0 to 1, over the points that have a value.
     pub(crate) fn shares<const N: usize>(&self, of: [&dyn Fn(f64) -> f64; N]) -> [Verified; N] {
         let mut sums = vec![vec![0.0; self.replicates]; N + 1];

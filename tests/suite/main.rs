@@ -18,6 +18,7 @@ mod claims;
 mod cli;
 mod comparison;
 mod control;
+mod conventions;
 mod correlation;
 mod coverage;
 mod derivatives;

@@ -98,7 +98,7 @@ const live = (() => {
 
   /// The keys of a dimension whose tolerance or mean has changed.
   const changed = (of, keys, { factor, shift }) => {
-    const dropped = new Set(["tolerance", "limits", "fit", "sigma", "sigmas", "cp", "shift"]);
+    const dropped = new Set(["tolerance", "limits", "fit", "sigma", "sigmas", "cp", "cpk", "side", "shift"]);
     const band = of.normal || of.band === null ? 0 : shift;
     const kept = keys.filter(([name]) => !dropped.has(name)), given = new Map(keys);
     const lines = kept.map(([name, text]) => {
@@ -117,7 +117,7 @@ const live = (() => {
       const off = of.offset + shift;
       if (off !== 0) lines.push(["shift", number(off)]);
     } else {
-      for (const name of ["sigmas", "cp"]) if (given.has(name)) lines.push([name, given.get(name)]);
+      for (const name of ["sigmas", "cp", "cpk"]) if (given.has(name)) lines.push([name, given.get(name)]);
     }
     return lines;
   };

@@ -352,6 +352,8 @@ fn totals(
             let formula = format!("{mean_shift}*{of_worst}+(1-{mean_shift})*{of_rss}");
             (formula, MEAN_SHIFT * worst + (1.0 - MEAN_SHIFT) * rss)
         }
+        // Of processes that the sheet does not have: as reported.
+        TotalKind::SixSigma => (String::new(), f64::NAN),
         TotalKind::FirstOrder | TotalKind::SecondOrder => {
             (format!("{SIGMAS}*SQRT(SUMPRODUCT(({factors}*{deviations})^2))"), SIGMAS * sigma)
         }

@@ -8,10 +8,10 @@ use super::super::file::{DimensionEntry, DistributionEntry};
 use super::super::spanned::Spanned;
 use super::super::words::{KINDS, Kind, SIGMAS};
 use super::conflict;
-use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, shift, sigma, sigmas};
+use super::spread::{Spread, agree, is_flat, needs_band, nothing_to_spread, only_normal, shift, sigma, sigmas};
 use crate::dimension::DimensionFault;
 use crate::distribution::{
-    Beta, CentralMoments, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Lognormal, Normal,
+    Beta, CentralMoments, CurvilinearTrapezoid, Distribution, DistributionError, Exponential, Gamma, Lognormal,
     Rayleigh, Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, TwoValues, UShaped, Uniform, Weibull,
 };
 use crate::names::nearest;
@@ -19,16 +19,25 @@ use crate::names::nearest;
 /// A distribution from a dimension's entry, nominal value and tolerance.
 pub(super) type OfBand = fn(&DimensionEntry, f64, Option<[f64; 2]>) -> Result<Spread, Fault>;
 
+/// A normal distribution from a dimension's entry, mean, sigma and tolerance.
+pub(super) type OfProcess = fn(&DimensionEntry, f64, f64, Option<[f64; 2]>) -> Result<Spread, Fault>;
+
 /// The distribution of this line; None when it does not vary.
 pub(super) fn distribution(
     entry: &DimensionEntry,
     nominal: f64,
     tolerance: Option<[f64; 2]>,
     mixture: OfBand,
+    process: OfProcess,
 ) -> Result<Spread, Fault> {
-    match kind(entry)? {
+    let kind = kind(entry)?;
+    if kind != Kind::Normal {
+        let name = KINDS.iter().find(|known| known.1 == kind).map_or("moments", |known| known.0);
+        only_normal(entry, &format!("the distribution `{name}`"))?;
+    }
+    match kind {
         Kind::Moments => moments(entry, nominal),
-        Kind::Normal => normal(entry, nominal, tolerance),
+        Kind::Normal => normal(entry, nominal, tolerance, process),
         Kind::Mixture => mixture(entry, nominal, tolerance),
         over @ (Kind::TruncatedNormal
         | Kind::Uniform
@@ -56,11 +65,12 @@ pub(super) fn distribution(
 fn kind(entry: &DimensionEntry) -> Result<Kind, Fault> {
     if entry.moments.is_some() {
         let why = || "are two ways of giving a distribution: leave one out".to_owned();
-        let excluded: [(&'static str, Option<Range<usize>>); 4] = [
+        let excluded: [(&'static str, Option<Range<usize>>); 5] = [
             ("distribution", entry.distribution.as_ref().map(Spanned::span)),
             ("sigma", entry.sigma.as_ref().map(Spanned::span)),
             ("sigmas", entry.sigmas.as_ref().map(Spanned::span)),
             ("cp", entry.cp.as_ref().map(Spanned::span)),
+            ("cpk", entry.cpk.as_ref().map(Spanned::span)),
         ];
         for (key, span) in excluded {
             if let Some(span) = span {
@@ -110,13 +120,18 @@ fn within(parameter: &str) -> String {
 }
 
 /// Mean = the band's middle plus `shift`; sigma = half band / `sigmas`, or as given.
-fn normal(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
+fn normal(
+    entry: &DimensionEntry,
+    nominal: f64,
+    tolerance: Option<[f64; 2]>,
+    process: OfProcess,
+) -> Result<Spread, Fault> {
     let Some(sigma) = sigma(entry, tolerance)? else { return nothing_to_spread(entry) };
     if sigma == 0.0 && tolerance.is_none() && entry.shift.is_none() {
         return Ok(None);
     }
     let middle = tolerance.map_or(0.0, |[lower, upper]| 0.5 * (lower + upper));
-    placed(entry, shared(Normal::new(nominal + middle + shift(entry), sigma)))
+    process(entry, nominal + middle + shift(entry), sigma, tolerance)
 }
 
 /// As a normal distribution; its sigma may be given by the scale.

@@ -81,18 +81,23 @@ pub(super) fn law(name: &str, entry: &DimensionEntry, data: &mut Data<'_>) -> Re
 
 /// The data say how the dimension spreads and where it lies: nothing else does beside them.
 fn conflicts(entry: &DimensionEntry) -> Result<(), Fault> {
-    let excluded: [(&'static str, Option<Range<usize>>); 5] = [
+    let excluded: [(&'static str, Option<Range<usize>>); 6] = [
         ("distribution", entry.distribution.as_ref().map(Spanned::span)),
         ("moments", entry.moments.as_ref().map(Spanned::span)),
         ("sigma", entry.sigma.as_ref().map(Spanned::span)),
         ("sigmas", entry.sigmas.as_ref().map(Spanned::span)),
         ("cp", entry.cp.as_ref().map(Spanned::span)),
+        ("cpk", entry.cpk.as_ref().map(Spanned::span)),
     ];
     for (key, span) in excluded {
         if let Some(span) = span {
             let why = "are two ways of giving a distribution: leave one out".to_owned();
             return Err(fault(span, key, StudyFault::Conflict { a: "measured", b: key, why }));
         }
+    }
+    if let Some(drift) = &entry.drift {
+        let (to, instead) = ("measured values".to_owned(), "they drift already");
+        return Err(fault(drift.span(), "drift", StudyFault::DoesNotApply { key: "drift", to, instead }));
     }
     if let Some(shift) = &entry.shift {
         let (to, instead) = ("measured values".to_owned(), "they lie where they were measured");

@@ -3,24 +3,27 @@
 mod kinds;
 mod measured;
 mod mixture;
+mod off_centre;
 mod position;
+mod process;
 mod spread;
 mod tolerance;
 
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::conventions;
 use super::data::Data;
 use super::error::{Fault, StudyFault, fault};
 use super::file::{DimensionEntry, Entries};
 use super::spanned::Spanned;
 use super::values::NominalEntry;
-use crate::dimension::{Dimension, DimensionError};
+use crate::dimension::{Convention, Dimension, DimensionError};
 use spread::Spread;
 
 /// The distribution of this line; None when it does not vary. Parts of a mixture are such lines again.
 fn distribution(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]>) -> Result<Spread, Fault> {
-    kinds::distribution(entry, nominal, tolerance, mixture::mixture)
+    kinds::distribution(entry, nominal, tolerance, mixture::mixture, process::normal)
 }
 
 /// The dimensions of this line, or what is wrong at which key below the dimension's; `model` knows the values that the model
@@ -91,7 +94,36 @@ fn built(
         let at_step = |error: DimensionError| fault(step.span(), "step", error.fault);
         dimension = dimension.with_step(*step.get_ref()).map_err(at_step)?;
     }
-    Ok(dimension)
+    Ok(dimension.with_convention(convention(entry, tolerance)?))
+}
+
+/// How stacks take this line beside its band.
+fn convention(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Result<Convention, Fault> {
+    let rss_factor = entry.rss_factor.as_ref().map(|given| conventions::factor(given, "rss_factor")).transpose()?;
+    let mean_shift = entry.mean_shift.as_ref().map(|given| conventions::mean_shift(given, "mean_shift")).transpose()?;
+    // Only of a normal distribution a process is known.
+    let standing = process::standing(entry, tolerance)?;
+    let lot = match (standing.known(), spread::sigma(entry, tolerance), tolerance) {
+        (true, Ok(Some(sigma)), Some([lower, upper])) => {
+            Some(standing.lot(sigma, 0.5 * (upper - lower), spread::shift(entry)))
+        }
+        _ => None,
+    };
+    Ok(Convention { rss_factor, mean_shift, degrees: degrees(entry)?, lot })
+}
+
+/// Degrees of freedom for a budget of uncertainty: as given, or those of a Student distribution.
+fn degrees(entry: &DimensionEntry) -> Result<Option<f64>, Fault> {
+    let of_law = entry.distribution.as_ref().and_then(|law| law.get_ref().degrees.as_ref());
+    let Some(given) = &entry.degrees else { return Ok(of_law.map(|degrees| *degrees.get_ref())) };
+    if of_law.is_some() {
+        let why = "say the same thing: leave one out";
+        return Err(fault(given.span(), "degrees", conflict("distribution.degrees", "degrees", why)));
+    }
+    match *given.get_ref() {
+        value if value >= 1.0 => Ok(Some(value)),
+        value => Err(fault(given.span(), "degrees", StudyFault::OutOfRange { value, range: "1 or above" })),
+    }
 }
 
 /// As given, or of the model, or the middle of the limits, or the mean of what was measured.

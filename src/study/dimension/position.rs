@@ -7,6 +7,7 @@ use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
 use super::super::spanned::Spanned;
 use super::super::values::NominalEntry;
+use super::spread::only_normal;
 use super::{built, conflict, distribution};
 use crate::dimension::{Dimension, DimensionFault};
 use crate::distribution::{Beta, DistributionError};
@@ -26,6 +27,7 @@ pub(super) fn position(
 ) -> Result<Vec<Dimension>, Fault> {
     let entry = line.get_ref();
     alone(entry)?;
+    only_normal(entry, "a position")?;
     let radius = radius(diameter, entry)?;
     let names = names(name);
     let nominal = nominal(entry, names.each_ref().map(|name| model(name)), &line.span())?;

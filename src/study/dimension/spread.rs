@@ -63,10 +63,19 @@ pub(super) fn sigmas(entry: &DimensionEntry) -> Result<Option<PerBand>, Fault> {
     };
     let of_sigmas = entry.sigmas.as_ref().map(|sigmas| positive("sigmas", sigmas, 1.0)).transpose()?;
     let of_cp = entry.cp.as_ref().map(|cp| positive("cp", cp, SIGMAS)).transpose()?;
+    let of_cpk = entry.cpk.as_ref().map(|cpk| positive("cpk", cpk, SIGMAS)).transpose()?;
+    if let (Some((_, _, cp)), Some((_, span, cpk))) = (&of_cp, &of_cpk)
+        && cpk > cp
+    {
+        let why = format!("disagree: cpk {} is above cp {}", cpk / SIGMAS, cp / SIGMAS);
+        return Err(fault(span.clone(), "cpk", StudyFault::Conflict { a: "cp", b: "cpk", why }));
+    }
+    // Without cp the mean lies in the middle, and the two are the same.
+    let of_cp = of_cp.or(of_cpk);
     match (of_sigmas, of_cp) {
-        (Some((_, _, sigmas)), Some((_, span, of_cp))) if !agree(sigmas, of_cp) => {
-            let why = format!("disagree: cp = sigmas/3 would be {}", sigmas / SIGMAS);
-            Err(fault(span, "cp", StudyFault::Conflict { a: "sigmas", b: "cp", why }))
+        (Some((_, _, sigmas)), Some((key, span, of_cp))) if !agree(sigmas, of_cp) => {
+            let why = format!("disagree: {key} = sigmas/3 would be {}", sigmas / SIGMAS);
+            Err(fault(span, key, StudyFault::Conflict { a: "sigmas", b: key, why }))
         }
         (of_sigmas, of_cp) => Ok(of_sigmas.or(of_cp)),
     }
@@ -75,11 +84,14 @@ pub(super) fn sigmas(entry: &DimensionEntry) -> Result<Option<PerBand>, Fault> {
 /// A dimension without band and sigma is fixed, unless something in it speaks of variation.
 pub(super) fn nothing_to_spread(entry: &DimensionEntry) -> Result<Spread, Fault> {
     let flat = entry.tolerance.is_some() || entry.limits.is_some() || entry.position.is_some();
-    let speaks: [(&'static str, Option<Range<usize>>); 4] = [
+    let speaks: [(&'static str, Option<Range<usize>>); 7] = [
         ("distribution", entry.distribution.as_ref().map(Spanned::span)),
         ("shift", entry.shift.as_ref().map(Spanned::span)),
         ("sigmas", entry.sigmas.as_ref().map(Spanned::span)),
         ("cp", entry.cp.as_ref().map(Spanned::span)),
+        ("cpk", entry.cpk.as_ref().map(Spanned::span)),
+        ("side", entry.side.as_ref().map(Spanned::span)),
+        ("drift", entry.drift.as_ref().map(Spanned::span)),
     ];
     for (key, span) in speaks {
         // A tolerance that is set to 0 for once leaves the rest of the line alone.
@@ -104,4 +116,21 @@ pub(super) fn agree(a: f64, b: f64) -> bool {
 /// Whether it is written that there is no tolerance.
 pub(super) fn is_flat(entry: &DimensionEntry) -> bool {
     entry.tolerance.as_ref().is_some_and(|tolerance| tolerance.get_ref().is_zero())
+}
+
+/// Refuses what only a normal distribution knows.
+pub(super) fn only_normal(entry: &DimensionEntry, to: &str) -> Result<(), Fault> {
+    let span = |of: &Option<Spanned<f64>>| of.as_ref().map(Spanned::span);
+    let keys: [(&'static str, Option<Range<usize>>); 3] = [
+        ("drift", span(&entry.drift)),
+        ("side", entry.side.as_ref().map(Spanned::span)),
+        ("cpk", span(&entry.cpk).filter(|_| entry.cp.is_some())),
+    ];
+    for (key, span) in keys {
+        if let Some(span) = span {
+            let instead = "it is for normal distributions; write the mean and the spread of this one by its own keys";
+            return Err(fault(span, key, StudyFault::DoesNotApply { key, to: to.to_owned(), instead }));
+        }
+    }
+    Ok(())
 }

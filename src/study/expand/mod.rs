@@ -7,6 +7,7 @@ mod configurations;
 mod from;
 mod geometry;
 mod joint;
+mod processes;
 mod toml;
 
 use std::ops::Range;
@@ -58,6 +59,7 @@ pub(super) fn expand(tree: Tree, configuration: Option<&str>, data: &mut Data<'_
     let mut expanded =
         Expanded { tree, configurations: Vec::new(), origins: Vec::new(), elements: Elements::default() };
     configurations::expand(&mut expanded, configuration, data)?;
+    processes::expand(&mut expanded, data)?;
     geometry::fasteners(&mut expanded)?;
     joint::expand(&mut expanded);
     from::expand(&mut expanded)?;

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use sensitol::distribution::{
-    Beta, CurvilinearTrapezoid, Distribution, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rayleigh, Student,
-    Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull,
+    Beta, CurvilinearTrapezoid, Distribution, Drifting, Exponential, Gamma, Lognormal, Mixture, Normal, Part, Rayleigh,
+    Student, Tabulated, Trapezoidal, Triangular, TruncatedNormal, UShaped, Uniform, Weibull,
 };
 
 /// A distribution and its density, as a sum of pieces that are smooth inside: each an interval and a function of the distances
@@ -155,6 +155,19 @@ fn student() -> Case {
     let density = |d: f64| 0.394_973_789_636_461_2 * (1.0 + d * d / 25.0).powf(-13.0);
     let pieces = vec![Piece::new(-1e4, 0.0, move |_, d| density(d)), Piece::new(0.0, 1e4, move |d, _| density(d))];
     Case::new(Student::with_scale(0.0, 1.0, 25.0).unwrap(), pieces)
+}
+
+/// Within a lot 0.2, lots within `drift` about 3: a difference of two normal distribution functions.
+pub fn drifting(drift: f64) -> Case {
+    let below = |z: f64| 0.5 * libm::erfc(-z / 2f64.sqrt());
+    let density = move |off: f64| {
+        let [near, far] = [off - drift, off + drift].map(|off| below(-off / 0.2));
+        (near - far) / (2.0 * drift)
+    };
+    let far = drift + 2.8;
+    let pieces =
+        vec![Piece::new(3.0 - far, 3.0, move |_, d| density(d)), Piece::new(3.0, 3.0 + far, move |d, _| density(d))];
+    Case::new(Drifting::new(3.0, 0.2, drift).unwrap(), pieces)
 }
 
 fn exponential() -> Case {

@@ -2,6 +2,7 @@
 
 mod analyses;
 mod densities;
+mod drifting;
 mod extremes;
 mod scaling;
 mod student;

@@ -148,7 +148,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// Play has no band and no distribution of its own.
 fn alone(line: &Line<'_>, element: &'static str) -> Result<(), Fault> {
-    const NONE: [&str; 15] = [
+    const NONE: [&str; 19] = [
         "nominal",
         "tolerance",
         "limits",
@@ -158,6 +158,10 @@ fn alone(line: &Line<'_>, element: &'static str) -> Result<(), Fault> {
         "sigma",
         "sigmas",
         "cp",
+        "cpk",
+        "drift",
+        "rss_factor",
+        "mean_shift",
         "shift",
         "moments",
         "measured",

@@ -229,7 +229,10 @@ fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
         return Err(line.at_key(b, StudyFault::Conflict { a, b, why }));
     }
     for (key, of, instead) in MORE {
-        if line.entry.get(key).is_some() && first.is_none_or(|(_, element)| !of.contains(&element)) {
+        // The side of a form, or that of the mean of a plain line.
+        let sign = |side: &Tree| matches!(&side.value, Value::Text(text) if text != "out");
+        let process = key == "side" && first.is_none() && line.entry.get("side").is_some_and(sign);
+        if line.entry.get(key).is_some() && !process && first.is_none_or(|(_, element)| !of.contains(&element)) {
             let to = first.map_or("a dimension".to_owned(), |(key, _)| format!("`{key}`"));
             return Err(line.at_key(key, StudyFault::DoesNotApply { key, to, instead }));
         }

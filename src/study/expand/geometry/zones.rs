@@ -26,7 +26,7 @@ pub(super) fn profile(line: &Line<'_>) -> Result<Plain, Fault> {
     let band = [-rounded(zone - outward), rounded(outward)];
     let Some(length) = line.length()? else { return Ok(banded(line, "profile", band, Of::Line)) };
     below(line, zone, length)?;
-    if let Some(found) = ["distribution", "sigma", "sigmas", "cp", "shift", "moments", "measured"]
+    if let Some(found) = ["distribution", "sigma", "sigmas", "cp", "cpk", "drift", "shift", "moments", "measured"]
         .into_iter()
         .find(|key| line.entry.get(key).is_some())
     {
