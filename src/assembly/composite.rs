@@ -86,7 +86,7 @@ pub struct Composite {
 struct Inner {
     function: Arc<dyn AssemblyFunction>,
     inputs: Vec<Source>,
-    /// What each of its inputs is multiplied by, and each of its outputs; empty where none is.
+    /// Factors of its inputs, and of its outputs; empty where there are none.
     factors: [Vec<f64>; 2],
     /// Where a costly model that formulas drive was sent for which point, by the bits of what it was sent.
     sent: Mutex<HashMap<Vec<u64>, Vec<f64>>>,

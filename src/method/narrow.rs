@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use super::principal::{Axes, Turned};
+use super::principal::{Axes, STILL, Turned};
 use super::{DerivativeSource, Method, MethodError, Options, Outcome};
 use crate::assembly::{
     AssemblyFunction, Composite, EvaluationError, Input, ModelInfo, Points, Request, Responses, Run, Signature,
@@ -25,8 +25,6 @@ use crate::surrogate::Surrogate;
 
 /// Points at which the formulas that drive the model are evaluated, to know how its inputs vary.
 const POINTS: usize = 1 << 13;
-/// An input whose sigma is below this part of its mean does not vary.
-pub(super) const STILL: f64 = 1e-12;
 /// A nominal value so near to the mean, in sigmas, is where the surface is centred.
 const NEAR: f64 = 0.01;
 
@@ -43,7 +41,7 @@ pub(crate) struct Narrow<'p> {
     pub(crate) dimensions: usize,
 }
 
-/// What came of it.
+/// A surface over the inputs, or none.
 pub(crate) enum Narrowed {
     Fitted(Box<Outcome>),
     /// Nothing but evaluations.

@@ -14,6 +14,8 @@ use crate::sampling::{Joint, Summary};
 
 /// A correlation above this leaves the corners of a pair where no part is.
 const ALIKE: f64 = 0.95;
+/// An input whose sigma is below this part of its mean does not vary.
+pub(super) const STILL: f64 = 1e-12;
 /// An eigenvalue below this part of the greatest is rounding of 0.
 const ZERO: f64 = 1e-12;
 
@@ -31,8 +33,7 @@ impl Axes {
     pub(super) fn of(sent: &Points, centre: &[f64]) -> Option<Self> {
         let m = sent.dimensions();
         let sigma: Vec<f64> = (0..m).map(|j| Summary::of(sent.column(j)).sigma()).collect();
-        let moving: Vec<usize> =
-            (0..m).filter(|&j| sigma[j] > super::narrow::STILL * centre[j].abs() && sigma[j] > 0.0).collect();
+        let moving: Vec<usize> = (0..m).filter(|&j| sigma[j] > STILL * centre[j].abs() && sigma[j] > 0.0).collect();
         let correlation = Mat::from_fn(moving.len(), moving.len(), |j, k| {
             if j == k { 1.0 } else { together(sent.column(moving[j]), sent.column(moving[k])) }
         });

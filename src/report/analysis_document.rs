@@ -245,7 +245,7 @@ impl CharacteristicAnalysis {
             format!("{from} .. {to}")
         };
         section.note(format!("{share} % lie within {} (equal tails)", interval(of.equal_tails)));
-        section.note(format!("  the shortest such interval is {}, by {}", interval(of.shortest), of.source.words()));
+        section.note(format!("  shortest: {}, by {}", interval(of.shortest), of.source.words()));
     }
 
     /// The density, over the sample of the model where there is one.

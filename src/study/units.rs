@@ -35,7 +35,7 @@ pub(super) struct Units {
     roles: Vec<Role>,
     /// Where they stand: key and text, and where the text stands in the file.
     places: Vec<Place>,
-    /// What the model's inputs are multiplied by, and its outputs.
+    /// Factors of the model's inputs, and of its outputs.
     factors: [Vec<f64>; 2],
     source: Source,
 }
@@ -147,7 +147,7 @@ impl Units {
         if quote.len() == 3 { body.strip_prefix('\n').unwrap_or(body).to_owned() } else { body.to_owned() }
     }
 
-    /// What the inputs and the outputs of a built-in model are multiplied by; other units than its own are converted, or faults.
+    /// Factors of the inputs and outputs of a built-in model; other units than its own are converted, or faults.
     fn border(&self, file: &StudyFile, model: &Model) -> Result<[Vec<f64>; 2], Faults> {
         let mut faults = Faults::default();
         let mut differs = |name: &str, given: &str, own: &str, of: &str, span: std::ops::Range<usize>, key: String| {
@@ -198,7 +198,7 @@ impl Units {
         faults.none().map(|()| [factors, outputs])
     }
 
-    /// What the model's inputs are multiplied by, and its outputs.
+    /// Factors of the model's inputs, and of its outputs.
     pub(super) fn factors(&self) -> [Vec<f64>; 2] {
         self.factors.clone()
     }
@@ -229,7 +229,7 @@ impl Units {
     }
 }
 
-/// What becomes of an external program's units that are not the study's; a wrong mode is said elsewhere.
+/// How an external program's units that are not the study's are taken; a wrong mode is said elsewhere.
 pub(super) fn foreign(file: &StudyFile) -> ForeignUnits {
     match mode(file) {
         Ok(Mode::Warn | Mode::Check) => ForeignUnits::Refused,

@@ -382,29 +382,21 @@ impl Pool {
                     message: format!("it speaks version {version} of the protocol, and this is version {VERSION}"),
                 },
                 line @ Line { ready: Some(true), .. } => {
-                    let border = match Border::of(&self.hello, &line.units, self.settings.units) {
-                        Ok(border) => border,
-                        Err(fault) => {
-                            let stderr = child.kill().1;
-                            return self.lost_start(index, ProcessError { fault, stderr });
+                    match Border::of(&self.hello, &line.units, self.settings.units) {
+                        Err(fault) => fault,
+                        Ok(border) => {
+                            self.converts = !border.is_open();
+                            self.adapter = Some(line.info());
+                            self.failed_starts = 0;
+                            let slot = &mut self.slots[index];
+                            if let Some(lost) = slot.lost.take() {
+                                self.account.counts.lost_s += lost.elapsed().as_secs_f64();
+                            }
+                            let State::Starting(child, _) = std::mem::take(&mut slot.state) else { return Ok(()) };
+                            slot.state = State::Ready(Box::new(Worker::new(child, &line, border, self.next_point)));
+                            return Ok(());
                         }
-                    };
-                    self.converts = !border.is_open();
-                    let (name, version) = (line.name.clone(), line.version.clone());
-                    let version = version.map(|version| match version {
-                        serde_json::Value::String(text) => text,
-                        other => other.to_string(),
-                    });
-                    let window = line.window.unwrap_or(1).max(1);
-                    self.adapter = Some(ModelInfo { name, version, window, gradients: line.gradients });
-                    self.failed_starts = 0;
-                    let slot = &mut self.slots[index];
-                    if let Some(lost) = slot.lost.take() {
-                        self.account.counts.lost_s += lost.elapsed().as_secs_f64();
                     }
-                    let State::Starting(child, _) = std::mem::take(&mut slot.state) else { return Ok(()) };
-                    slot.state = State::Ready(Box::new(Worker::new(child, &line, border, self.next_point)));
-                    return Ok(());
                 }
                 other => ProcessFault::NotReady { line: other.quoted.unwrap_or_else(|| Quoted(String::new())) },
             },

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::error::{ProcessFault, Quoted};
+use crate::assembly::ModelInfo;
 
 /// The version that is spoken here.
 pub(super) const VERSION: u32 = 1;
@@ -107,6 +108,16 @@ impl Line {
             line.quoted = Some(Quoted::of(text));
         }
         Ok(line)
+    }
+
+    /// The program by its own words in `ready`.
+    pub(super) fn info(&self) -> ModelInfo {
+        let version = self.version.clone().map(|version| match version {
+            serde_json::Value::String(text) => text,
+            other => other.to_string(),
+        });
+        let window = self.window.unwrap_or(1).max(1);
+        ModelInfo { name: self.name.clone(), version, window, gradients: self.gradients }
     }
 
     /// What is wrong with the shape of an answer.

@@ -7,7 +7,7 @@ use std::time::Duration;
 /// Hears every line that a child writes to stderr.
 pub type Listener = Arc<dyn Fn(&str) + Send + Sync>;
 
-/// What becomes of a program's units that are not the study's.
+/// How a program's units that are not the study's are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ForeignUnits {
     /// Numbers are taken as they are.
@@ -39,7 +39,7 @@ pub struct Settings {
     /// How many answers are replayed in a fresh process, reached from the nominal point in small steps, to see whether they depend on
     /// the points before them: by default 5 %, 5 at the least, and 2 more. 0 for none; only with `sentinels`.
     pub verify: Option<usize>,
-    /// What becomes of units that the program says it has and that are not the study's.
+    /// How units that the program says it has, and that are not the study's, are taken.
     pub(crate) units: ForeignUnits,
     /// Hears every line that a child writes to stderr.
     pub listener: Option<Listener>,

@@ -86,7 +86,7 @@ pub(super) fn run(folder: &Folder, query: &Query, told: &str, request: Request) 
     lines.into_inner().unwrap_or_else(PoisonError::into_inner).end();
 }
 
-/// What a page asks for, and the study's file.
+/// The task of a page, and the study's file.
 fn asked(folder: &Folder, query: &Query, told: &str) -> Result<(Task, PathBuf), Answer> {
     let task = Task::read(told).map_err(|error| Answer::refused(400, &error.to_string()))?;
     Ok((task, folder.place(query)?))
