@@ -102,7 +102,7 @@ fn of_points(values: &[f64], probability: f64) -> Option<[[f64; 2]; 2]> {
 /// The same of values in order with their weights.
 fn of_weighted(values: &[(f64, f64)], probability: f64) -> Option<[[f64; 2]; 2]> {
     let total: f64 = values.iter().map(|(_, weight)| weight).sum();
-    if !(total > 0.0) {
+    if total.is_nan() || total <= 0.0 {
         return None;
     }
     // The share up to and with each value.
