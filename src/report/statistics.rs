@@ -54,6 +54,10 @@ impl CharacteristicAnalysis {
             None if as_linear => (("worst case", self.worst_case), None),
             None => (("linear worst case", self.worst_case), None),
         };
+        // Beyond slopes, and not proven to be reached.
+        let within = (self.bounds.as_ref().filter(|_| self.extremes.is_none() && proven.is_none()))
+            .map(|bounds| bounds.bounds)
+            .filter(|within| !self.worst_case.is_some_and(|linear| same([*within, linear])));
         let exact = estimate.is_some_and(|of| matches!(of.sources[..], [ErrorSource::Proven { .. }]));
         let error = |error: Option<f64>| match error {
             Some(_) if exact => Cell::text("exact"),
@@ -96,7 +100,15 @@ impl CharacteristicAnalysis {
                 error(of_skewness),
                 right(worst.0, interval(worst.1, None)),
             ),
-            row("kurtosis", shaped(self.kurtosis(), of_kurtosis), error(of_kurtosis), [Cell::empty(), Cell::empty()]),
+            row(
+                "kurtosis",
+                shaped(self.kurtosis(), of_kurtosis),
+                error(of_kurtosis),
+                match within {
+                    Some(within) => right("worst case within", interval(Some(within), None)),
+                    None => [Cell::empty(), Cell::empty()],
+                },
+            ),
         ];
         section
             .table(DataTable::untitled(rows.into_iter().chain(linear_row)).at_most([ROWS, usize::MAX], String::new()));
