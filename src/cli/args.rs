@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args, ColorChoice, Parser, Subcommand};
 
 use super::import::ImportArgs;
+use super::journal::JournalArgs;
 use super::shared_args::OUTPUT;
 pub(super) use super::shared_args::{HowArgs, OutputArgs, StudyArgs, WorkArgs};
 pub(super) use super::values::{
@@ -553,51 +554,6 @@ pub(super) struct ProbeArgs {
 pub(super) struct EvaluateArgs {
     /// The study, a .toml or .json file
     pub(super) study: PathBuf,
-}
-
-#[derive(Debug, Args)]
-#[command(subcommand_required = true)]
-pub(super) struct JournalArgs {
-    #[command(subcommand)]
-    pub(super) command: JournalCommand,
-}
-
-#[derive(Debug, Subcommand)]
-pub(super) enum JournalCommand {
-    /// The models in a journal, with how much is known of each
-    #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
-    Show {
-        /// The journal
-        file: PathBuf,
-        #[command(flatten)]
-        output: OutputArgs,
-    },
-    /// Every answer of a model as CSV: dimensions, outputs, reasons for no value
-    #[command(after_help = "Examples:\n  sensitol journal export gap.journal.sqlite --model 2 -o answers.csv")]
-    Export {
-        /// The journal
-        file: PathBuf,
-        /// The model's number, where there are several
-        #[arg(long, value_name = "N")]
-        model: Option<i64>,
-        #[command(flatten)]
-        output: OutputArgs,
-    },
-    /// Forgets the answers of a model, when --yes or the terminal says so
-    #[command(after_help = "Examples:\n  sensitol journal forget gap.journal.sqlite --model 2")]
-    Forget {
-        /// The journal
-        file: PathBuf,
-        /// The model's number, where there are several
-        #[arg(long, value_name = "N", conflicts_with = "all")]
-        model: Option<i64>,
-        /// Forget every model
-        #[arg(long)]
-        all: bool,
-        /// Forget without being asked
-        #[arg(short, long)]
-        yes: bool,
-    },
 }
 
 #[derive(Debug, Args)]

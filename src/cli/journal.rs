@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::args::{JournalArgs, JournalCommand, OutputArgs};
 use super::failure::{Exit, Failure};
 use super::files::Files;
 use super::output::{self, Destination, Look, json};
+use super::shared_args::OutputArgs;
 use crate::document::csv::guarded;
 use crate::document::number::UNKNOWN;
 use crate::document::terminal::text;
@@ -28,6 +29,51 @@ pub(super) struct ModelReport {
     errors: usize,
     dimensions: Vec<String>,
     identity: serde_json::Value,
+}
+
+#[derive(Debug, Args)]
+#[command(subcommand_required = true)]
+pub(super) struct JournalArgs {
+    #[command(subcommand)]
+    pub(super) command: JournalCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum JournalCommand {
+    /// The models in a journal, with how much is known of each
+    #[command(after_help = "Examples:\n  sensitol journal show gap.journal.sqlite")]
+    Show {
+        /// The journal
+        file: PathBuf,
+        #[command(flatten)]
+        output: OutputArgs,
+    },
+    /// Every answer of a model as CSV: dimensions, outputs, reasons for no value
+    #[command(after_help = "Examples:\n  sensitol journal export gap.journal.sqlite --model 2 -o answers.csv")]
+    Export {
+        /// The journal
+        file: PathBuf,
+        /// The model's number, where there are several
+        #[arg(long, value_name = "N")]
+        model: Option<i64>,
+        #[command(flatten)]
+        output: OutputArgs,
+    },
+    /// Forgets the answers of a model, when --yes or the terminal says so
+    #[command(after_help = "Examples:\n  sensitol journal forget gap.journal.sqlite --model 2")]
+    Forget {
+        /// The journal
+        file: PathBuf,
+        /// The model's number, where there are several
+        #[arg(long, value_name = "N", conflicts_with = "all")]
+        model: Option<i64>,
+        /// Forget every model
+        #[arg(long)]
+        all: bool,
+        /// Forget without being asked
+        #[arg(short, long)]
+        yes: bool,
+    },
 }
 
 pub(super) fn run(asked: &JournalArgs, look: Look) -> Result<Exit, Failure> {

@@ -241,11 +241,13 @@ impl Page {
         }
     }
 
-    /// Some columns of a table.
+    /// Some columns of a table; below the first ones a row that has nothing in them is left out.
     fn part(&mut self, rows: &[Vec<Vec<Letter>>], columns: &[usize], widths: &[usize], right: &[bool]) {
         let total: usize = columns.iter().map(|&column| widths[column] + GAP).sum();
         let names = widths[0].saturating_sub(total.saturating_sub(self.style.width)).max(SHORTEST);
-        for row in rows {
+        let below = columns.get(1).is_some_and(|&column| column > 1);
+        let said = |row: &&Vec<Vec<Letter>>| columns.iter().skip(1).any(|&column| trimmed(&row[column]) > 0);
+        for row in rows.iter().filter(|row| !below || said(row)) {
             let mut line: Vec<Letter> = Vec::new();
             for &column in columns {
                 let first = column == 0;

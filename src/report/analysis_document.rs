@@ -238,14 +238,19 @@ impl CharacteristicAnalysis {
     /// The intervals that hold a share of assemblies.
     fn covered(&self, section: &mut Section) {
         let Some(of) = &self.coverage else { return };
+        /// By how much the shortest interval must be shorter to be worth a line.
+        const NOTABLE: f64 = 0.01;
         let share = plain(100.0 * of.probability);
+        let width = |[from, to]: [f64; 2]| to - from;
         let scale = self.sigma().filter(|sigma| *sigma > 0.0);
         let interval = |ends: [f64; 2]| {
             let [from, to] = ends.map(|end| scale.map_or_else(|| plain(end), |sigma| beside(end, sigma)));
             format!("{from} .. {to}")
         };
-        section.note(format!("{share} % lie within {} (equal tails)", interval(of.equal_tails)));
-        section.note(format!("  shortest: {}, by {}", interval(of.shortest), of.source.words()));
+        section.note(format!("{share} % within {} (equal tails), by {}", interval(of.equal_tails), of.source.words()));
+        if width(of.shortest) < (1.0 - NOTABLE) * width(of.equal_tails) {
+            section.note(format!("  the shortest such interval: {}", interval(of.shortest)));
+        }
     }
 
     /// The density, over the sample of the model where there is one.

@@ -112,6 +112,7 @@ impl<T: Real> Motion<T> {
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Effect {
     Compression,
+    Tension,
     Normal,
     AgainstNormal,
     /// That the rod exerts on the crank.
@@ -137,6 +138,7 @@ pub(super) fn effect<T: Real>(
     let (sin_a, cos_a) = (motion.sin_a, motion.cos_a);
     match effect {
         Effect::Compression => side * sin_a + along * cos_a,
+        Effect::Tension => -(side * sin_a + along * cos_a),
         Effect::Normal => side * cos_a - along * sin_a,
         Effect::AgainstNormal => along * sin_a - side * cos_a,
         Effect::BigEnd => side * sin_a + along * cos_a - (ax * cos_a + ay * sin_a) * mass,

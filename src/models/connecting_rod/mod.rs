@@ -111,7 +111,7 @@ pub static CONNECTING_ROD: Model = Model {
             name: "mc_F",
             unit: "mm",
             nominal: 108.0,
-            about: "centre of mass of Fn_opt; MC - 105 mm is added",
+            about: "centre of mass of Fn_opt and Fa_opt; MC - 105 mm is added",
         },
         ModelInput {
             name: "mc_T",
@@ -343,6 +343,12 @@ pub static CONNECTING_ROD: Model = Model {
             about: "largest compression of the rod alone",
             depends_on: &[0, 1, 2, 3, 5, 26],
         },
+        ModelOutput {
+            name: "Fa_opt",
+            unit: "N",
+            about: "largest axial force of the rod alone in either direction, 3000 rpm, mass centre at mc_F: a kink",
+            depends_on: &[0, 1, 2, 3, 5, 23],
+        },
     ],
     evaluate,
     bounds: &[
@@ -395,6 +401,7 @@ mod output {
     pub(crate) const F_TENS_BIG: usize = 31;
     pub(crate) const F_COMP_INERTIA: usize = 32;
     pub(crate) const F_COMP_ROD: usize = 33;
+    pub(crate) const FA_OPT: usize = 34;
 }
 
 const DEGREE: f64 = PI / 180.0;
@@ -468,6 +475,8 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
     let tied = found(is_asked(&[output::T_OPT]), &alone(Centre::Tied, Effect::Torque));
     let lobe_a = found(is_asked(&[output::FN_OPT, output::FN_OPT_A]), &alone(Centre::Optimum, Effect::Normal));
     let lobe_b = found(is_asked(&[output::FN_OPT, output::FN_OPT_B]), &alone(Centre::Optimum, Effect::AgainstNormal));
+    let pressed = found(is_asked(&[output::FA_OPT]), &alone(Centre::Optimum, Effect::Compression));
+    let pulled_alone = found(is_asked(&[output::FA_OPT]), &alone(Centre::Optimum, Effect::Tension));
     let height = found(is_asked(&[output::H_REQ_3000, output::H_MARGIN, output::THETA_H_REQ]), &|| {
         heights(Root { rows, speed: fired, webs: [1.0; LANES], at_cut: false }, &GAS_ANGLES)
     });
@@ -536,6 +545,7 @@ fn answer(rows: &Rows, first: usize, asked: &[(usize, usize)], out: &mut Respons
                 output::F_COMP_BIG => big_end[row].value,
                 output::F_COMP_INERTIA => unfired[row].value,
                 output::F_COMP_ROD => rod[row].value,
+                output::FA_OPT => pressed[row].value.max(pulled_alone[row].value),
                 _ => {
                     let degrees = if output == output::F_TENS_BIG { -360.0 } else { x(input::THETA) };
                     if (-360.0..=360.0).contains(&degrees) {
