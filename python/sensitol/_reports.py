@@ -709,10 +709,10 @@ class DesignPoint(Record):
 class DimensionResult(Record):
     """One dimension as the analysis took it."""
 
-    description: Optional[str]
-    """A few words on its meaning."""
     degrees: Optional[float]
     """Degrees of freedom of its standard uncertainty; null where the study says none."""
+    description: Optional[str]
+    """A few words on its meaning."""
     distribution: Optional[str]
     """The kind of its distribution; null when it does not vary."""
     drawing: Optional[str]
@@ -970,10 +970,23 @@ class JointKept(Record):
     """How much of it; of `rss` and `worst-case` at most all of the room that the limits leave, 1."""
     requirement: str
     """`yield`, `cpk`, `sigma`, `rss` or `worst-case`."""
+    sampled: Optional[JointKeptSampled]
+    """The verdict of a sample of the model there; None without one."""
     verdict: Optional[Literal['met', 'missed', 'inconclusive']]
     """The same in a word; null where nothing was found."""
     verdict_before: Literal['met', 'missed', 'inconclusive']
     """The same in a word."""
+
+
+class JointKeptSampled(Record):
+    """The verdict of a sample on a requirement, as it is written."""
+
+    interval: Optional[List[Optional[float]]]
+    """Within which that is known, three errors on either side; null where it is not known at all."""
+    value: Optional[float]
+    """The figure of the sample."""
+    verdict: Literal['met', 'missed', 'inconclusive']
+    """The verdict on the requirement from that."""
 
 
 class JointYield(Record):
@@ -1837,6 +1850,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "FactorIndices": {"first_order": EstimatedShare, "total": EstimatedShare},
     "FrontPoint": {"required": RequiredOf},
     "InspectionRisks": {"accepted": EstimatedShare, "bad_among_accepted": EstimatedShare, "false_accept": EstimatedShare, "false_reject": EstimatedShare},
+    "JointKept": {"sampled": JointKeptSampled},
     "NotRun": {"reason": NotRunReason},
     "RareCharacteristic": {"above": Beyond, "below": Beyond, "requirements": Judged},
     "RareResult": {"characteristics": RareCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "warnings": ReportedWarning},
