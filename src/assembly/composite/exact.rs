@@ -7,11 +7,15 @@ use crate::assembly::formula::Jet;
 use crate::assembly::implicit::Tangent;
 use crate::assembly::{Derivatives, Directions, Run};
 
+/// So many pairs are worth a tape of the formula.
+const TOGETHER: usize = 64;
+
 impl Composite {
     /// For every output its derivatives; None for one that depends on the model.
     ///
     /// Cost: for `P` pairs and `N` inputs about ten evaluations of the formulas for each of `N + P` directions, and as many
-    /// solutions of linear systems where there are unknowns.
+    /// solutions of linear systems where there are unknowns; for each of `2 N` directions where `P` is 64 or more and the output is a
+    /// formula of the inputs alone.
     pub(super) fn exact(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         let origins = self.origins(outputs);
         let needs: Vec<Needs> = origins.iter().map(|&origin| self.needs(origin)).collect();
@@ -28,7 +32,13 @@ impl Composite {
         let asked: Vec<Origin> = known.iter().map(|&k| origins[k]).collect();
         let along = |u: usize, v: usize| self.jets(&asked, &given, tangent.as_ref(), u, v);
         let pure: Vec<Vec<Jet>> = directions.inputs.par_iter().map(|&d| along(d, d)).collect();
-        let mixed: Vec<Vec<Jet>> = directions.pairs.par_iter().map(|&(j, k)| along(j, k)).collect();
+        let together: Vec<Option<Vec<f64>>> =
+            asked.iter().map(|&origin| self.mixed_together(origin, &given, directions)).collect();
+        let open: Vec<Origin> =
+            asked.iter().zip(&together).filter(|(_, together)| together.is_none()).map(|(&origin, _)| origin).collect();
+        let each = |&(j, k): &(usize, usize)| self.jets(&open, &given, tangent.as_ref(), j, k);
+        let mixed: Vec<Vec<Jet>> =
+            if open.is_empty() { Vec::new() } else { directions.pairs.par_iter().map(each).collect() };
         // Formulas know that there is none where the unknowns have none.
         let none = |needs: &Needs| {
             explicit(needs).then(|| Derivatives {
@@ -38,17 +48,32 @@ impl Composite {
             })
         };
         let mut derivatives: Vec<Option<Derivatives>> = needs.iter().map(none).collect();
-        for (place, &k) in known.iter().enumerate() {
-            let of = |jets: &[Vec<Jet>], part: &dyn Fn(&Jet) -> Option<f64>| {
-                jets.iter().map(|jets| part(&jets[place])).collect::<Vec<_>>()
+        let of = |jets: &[Vec<Jet>], place: usize, part: &dyn Fn(&Jet) -> Option<f64>| {
+            jets.iter().map(|jets| part(&jets[place])).collect::<Vec<_>>()
+        };
+        let mut next = 0;
+        for (place, (&k, together)) in known.iter().zip(together).enumerate() {
+            let mixed = match together {
+                Some(mixed) => mixed.into_iter().map(Some).collect(),
+                None => {
+                    next += 1;
+                    of(&mixed, next - 1, &Jet::second)
+                }
             };
-            derivatives[k] = Some(Derivatives {
-                first: of(&pure, &|jet| jet.first(0)),
-                second: of(&pure, &Jet::second),
-                mixed: of(&mixed, &Jet::second),
-            });
+            let (first, second) = (of(&pure, place, &|jet| jet.first(0)), of(&pure, place, &Jet::second));
+            derivatives[k] = Some(Derivatives { first, second, mixed });
         }
         derivatives
+    }
+
+    /// All mixed derivatives of a formula of dimensions alone, where there are many and nothing stands in the way.
+    fn mixed_together(&self, origin: Origin, given: &[f64], directions: &Directions<'_>) -> Option<Vec<f64>> {
+        match origin {
+            Origin::Formula(formula) if directions.pairs.len() >= TOGETHER && !self.needs(origin).unknowns => {
+                self.formulas.mixed(formula, given, directions.pairs)
+            }
+            _ => None,
+        }
     }
 
     /// These outputs along two dimensions.

@@ -65,6 +65,11 @@ impl Jet {
         Some(self.second).filter(|second| self.value.is_finite() && second.is_finite())
     }
 
+    /// Whether the value can change along the directions.
+    pub(super) fn moves(&self) -> bool {
+        self.moves
+    }
+
     fn moving(value: f64, first: [f64; 2], second: f64) -> Self {
         let known = |derivative: f64| {
             if value.is_finite() && derivative.is_finite() { derivative } else { f64::NAN }

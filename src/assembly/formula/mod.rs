@@ -18,6 +18,7 @@ mod batch;
 mod error;
 mod functions;
 mod graph;
+mod hessian;
 pub(crate) mod interval;
 pub(crate) mod jet;
 mod lexer;
