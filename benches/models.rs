@@ -1,4 +1,4 @@
-//! Evaluations of the built-in models a second on one core; `benches/numpy/models.py` has the same in numpy.
+//! Evaluations of the built-in models a second on one core; `benches/peers/numpy_models.py` has the same in numpy.
 
 use std::hint::black_box;
 

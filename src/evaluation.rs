@@ -88,8 +88,12 @@ impl Evaluated {
         self.stages += 1;
         let centre = plan.centre();
         let rows = (BATCH / centre.len()).max(1);
+        // All batches have one buffer, in which only a few values of each point are not those of the centre.
+        let mut points = Points::repeated(&centre, 0);
         for batch in stage.points.chunks(rows) {
-            let mut points = Points::repeated(&centre, batch.len());
+            if points.rows() != batch.len() {
+                points = Points::repeated(&centre, batch.len());
+            }
             for (row, (point, _)) in batch.iter().enumerate() {
                 for at in point.at() {
                     let dimension = at.dimension as usize;
@@ -101,6 +105,7 @@ impl Evaluated {
             problem.function().evaluate(&Request::values(&points, problem.outputs()), run, &mut out);
             self.in_model += begun.elapsed();
             for (row, (point, _)) in batch.iter().enumerate() {
+                point.at().iter().for_each(|at| points.set(row, at.dimension as usize, centre[at.dimension as usize]));
                 self.learn(point, row, &out, run);
                 for characteristic in 0..out.outputs() {
                     if let Some(gradient) = out.gradient(row, characteristic) {

@@ -9,6 +9,8 @@
 //! `2 sqrt(S U) + U`, by Cauchy and Schwarz. Where a sample of the model does not trust the surface, the indices are the model's: by
 //! exchanging inputs, or by the ranks of a sample that is there already; contributions of that surface are then unknown.
 
+use std::collections::HashMap;
+
 use super::CharacteristicAnalysis;
 use super::sobol::{EstimatedShare, FactorIndices, IndexSource, SobolIndices};
 use super::verified::VerificationKind;
@@ -112,10 +114,11 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
     };
     let index = |value: f64| EstimatedShare { value, error: error(value) };
     let complete = left.is_some() || one.interactions.len() == one.possible_interactions;
-    let holder = |name: &String| {
-        let d = one.sensitivities.iter().position(|row| row.dimension == *name);
-        d.and_then(|d| factors.iter().position(|factor| factor.contains(&d)))
-    };
+    let mut holders: HashMap<&str, usize> = HashMap::new();
+    for (place, factor) in factors.iter().enumerate() {
+        holders.extend(factor.iter().map(|&d| (one.sensitivities[d].dimension.as_str(), place)));
+    }
+    let holder = |name: &String| holders.get(name.as_str()).copied();
     let mut inside: Vec<Option<f64>> =
         factors.iter().map(|factor| factor.iter().map(own).sum::<Option<f64>>().filter(|_| trusted)).collect();
     let mut across: Vec<Option<f64>> = vec![complete.then_some(0.0); factors.len()];

@@ -32,6 +32,12 @@ impl Points {
         points
     }
 
+    /// Room for so many points, whatever stands in it.
+    pub(crate) fn resize(&mut self, rows: usize, dimensions: usize) {
+        (self.rows, self.dimensions) = (rows, dimensions);
+        self.values.resize(rows * dimensions, 0.0);
+    }
+
     /// From all values, a column after the other.
     pub(crate) fn of_values(rows: usize, dimensions: usize, values: Vec<f64>) -> Self {
         assert_eq!(values.len(), rows * dimensions, "columns of different length");

@@ -99,7 +99,8 @@ pub(super) fn printed(report: &Report, asked: &AnalyzeArgs, look: Look) -> Strin
         None => {
             let style = look.style(&asked.output);
             let detail = if asked.summary { Detail::Summary } else { style.detail };
-            text(&report.document(), Style { detail, ..style })
+            let document = if detail == Detail::Full { report.document() } else { report.brief_document() };
+            text(&document, Style { detail, ..style })
         }
         Some(StackArg::Text) => text(&stack_document(&report.stacks()), look.style(&asked.output)),
         Some(StackArg::Csv) => stack_csv(&report.stacks()),

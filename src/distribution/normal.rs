@@ -102,6 +102,6 @@ impl Probability for Normal {
 
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
         ziggurat::normals(rng, out);
-        out.iter_mut().for_each(|value| *value = self.mean + self.sigma * *value);
+        ziggurat::place(self.mean, self.sigma, out);
     }
 }

@@ -107,6 +107,6 @@ impl Probability for Uniform {
 
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
         ziggurat::uniforms(rng, out);
-        out.iter_mut().for_each(|value| *value = self.mean + self.half * *value);
+        ziggurat::place(self.mean, self.half, out);
     }
 }

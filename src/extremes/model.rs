@@ -55,10 +55,19 @@ impl Region {
 impl Model {
     /// How far `y` lies above its value at the base.
     pub(crate) fn rise(&self, x: &[f64]) -> f64 {
-        let u = |d: usize| (x[d] - self.base[d]) / self.scale[d];
-        let own: f64 = (0..x.len()).map(|d| quartic(&self.parts[d], u(d))).sum();
-        let joint = |j: usize| self.products[j].iter().filter(move |(k, _)| j < *k).map(move |&(k, a)| a * u(j) * u(k));
-        own + (0..x.len()).flat_map(joint).sum::<f64>()
+        let u: Vec<f64> = (0..x.len()).map(|d| (x[d] - self.base[d]) / self.scale[d]).collect();
+        let own: f64 = u.iter().zip(&self.parts).map(|(&u, part)| quartic(part, u)).sum();
+        // Every product stands with both of its dimensions.
+        let along = |j: usize| self.products[j].iter().map(|&(k, a)| a * u[k]).sum::<f64>();
+        own + 0.5 * (0..x.len()).map(|j| u[j] * along(j)).sum::<f64>()
+    }
+
+    /// How far it rises from one place of a coordinate to another, where the others are.
+    pub(super) fn rise_along(&self, x: &[f64], d: usize, [from, to]: [f64; 2]) -> f64 {
+        let u = |d: usize, x: f64| (x - self.base[d]) / self.scale[d];
+        let tilt: f64 = self.products[d].iter().map(|&(k, a)| a * u(k, x[k])).sum();
+        let (from, to) = (u(d, from), u(d, to));
+        quartic(&self.parts[d], to) - quartic(&self.parts[d], from) + tilt * (to - from)
     }
 
     /// How it rises along one coordinate, per unit of it.

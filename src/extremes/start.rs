@@ -67,14 +67,7 @@ fn least_of(surrogate: &Model, region: &Region) -> Vec<Vec<f64>> {
 
 /// The vertex that differs from `from` in every other coordinate, in the order of what they do to the surrogate.
 fn crossed(surrogate: &Model, region: &Region, from: &[f64]) -> Vec<f64> {
-    let effect = |d: usize| {
-        let at = |x: f64| {
-            let mut point = from.to_vec();
-            point[d] = x;
-            surrogate.rise(&point)
-        };
-        (at(region.upper[d]) - at(region.lower[d])).abs()
-    };
+    let effect = |d: usize| surrogate.rise_along(from, d, [region.lower[d], region.upper[d]]).abs();
     let mut order: Vec<(f64, usize)> = (0..region.len()).map(|d| (effect(d), d)).collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut point = from.to_vec();

@@ -1,5 +1,7 @@
 //! One characteristic's part of the search.
 
+use std::collections::HashMap;
+
 use super::answers::Answers;
 use super::climb::Climb;
 use super::model::{Model, Region};
@@ -59,7 +61,8 @@ impl Task {
             upper: dimensions.iter().map(|&d| band(d)[1]).collect(),
         };
         let zones = zones(problem, &dimensions);
-        let place = |position: usize| dimensions.iter().position(|&d| d == plan.varying()[position]);
+        let places: HashMap<usize, usize> = dimensions.iter().enumerate().map(|(place, &d)| (d, place)).collect();
+        let place = |position: usize| places.get(&plan.varying()[position]).copied();
         let mut products = vec![Vec::new(); dimensions.len()];
         for (&(j, k), mixed) in outcome.pairs.iter().zip(&fitted.mixed) {
             if let (Some(j), Some(k), Some(mixed)) = (place(j), place(k), mixed.filter(|mixed| mixed.value != 0.0)) {

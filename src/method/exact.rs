@@ -1,5 +1,7 @@
 //! Exact derivatives in the place of differences.
 
+use std::collections::HashMap;
+
 use super::{DerivativeSource, MethodError, Options, Order};
 use crate::assembly::{Derivatives, Directions};
 use crate::plan::{DifferencePlan, Mixed, Plan};
@@ -70,12 +72,14 @@ impl ExactDerivatives {
         if options.derivatives == Some(DerivativeSource::Difference) {
             return Vec::new();
         }
-        let position = |name: &String| {
-            let of = |&d: &usize| problem.dimensions()[d].name() == name;
-            plan.varying().iter().position(of)
-        };
+        let positions: HashMap<&str, usize> = plan
+            .varying()
+            .iter()
+            .enumerate()
+            .map(|(position, &d)| (problem.dimensions()[d].name(), position))
+            .collect();
         let pair = |(a, b): &(String, String)| {
-            let (j, k) = (position(a)?, position(b)?);
+            let (j, k) = (*positions.get(a.as_str())?, *positions.get(b.as_str())?);
             (j != k).then_some((j.min(k), j.max(k)))
         };
         let mut pairs: Vec<(usize, usize)> = problem.products().iter().filter_map(pair).collect();

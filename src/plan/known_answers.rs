@@ -1,6 +1,8 @@
 //! What is known: the answers so far, per point and characteristic.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+
+use hashbrown::HashTable;
 
 use super::Point;
 use crate::assembly::EvaluationError;
@@ -9,7 +11,8 @@ use crate::assembly::EvaluationError;
 #[derive(Debug, Clone, Default)]
 pub struct KnownAnswers {
     characteristics: usize,
-    row: HashMap<Point, u32>,
+    /// Places among the points, by their hashes: a million points stand here once.
+    rows: HashTable<u32>,
     points: Vec<Point>,
     /// A column per characteristic, NaN where there is no value.
     values: Vec<Vec<f64>>,
@@ -29,11 +32,11 @@ impl KnownAnswers {
 
     /// Keeps one characteristic's answer at a point.
     pub(crate) fn learn(&mut self, point: &Point, characteristic: usize, answer: Result<f64, EvaluationError>) {
-        let row = match self.row.get(point) {
-            Some(&row) => row,
+        let row = match self.row(point) {
+            Some(row) => row,
             None => {
                 let row = u32::try_from(self.points.len()).expect("fewer than four billion points");
-                self.row.insert(point.clone(), row);
+                self.rows.insert_unique(hash(point), row, |&row| hash(&self.points[row as usize]));
                 self.points.push(point.clone());
                 self.values.iter_mut().for_each(|column| column.push(f64::NAN));
                 row
@@ -47,14 +50,18 @@ impl KnownAnswers {
         }
     }
 
+    fn row(&self, point: &Point) -> Option<u32> {
+        self.rows.find(hash(point), |&row| self.points[row as usize] == *point).copied()
+    }
+
     /// Whether the point was evaluated, with whatever success.
     pub(crate) fn tried(&self, point: &Point) -> bool {
-        self.row.contains_key(point)
+        self.row(point).is_some()
     }
 
     /// The value of a characteristic at a point, where it is known.
     pub(crate) fn value(&self, point: &Point, characteristic: usize) -> Option<f64> {
-        let value = self.values[characteristic][*self.row.get(point)? as usize];
+        let value = self.values[characteristic][self.row(point)? as usize];
         (!value.is_nan()).then_some(value)
     }
 
@@ -70,7 +77,7 @@ impl KnownAnswers {
 
     /// Why a characteristic has no value at a point.
     pub(crate) fn error(&self, point: &Point, characteristic: usize) -> Option<&EvaluationError> {
-        self.errors.get(&(*self.row.get(point)?, characteristic as u32))
+        self.errors.get(&(self.row(point)?, characteristic as u32))
     }
 
     /// Whether any point failed for any characteristic.
@@ -91,4 +98,13 @@ impl KnownAnswers {
             .iter()
             .map(|(&(row, characteristic), error)| (&self.points[row as usize], characteristic as usize, error))
     }
+}
+
+/// Both halves of a product of 128 bits for every dimension that is elsewhere: no pattern of places is left in any bit.
+fn hash(point: &Point) -> u64 {
+    const ODD: u128 = 0x9e37_79b9_7f4a_7c15;
+    point.at().iter().fold(1 << 63, |hash, at| {
+        let product = u128::from(hash ^ u64::from(at.dimension) << 32 ^ u64::from(at.node)) * ODD;
+        product as u64 ^ (product >> 64) as u64
+    })
 }

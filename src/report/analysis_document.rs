@@ -38,6 +38,15 @@ const LEAST_PPM: f64 = 1e-6;
 impl Report {
     /// What it says. Its tables: `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and `warnings`.
     pub(crate) fn document(&self) -> Document {
+        self.with_pairs(usize::MAX)
+    }
+
+    /// The same with the interactions that a page or a terminal shows, where not all are asked for.
+    pub(crate) fn brief_document(&self) -> Document {
+        self.with_pairs(INTERACTIONS.max(INTERACTIONS_OF_PAGE))
+    }
+
+    fn with_pairs(&self, pairs: usize) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let evaluations = plural(self.analysis.run.evaluations as usize, "evaluation", "evaluations");
         let varying = plural(self.analysis.varying, "varying dimension", "varying dimensions");
@@ -62,7 +71,7 @@ impl Report {
         }
         self.labels().into_iter().for_each(|table| document.detail(table));
         let all = self.analysis.characteristics.iter().zip(self.stacks());
-        document.sections = all.map(|(one, stack)| self.section(one, &stack)).collect();
+        document.sections = all.map(|(one, stack)| self.section(one, &stack, pairs)).collect();
         document.head.extend(
             [self.dimension_table(), together_table(&self.analysis.correlations), self.warning_table()]
                 .map(Element::Table),
@@ -70,7 +79,7 @@ impl Report {
         document
     }
 
-    fn section(&self, one: &CharacteristicAnalysis, stack: &Stack) -> Section {
+    fn section(&self, one: &CharacteristicAnalysis, stack: &Stack, pairs: usize) -> Section {
         let mut section = Section::of(one.name(), one.unit());
         section.blocks = findings(&self.warnings, |name| name == Some(one.name()));
         one.characteristic.labels().line().into_iter().for_each(|line| section.wrapped(2, line));
@@ -96,7 +105,7 @@ impl Report {
         }
         section.detail(all);
         self.correlations(one, &mut section);
-        one.pairs(&mut section);
+        one.pairs(&mut section, pairs);
         let (pareto, rest) = bars::pareto(one);
         let mut drawn = vec![Element::Chart(Chart::Bars(pareto))];
         rest.into_iter().for_each(|rest| drawn.note(rest));
@@ -468,7 +477,7 @@ impl CharacteristicAnalysis {
     }
 
     /// The interactions examined: how many, what they make, and the strongest.
-    fn pairs(&self, section: &mut Section) {
+    fn pairs(&self, section: &mut Section, pairs: usize) {
         let (possible, examined) = (self.possible_interactions, self.interactions.len());
         self.together(section);
         if let Some(of_model) = self.indices.as_ref().filter(|_| self.is_of_model()) {
@@ -482,7 +491,7 @@ impl CharacteristicAnalysis {
             section
                 .note(format!("interactions: {examined} of {possible} examined, {together} of the variance together"));
         }
-        section.table(self.interaction_table());
+        section.table(self.interaction_table(pairs));
     }
 
     /// Dimensions that vary together, as one factor: without what they do to each other where the surface tells of each of them.
@@ -519,7 +528,7 @@ impl CharacteristicAnalysis {
         }
     }
 
-    pub(super) fn interaction_table(&self) -> DataTable {
+    pub(super) fn interaction_table(&self, rows: usize) -> DataTable {
         let news = self.interactions.iter().filter(|pair| pair.share.is_none_or(|share| share >= NEWS)).count();
         let trusted = !self.is_of_model();
         let most = [if trusted { news.min(INTERACTIONS) } else { 0 }, news.min(INTERACTIONS_OF_PAGE)];
@@ -540,7 +549,7 @@ impl CharacteristicAnalysis {
             })
             .column("share", "share %", |pair| Cell::number(pair.share, percent))
             .data("rounding", |pair| Cell::data(pair.rounding))
-            .table("interactions", &self.interactions)
+            .table("interactions", self.interactions.iter().take(rows))
             .at_most(most, String::new())
     }
 }

@@ -5,10 +5,9 @@ use std::fmt;
 use std::str::FromStr;
 
 use faer::Mat;
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::sobol::{SOBOL_DIMENSIONS, Sobol, mixed, scrambled};
+use super::stream::Stream;
 use crate::assembly::Points;
 use crate::correlation::{Block, Correlation, JointLaw};
 use crate::dimension::Dimension;
@@ -147,11 +146,17 @@ impl<'a> Draws<'a> {
 
     /// The points of a portion; dimensions that do not vary have their nominal value.
     pub fn points(&self, portion: Portion) -> Points {
-        let mut points = Points::written(portion.rows, self.dimensions.len(), |d, column| {
-            if self.dimensions[d].distribution().is_none() {
-                column.fill(self.dimensions[d].nominal());
-            }
-        });
+        let mut points = Points::repeated(&[], 0);
+        self.write(portion, &mut points);
+        points
+    }
+
+    /// The same in the room of other points.
+    pub(crate) fn write(&self, portion: Portion, points: &mut Points) {
+        points.resize(portion.rows, self.dimensions.len());
+        for (d, dimension) in self.dimensions.iter().enumerate().filter(|(_, one)| one.distribution().is_none()) {
+            points.column_mut(d).fill(dimension.nominal());
+        }
         let mut digits = vec![0; if self.sobol.is_some() { portion.rows } else { 0 }];
         for (place, &(d, law)) in self.varying.iter().enumerate() {
             if !self.is_correlated(place) {
@@ -159,9 +164,8 @@ impl<'a> Draws<'a> {
             }
         }
         if let Some(correlated) = &self.correlated {
-            self.together(correlated, portion, &mut digits, &mut points);
+            self.together(correlated, portion, &mut digits, points);
         }
-        points
     }
 
     fn is_correlated(&self, place: usize) -> bool {
@@ -173,8 +177,8 @@ impl<'a> Draws<'a> {
         mixed(mixed(mixed(self.seed).wrapping_add(stream)).wrapping_add(place as u64))
     }
 
-    fn generator(&self, portion: Portion, place: usize) -> Xoshiro256PlusPlus {
-        Xoshiro256PlusPlus::seed_from_u64(self.key(mixed(portion.replicate) ^ portion.first, place))
+    fn generator(&self, portion: Portion, place: usize) -> Stream {
+        Stream::new(self.key(mixed(portion.replicate) ^ portion.first, place))
     }
 
     fn own(&self, place: usize, law: &dyn Probability, portion: Portion, digits: &mut [u64], out: &mut [f64]) {
@@ -229,16 +233,32 @@ impl<'a> Draws<'a> {
             let (d, law) = self.varying[place];
             let (mean, sigma) = (self.dimensions[d].mean(), self.dimensions[d].sigma());
             let column = points.column_mut(d);
-            column.fill(0.0);
-            for (k, normals) in normals.iter().enumerate() {
-                let factor = correlated.factor[(j, k)];
-                if factor != 0.0 {
-                    column.iter_mut().zip(normals).for_each(|(z, normal)| *z += factor * normal);
-                }
+            let factors: Vec<f64> = (0..normals.len()).map(|k| correlated.factor[(j, k)]).collect();
+            on_this_processor(Combined { factors: &factors, normals: &normals, out: &mut *column });
+            match transform.is_normal() || in_zone {
+                true => ziggurat::place(mean, sigma, column),
+                false => column.iter_mut().for_each(|value| *value = behind_normal(law, *value)),
             }
-            for value in column {
-                *value =
-                    if transform.is_normal() || in_zone { mean + sigma * *value } else { behind_normal(law, *value) };
+        }
+    }
+}
+
+/// Columns times factors, added up in their order.
+struct Combined<'a> {
+    factors: &'a [f64],
+    normals: &'a [Vec<f64>],
+    out: &'a mut [f64],
+}
+
+impl Work for Combined<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        self.out.fill(0.0);
+        for (&factor, normals) in self.factors.iter().zip(self.normals).filter(|(factor, _)| **factor != 0.0) {
+            for (value, normal) in self.out.iter_mut().zip(normals) {
+                *value += factor * normal;
             }
         }
     }

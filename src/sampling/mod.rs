@@ -7,6 +7,7 @@ mod joint;
 mod normals;
 mod ranks;
 mod sobol;
+mod stream;
 mod summary;
 
 pub use draws::{Draws, Portion, Sampler, SamplingError};

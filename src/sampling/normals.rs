@@ -1,10 +1,8 @@
 //! Columns of independent standard normal variables.
 
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
-
 use super::draws::tails;
 use super::sobol::{Sobol, mixed};
+use super::stream::Stream;
 use crate::distribution::{standard_normal, ziggurat};
 
 /// Up to so many variables the points are Sobol's: beyond, a few thousand of them are no more even than random ones.
@@ -38,7 +36,7 @@ impl Normals {
                         tails(&digits, key, &mut column);
                         standard_normal::quantiles(&mut column);
                     }
-                    None => ziggurat::normals(&mut Xoshiro256PlusPlus::seed_from_u64(key), &mut column),
+                    None => ziggurat::normals(&mut Stream::new(key), &mut column),
                 }
                 column
             })

@@ -6,11 +6,6 @@ use std::sync::LazyLock;
 const JOE_KUO: &str = include_str!("joe_kuo.txt");
 /// Binary digits of a coordinate: the index of a point has as many.
 const DIGITS: u32 = 52;
-/// Digits that are scrambled one by one; below them all at once, which makes no difference before the 2^42nd point.
-const NESTED: u32 = 42;
-/// Digits that take their random bits from one hash: a tree of six levels has 63 nodes.
-const GROUP: u32 = 6;
-
 /// The direction numbers of one dimension, digits from the top of the word down.
 type Directions = [u64; DIGITS as usize];
 
@@ -100,35 +95,79 @@ fn directions(dimension: usize) -> Directions {
     v
 }
 
-/// Scrambles digits by a key of their dimension: each is flipped by a random bit that belongs to those above it.
+/// Scrambles digits by a key of their dimension: each is flipped by a bit that belongs to those above it.
 ///
-/// The bits of a tree of [`GROUP`] digits, 63 of them, are those of one hash of the digits above the tree.
+/// Sums and products carry from a bit to higher ones only, so that in the reversed word a digit changes with those above it alone
+/// (Laine and Karras 2011; Burley 2020, in 32 bits). Two rounds with random summands and factors: whether two points agree in a
+/// digit after the first in which they differ is then even to all appearances, which is what the variance follows from (Owen
+/// 1997).
 #[inline(always)]
 pub(crate) fn scrambled(digits: u64, key: u64) -> u64 {
-    let mut flips = 0;
-    for group in 0..NESTED / GROUP {
-        let depth = group * GROUP;
-        let hash = hashed(digits, depth, key);
-        // The digits of this group below a mark: shortened, they number the nodes of the tree from 1 on.
-        let own = digits << depth >> (64 - GROUP) | 1 << GROUP;
-        let bits = (0..GROUP).fold(0, |bits, level| bits << 1 | hash >> (own >> (GROUP - level)) & 1);
-        flips |= bits << (64 - GROUP - depth);
-    }
-    digits ^ flips ^ hashed(digits, NESTED, key) >> NESTED
+    /// Any even numbers without a pattern.
+    const EVEN: [u64; 4] = [0x9e37_79b9_7f4a_7c16, 0xbf58_476d_1ce4_e5b8, 0x94d0_49bb_1331_11ea, 0xd6e8_feb8_6659_fd92];
+    let (first, factors, second) = (mixed(key ^ 1), mixed(key ^ 2), mixed(key ^ 3));
+    let mut x = digits.reverse_bits().wrapping_add(first);
+    x ^= x.wrapping_mul(EVEN[0]);
+    x = x.wrapping_mul(factors | 1);
+    x ^= x.wrapping_mul(EVEN[1]);
+    x = x.wrapping_add(second);
+    x ^= x.wrapping_mul(EVEN[2]);
+    x = x.wrapping_mul(factors >> 32 | 1);
+    x ^= x.wrapping_mul(EVEN[3]);
+    x.reverse_bits()
 }
 
-/// A hash of the digits above a depth, with a mark below them that tells how many they are.
-#[inline(always)]
-fn hashed(digits: u64, depth: u32, key: u64) -> u64 {
-    let above = if depth == 0 { 0 } else { digits >> (64 - depth) << (64 - depth) };
-    mixed(above ^ 1 << (63 - depth) ^ key)
-}
+/// The step of SplitMix64: 2^64 by the golden ratio, odd.
+pub(super) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// A bijection of words that leaves no pattern: the finaliser of SplitMix64 (Steele, Lea and Flood 2014, after Stafford).
 #[inline(always)]
 pub(crate) fn mixed(word: u64) -> u64 {
-    let word = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let word = word.wrapping_add(GOLDEN);
     let word = (word ^ word >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let word = (word ^ word >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
     word ^ word >> 31
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two points with `i` digits in common keep them and differ in the next; in every digit after that they agree for half of all
+    /// keys, and for a quarter in any two: what the variance of nested uniform scrambling needs (Owen 1997). Words with few digits, as
+    /// the first points have, and words full of them. Shares of 20,000 keys are within 6 of their standard errors, 0.0035 and
+    /// 0.0031; there are some 40,000 of them.
+    #[test]
+    fn digits_after_the_first_difference_are_independent() {
+        const KEYS: u64 = 20_000;
+        let tops = [0, 1 << 63, 3 << 62, 0x5555 << 48, 0x1234_5678_9abc_def0, u64::MAX];
+        for (case, top) in tops.into_iter().enumerate() {
+            for i in [0, 1, 2, 5, 11, 23, 40] {
+                let other = top ^ 1 << (63 - i);
+                let (mut agree, mut both) = ([0u32; 52], [[0u32; 52]; 52]);
+                for key in 0..KEYS {
+                    let apart =
+                        scrambled(top, mixed(key << 8 | case as u64)) ^ scrambled(other, mixed(key << 8 | case as u64));
+                    assert_eq!(apart.leading_zeros(), i, "the digits in common");
+                    let same: Vec<usize> =
+                        (i as usize + 1..52).filter(|digit| apart >> (63 - digit) & 1 == 0).collect();
+                    for (place, &j) in same.iter().enumerate() {
+                        agree[j] += 1;
+                        same[place + 1..].iter().for_each(|&k| both[j][k] += 1);
+                    }
+                }
+                let share = |count: u32| f64::from(count) / KEYS as f64;
+                for j in i as usize + 1..52 {
+                    assert!((share(agree[j]) - 0.5).abs() < 0.021, "{top:x}, {i}, {j}: {}", share(agree[j]));
+                    for k in j + 1..52 {
+                        assert!(
+                            (share(both[j][k]) - 0.25).abs() < 0.019,
+                            "{top:x}, {i}, {j}, {k}: {}",
+                            share(both[j][k])
+                        );
+                    }
+                }
+            }
+        }
+    }
 }

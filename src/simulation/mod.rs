@@ -24,7 +24,7 @@ use std::time::Duration;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::assembly::{EvaluationError, NonRepeatable, Request, Responses, Run};
+use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
 use crate::method::{Method, MethodError, Options, Outcome};
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion};
@@ -395,17 +395,21 @@ fn drawn(
     (begun, pace): (Instant, &dyn Fn(Pace)),
 ) -> Simulation {
     let mut tally = Tally::new(problem, control, options.sampler);
-    let mut portions = Portions::new(options, problem.function().signature().costly);
+    let mut portions = Portions::new(options, problem.function().signature().costly, problem.dimensions().len());
     let (mut reached, mut expected) = (None, portions.total as f64);
     while !run.stopped() && !tally.stopped {
         let batch = portions.next_batch();
         if batch.is_empty() {
             break;
         }
-        let one = |portion: &Portion| block(problem, draws, *portion, run, (tally.lenses(), control, options.sampler));
+        let one = |points: &mut Points, portion: &Portion| {
+            draws.write(*portion, points);
+            block(problem, points, *portion, run, (tally.lenses(), control, options.sampler))
+        };
+        let room = || Points::repeated(&[], 0);
         let blocks: Vec<Block> = match portions.costly {
-            true => batch.iter().map(one).collect(),
-            false => batch.par_iter().map(one).collect(),
+            true => batch.iter().map(|portion| one(&mut room(), portion)).collect(),
+            false => batch.par_iter().map_init(room, one).collect(),
         };
         tally.add(&batch, blocks);
         if let Some(ratio) = tally.shortfall(options) {
@@ -430,18 +434,24 @@ fn drawn(
 /// Evaluates one portion.
 fn block(
     problem: &Problem,
-    draws: &Draws<'_>,
+    points: &Points,
     portion: Portion,
     run: &Run<'_>,
     (lenses, control, sampler): (&[Lens], Option<&Control<'_>>, Sampler),
 ) -> Block {
-    let points = draws.points(portion);
     let mut out = Responses::open(portion.rows, problem.outputs().len());
     let begun = Instant::now();
-    problem.function().evaluate(&Request::values(&points, problem.outputs()), run, &mut out);
+    problem.function().evaluate(&Request::values(points, problem.outputs()), run, &mut out);
     let took = begun.elapsed();
-    let beside = control.map_or_else(Vec::new, |control| control.beside(&points));
+    let beside = control.map_or_else(Vec::new, |control| control.beside(points));
     Block::of(&out, took, (lenses, sampler, portion.replicate), &beside)
+}
+
+/// Points whose values stay in a cache near by: a power of two.
+fn most_rows(dimensions: usize) -> usize {
+    /// Two megabytes.
+    const VALUES: usize = 1 << 18;
+    1 << (VALUES / dimensions.max(1)).max(128).ilog2()
 }
 
 /// The portions of a sample, a batch at a time, every replicate as far as the others.
@@ -457,12 +467,12 @@ struct Portions {
 }
 
 impl Portions {
-    fn new(options: &SimulationOptions, costly: bool) -> Self {
+    fn new(options: &SimulationOptions, costly: bool, dimensions: usize) -> Self {
         let (replicates, each) = match options.sampler {
             Sampler::Random => (1, options.samples),
             Sampler::Sobol => (REPLICATES, options.samples.div_ceil(REPLICATES).next_power_of_two()),
         };
-        let rows = if costly && replicates == 1 { COSTLY } else { ROWS } as u64;
+        let rows = if costly && replicates == 1 { COSTLY } else { ROWS.min(most_rows(dimensions)) } as u64;
         Self { replicates, rows: rows.min(each), total: replicates * each, each, done: 0, costly }
     }
 

@@ -4,6 +4,7 @@ use super::characteristic::YieldEstimate;
 use super::count::Lens;
 use super::replicate::of_replicates;
 use crate::assembly::Responses;
+use crate::elementary::{Work, on_this_processor};
 use crate::problem::Problem;
 use crate::sampling::{Sampler, wilson};
 use crate::verification::{OutputCorrelation, student};
@@ -34,42 +35,15 @@ impl Together {
         if lenses.len() < 2 {
             return Vec::new();
         }
+        let groups = on_this_processor(Groups { out, lenses });
         match sampler {
-            Sampler::Sobol => vec![(replicate as usize, Self::of_rows(out, lenses, 0, 1))],
-            Sampler::Random => (0..GROUPS).map(|group| (group, Self::of_rows(out, lenses, group, GROUPS))).collect(),
-        }
-    }
-
-    fn of_rows(out: &Responses, lenses: &[Lens], first: usize, step: usize) -> Self {
-        let columns: Vec<&[f64]> = (0..lenses.len()).map(|output| out.column(output)).collect();
-        let rows = || (first..out.rows()).step_by(step);
-        let mut together = Self::default();
-        let limited: Vec<usize> = (0..lenses.len()).filter(|&c| lenses[c].limits.exist()).collect();
-        if limited.len() > 1 {
-            for row in rows().filter(|&row| limited.iter().all(|&c| !columns[c][row].is_nan())) {
-                together.known += 1;
-                together.kept += u64::from(limited.iter().all(|&c| lenses[c].limits.contains(columns[c][row])));
+            Sampler::Sobol => {
+                let mut whole = Self::default();
+                groups.iter().for_each(|group| whole.merge(group));
+                vec![(replicate as usize, whole)]
             }
+            Sampler::Random => groups.into_iter().enumerate().collect(),
         }
-        if lenses.len() <= MOST {
-            let full: Vec<usize> = rows().filter(|&row| columns.iter().all(|column| column[row].is_finite())).collect();
-            together.count = full.len() as f64;
-            let mean = |column: &&[f64]| match full.first() {
-                // About the first value, so that the sum of large values does not round.
-                Some(&at) => {
-                    column[at] + full.iter().map(|&row| column[row] - column[at]).sum::<f64>() / together.count
-                }
-                None => 0.0,
-            };
-            together.means = columns.iter().map(mean).collect();
-            for (a, first) in columns.iter().enumerate() {
-                for (b, second) in columns.iter().enumerate().skip(a) {
-                    let [m, n] = [together.means[a], together.means[b]];
-                    together.products.push(full.iter().map(|&row| (first[row] - m) * (second[row] - n)).sum());
-                }
-            }
-        }
-        together
     }
 
     /// Takes in another part (Pébay 2008, equation 3.12).
@@ -108,6 +82,95 @@ impl Together {
         };
         if self.count < 2.0 { vec![f64::NAN; n * n.saturating_sub(1) / 2] } else { pairs.map(of).collect() }
     }
+}
+
+/// Every sixteenth point of a portion is a part of its own.
+struct Groups<'a> {
+    out: &'a Responses,
+    lenses: &'a [Lens],
+}
+
+impl Work for Groups<'_> {
+    type Output = Vec<Together>;
+
+    #[inline(always)]
+    fn work(self) -> Vec<Together> {
+        let Self { out, lenses } = self;
+        let columns: Vec<&[f64]> = (0..lenses.len()).map(|output| out.column(output)).collect();
+        let mut groups = vec![Together::default(); GROUPS];
+        let limited: Vec<usize> = (0..lenses.len()).filter(|&c| lenses[c].limits.exist()).collect();
+        if limited.len() > 1 {
+            let (mut known, mut kept) = (vec![1.0; out.rows()], vec![1.0; out.rows()]);
+            for &c in &limited {
+                let lower = lenses[c].limits.lower().unwrap_or(f64::NEG_INFINITY);
+                let upper = lenses[c].limits.upper().unwrap_or(f64::INFINITY);
+                for ((known, kept), &value) in known.iter_mut().zip(&mut kept).zip(columns[c]) {
+                    *known = if value.is_nan() { 0.0 } else { *known };
+                    *kept = if value >= lower && value <= upper { *kept } else { 0.0 };
+                }
+            }
+            let counts = [by_group(&known), by_group(&kept)];
+            for (group, together) in groups.iter_mut().enumerate() {
+                [together.known, together.kept] = [counts[0][group] as u64, counts[1][group] as u64];
+            }
+        }
+        if lenses.len() > MOST {
+            return groups;
+        }
+        let mut full = vec![1.0; out.rows()];
+        for column in &columns {
+            for (full, value) in full.iter_mut().zip(*column) {
+                *full = if value.is_finite() { *full } else { 0.0 };
+            }
+        }
+        let counts = by_group(&full);
+        let Some(first) = full.iter().position(|&full| full > 0.0) else { return groups };
+        let mut deviations: Vec<Vec<f64>> = Vec::with_capacity(columns.len());
+        for column in &columns {
+            // About the first value, so that the sum of large values does not round.
+            let at = column[first];
+            let mut apart = vec![0.0; out.rows()];
+            for ((apart, value), &full) in apart.iter_mut().zip(*column).zip(&full) {
+                *apart = if full > 0.0 { value - at } else { 0.0 };
+            }
+            let mut means = by_group(&apart);
+            for (mean, count) in means.iter_mut().zip(counts) {
+                *mean = if count > 0.0 { *mean / count } else { 0.0 };
+            }
+            for (apart, full) in apart.chunks_mut(GROUPS).zip(full.chunks(GROUPS)) {
+                for ((apart, full), mean) in apart.iter_mut().zip(full).zip(&means) {
+                    *apart = if *full > 0.0 { *apart - mean } else { 0.0 };
+                }
+            }
+            groups.iter_mut().zip(means).for_each(|(together, mean)| together.means.push(at + mean));
+            deviations.push(apart);
+        }
+        groups.iter_mut().zip(counts).for_each(|(together, count)| together.count = count);
+        let mut products = vec![0.0; out.rows()];
+        for (a, first) in deviations.iter().enumerate() {
+            for second in &deviations[a..] {
+                for ((product, first), second) in products.iter_mut().zip(first).zip(second) {
+                    *product = first * second;
+                }
+                groups.iter_mut().zip(by_group(&products)).for_each(|(together, sum)| together.products.push(sum));
+            }
+        }
+        groups
+    }
+}
+
+/// The sum over the points of every group.
+#[inline(always)]
+fn by_group(values: &[f64]) -> [f64; GROUPS] {
+    let (rows, rest) = values.as_chunks::<GROUPS>();
+    let mut sums = [0.0; GROUPS];
+    for row in rows {
+        for group in 0..GROUPS {
+            sums[group] += row[group];
+        }
+    }
+    sums.iter_mut().zip(rest).for_each(|(sum, value)| *sum += value);
+    sums
 }
 
 /// The parts of a whole sample, in the order of their numbers.

@@ -16,7 +16,7 @@ use crate::assembly::{
 pub(super) struct Sent {
     /// A column for every input of the model, NaN where a formula has no value.
     pub(super) columns: Points,
-    /// Why nothing is sent for a row.
+    /// Why nothing is sent for a row; empty where no formula can fail.
     errors: Vec<Option<EvaluationError>>,
 }
 
@@ -61,9 +61,9 @@ impl Composite {
     /// What the model is sent at these points.
     pub(super) fn sent(&self, points: &Points, run: &Run<'_>) -> Sent {
         let rows = points.rows();
-        let mut errors = vec![None; rows];
-        let Some(model) = &self.model else { return Sent { columns: Points::of_values(rows, 0, Vec::new()), errors } };
         let driving = self.driving();
+        let mut errors = vec![None; if driving.is_empty() { 0 } else { rows }];
+        let Some(model) = &self.model else { return Sent { columns: Points::of_values(rows, 0, Vec::new()), errors } };
         let values = self.driven(&driving, points, run, &mut errors);
         let mut columns = Vec::with_capacity(rows * model.inputs.len());
         for source in &model.inputs {
@@ -166,8 +166,10 @@ impl Composite {
             return None;
         }
         let Sent { columns, errors } = self.sent(points, &Run::to_the_end());
-        let kept: Vec<Vec<f64>> =
-            (0..columns.rows()).filter(|&row| errors[row].is_none()).map(|row| columns.row(row)).collect();
+        let kept: Vec<Vec<f64>> = (0..columns.rows())
+            .filter(|&row| errors.get(row).is_none_or(Option::is_none))
+            .map(|row| columns.row(row))
+            .collect();
         Some((model.function.signature().inputs.clone(), Points::from_rows(&kept)))
     }
 
@@ -188,12 +190,13 @@ impl Composite {
         let rows = points.rows();
         let mut answers = Responses::open(rows, needed.len());
         let Some(model) = self.model.as_ref().filter(|_| !needed.is_empty()) else { return answers };
-        let Sent { columns, errors } = self.sent(points, run);
+        let Sent { columns, mut errors } = self.sent(points, run);
         let whole = model.function.signature().inputs.len() == points.dimensions();
         if errors.iter().all(Option::is_none) && (!self.signature.costly || whole && model.driving().next().is_none()) {
             model.function.evaluate(&Request::values(&columns, needed), run, &mut answers);
             return answers;
         }
+        errors.resize(rows, None);
         // Points that send the same numbers are one evaluation.
         let mut place: HashMap<Vec<u64>, usize> = HashMap::new();
         let (mut distinct, mut rows_of): (Vec<Vec<f64>>, Vec<Option<usize>>) = (Vec::new(), Vec::with_capacity(rows));

@@ -43,7 +43,7 @@ struct Try<'r> {
 /// The page needs no network and loads nothing. No evaluation.
 pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let possible = what_if.filter(|what_if| what_if.possible());
-    let mut document = report.document();
+    let mut document = report.brief_document();
     evidence::add(report, &mut document.sections);
     let analysed = Analysed { what_if: possible.map(tries), no_what_if: what_if.and_then(WhatIf::impossible) };
     let (parts, warnings) = (

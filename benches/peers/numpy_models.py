@@ -4,7 +4,7 @@ Every model is transcribed as one who knows numpy would: blocks of rows, whole c
 angle is asked for, numpy takes the largest of 49 (37) angles and the parabola through its neighbours, which is good to about 1e-3;
 sensitol refines to rounding.
 
-    OMP_NUM_THREADS=1 python3 benches/numpy/models.py
+    OMP_NUM_THREADS=1 python3 benches/peers/numpy_models.py
 """
 
 import time
