@@ -133,7 +133,7 @@ impl Work for Tip<'_> {
     #[inline(always)]
     fn work(self) {
         let Self { inputs: [px, py, pz, tilt, yaw, close, rear, bend, skew, front, tip], sign, differences } = self;
-        // One by one: what `map` of an array is given is compiled by itself, for the least processor.
+        // One by one: the closure of an array's `map` is compiled by itself, for the least processor.
         let (tilt, yaw, close) = (Turn::of(tilt), Turn::of(yaw), Turn::of(close));
         let (bend, skew) = (Turn::of(bend), Turn::of(skew));
         let [gap, forward, sideways] = differences;

@@ -123,10 +123,9 @@ impl Report {
 
     /// What slopes and curvatures are, unless they are differences as everything else.
     fn source(&self, one: &CharacteristicAnalysis) -> Option<String> {
-        let shown = || one.shown(&self.dimensions);
-        let differences: Vec<String> =
-            shown().filter(|(row, _)| !row.exact).map(|(row, _)| short(&row.dimension)).collect();
-        if differences.len() == shown().count() {
+        let shown: Vec<_> = one.shown(&self.dimensions).map(|(row, _)| row).collect();
+        let differences: Vec<String> = shown.iter().filter(|row| !row.exact).map(|row| short(&row.dimension)).collect();
+        if differences.len() == shown.len() {
             return None;
         }
         let but = match differences.len() {

@@ -20,7 +20,7 @@ struct Local {
     second: [f64; 3],
 }
 
-/// What a formula does at one point, in the order in which it is computed.
+/// The operations of a formula at one point, in the order in which they are computed.
 struct Tape {
     /// None for a variable.
     operations: Vec<Option<Local>>,
@@ -30,11 +30,11 @@ struct Tape {
     adjoints: Vec<f64>,
 }
 
-/// What is known of a node before the tape is written.
+/// The value of a node, and its place on the tape.
 #[derive(Clone, Copy)]
-struct Known {
+struct NodeJet {
     jet: Jet,
-    /// Whether its value can change with a variable.
+    /// None where its value cannot change with a variable.
     place: Option<usize>,
 }
 
@@ -86,7 +86,7 @@ impl Tape {
     fn of(set: &FormulaSet, root: NodeId, at: &[f64]) -> Option<Self> {
         let nodes = set.graph.nodes();
         let needed = set.graph.needed([root]);
-        let mut known = vec![Known { jet: Jet::constant(f64::NAN), place: None }; nodes.len()];
+        let mut known = vec![NodeJet { jet: Jet::constant(f64::NAN), place: None }; nodes.len()];
         let mut tape = Self { operations: Vec::new(), variables: Vec::new(), adjoints: Vec::new() };
         // The values first: they tell which branches count.
         let mut values = vec![f64::NAN; nodes.len()];
@@ -132,7 +132,7 @@ impl Tape {
             }
             let place = operation.is_some().then_some(next);
             tape.operations.extend(operation);
-            known[id] = Known { jet, place };
+            known[id] = NodeJet { jet, place };
         }
         tape.variables.sort_unstable();
         tape.adjoints = vec![0.0; tape.operations.len()];
@@ -197,11 +197,11 @@ fn taken(nodes: &[GraphNode], root: NodeId, values: &[f64]) -> Vec<bool> {
     taken
 }
 
-/// What an operation comes to, and its derivatives where it moves.
+/// The result of an operation, and its derivatives where it moves.
 type Operation = (Jet, Option<Option<Local>>);
 
 /// None where a derivative does not exist.
-fn unary(function: Unary, a: Known) -> Option<Operation> {
+fn unary(function: Unary, a: NodeJet) -> Option<Operation> {
     let value = a.jet.value();
     let Some(place) = a.place else { return Some((Jet::constant(function.apply(value)), None)) };
     let jet = Jet::unary(function, &Jet::known(value, [1.0; 2], 0.0));
@@ -212,9 +212,9 @@ fn unary(function: Unary, a: Known) -> Option<Operation> {
     Some((jet, Some(Some(local))))
 }
 
-fn binary(function: Binary, a: Known, b: Known) -> Option<Operation> {
+fn binary(function: Binary, a: NodeJet, b: NodeJet) -> Option<Operation> {
     let of = |first: [f64; 2], second: [f64; 2]| {
-        let operand = |of: Known, first: [f64; 2]| match of.place {
+        let operand = |of: NodeJet, first: [f64; 2]| match of.place {
             Some(_) => Jet::known(of.jet.value(), first, 0.0),
             None => Jet::constant(of.jet.value()),
         };
