@@ -38,7 +38,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &Char
     warnings.extend(pearson(analysis));
     if let Some(climbed) = &outcome.climbed {
         let mut found = climb(outcome, climbed, c, (analysis, sigma));
-        // What a formula answers next to the means does not scatter: that is a kink, or a root that is not smooth.
+        // The answers of a formula next to the means do not scatter: that is a kink, or a root that is not smooth.
         let formula = problem.function().switches(problem.outputs()[c]).is_some_and(|switches| switches.complete);
         if analysis.verification.is_some() {
             found.retain(|warning| match warning {
@@ -122,7 +122,7 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
     warnings
 }
 
-/// What `auto` has found out about its surrogate.
+/// Warnings by the findings of `auto` on its surrogate.
 fn climb(
     outcome: &Outcome,
     climbed: &Climbed,

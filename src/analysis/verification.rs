@@ -39,7 +39,7 @@ const AGREES: f64 = 2.0;
 const UNKNOWN: f64 = 0.1;
 /// A switch is worth a warning from one assembly in ten million on.
 const SELDOM: f64 = 1e-7;
-/// What differences may make of one rounding of the value at the means.
+/// The largest error of a difference, in roundings of the value at the means.
 const ROUNDINGS: f64 = 8.0;
 
 /// Verifies every characteristic, unless that is switched off: see [`Options::verify`]. Returns what that took, and where the model answered
@@ -157,7 +157,7 @@ fn sample(
     let affords = |spent: usize, more: usize| left.is_none_or(|left| spent + more <= left);
     while core < MOST && coarse(&found) && !run.stopped() && affords(spent, most_points(MORE * core)) {
         core *= MORE;
-        // What is known stays known where there is no time for more.
+        // Results that are known stay known where there is no time for more.
         let Some(more) = verify_characteristic(problem, c, (seed, core), beside, run) else { break };
         found = more;
         spent += found.points;
@@ -316,7 +316,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
     });
 }
 
-/// What the verification of one characteristic warns of.
+/// The warnings that follow from the verification of one characteristic.
 pub(super) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec<Warning> {
     let Some(verification) = &one.verification else { return Vec::new() };
     let characteristic = || one.characteristic.name().to_owned();

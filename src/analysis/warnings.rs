@@ -75,7 +75,7 @@ pub(super) fn of(
         warnings.extend(not_proven(analysis));
     }
     let possible = outcome.plan.possible_pairs();
-    // What `auto` did not examine stands in its comparison with the model.
+    // Pairs that `auto` did not examine show in its comparison with the model.
     if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
@@ -243,7 +243,7 @@ fn infinite_moment(problem: &Problem, outcome: &Outcome, analysis: &Characterist
         law.is_some_and(|law| !law.standard_moments().are_finite()) && slope(d).is_some_and(|slope| slope != 0.0)
     };
     let varying = outcome.plan.varying();
-    // What was not evaluated is another reason for a missing sigma.
+    // Points that were not evaluated are another reason for a missing sigma.
     if varying.iter().any(|&d| slope(d).is_none()) {
         return None;
     }

@@ -17,7 +17,7 @@ pub struct Table {
     asked: Mutex<Asked>,
 }
 
-/// What was asked of a table so far.
+/// The questions to a table so far.
 #[derive(Debug, Default)]
 struct Asked {
     /// Rows that answered some point.

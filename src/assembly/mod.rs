@@ -50,7 +50,7 @@ pub trait AssemblyFunction: Send + Sync {
     fn signature(&self) -> &Signature;
 
     /// Starts whatever must run before the first point, for these outputs, and tells what an external program says of
-    /// itself. What fails here would fail at every point: nothing has been evaluated yet.
+    /// itself. A failure here would occur at every point: nothing has been evaluated yet.
     ///
     /// # Errors
     /// When the function cannot be had at all, such as a program that does not exist.
@@ -83,8 +83,8 @@ pub trait AssemblyFunction: Send + Sync {
         vec![None; outputs.len()]
     }
 
-    /// What an external model is sent at these points, each point once, with the names of its inputs; None where it is sent the points
-    /// themselves. This is no evaluation.
+    /// The values that an external model is sent at these points, each point once, with the names of its inputs; None where it is
+    /// sent the points themselves. This is no evaluation.
     fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
         let _ = points;
         None
@@ -117,12 +117,12 @@ pub trait AssemblyFunction: Send + Sync {
         None
     }
 
-    /// What became of the processes of an external model so far; None for a function without any.
+    /// The account of the processes of an external model so far; None for a function without any.
     fn account(&self) -> Option<process::EvaluatorAccount> {
         None
     }
 
-    /// What the function itself has to say of its answers for `outputs`, once some are given.
+    /// The function's own warnings about its answers for `outputs`, once some are given.
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
         let _ = outputs;
         Vec::new()

@@ -1,4 +1,4 @@
-//! What is known of an assembly function before it is evaluated.
+//! The facts about an assembly function that are known before it is evaluated.
 
 /// Names, units and structure of an assembly function.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -20,7 +20,7 @@ struct Local {
     second: [f64; 3],
 }
 
-/// What a formula does at one point, in the order in which it is computed.
+/// The operations of a formula at one point, in the order in which they are computed.
 struct Tape {
     /// None for a variable.
     operations: Vec<Option<Local>>,
@@ -30,7 +30,7 @@ struct Tape {
     adjoints: Vec<f64>,
 }
 
-/// What is known of a node before the tape is written.
+/// The properties of a node that are known before the tape is written.
 #[derive(Clone, Copy)]
 struct Known {
     jet: Jet,
@@ -197,7 +197,7 @@ fn taken(nodes: &[GraphNode], root: NodeId, values: &[f64]) -> Vec<bool> {
     taken
 }
 
-/// What an operation comes to, and its derivatives where it moves.
+/// The value of an operation, and its derivatives where it moves.
 type Operation = (Jet, Option<Option<Local>>);
 
 /// None where a derivative does not exist.
@@ -288,7 +288,7 @@ mod tests {
         for text in ["abs(x) + y", "min(x, y)", "sqrt(x)*y", "if(x, 1, y)", "floor(x)*y", "x/0", "if(x < y, x, y*x)"] {
             assert_eq!(set(text, &["x", "y"]).mixed(0, &[0.0, 0.0], &[(0, 1)]), None, "{text}");
         }
-        // What does not move has no kink, and a branch that is not taken does not count.
+        // A constant has no kink, and a branch that is not taken does not count.
         let names = ["x", "y"];
         assert_eq!(set("abs(0) + x*y", &names).mixed(0, &[0.0, 0.0], &[(0, 1)]), Some(vec![1.0]));
         assert_eq!(set("if(x < 1, x*y, sqrt(x - 1))", &names).mixed(0, &[0.0, 2.0], &[(0, 1)]), Some(vec![1.0]));

@@ -1,4 +1,4 @@
-//! What the formulas' own tree tells: where they change their form, and their degree as polynomials.
+//! Facts from the formulas' own tree: where they change their form, and their degree as polynomials.
 //!
 //! Every switch has a margin, a function of the variables that changes its sign where the formula changes its form:
 //!

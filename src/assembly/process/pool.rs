@@ -50,7 +50,7 @@ pub(super) struct Pool {
     pub(super) account: EvaluatorAccount,
     /// Answers so far, of which some are replayed.
     pub(super) answers: Answers,
-    /// What every output differs by when the nominal point is evaluated again.
+    /// The difference of every output when the nominal point is evaluated again.
     pub(super) noise: Vec<f64>,
     /// Whether an answer was found to depend on the points before it.
     pub(super) flips: bool,
@@ -211,7 +211,7 @@ impl Pool {
             };
             // One child for each window of points: no more than there is work for.
             wanted = wanted.saturating_sub(self.adapter.as_ref().map_or(1, |adapter| adapter.window));
-            // What goes wrong later is heard of as an event.
+            // Later failures arrive as events.
             if start && let Err(error) = self.start(index) {
                 self.lost_start(index, error)?;
             }
