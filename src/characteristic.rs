@@ -25,7 +25,7 @@ pub struct Characteristic {
     limits: SpecLimits,
     /// The share of assemblies that must keep the limits.
     target_yield: Option<f64>,
-    // What is required stands in results, with what there is of it.
+    // The requirement stands in results together with its value.
     #[serde(skip)]
     requirement: Option<Requirement>,
     // Stands in results with what it does.

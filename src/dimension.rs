@@ -75,11 +75,11 @@ pub(crate) enum RssFactor {
 pub struct DimensionError {
     /// The dimension's name.
     pub name: String,
-    /// What is wrong with it.
+    /// The fault in it.
     pub fault: DimensionFault,
 }
 
-/// What is wrong with a dimension.
+/// The faults of a dimension.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DimensionFault {

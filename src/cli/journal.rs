@@ -197,7 +197,7 @@ impl ModelReport {
         Self { id, since, points, values, errors, dimensions, identity }
     }
 
-    /// What it says, below what is there already.
+    /// Adds the model below the earlier text.
     fn put(&self, document: &mut Document) {
         let word = |key: &str| match &self.identity[key] {
             serde_json::Value::String(text) => text.clone(),

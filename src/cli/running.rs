@@ -1,4 +1,4 @@
-//! What the commands that evaluate have in common: for how long, on how many threads, where answers are kept.
+//! The common part of the commands that evaluate: for how long, on how many threads, where answers are kept.
 
 use std::path::Path;
 use std::sync::{Arc, Once};
@@ -50,7 +50,7 @@ impl Clock {
         look.warn(&Warning::Stopped { cause, limit_s, done, planned, counted });
     }
 
-    /// What a report says of the study beside the results.
+    /// The facts about the study that a report shows beside the results.
     pub(super) fn about(&self, study: &Study) -> About {
         About {
             title: study.title.clone(),

@@ -16,7 +16,7 @@ pub struct CorrelationError {
     pub refusal: Refusal,
 }
 
-/// What is wrong with a correlation.
+/// The faults of a correlation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {

@@ -9,7 +9,7 @@
 //! rho_jk = sum_{n>=1} c_jn c_kn r_jk^n        rho: of the inputs,  r: of the normal variables
 //! ```
 //!
-//! which is solved for `r_jk` pair by pair. What the marginals allow lies between its values at -1 and 1.
+//! which is solved for `r_jk` pair by pair. The correlations that the marginals allow lie between its values at -1 and 1.
 //!
 //! Rows of measured parts and zones are blocks beside them: each vector is independent of everything else.
 

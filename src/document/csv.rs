@@ -46,7 +46,7 @@ fn cell(cell: &Cell) -> String {
     }
 }
 
-/// What a spreadsheet takes a text for that begins with one of these is a formula.
+/// A text that begins with one of these is a formula to a spreadsheet.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
 /// Text that a spreadsheet would take for a formula begins with an apostrophe.

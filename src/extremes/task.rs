@@ -192,7 +192,7 @@ impl Task {
         from.map(|(x, y)| Climb::new(&self.region, &self.surrogate, x, y)).collect()
     }
 
-    /// What interval arithmetic says of the function over a part of the box; None where it has no bounds.
+    /// The bounds of the function over a part of the box by interval arithmetic; None where it has none.
     fn bounds(&self, problem: &Problem, region: &[[f64; 2]]) -> Option<Bounds> {
         let mut all: Vec<[f64; 2]> = self.centre.iter().map(|&x| [x, x]).collect();
         self.dimensions.iter().zip(region).for_each(|(&d, &band)| all[d] = band);
@@ -262,7 +262,7 @@ impl Task {
             boxes: below.boxes + above.boxes,
         };
         if !self.zones.is_empty() {
-            // What lies beyond in the box may lie outside the zone.
+            // A better point in the box may lie outside the zone.
             return (Some(proof), Vec::new());
         }
         (Some(proof), below.better.into_iter().chain(above.better).collect())

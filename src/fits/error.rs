@@ -77,7 +77,7 @@ impl FitError {
         Self::UnknownLetter { found: found.to_owned(), nearest, known }
     }
 
-    /// What there is instead.
+    /// The text to write instead.
     pub(crate) fn help(&self) -> Option<String> {
         match self {
             Self::NoClass { .. } => Some("write letters and one grade: H7 for a hole, g6 for a shaft".into()),
