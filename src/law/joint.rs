@@ -88,7 +88,7 @@ fn overlap(limited: &[&(&SurfaceLaw, SpecLimits)], tails: f64) -> LawFigure {
     LawFigure::new(mean, error.max(fewest))
 }
 
-/// What the limits of several characteristics reject: the sum of the tails, and by how much that counts assemblies twice.
+/// The rejects of several characteristics by their limits: the sum of the tails, and by how much that counts assemblies twice.
 pub(crate) fn rejected(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> (f64, LawFigure) {
     let sides = |law: &SurfaceLaw, limits: SpecLimits| {
         [limits.lower().map(|y| law.below(y).value), limits.upper().map(|y| law.above(y).value)]

@@ -181,7 +181,7 @@ pub enum LawError {
     NoVariance,
 }
 
-/// What the law of a surface may cost.
+/// The limits on the cost of a surface's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LawOptions {

@@ -9,7 +9,7 @@ use crate::distribution::Distribution;
 
 /// Phase per sigma that the nodes of a bounded input resolve, and of an unbounded one.
 const TOP: [f64; 2] = [100.0, 14.0];
-/// What lies beyond these tails of an unbounded input is left out: a page shows no probability of that size.
+/// The part of an unbounded input beyond these tails is left out: a page shows no probability of that size.
 const FAR: f64 = 1e-22;
 /// Nodes at most: a table of twice as many numbers.
 const MOST: usize = 3000;

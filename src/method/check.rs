@@ -25,7 +25,7 @@ pub(super) fn failed(known: &KnownAnswers, point: &Point, characteristic: usize)
 /// kurtosis  E [(4 z^3 - 4 g - 4 k z) d] / sigma          k: kurtosis
 /// ```
 ///
-/// What is left out and has no part in these, as an interaction that was not examined, adds its own variance.
+/// An effect that is left out and has no part in these, as an interaction that was not examined, adds its own variance.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SurrogateCheck {

@@ -205,7 +205,7 @@ pub enum MethodError {
 }
 
 impl MethodError {
-    /// What to do about it.
+    /// The actions to take.
     pub(crate) fn advice(&self) -> Vec<Advice> {
         match self {
             Self::OverBudget { fitting, .. } => {

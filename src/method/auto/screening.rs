@@ -21,7 +21,7 @@ pub(super) struct Probed<'a> {
     pub(super) seen: Vec<f64>,
 }
 
-/// What was found of one characteristic.
+/// The fit of one characteristic.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Fit {
     /// Factor of the products of all slopes.
@@ -190,7 +190,7 @@ mod tests {
         assert!((found.together - 0.02).abs() < 1e-12 && found.pairs.is_empty(), "{found:?}");
     }
 
-    /// What no fit explains is left: the fit without interactions is never beaten by a worse one.
+    /// Noise that no fit explains is left: the fit without interactions is never beaten by a worse one.
     #[test]
     fn noise_is_left() {
         let (fitted, judging) = (signs(8, 30, 5), signs(12, 30, 6));
