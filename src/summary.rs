@@ -1,4 +1,4 @@
-//! What a run came to, whatever it computed: points, time, seed, and why it ended early where it did.
+//! The summary of a run, whatever it computed: points, time, seed, and why it ended early where it did.
 
 use std::fmt;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use crate::shape::seconds;
 pub enum StopReason {
     /// The time that it was given is over.
     TimeLimit,
-    /// The evaluations that it was given are spent. What follows from fewer points is complete: nothing planned is open.
+    /// The evaluations that it was given are spent. A result from fewer points is complete: nothing planned is open.
     Budget,
     /// A person interrupted it.
     Interrupted,

@@ -22,7 +22,7 @@ use crate::requirement::Requirement;
 /// The present half band by this, and times this, where no bound is given.
 const RANGE: f64 = 10.0;
 
-/// What each characteristic must keep: what it says itself, or its target yield.
+/// The requirement of each characteristic: what it says itself, or its target yield.
 pub(super) fn requirement(
     characteristic: &Characteristic,
     entry: &CharacteristicEntry,

@@ -98,7 +98,7 @@ pub(crate) struct Places<'a> {
     pub(crate) surface: &'a [f64],
 }
 
-/// What may be taken.
+/// The terms that may be taken.
 pub(crate) struct Chaos {
     recurrences: Vec<Recurrence>,
     terms: Vec<Term>,
@@ -408,7 +408,7 @@ mod tests {
         assert!((mean - 1.5).abs() < 1e-15 && (square - expected).abs() < 1e-9, "{square} for {expected}");
     }
 
-    /// What no polynomial explains is left alone: the constant is never beaten by a worse fit.
+    /// Noise that no polynomial explains is left alone: the constant is never beaten by a worse fit.
     #[test]
     fn noise_is_left() {
         let shapes = shapes([&Normal::new(0.0, 1.0).unwrap() as _]);

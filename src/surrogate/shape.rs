@@ -1,4 +1,4 @@
-//! What moments need to know of an input, computed once per study.
+//! The facts about an input that moments need, computed once per study.
 
 use std::sync::Arc;
 
