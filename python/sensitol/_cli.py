@@ -15,7 +15,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     code = _core.run_cli(["sensitol", *sys.argv[1:]])
     sys.stdout.flush()
-    # What Python would tidy up belongs to no one.
+    # The clean-up of Python is skipped: nothing needs it.
     os._exit(code)
 
 
