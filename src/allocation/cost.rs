@@ -1,4 +1,4 @@
-//! What a tolerance costs to hold.
+//! The cost of holding a tolerance.
 
 use std::sync::Arc;
 
@@ -296,7 +296,7 @@ impl Priced {
         Self { rounded, ..self }
     }
 
-    /// What it costs to hold this half band, which no offer need name: a process costs what it costs at any tolerance that it
+    /// The cost to hold this half band, which no offer need name: a process costs what it costs at any tolerance that it
     /// holds, and a curve goes on beyond its bounds.
     pub(crate) fn cost_to_hold(&self, t: f64) -> Option<f64> {
         self.holding(t).map(|(cost, _)| cost)

@@ -26,7 +26,7 @@ pub(super) struct WorstCase {
     varying: Vec<usize>,
     /// The surface at the means less the nominal value.
     rise: f64,
-    /// What the true reach below and above is made of the surface's: a factor, and what is added.
+    /// The corrections from the surface's reach below and above to the true one: a factor, and what is added.
     corrections: [(f64, f64); 2],
 }
 

@@ -4,7 +4,7 @@ use super::svg::{drawn, escaped};
 use super::{Bar, Bars, Cell, Chart, DataTable, Document, Element, Fill, Flow, Line, Section, Tone, spread};
 use crate::names::clean;
 
-/// The text before all sections.
+/// What is said before all others.
 pub fn head(document: &Document) -> String {
     format!(
         "<section aria-labelledby=\"summary\">\n<h2 id=\"summary\">Summary</h2>\n{}</section>\n",
@@ -106,7 +106,7 @@ fn block(block: &Element) -> String {
         }
         Element::Table(one) => table(one),
         Element::Chart(Chart::Plot(one)) => {
-            // The name space of a drawing causes no request, and is left out all the same.
+            // What a drawing names its own format by asks for nothing, and is left out all the same.
             let svg = drawn(&[one], &one.name).replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
             format!("<div class=\"trade\">{svg}</div>\n")
         }

@@ -122,7 +122,7 @@ impl Study {
         Ok(Rewritten { text, entries, replaced_fits })
     }
 
-    /// The tree that it was read from.
+    /// What it was read from.
     pub(super) fn tree(&self) -> Option<Tree> {
         match self.format {
             Format::Toml => Tree::of_toml(&self.text).ok(),

@@ -178,7 +178,7 @@ fn two_hundred_dimensions_stay_below_two_megabytes() {
     std::fs::write(cases().join("two-hundred.html"), page).unwrap();
 }
 
-/// A dimension that cannot be tried is named, with its reason.
+/// What cannot be tried is named, with its reason.
 #[test]
 fn what_cannot_be_tried_is_said() {
     let mixed = page(&study(MIXED));
