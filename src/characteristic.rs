@@ -1,4 +1,4 @@
-//! A key characteristic (KC): one output of the assembly function that somebody asked for.
+//! A key characteristic (KC): one output of the assembly function that the study asks for.
 
 use serde::Serialize;
 
@@ -174,7 +174,7 @@ pub enum LimitsError {
         /// The upper limit given.
         upper: f64,
     },
-    /// A target yield that is no share.
+    /// A target yield that is not a share.
     #[error("a target yield must lie between 0 and 1, both excluded, not {value}")]
     ImpossibleYield {
         /// The target given.

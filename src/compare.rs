@@ -281,7 +281,7 @@ pub enum CompareError {
 /// unless the options say otherwise.
 ///
 /// # Errors
-/// When the problem cannot be simulated. A method that does not fit is no error: it is named with the reason.
+/// When the problem cannot be simulated. A method that does not fit is not an error: it is named with the reason.
 ///
 /// ```
 /// use sensitol::compare::{CompareOptions, Contender, compare};

@@ -100,7 +100,7 @@ pub enum DimensionFault {
         /// The sigma.
         sigma: f64,
     },
-    /// An evaluation step that is no positive number.
+    /// An evaluation step that is not a positive number.
     #[error("the step must be a number of sigmas above 0, but is {value}")]
     BadStep {
         /// The step given.

@@ -46,7 +46,7 @@ pub enum ProblemError {
         /// The problem's dimensions.
         found: Vec<String>,
     },
-    /// A characteristic is no output of the function.
+    /// A characteristic is not an output of the function.
     #[error("there is no characteristic `{name}`; known: {known}", known = list(known))]
     UnknownCharacteristic {
         /// The name asked for.
@@ -142,7 +142,7 @@ impl Problem {
     /// With these characteristics instead: outputs of the function by name, with limits and targets.
     ///
     /// # Errors
-    /// When there is none, one stands twice, or one is no output of the function.
+    /// When there is none, one stands twice, or one is not an output of the function.
     pub fn asking(mut self, characteristics: impl IntoIterator<Item = Characteristic>) -> Result<Self, ProblemError> {
         let outputs = &self.function.signature().outputs;
         self.characteristics = characteristics.into_iter().collect();

@@ -22,7 +22,7 @@ pub enum Requirement {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RequirementError {
-    /// A yield that is no share, or one that only a worst case can promise.
+    /// A yield that is not a share, or one that only a worst case can promise.
     #[error("a required yield must lie between 0 and 1, both excluded, not {value}")]
     ImpossibleYield {
         /// As given.

@@ -155,7 +155,7 @@ impl RunSummary {
         self.evaluator.is_some_and(|evaluator| evaluator.unconfirmed > 0)
     }
 
-    /// Whether planned points were not evaluated, so that what follows from the others is no verdict.
+    /// Whether planned points were not evaluated, so that what follows from the others is not a verdict.
     pub(crate) fn unfinished(&self) -> bool {
         self.stopped.is_some_and(StopReason::leaves_points_open)
     }

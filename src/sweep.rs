@@ -90,7 +90,7 @@ pub enum SweepError {
 ///
 /// # Errors
 /// When the dimension or the values cannot be, or the options do not fit the problem; nothing is evaluated then. A model that
-/// fails at some value is no error: what is unknown there is None.
+/// fails at some value is not an error: what is unknown there is None.
 ///
 /// ```
 /// use sensitol::sweep::sweep;

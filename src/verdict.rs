@@ -222,7 +222,7 @@ mod tests {
         assert_eq!(Verdict::of(Requirement::Cpk(1.33), Some([f64::NAN, 2.0])), Verdict::Inconclusive);
     }
 
-    /// All may be rejected where nobody knows how many have no value.
+    /// All may be rejected where it is unknown how many have no value.
     #[test]
     fn what_has_no_value_only_lowers_a_yield() {
         assert_eq!(losing([0.9, 0.95], None), [0.0, 0.95]);

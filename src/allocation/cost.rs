@@ -165,7 +165,7 @@ impl Curve {
         [self.a, self.b, self.shape]
     }
 
-    /// `b` and, of a power, `k`: None where the cost is no reciprocal power.
+    /// `b` and, of a power, `k`: None where the cost is not a reciprocal power.
     pub(super) fn power(&self) -> Option<(f64, f64)> {
         matches!(self.kind, CurveKind::Reciprocal | CurveKind::ReciprocalPower).then_some((self.b, self.shape))
     }

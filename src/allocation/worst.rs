@@ -13,7 +13,7 @@
 use crate::extremes::{Model, Region};
 use crate::surrogate::Surrogate;
 
-/// A true worst case farther off than by this factor is no correction but another function: the difference is added.
+/// A true worst case farther off than by this factor is not a correction but another function: the difference is added.
 const NEAR: f64 = 2.0;
 
 /// The worst case of one characteristic about a station.

@@ -30,7 +30,7 @@ const RESAMPLES: usize = 1000;
 const LEAST: usize = 200;
 /// Multiplications that all resamples together may take, before there are fewer of them: a second or two.
 const WORK: usize = 3_000_000_000;
-/// Multiplications that a fit of a Pearson law, and a part that is no parabola at one value, are worth.
+/// Multiplications that a fit of a Pearson law, and a part that is not a parabola at one value, are worth.
 const FIT: usize = 30_000;
 const VALUE: usize = 50;
 /// Groups of values that are left out in turn, of all samples together and of each at least.

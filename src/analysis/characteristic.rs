@@ -216,7 +216,7 @@ impl CharacteristicAnalysis {
     }
 
     /// Within which the yield is known: the estimate and two of its errors, and down to 0 where there are assemblies without a value
-    /// and nobody counted them. None where an error is unknown.
+    /// and they were not counted. None where an error is unknown.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
         let value = self.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };

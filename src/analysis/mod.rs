@@ -123,7 +123,7 @@ pub struct Analysis {
 /// [`Options::extremes`] those of the search too.
 ///
 /// # Errors
-/// When the options do not fit the problem; nothing is evaluated then. A model that fails is no error: what it costs is
+/// When the options do not fit the problem; nothing is evaluated then. A model that fails is not an error: what it costs is
 /// missing from the result and named in the warnings.
 ///
 /// ```
@@ -231,7 +231,7 @@ fn joint_requirement(
     Some(judged.unless(characteristics.iter().any(|one| one.unfinished)))
 }
 
-/// The bounds of interval arithmetic, where a formula has them and nobody searched the extremes.
+/// The bounds of interval arithmetic, where a formula has them and the extremes were not searched.
 fn enclose_all(problem: &Problem, outcome: &Outcome, characteristics: &mut [CharacteristicAnalysis], run: &Run<'_>) {
     /// Of sigma: ends nearer than this look the same in print.
     const NEAR: f64 = 1e-3;

@@ -278,7 +278,7 @@ impl<'p> Strides<'p> {
             }
             u
         };
-        // A difference plan is right where it stands: what it has on its axes is no point of the distribution.
+        // A difference plan is right where it stands: what it has on its axes is not a point of the distribution.
         let off_axes = |point: &&Point| point.at().len() > 2 || n <= 2 && point.at().len() == n;
         let looked = self.outcome.climbed.iter().flat_map(|climbed| &climbed.far);
         let far: Vec<&Point> = looked.filter(|(of, _)| *of == c).flat_map(|(_, points)| points).collect();

@@ -17,11 +17,11 @@ const HELD: f64 = 0.01;
 const SCATTER: f64 = 1e-4;
 /// Variance that is left unexplained is worth a warning from here on,
 const LEFT_OUT: f64 = 1e-3;
-/// and from here on the surrogate is no surrogate.
+/// and from here on the surrogate does not follow the model.
 const UNTRUSTED: f64 = 0.05;
 
 /// The Pearson fit is worth a warning where it is off by more than the interval of the yield, by this part of what is rejected, and by
-/// more than a hundredth of a part per million, which nobody counts.
+/// more than a hundredth of a part per million, which does not matter.
 const APART: f64 = 0.01;
 const COUNTED: f64 = 1e-8;
 

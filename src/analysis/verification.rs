@@ -35,7 +35,7 @@ const OFF: f64 = 3.0;
 const MATTERS: f64 = 0.01;
 /// Beyond so many standard errors `auto` takes the model's figure.
 const AGREES: f64 = 2.0;
-/// An error of sigma above this part of it says that the surface is no surface.
+/// An error of sigma above this part of it says that the surface does not follow the model.
 const UNKNOWN: f64 = 0.1;
 /// A switch is worth a warning from one assembly in ten million on.
 const SELDOM: f64 = 1e-7;
@@ -270,7 +270,7 @@ fn check(
         (0..answers.rows()).any(|row| !given(row) || answers.is_open(row, c))
     };
     for &c in open {
-        // Points that nobody answered say nothing.
+        // Points without an answer say nothing.
         if !not_given(c) {
             let surrogate = outcome.fitted[c].surrogate.as_ref();
             let exact = surrogate.and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));

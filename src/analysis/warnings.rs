@@ -150,7 +150,7 @@ fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
     at.collect::<Vec<_>>().join(", ")
 }
 
-/// Moments that could not be had by a method that is no difference plan.
+/// Moments that could not be had by a method that is not a difference plan.
 fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let because = match outcome.fitted[c].lacking? {
         Lacking::Points { lost, of } if outcome.evaluated.stopped.is_some() => {

@@ -79,7 +79,7 @@ impl GivenAnswers {
                 Some((bits(&inputs.iter().map(|&column| cells[column]).collect::<Option<Vec<_>>>()?), row))
             })
             .collect();
-        // Somebody evaluates every point that is asked for: nobody samples such a model unasked.
+        // Every point that is asked for is evaluated outside of this program: such a model is never sampled unasked.
         let signature = Signature { costly: true, cheap: false, ..signature };
         Ok(Self { signature, table, inputs, exact })
     }

@@ -10,7 +10,7 @@ pub struct Signature {
     /// Whether an evaluation costs so much that answers are worth keeping on disk.
     pub costly: bool,
     /// Whether tens of thousands of evaluations go unnoticed, as with formulas: results are then verified by a sample of the function
-    /// itself. Of a function of somebody else, such as a closure, neither is known.
+    /// itself. Neither is known of a foreign function, such as a closure.
     pub cheap: bool,
 }
 

@@ -25,7 +25,7 @@ pub struct Switch {
     pub kind: SwitchKind,
     /// The part of the definition that does it, as it is written: `max(a, b)`.
     pub text: String,
-    /// The formula that this stands in; None for what is no formula.
+    /// The formula that this stands in; None where it is not a formula.
     pub formula: Option<String>,
     /// Where it stands there, in bytes.
     pub span: Range<usize>,

@@ -105,7 +105,7 @@ fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Fai
 /// The tables of an allocation, a file each.
 const TABLES: [&str; 3] = ["tolerances", "requirements", "front"];
 
-/// Points of a chart when nobody said how many.
+/// Points of a chart where their number is not given.
 const FRONT: usize = 12;
 
 /// The task of the study; with relative costs where it has none, unless nominal values alone are to move.

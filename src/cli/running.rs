@@ -66,7 +66,7 @@ pub(super) fn externals(journal: Option<&Path>, look: Look, points: Option<Arc<T
     Externals { journal: JournalPlace::asked(journal), listener: listener(look), points, ..Externals::default() }
 }
 
-/// Who shows what an external program writes to stderr: somebody, when all details are asked for.
+/// Who shows what an external program writes to stderr: the terminal, when all details are asked for.
 pub(super) fn listener(look: Look) -> Option<Listener> {
     look.verbose.then(|| Arc::new(|line: &str| output::model_line(line)) as Listener)
 }

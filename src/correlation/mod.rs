@@ -97,8 +97,8 @@ impl Correlation {
     /// The same beside blocks of dimensions by their positions: each of them in one block at most, and in none of the pairs.
     ///
     /// # Errors
-    /// When a pair names what is no dimension or does not vary, stands twice, or asks for what its distributions do not
-    /// allow; and when no distribution has all of it together: the matrix must not have a negative eigenvalue.
+    /// When a pair names something that is not a dimension or does not vary, stands twice, or asks for what its distributions do
+    /// not allow; and when no distribution has all of it together: the matrix must not have a negative eigenvalue.
     pub(crate) fn with_blocks(
         dimensions: &[Dimension],
         pairs: &[Pair],

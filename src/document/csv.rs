@@ -79,7 +79,8 @@ mod tests {
     use super::super::{Columns, Section};
     use super::*;
 
-    /// The tables of one name follow one another below one header; numbers keep every digit and their sign, and text is no formula.
+    /// The tables of one name follow one another below one header; numbers keep every digit and their sign, and text is not a
+    /// formula.
     #[test]
     fn tables_of_one_name_are_one() {
         let table = |name: &'static str, value: f64| {

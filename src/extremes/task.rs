@@ -26,7 +26,7 @@ const PROVEN: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 /// Boxes of either side, as long as there are few dimensions.
 const BOXES: usize = 20_000;
-/// Boxes of either side where nobody asked for a proof: a twentieth of those of a search.
+/// Boxes of either side where a proof is not asked for: a twentieth of those of a search.
 const ENCLOSING: usize = 1000;
 const FEW: usize = 10;
 /// More of them where a circular zone ends: boxes along its edge, whose number goes with the root of the accuracy.

@@ -24,7 +24,7 @@ pub enum FitError {
         /// Those that there are, of holes or of shafts.
         known: Vec<&'static str>,
     },
-    /// A number that is no grade.
+    /// A number that is not a grade.
     #[error("there is no tolerance grade IT{found}")]
     UnknownGrade {
         /// As written.

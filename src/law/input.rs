@@ -138,7 +138,7 @@ impl Input {
         }
     }
 
-    /// Half widths of the uniform variables, in sigmas, whose sum the input is; None where it is no such sum.
+    /// Half widths of the uniform variables, in sigmas, whose sum the input is; None where it is not such a sum.
     pub(super) fn uniform_halves(&self) -> Option<Vec<f64>> {
         let half = 0.5 * (self.ends[1] - self.ends[0]);
         let middle = 0.5 * (self.ends[1] + self.ends[0]);

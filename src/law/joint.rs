@@ -82,7 +82,7 @@ fn overlap(limited: &[&(&SurfaceLaw, SpecLimits)], tails: f64) -> LawFigure {
     let n = REPLICATES as f64;
     let mean = several.iter().sum::<f64>() / n;
     let variance = several.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (n - 1.0);
-    // As for every other sampled figure; and no point with two broken limits is no proof that there is none.
+    // As for every other sampled figure; and no point with two broken limits is not a proof that there is none.
     let fewest = if mean == 0.0 { (3.0 / (n * POINTS as f64)).min(tails) } else { 0.0 };
     let error = 2.95 * (variance / n).sqrt();
     LawFigure::new(mean, error.max(fewest))

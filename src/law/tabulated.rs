@@ -24,7 +24,7 @@ pub(crate) struct TabulatedInput {
     normal: bool,
     /// Least and greatest value; null where there is none.
     support: [Option<f64>; 2],
-    /// Half widths of the uniform variables whose sum it is; empty where it is no such sum.
+    /// Half widths of the uniform variables whose sum it is; empty where it is not such a sum.
     halves: Vec<f64>,
     /// Places, and their weights.
     z: Vec<f64>,

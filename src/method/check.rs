@@ -8,7 +8,7 @@ use crate::surrogate::{InputShape, Surrogate, Univariate};
 /// A difference three sigma out that does not matter: higher powers have that, and the other points see them.
 const FAR: f64 = 0.1;
 
-/// Whether the model has no value at a point, rather than nobody an answer.
+/// Whether the model has no value at a point, rather than an answer that was not given.
 pub(super) fn failed(known: &KnownAnswers, point: &Point, characteristic: usize) -> bool {
     known.error(point, characteristic).is_some_and(|error| !matches!(error, EvaluationError::NotGiven))
 }

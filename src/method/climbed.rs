@@ -45,7 +45,7 @@ pub struct Climbed {
     /// The scatter of answers next to the means.
     pub noise: Vec<Option<f64>>,
     /// How many sigmas model and surrogate differ by three sigma out along the steepest line, infinite where the model has no
-    /// value there; None where nobody looked.
+    /// value there; None where the tails were not examined.
     pub tails: Vec<Option<f64>>,
     /// The share of the variance that interactions have which the screening did not find, where it was needed.
     pub unscreened: Vec<Option<f64>>,

@@ -15,7 +15,7 @@ use crate::distribution::Rule;
 use crate::moments::Term;
 use crate::surrogate::{InputShape, Univariate};
 
-/// Factors above this say only that the polynomial is no good.
+/// Factors above this say only that the polynomial is bad.
 const MOST: f64 = 0.05;
 const MOST_OF_FOUR: f64 = 0.3;
 /// With a rule at the nodes of a long tail: this part of what is curved.

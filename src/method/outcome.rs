@@ -52,7 +52,7 @@ pub struct Fitted {
     pub surrogate: Option<Surrogate>,
     /// The moments of a method that integrates without a surrogate.
     pub integrated: Option<Integrated>,
-    /// Why a method that is no difference plan has no moments.
+    /// Why a method that is not a difference plan has no moments.
     pub lacking: Option<Lacking>,
     /// How far a surrogate of least squares misses the values that it was fitted to.
     pub residual: Option<Residual>,

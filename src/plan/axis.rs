@@ -142,7 +142,7 @@ impl Axis {
         }
     }
 
-    /// A node of a value that is no node yet.
+    /// A node of a value that is not a node yet.
     pub(super) fn open_node(&mut self, x: f64) -> u32 {
         let index = u32::try_from(self.nodes.len()).expect("fewer than four billion nodes on an axis");
         self.nodes.push(Node { x, u: (x - self.mean) / self.scale });

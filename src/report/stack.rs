@@ -99,7 +99,7 @@ pub enum StackNote {
     },
     /// The method takes it as linear.
     NotExamined,
-    /// It has no curvature, and nobody looked at these many interactions.
+    /// It has no curvature, and these many interactions were not examined.
     InteractionsNotExamined {
         /// How many.
         count: usize,
@@ -114,7 +114,7 @@ pub enum StackNote {
         /// The dimensions.
         dimensions: Vec<String>,
     },
-    /// Dimensions that do not vary and whose slope nobody asked for.
+    /// Dimensions that do not vary and whose slope was not asked for.
     Fixed {
         /// The dimensions.
         dimensions: Vec<String>,
@@ -183,7 +183,7 @@ impl Stack {
 
     /// Whether the interval of a total lies within the limits, and reaches them at most; None where it or every limit is unknown.
     pub fn keeps(&self, total: &StackTotal) -> Option<bool> {
-        // A stack that just reaches a limit keeps it: what rounding adds is no excess.
+        // A stack that just reaches a limit keeps it: what rounding adds is not an excess.
         let slack = ROUNDING * total.half_width? + 8.0 * f64::EPSILON * total.middle?.abs();
         let [from, to] = total.interval().map(|[from, to]| [from + slack, to - slack])?;
         match self.limits {

@@ -321,7 +321,7 @@ fn characteristics(
     faults.none().map(|()| (characteristics, outputs))
 }
 
-/// The model's output of this name, for a characteristic that has no formula and is no unknown.
+/// The model's output of this name, for a characteristic that has no formula and is not an unknown.
 fn offered<'m>(
     name: &Spanned<String>,
     key: &str,

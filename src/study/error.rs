@@ -122,7 +122,7 @@ pub enum StudyFault {
         /// The study of this name with such an ending, if there is one.
         beside: Option<String>,
     },
-    /// The text is no TOML or JSON.
+    /// The text is neither TOML nor JSON.
     #[error("{message}")]
     Syntax {
         /// The parser's words.
@@ -435,7 +435,7 @@ pub enum StudyFault {
     /// Answers evaluated elsewhere do not say for which value of a dimension.
     #[error(transparent)]
     MissingColumn(#[from] NoColumn),
-    /// Answers evaluated elsewhere, for a study that asks nobody.
+    /// Answers evaluated elsewhere, for a study that runs no model.
     #[error("points that were evaluated elsewhere are the answers of a [model] command, and the study has none")]
     NothingExternal,
     /// This build of the library runs no external programs.

@@ -40,7 +40,7 @@ const POINTS: usize = 3;
 const COLUMNS: usize = 80;
 /// After so many columns that did not help no further one is tried.
 const PATIENCE: usize = 12;
-/// A column that the others explain up to this part is no new one.
+/// A column that the others explain up to this part is not a new one.
 const DEPENDENT: f64 = 1e-8;
 
 /// `sqrt(beta_(n+1)) p_(n+1) = (u - alpha_n) p_n - sqrt(beta_n) p_(n-1)`, as far as the distribution has them.

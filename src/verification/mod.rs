@@ -226,7 +226,7 @@ pub(crate) fn factor_shares(
 }
 
 /// One characteristic, by a seed and so many points in the core, beside its surface over these dimensions; None where the run was stopped
-/// meanwhile: a part of the strata is no sample.
+/// meanwhile: a part of the strata is not a sample.
 pub(crate) fn verify_characteristic(
     problem: &Problem,
     c: usize,

@@ -73,7 +73,7 @@ pub enum FormulaFault {
     /// `a < b < c`
     #[error("comparisons cannot be chained")]
     ChainedComparison,
-    /// A call of something that is no function.
+    /// A call of something that is not a function.
     #[error("there is no function `{name}`")]
     UnknownFunction {
         /// As written.

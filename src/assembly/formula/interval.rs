@@ -23,7 +23,7 @@ pub struct Interval {
 const LIBRARY: usize = 4;
 /// An angle as large as this has lost its place on the circle.
 const LOST: f64 = 1e8;
-/// Below this the error of a product is no double any more.
+/// Below this the error of a product is not a double any more.
 const TINY: f64 = 1e-280;
 
 impl Interval {

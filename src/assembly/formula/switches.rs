@@ -57,7 +57,7 @@ impl FormulaSet {
         columns
     }
 
-    /// The degree of a formula as a polynomial in its variables, of which `variable` says the degree; None where it is no polynomial.
+    /// The degree of a formula as a polynomial in its variables, of which `variable` says the degree; None where it is not one.
     ///
     /// Constants and other formulas are followed. Cost: one pass over the operations.
     ///

@@ -114,7 +114,7 @@ pub enum ProcessFault {
         /// A number for each dimension.
         columns: usize,
     },
-    /// It answered a point that nobody asked for.
+    /// It answered a point that was not asked for.
     #[error("the model answered point {id}, which was not under way")]
     UnknownPoint {
         /// The point's number.
@@ -172,7 +172,7 @@ impl fmt::Display for Exit {
     }
 }
 
-/// The beginning of a line that somebody else wrote, fit to be shown.
+/// The beginning of a line from outside of this program, fit to be shown.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Quoted(pub String);
 

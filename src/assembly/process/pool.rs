@@ -164,7 +164,7 @@ impl Pool {
             self.account.counts.unconfirmed += work.twice.len() as u64;
         }
         work.out.retried(work.resent);
-        // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
+        // After giving up, a process may still work on points of this batch: the next one must not hear of them.
         for slot in &mut self.slots {
             if let State::Ready(worker) = &mut slot.state {
                 worker.unchecked.clear();
@@ -616,7 +616,7 @@ impl Pool {
 }
 
 impl Slot {
-    /// Whether nothing is left that its child has answered and nobody has checked.
+    /// Whether nothing is left that its child has answered and that is not checked.
     fn is_checked(&self) -> bool {
         match &self.state {
             State::Ready(worker) => worker.unchecked.is_empty() && worker.under_way.is_empty(),

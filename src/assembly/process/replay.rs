@@ -13,7 +13,7 @@ use crate::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
 
 /// Equal steps of a walk.
 const STEPS: usize = 3;
-/// Noise of the model, times this, is no difference.
+/// Noise of the model, times this, is not a difference.
 const NOISY: f64 = 10.0;
 /// Answers of an earlier run that are replayed before any is used.
 const REUSED: usize = 2;

@@ -24,7 +24,7 @@ const EXPLAINS_ODD: f64 = 0.5;
 const SQUARE: f64 = 0.1;
 /// With fewer pairs of points than that nothing is fitted to them.
 const FEWEST: usize = 4;
-/// Beyond this `t` is no property of a function that anybody writes down: 3 for a root.
+/// A larger `t` indicates a bad fit: a root has 3.
 const LARGEST: f64 = 6.0;
 
 /// Slopes and curvatures of all parts.
