@@ -18,7 +18,7 @@ use crate::characteristic::SpecLimits;
 use crate::law::{HeldTail, LawTail, SurfaceLaw};
 use crate::moments::Moments;
 
-/// The part of the allowed rejects that the uncertainty may not take: then nothing more can be shown.
+/// The part of the allowed rejects that the uncertainty leaves at least: beyond it nothing more can be shown.
 const LEFT: f64 = 0.1;
 /// Farther than this from the station, in `ln T`, a slope is not followed.
 const FAR: f64 = 0.7;

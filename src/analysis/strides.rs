@@ -37,8 +37,7 @@ const FITTED: usize = 1 << 10;
 const KNOTS: usize = 1 << 12;
 const FEWEST: usize = 1 << 8;
 const NUMBERS: usize = 1 << 21;
-/// The difference that so many points overlook: a difference of 0.004 sigma at 14 points, as at the check points of a costly
-/// model.
+/// The difference that so many points overlook: 0.004 sigma at 14 points, as at the check points of a costly model.
 const FLOOR: f64 = 0.004;
 const CHECKS: f64 = 14.0;
 /// A root mean square of a handful of differences is this much too small at times.

@@ -38,7 +38,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &Char
     warnings.extend(pearson(analysis));
     if let Some(climbed) = &outcome.climbed {
         let mut found = climb(outcome, climbed, c, (analysis, sigma));
-        // The answers of a formula next to the means do not scatter: that is a kink, or a root that is not smooth.
+        // Scatter of a formula's answers next to the means is a kink, or a root that is not smooth.
         let formula = problem.function().switches(problem.outputs()[c]).is_some_and(|switches| switches.complete);
         if analysis.verification.is_some() {
             found.retain(|warning| match warning {

@@ -186,7 +186,7 @@ impl<T: Into<String>> From<T> for Line {
     }
 }
 
-/// A document or a part of it, to which blocks are added: blocks one after the other.
+/// A document or a part of it, to which blocks are added one after the other.
 pub trait Blocks {
     /// The blocks so far.
     fn blocks(&mut self) -> &mut Vec<Element>;

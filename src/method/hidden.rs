@@ -1,4 +1,4 @@
-//! Terms that the polynomial through a dimension's nodes cannot show: terms that vanish at all of them.
+//! Terms that the polynomial through a dimension's nodes cannot show: those that vanish at all of them.
 //!
 //! With `w(u)` the product of `u` and `u - u_i` over the nodes, a part may as well be `g(u) + (p + q u) w(u)`. Its size is taken
 //! from how fast the known coefficients fall: from one power to the next but one by the same factor.

@@ -4,7 +4,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::elementary::{Elementary, Exp, Ln};
 
-/// The numbers in which the formulas of a mechanism are written: numbers, or numbers with derivatives by the crank angle.
+/// The numbers in which the formulas of a mechanism are written: plain ones, or ones with derivatives by the crank angle.
 pub(super) trait Real:
     Copy
     + Neg<Output = Self>

@@ -12,7 +12,7 @@ use crate::warning::Warning;
 const ROUNDS: usize = 8;
 /// A correlation that is off by less is the same in print.
 const TRIFLE: f64 = 0.001;
-/// The correlation nearest to the impossible one is possible only beside it.
+/// Correlations at an end of the possible range are moved inside by this factor.
 const INSIDE: f64 = 1.0 - 1e-9;
 
 /// The problem with its dimensions correlated as its pairs say, as the rows of measured files are, and within zones.

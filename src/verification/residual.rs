@@ -22,7 +22,7 @@ use super::figures::{MOMENTS, moments};
 use super::space::Columns;
 use super::strata::along;
 
-/// The residual that so many checks may overlook: a residual of this many sigmas.
+/// The residual that so many checks may overlook, in sigmas.
 const FLOOR: f64 = 0.004;
 const CHECKS: f64 = 14.0;
 /// A root mean square of a handful of residuals is this much too small at times.

@@ -425,7 +425,7 @@ fn points_that_check_are_of_the_distribution() {
     assert!(points.iter().flatten().all(|x| x.abs() <= 1.0));
 }
 
-/// The end of a climb is reported with its cause: a budget, or somebody.
+/// The end of a climb is reported with its cause: a budget, or the caller.
 #[test]
 fn the_account_says_what_ended_it() {
     let problem = || {

@@ -129,7 +129,7 @@ fn every_command_has_an_example_that_can_be_typed() {
     }
 }
 
-/// The completions of this shell for a script that is given on the command line, with the completions of its kind in its folder.
+/// The output of this shell for a script that is given on the command line, with the completions of its kind in its folder.
 fn shell(folder: &Path, name: &str, arguments: &[&str]) -> Option<String> {
     let output = sensitol(&["completions", name]).output().unwrap();
     assert!(output.status.success());

@@ -184,7 +184,7 @@ fn seldom_switches_are_found_and_named() {
     }
 }
 
-/// A smooth function, or a switch that is never reached, is not a switch: nothing to warn of.
+/// A smooth function has no switch, and one that is never reached does not count: nothing to warn of.
 #[test]
 fn smooth_formulas_have_no_switches() {
     let smooth = [

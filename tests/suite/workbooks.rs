@@ -300,7 +300,7 @@ fn a_workbook_is_the_report() {
             assert!(same(cell(row, column), &expected[column]), "{column}: {row:?}");
         }
     }
-    // A text that looks like a formula is text, in the title, in a part, and nowhere is one but on the stack.
+    // A text that looks like a formula is text, in the title and in a part; formulas stand on the stack alone.
     assert_eq!(cell(&inputs[0], "part"), Data::String("=HYPERLINK(A1)".to_owned()));
     for sheet in ["Results", "Contributions", "Joint", "Inputs", "Study"] {
         assert!(book.worksheet_formula(sheet).unwrap().used_cells().next().is_none(), "{sheet}");
