@@ -1,4 +1,4 @@
-//! A key characteristic (KC): one output of the assembly function that somebody asked for.
+//! A key characteristic (KC): one output of the assembly function that the study asks for.
 
 use serde::Serialize;
 
@@ -25,7 +25,7 @@ pub struct Characteristic {
     limits: SpecLimits,
     /// The share of assemblies that must keep the limits.
     target_yield: Option<f64>,
-    // What is required stands in results, with what there is of it.
+    // The requirement stands in results together with its value.
     #[serde(skip)]
     requirement: Option<Requirement>,
     // Stands in results with what it does.
@@ -174,7 +174,7 @@ pub enum LimitsError {
         /// The upper limit given.
         upper: f64,
     },
-    /// A target yield that is no share.
+    /// A target yield that is not a share.
     #[error("a target yield must lie between 0 and 1, both excluded, not {value}")]
     ImpossibleYield {
         /// The target given.

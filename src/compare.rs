@@ -141,7 +141,7 @@ impl Errors {
         Some(self.off.mean?.hypot(self.off.sigma?))
     }
 
-    /// What of that the reference itself may be off.
+    /// The part of that error that the reference itself may have.
     pub(crate) fn floor(&self) -> f64 {
         RESOLVED * self.reference.mean.unwrap_or(0.0).hypot(self.reference.sigma.unwrap_or(0.0))
     }
@@ -178,7 +178,7 @@ pub struct Ran {
     /// Which.
     #[serde(rename = "method")]
     pub contender: Contender,
-    /// What it came to in points and time.
+    /// Its points and time.
     pub run: RunSummary,
     /// Points that it takes, those included that were known already, from another method or an earlier run.
     pub evaluations: u64,
@@ -188,7 +188,7 @@ pub struct Ran {
     /// Seconds besides.
     #[serde(rename = "engine_s", serialize_with = "seconds")]
     pub engine: Duration,
-    /// What it says of every characteristic.
+    /// Its figures for every characteristic.
     pub figures: Vec<Figures>,
     /// How far that is off.
     pub errors: Vec<Errors>,
@@ -251,17 +251,17 @@ impl fmt::Display for NotRunReason {
     }
 }
 
-/// What a comparison found out.
+/// The results of a comparison.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Comparison {
-    /// What all are measured by.
+    /// The reference that all are measured by.
     pub reference: Simulation,
     /// The methods that ran, fewest evaluations first.
     pub ran: Vec<Ran>,
     /// Those that did not.
     pub not_run: Vec<NotRun>,
-    /// What all of it came to in points and time, the reference included, and why it ended early.
+    /// The points and time of all of it, the reference included, and why it ended early.
     #[serde(flatten)]
     pub run: RunSummary,
 }
@@ -281,7 +281,7 @@ pub enum CompareError {
 /// unless the options say otherwise.
 ///
 /// # Errors
-/// When the problem cannot be simulated. A method that does not fit is no error: it is named with the reason.
+/// When the problem cannot be simulated. A method that does not fit is not an error: it is named with the reason.
 ///
 /// ```
 /// use sensitol::compare::{CompareOptions, Contender, compare};
@@ -344,7 +344,7 @@ struct Comparer<'a> {
     run: &'a Run<'a>,
     ran: Vec<Ran>,
     not_run: Vec<NotRun>,
-    /// What methods came to that were stopped before they were done.
+    /// The cost of methods that were stopped before they were done.
     lost: RunSummary,
 }
 

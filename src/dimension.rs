@@ -75,11 +75,11 @@ pub(crate) enum RssFactor {
 pub struct DimensionError {
     /// The dimension's name.
     pub name: String,
-    /// What is wrong with it.
+    /// The fault in it.
     pub fault: DimensionFault,
 }
 
-/// What is wrong with a dimension.
+/// The faults of a dimension.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DimensionFault {
@@ -100,7 +100,7 @@ pub enum DimensionFault {
         /// The sigma.
         sigma: f64,
     },
-    /// An evaluation step that is no positive number.
+    /// An evaluation step that is not a positive number.
     #[error("the step must be a number of sigmas above 0, but is {value}")]
     BadStep {
         /// The step given.

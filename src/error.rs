@@ -126,7 +126,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// What to write instead, where that can be said.
+    /// The text to write instead, where that can be said.
     ///
     /// ```
     /// use sensitol::{Error, fits};
@@ -144,7 +144,7 @@ impl Error {
         }
     }
 
-    /// What to do about it, beside changing what is written; the most promising first.
+    /// The actions to take, beside changing what is written; the most promising first.
     pub fn advice(&self) -> Vec<Advice> {
         match self {
             Self::Method(error) => error.advice(),

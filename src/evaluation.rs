@@ -16,7 +16,7 @@ use crate::time::Instant;
 /// Coordinates that one batch holds at most: 64 MiB. A million points in a thousand dimensions are cut into batches.
 pub(crate) const BATCH: usize = 1 << 23;
 
-/// What evaluating a plan came to.
+/// The results of evaluating a plan.
 #[derive(Debug, Clone)]
 pub struct Evaluated {
     /// Every answer.

@@ -1,4 +1,5 @@
-//! What the tests and the benchmarks of this repository reach inside: not part of the public interface, and no promise.
+//! The inside of the library for the tests and the benchmarks of this repository: not part of the public interface, and no
+//! promise.
 
 pub use crate::allocation::knapsack::cheapest;
 pub use crate::allocation::lists::{ListChoice, ListOption};

@@ -74,7 +74,7 @@
 //! it runs on one thread. `study` reads TOML, JSON and CSV, `report` writes text, JSON, CSV, Markdown and SVG, `html` pages; `process` runs
 //! external programs, `journal` keeps their answers, `cli` is the command with all of them.
 
-// What the command line and the reports alone use is dead without them; with all features the compiler looks again.
+// Code for the command line and the reports alone is dead without them; with all features the compiler looks again.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
 pub mod allocation;

@@ -95,7 +95,7 @@ fn slips(from: &str, to: &str) -> usize {
 #[error("there is no {what} `{name}`; {}", self.help())]
 #[non_exhaustive]
 pub struct UnknownName {
-    /// What the name should stand for, such as `method`.
+    /// The kind of thing that the name should stand for, such as `method`.
     pub what: &'static str,
     /// The name as typed.
     pub name: String,

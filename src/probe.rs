@@ -35,13 +35,13 @@ const NAMED: usize = 5;
 /// One point without a value in so many is too much.
 const MANY: usize = 5;
 
-/// What a probe found out.
+/// The results of a probe.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Probe {
-    /// What an external program says of itself.
+    /// The description that an external program gives of itself.
     pub adapter: Option<ModelInfo>,
-    /// What it came to in points and time.
+    /// Its points and time.
     pub run: RunSummary,
     /// From nothing to ready.
     pub start: Duration,
@@ -49,9 +49,9 @@ pub struct Probe {
     pub alone: Duration,
     /// For a point among others.
     pub together: Duration,
-    /// What was checked, with what is wrong.
+    /// The checks, with their faults.
     pub checks: Vec<Check>,
-    /// What is known of every characteristic.
+    /// The results of every characteristic.
     pub characteristics: Vec<Probed>,
 }
 
@@ -65,7 +65,7 @@ pub struct Check {
     pub verdict: Finding,
 }
 
-/// What a check came to.
+/// The result of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Finding {
@@ -80,7 +80,7 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// What is wrong, where anything is.
+    /// The fault, where there is one.
     pub(crate) fn fault(&self) -> Option<&str> {
         match self {
             Self::Doubtful(fault) | Self::Failed(fault) => Some(fault),
@@ -118,7 +118,7 @@ impl Probe {
     }
 }
 
-/// What is checked once the nominal dimensions have values.
+/// The checks that follow once the nominal dimensions have values.
 const LATER: [&str; 8] = [TWICE, NOISE, WITHIN, ORDER, AFTER, FAILING, REACTS, RUNS];
 const TWICE: &str = "the same point twice has the same values";
 const NOISE: &str = "noise is small beside what the tolerances move";
@@ -206,14 +206,14 @@ pub fn probe(problem: &Problem, run: &Run<'_>) -> Result<Probe, EvaluationError>
     let steps: Vec<Vec<f64>> = asked.steps(&nominal);
     let stepped = ask(&steps);
 
-    // What the tolerances move, by everything that was evaluated within them.
+    // The ranges over which the tolerances move the outputs, by everything that was evaluated within them.
     let moved: Vec<f64> = (0..names.len()).map(|c| spread(&[&first, &forward, &walked, &stepped], c)).collect();
     check(TWICE, repeats(&names, &first, &second, &moved));
     check(NOISE, quiet(&names, &noise, &moved));
     check(WITHIN, asked.within(&nominal, &[(&scattered, &forward), (&line, &close), (&steps, &stepped)]));
     let ends: Vec<(usize, usize)> =
         SHUFFLED.iter().enumerate().map(|(turn, &row)| (row, STEPS * turn + STEPS - 1)).collect();
-    // What repeats as well as that is the same.
+    // Values that repeat as well as that are the same.
     let by: Vec<f64> = (0..names.len()).map(|c| (10.0 * noise[c].unwrap_or(0.0)).max(HARMLESS * moved[c])).collect();
     let same = |rows: &[(usize, usize)], a: &Responses, b: &Responses| same(&names, rows, a, b, &by);
     check(ORDER, same(&ends, &forward, &walked));

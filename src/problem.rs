@@ -46,14 +46,14 @@ pub enum ProblemError {
         /// The problem's dimensions.
         found: Vec<String>,
     },
-    /// A characteristic is no output of the function.
+    /// A characteristic is not an output of the function.
     #[error("there is no characteristic `{name}`; known: {known}", known = list(known))]
     UnknownCharacteristic {
         /// The name asked for.
         name: String,
         /// The most similar one.
         nearest: Option<String>,
-        /// What there is.
+        /// The names that exist.
         known: Vec<String>,
     },
     /// A dimension varies otherwise in a state.
@@ -142,7 +142,7 @@ impl Problem {
     /// With these characteristics instead: outputs of the function by name, with limits and targets.
     ///
     /// # Errors
-    /// When there is none, one stands twice, or one is no output of the function.
+    /// When there is none, one stands twice, or one is not an output of the function.
     pub fn asking(mut self, characteristics: impl IntoIterator<Item = Characteristic>) -> Result<Self, ProblemError> {
         let outputs = &self.function.signature().outputs;
         self.characteristics = characteristics.into_iter().collect();
@@ -236,7 +236,7 @@ impl Problem {
     /// When a dimension varies otherwise about its nominal value in a state.
     #[cfg(feature = "study")]
     pub(crate) fn in_states(&self, states: &[(&str, &Self)]) -> Result<Self, ProblemError> {
-        /// What decimal numbers leave, relative to the half band and to the nominal value.
+        /// The error of decimal numbers, relative to the half band and to the nominal value.
         const SAME: [f64; 2] = [1e-9, 1e-13];
         let mut all = Vec::new();
         let mut characteristics = Vec::new();
@@ -303,7 +303,7 @@ impl Problem {
         &*self.function
     }
 
-    /// What became of the processes of an external model so far, in numbers; None where there is none.
+    /// The account of the processes of an external model so far, in numbers; None where there is none.
     pub(crate) fn evaluator(&self) -> Option<EvaluatorSummary> {
         self.function.account().map(|account| account.counts)
     }

@@ -1,8 +1,8 @@
-//! What a characteristic must keep.
+//! The requirement of a characteristic.
 
 use serde::{Serialize, Serializer};
 
-/// What a characteristic must keep: when tolerances are chosen, and when a result is judged.
+/// A requirement of a characteristic: when tolerances are chosen, and when a result is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Requirement {
@@ -22,7 +22,7 @@ pub enum Requirement {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RequirementError {
-    /// A yield that is no share, or one that only a worst case can promise.
+    /// A yield that is not a share, or one that only a worst case can promise.
     #[error("a required yield must lie between 0 and 1, both excluded, not {value}")]
     ImpossibleYield {
         /// As given.
@@ -39,7 +39,7 @@ pub enum RequirementError {
     /// Limits are needed to say what is required.
     #[error("to require {what} of a characteristic, it needs limits")]
     NoLimits {
-        /// What is required.
+        /// The requirement.
         what: &'static str,
     },
 }
@@ -74,7 +74,7 @@ impl Serialize for Requirement {
 }
 
 impl Requirement {
-    /// What is required, as JSON and CSV name it.
+    /// The requirement's name in JSON and CSV.
     pub(crate) fn key(&self) -> &'static str {
         match self {
             Self::Cpk(_) => "cpk",
@@ -87,7 +87,7 @@ impl Requirement {
         self.value().unwrap_or(1.0)
     }
 
-    /// What is required, in a word.
+    /// The requirement, in a word.
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Yield(_) => "yield",

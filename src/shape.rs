@@ -1,6 +1,6 @@
-//! What several results share in how they are written: parts that take another form in JSON than in Rust.
+//! The common part of how results are written: parts that take another form in JSON than in Rust.
 //!
-//! What is unknown is null, so that every key is always there.
+//! Unknown values are null, so that every key is always there.
 
 use std::fmt::Display;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! What a run came to, whatever it computed: points, time, seed, and why it ended early where it did.
+//! The summary of a run, whatever it computed: points, time, seed, and why it ended early where it did.
 
 use std::fmt;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use crate::shape::seconds;
 pub enum StopReason {
     /// The time that it was given is over.
     TimeLimit,
-    /// The evaluations that it was given are spent. What follows from fewer points is complete: nothing planned is open.
+    /// The evaluations that it was given are spent. A result from fewer points is complete: nothing planned is open.
     Budget,
     /// A person interrupted it.
     Interrupted,
@@ -155,7 +155,7 @@ impl RunSummary {
         self.evaluator.is_some_and(|evaluator| evaluator.unconfirmed > 0)
     }
 
-    /// Whether planned points were not evaluated, so that what follows from the others is no verdict.
+    /// Whether planned points were not evaluated, so that what follows from the others is not a verdict.
     pub(crate) fn unfinished(&self) -> bool {
         self.stopped.is_some_and(StopReason::leaves_points_open)
     }

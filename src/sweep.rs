@@ -1,6 +1,6 @@
 //! Along a parameter: a characteristic's moments and quantiles at many values of one dimension.
 //!
-//! Every value is an analysis of its own. What they ask of the model is gathered: all of them are run until they lack points,
+//! Every value is an analysis of its own. Their requests to the model are gathered: all of them are run until they lack points,
 //! the points that any of them lacks are evaluated as one batch, and those that are not done are run again with the answers,
 //! which costs no evaluation. A method of one stage takes one batch, however many values there are.
 
@@ -35,7 +35,7 @@ pub struct Sweep {
     pub values: Vec<f64>,
     /// The analysis at every value; None where the sweep was stopped before it was done.
     pub analyses: Vec<Option<Analysis>>,
-    /// What it came to in points, each once for all values, and time; why it ended before all was done.
+    /// Its points, each once for all values, and time; why it ended before all was done.
     #[serde(flatten)]
     pub run: RunSummary,
 }
@@ -51,7 +51,7 @@ pub enum SweepError {
         name: String,
         /// The most similar one.
         nearest: Option<String>,
-        /// What there is.
+        /// The names that exist.
         known: Vec<String>,
     },
     /// No value.
@@ -90,7 +90,7 @@ pub enum SweepError {
 ///
 /// # Errors
 /// When the dimension or the values cannot be, or the options do not fit the problem; nothing is evaluated then. A model that
-/// fails at some value is no error: what is unknown there is None.
+/// fails at some value is not an error: what is unknown there is None.
 ///
 /// ```
 /// use sensitol::sweep::sweep;
@@ -134,7 +134,7 @@ pub fn sweep_with(
             Ok(problem.replacing(place, moved, Arc::clone(&gatherer) as _))
         })
         .collect::<Result<_, _>>()?;
-    // What may be spent is shared alike.
+    // The budget is shared alike.
     let budget = options.budget.map(|budget| budget / values.len());
     let options = &Options { budget, verify: options.verify.or(Some(0)), ..options.clone() };
     for problem in &problems {

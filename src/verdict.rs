@@ -6,7 +6,7 @@
 //! inconclusive    anything else: the interval holds values on both sides, or is unknown
 //! ```
 //!
-//! An interval is the estimate and two of its errors on either side, cut to what the figure can be. What else speaks against the
+//! An interval is the estimate and two of its errors on either side, cut to what the figure can be. Other evidence against the
 //! estimate widens it: another share of the same surface, points without a value. A run that was stopped has no interval.
 
 use serde::{Serialize, Serializer};
@@ -18,8 +18,9 @@ use crate::shape::{ends, finite};
 
 /// Errors on either side of an estimate that make its interval: 95 % where errors are standard errors.
 pub(crate) const ERRORS: f64 = 2.0;
-/// What the same sum in another order may add, relative to the room that a target leaves: tolerances that were chosen so that they
-/// just keep a target keep it. The search of tolerances keeps its constraints to a part of 10^9 of their room.
+/// The difference that the same sum in another order may make, relative to the room that a target leaves: tolerances that were
+/// chosen so that they just keep a target keep it. The search of tolerances keeps its constraints to a part of 10^9 of their
+/// room.
 const ROUNDING: f64 = 1e-8;
 
 /// The verdict on a target.
@@ -89,14 +90,14 @@ impl Verdict {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Judged {
-    /// What is required.
+    /// The requirement.
     pub requirement: Requirement,
-    /// What there is, in the requirement's own measure: yield, Cpk, sigma, or the greatest part of a limit's room that rss or worst
+    /// The value in the requirement's own measure: yield, Cpk, sigma, or the greatest part of a limit's room that rss or worst
     /// case takes. None where it is unknown.
     pub value: Option<f64>,
     /// Within which that is known; None where that is unknown.
     pub interval: Option<[f64; 2]>,
-    /// What the interval says.
+    /// The verdict by the interval.
     pub verdict: Verdict,
 }
 
@@ -221,7 +222,7 @@ mod tests {
         assert_eq!(Verdict::of(Requirement::Cpk(1.33), Some([f64::NAN, 2.0])), Verdict::Inconclusive);
     }
 
-    /// All may be rejected where nobody knows how many have no value.
+    /// All may be rejected where it is unknown how many have no value.
     #[test]
     fn what_has_no_value_only_lowers_a_yield() {
         assert_eq!(losing([0.9, 0.95], None), [0.0, 0.95]);

@@ -13,7 +13,7 @@ fn files(folder: PathBuf) -> Vec<PathBuf> {
     files
 }
 
-/// Runs the corpus of a target. What it panics at names itself; the file is named here.
+/// Runs the corpus of a target. An input at which it panics names itself; the file is named here.
 fn replay(name: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let target = targets::TARGETS.iter().find(|target| target.name == name).unwrap();

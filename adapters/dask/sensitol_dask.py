@@ -482,7 +482,7 @@ class Bridge:
         self.events.put(("end", None))
 
     def close(self):
-        """Ends the programs of this session. What cannot be reached ends when its worker does."""
+        """Ends the programs of this session. Programs that cannot be reached end when their worker does."""
         import sensitol_dask_worker as worker
 
         if self.client is None or self.client.status != "running":

@@ -27,7 +27,7 @@ KEYS = ("document", "name", "version", "dimensions", "characteristics", "guards"
 ENDS = {"start": 1, "end": 2, "center": 3, "centre": 3}
 ON_SKETCH = re.compile(r"(?P<sketch>[^.]+)\.Geometry\[(?P<index>\d+)\]\.(?P<end>\w+)")
 NUMBERED = re.compile(r"Constraints\[(\d+)\]")
-# What a solver may leave of a driving constraint, in mm or radians.
+# The error that a solver may leave of a driving constraint, in mm or radians.
 SOLVED = 1e-6
 
 

@@ -1,4 +1,4 @@
-//! What no input may do: panic, hang, or break a promise. Each target is a function of bytes.
+//! The failures that no input may cause: panic, hang, or break a promise. Each target is a function of bytes.
 
 mod targets;
 

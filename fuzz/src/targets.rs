@@ -15,7 +15,7 @@ use sensitol::{Options, Study, analyze};
 pub struct Target {
     /// Its name, and that of its corpus.
     pub name: &'static str,
-    /// What an input is given to.
+    /// The function that an input is given to.
     pub run: fn(&[u8]),
 }
 

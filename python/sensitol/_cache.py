@@ -16,7 +16,8 @@ TABLE = "python_answers_1"
 
 
 def identity(model: Model, hello: Hello) -> str:
-    """What answers are known by: the function's text, its inputs and its constants. What it calls is not in it; `version` is."""
+    """The key of the answers: the function's text, its inputs and its constants. Functions that it calls are not in it;
+    `version` is."""
     try:
         text = inspect.getsource(model.function)
     except (OSError, TypeError):

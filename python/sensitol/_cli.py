@@ -11,11 +11,11 @@ def main() -> None:
     """Runs the command line in this process, and ends it."""
     from . import _core
 
-    # Python would turn Ctrl-C into an exception that nobody sees: the engine listens to it. A closed pipe is no error.
+    # Python would turn Ctrl-C into an exception that nobody sees: the engine listens to it. A closed pipe is not an error.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     code = _core.run_cli(["sensitol", *sys.argv[1:]])
     sys.stdout.flush()
-    # What Python would tidy up belongs to no one.
+    # The clean-up of Python is skipped: nothing needs it.
     os._exit(code)
 
 

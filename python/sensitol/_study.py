@@ -47,7 +47,7 @@ class Study:
     Parameters
     ----------
     title
-        What it is about, in one line.
+        Its subject, in one line.
     dimensions
         A :class:`Dimension` by name.
     characteristics
@@ -151,7 +151,7 @@ class Study:
         self._core = _core.Study.from_text(text, toml, name, folder, files, made, _hosted(model), configuration)
         self._about: dict[str, Any] = json.loads(self._core.described)
         if model is not None and self._about["model"] is not None:
-            # What does not fit is told before anything is evaluated.
+            # A model that does not fit is reported before anything is evaluated.
             from ._evaluate import Answer, Call, Hello
 
             hello = Hello(self._about["model"])

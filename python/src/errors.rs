@@ -10,7 +10,7 @@ fn exception(py: Python<'_>, name: &str, message: String, attributes: &Bound<'_,
     Ok(PyErr::from_value(class.call((message,), Some(attributes))?))
 }
 
-/// What is wrong with a study: message, place and help. A study that Python made has no file, line or column.
+/// The faults of a study: message, place and help. A study that Python made has no file, line or column.
 pub(crate) fn of_study(py: Python<'_>, error: &StudyError, made_in_python: bool) -> PyErr {
     let build = || -> PyResult<PyErr> {
         let attributes = one(py, error, made_in_python)?;
@@ -58,7 +58,7 @@ fn one<'py>(py: Python<'py>, error: &StudyError, made_in_python: bool) -> PyResu
     Ok(attributes)
 }
 
-/// What else cannot be done, with what to do about it.
+/// Any other failure, with the actions to take.
 pub(crate) fn of_engine(py: Python<'_>, error: &Error, made_in_python: bool) -> PyErr {
     if let Error::Study(error) = error {
         return of_study(py, error, made_in_python);

@@ -29,7 +29,7 @@ pub(crate) struct Answer {
     pub(crate) reused: usize,
 }
 
-/// What the threads of a run tell the thread that started it.
+/// The messages from the threads of a run to the thread that started it.
 pub(crate) enum Event<T> {
     /// Points to be evaluated.
     Call(Call),

@@ -20,7 +20,7 @@ fn run_cli(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| sensitol::cli::run_code(arguments))
 }
 
-/// What the package `sensitol` wraps.
+/// The functions that the package `sensitol` wraps.
 #[pymodule(gil_used = false)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

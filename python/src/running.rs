@@ -53,7 +53,7 @@ impl Counter {
     }
 }
 
-/// What the calling thread does beside waiting.
+/// The duties of the calling thread beside waiting.
 pub(crate) struct Caller<'py> {
     /// Evaluates blocks of points.
     pub(crate) model: Option<Bound<'py, PyAny>>,

@@ -19,7 +19,7 @@ use crate::host::{Event, Host};
 use crate::outcome::Outcome;
 use crate::running::{Caller, Ended, run};
 
-/// What a model is told first.
+/// The first message to a model.
 type Hello = Arc<Mutex<Option<(Signature, Greeting)>>>;
 
 /// The text of a study, with the files that it names.
@@ -69,7 +69,7 @@ impl Study {
     }
 }
 
-/// What Python wants to know of a study, as JSON.
+/// The description of a study for Python, as JSON.
 fn described(study: &sensitol::Study, hello: &Hello) -> String {
     let dimension = |one: &sensitol::Dimension| {
         json!({
@@ -93,7 +93,7 @@ fn described(study: &sensitol::Study, hello: &Hello) -> String {
     .to_string()
 }
 
-/// What a model is told first, as JSON.
+/// The first message to a model, as JSON.
 fn spoken(signature: &Signature, greeting: &Greeting) -> serde_json::Value {
     json!({
         "inputs": signature.inputs.iter().map(|input| &input.name).collect::<Vec<_>>(),
@@ -153,13 +153,13 @@ impl Study {
         Self::from_text(py, read.text().to_owned(), toml, name, folder, BTreeMap::new(), false, hosted, configuration)
     }
 
-    /// What is known of the study, as JSON.
+    /// The description of the study, as JSON.
     #[getter]
     fn described(&self) -> &str {
         &self.described
     }
 
-    /// What it was read from.
+    /// The text that it was read from.
     #[getter]
     fn text(&self) -> &str {
         &self.text

@@ -32,7 +32,7 @@ def test_results_come_back(run):
     assert again.to_dict() == found.to_dict()
     assert (str(again), again.to_html(), again.tables()) == (str(found), found.to_html(), found.tables())
     assert again.study == found.study
-    # What came back goes on.
+    # The copy can be pickled again.
     assert pickle.loads(pickle.dumps(again)).to_dict() == found.to_dict()
 
 

@@ -20,7 +20,7 @@ const WEIGHT: f64 = 10.0;
 /// A value and its derivatives.
 pub(super) type Slope = (f64, Vec<f64>);
 
-/// What is minimised, and under what.
+/// The objective and its constraints.
 pub(super) struct Smooth<'a> {
     /// The objective, near 1.
     pub(super) objective: &'a dyn Fn(&[f64]) -> Slope,
@@ -32,7 +32,7 @@ pub(super) struct Smooth<'a> {
 /// When a search ends.
 #[derive(Clone, Copy)]
 pub(super) struct Near {
-    /// What rows and bounds may be off by.
+    /// The tolerance of rows and bounds.
     pub(super) by: f64,
     /// Updates of the multipliers.
     pub(super) updates: usize,

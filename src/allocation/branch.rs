@@ -355,7 +355,7 @@ impl Search<'_> {
                 .collect();
             for (k, constraint) in self.setting.constraints.iter().enumerate() {
                 let value = constraint.value(self.setting.responses, self.setting.priced, &at);
-                // What is far beyond the limit need not be known well.
+                // A constraint far beyond its limit need not be known well.
                 if value.is_finite() && value < 4.0 {
                     reserve[k] = reserve[k].max(self.rows[k].value(&at) - value);
                 }

@@ -20,7 +20,7 @@ pub(super) enum Choice {
 pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
     let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
     let free = setting.priced.iter().all(|group| group.offers.len() == 1);
-    // What the start keeps can be kept: means that move with tolerances may make the tightest ones the worst.
+    // A limit that the start keeps can be kept: means that move with tolerances may make the tightest ones the worst.
     let here = free && within_bounds(setting.priced, start) && kept(setting.value(start));
     for constraint in setting.constraints.iter().filter(|_| !here) {
         // Nearly always the tightest tolerances keep what any do.
@@ -93,7 +93,7 @@ pub(super) fn within_bounds(priced: &[Priced], at: &[f64]) -> bool {
     priced.iter().zip(at).all(|(group, t)| (group.tightest()..=group.loosest()).contains(t))
 }
 
-/// What can be had of a constraint; its unit is known to who has the problem.
+/// The attainable value of a constraint; its unit is known to who has the problem.
 fn unattainable(setting: &Setting<'_>, constraint: &Constraint, at: &[f64]) -> Attainable {
     let responses = setting.responses;
     let factors = responses.factors(setting.priced, at);

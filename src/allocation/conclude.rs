@@ -1,4 +1,4 @@
-//! What follows from the tolerances that a search ended at: status, prices, the front, and what a sample of the model says.
+//! The conclusions from the tolerances that a search ended at: status, prices, the front, and what a sample of the model says.
 
 use super::box_sample::worst_in_box;
 use super::choose::Choice;
@@ -245,7 +245,7 @@ impl Driver<'_> {
         allocation.setups.iter().map(|setup| setup.cost).sum()
     }
 
-    /// What the bounds cost that tolerances have met.
+    /// The prices of the bounds that tolerances have met.
     fn price_bounds(&self, allocation: &mut Allocation, setting: &Setting<'_>, solved: &Solved) {
         // Of limits that hold the cost up alike no one multiplier tells anything.
         if allocation.prices.iter().any(|price| price.widen != price.narrow) {
@@ -316,7 +316,7 @@ impl Driver<'_> {
     }
 }
 
-/// What the cheapest tolerances cost that need be no steps or grades; None where none need be, or they are not found.
+/// The cost of the cheapest tolerances that need not be steps or grades; None where none need be, or they are not found.
 fn unrounded(setting: &Setting<'_>, solved: &Solved) -> Option<f64> {
     if setting.priced.iter().all(|group| group.rounded.is_none()) {
         return None;

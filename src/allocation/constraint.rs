@@ -25,7 +25,7 @@ use crate::characteristic::SpecLimits;
 use crate::moments::Moments;
 use crate::requirement::Requirement;
 
-/// What sums in another order may add: limits that are met to the last digit are kept.
+/// The difference that sums in another order may make: limits that are met to the last digit are kept.
 pub(super) const KEPT: f64 = 1e-12;
 
 /// Whether a constraint of this value is kept.
@@ -205,7 +205,7 @@ impl Constraint {
         Some(Linearised { value, slopes: slopes.into_iter().map(|slope| slope / scale).collect(), linear })
     }
 
-    /// What varies by the room for it.
+    /// The ratio of the variation to the room for it.
     fn ratio(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<f64> {
         let factors = responses.factors(priced, at);
         self.ratio_at(responses, priced, &factors, None)
@@ -339,7 +339,7 @@ impl Constraint {
         }
     }
 
-    /// What the law of the surface makes of the room for a yield.
+    /// The correction of the room for a yield by the law of the surface.
     fn correction(&self, responses: &Responses) -> Option<Arc<Correction>> {
         let Requirement::Yield(least) = self.requirement else { return None };
         let target = self.target(responses);
@@ -411,7 +411,7 @@ impl Constraint {
         Some([difference(&|step| moved(step, 0.0)), difference(&|step| moved(0.0, step))])
     }
 
-    /// What the worst case divides by: the room that the nominal value leaves.
+    /// The divisor of the worst case: the room that the nominal value leaves.
     pub(super) fn nominal_room(&self, responses: &Responses) -> Option<f64> {
         let nominal = responses.of[self.characteristic].nominal?;
         match self.side {
@@ -502,7 +502,7 @@ impl Linearised {
     }
 
     /// As a sum of powers of the tolerances with the same value and slopes here: exact for worst cases and for sums of
-    /// squares. What grows as a tolerance shrinks goes with its inverse square, so that the sum is convex.
+    /// squares. A term that grows as a tolerance shrinks goes with its inverse square, so that the sum is convex.
     pub(super) fn row(&self, at: &[f64]) -> Row {
         let mut constant = self.value;
         let terms = self.slopes.iter().zip(at).map(|(&slope, &t)| {
@@ -521,7 +521,7 @@ impl Linearised {
 }
 
 impl Constraint {
-    /// What there is of the requirement at these tolerances, in its own measure; None where that is unknown.
+    /// The value of the requirement at these tolerances, in its own measure; None where that is unknown.
     pub(super) fn measured(&self, responses: &Responses, priced: &[Priced], at: &[f64]) -> Option<f64> {
         let factors = responses.factors(priced, at);
         match self.requirement {

@@ -1,4 +1,4 @@
-//! What the law of a surface, and the interval of a yield, make of the room for a required yield.
+//! The room for a required yield, corrected by the law of a surface and the interval of the yield.
 //!
 //! Trial tolerances are judged by four moments: fast, and not what is required. At a station the true room is known: the largest
 //! sigma at which the surface law, about its mean and with its shape, leaves just the share beyond the limits that may be rejected.
@@ -18,7 +18,7 @@ use crate::characteristic::SpecLimits;
 use crate::law::{HeldTail, LawTail, SurfaceLaw};
 use crate::moments::Moments;
 
-/// What is not known may take all of what may be rejected but this part: then nothing more can be shown.
+/// The part of the allowed rejects that the uncertainty leaves at least: beyond it nothing more can be shown.
 const LEFT: f64 = 0.1;
 /// Farther than this from the station, in `ln T`, a slope is not followed.
 const FAR: f64 = 0.7;
@@ -72,7 +72,7 @@ impl Correction {
         Self { ln: 0.0, slopes: vec![0.0; dimensions] }
     }
 
-    /// What may be rejected where so much of the yield is not known.
+    /// The allowed rejects where so much of the yield is uncertain.
     pub(super) fn allowed(required: f64, reach: f64) -> f64 {
         let rejected = 1.0 - required;
         (rejected - reach).max(LEFT * rejected)
@@ -131,7 +131,7 @@ impl Correction {
         let partial = about.slopes.as_ref().and_then(|_| (about.room_slopes)(&moments));
         let moving = about.varying.iter().enumerate().filter(|(_, (_, follows))| *follows != Follows::Still);
         for (position, &(d, follows)) in moving {
-            // What the law's own derivatives leave to the moments, without a difference where their slopes are exact.
+            // The derivatives by the law itself, less those by the moments, without a difference where their slopes are exact.
             if let (Some(all), Some(partial)) = (&about.slopes, partial) {
                 let [by_mean, by_sigma, by_skewness, by_excess] = all[d];
                 let by_law = sides.iter().zip(&own).map(|((tail, distance, _), own)| {

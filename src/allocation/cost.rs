@@ -1,4 +1,4 @@
-//! What a tolerance costs to hold.
+//! The cost of holding a tolerance.
 
 use std::sync::Arc;
 
@@ -165,7 +165,7 @@ impl Curve {
         [self.a, self.b, self.shape]
     }
 
-    /// `b` and, of a power, `k`: None where the cost is no reciprocal power.
+    /// `b` and, of a power, `k`: None where the cost is not a reciprocal power.
     pub(super) fn power(&self) -> Option<(f64, f64)> {
         matches!(self.kind, CurveKind::Reciprocal | CurveKind::ReciprocalPower).then_some((self.b, self.shape))
     }
@@ -296,7 +296,7 @@ impl Priced {
         Self { rounded, ..self }
     }
 
-    /// What it costs to hold this half band, which no offer need name: a process costs what it costs at any tolerance that it
+    /// The cost to hold this half band, which no offer need name: a process costs what it costs at any tolerance that it
     /// holds, and a curve goes on beyond its bounds.
     pub(crate) fn cost_to_hold(&self, t: f64) -> Option<f64> {
         self.holding(t).map(|(cost, _)| cost)

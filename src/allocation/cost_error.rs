@@ -20,7 +20,7 @@ pub enum CostError {
         /// Its value.
         value: f64,
     },
-    /// A tolerance that is no positive number.
+    /// A tolerance that is not a positive number.
     #[error("a tolerance must be above 0, but {name} is {value}")]
     Tolerance {
         /// Which: `min`, `max` or `tolerance`.

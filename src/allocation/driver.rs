@@ -1,4 +1,4 @@
-//! What every search of tolerances shares: the model asked at some tolerances, within budget and time.
+//! The common part of all searches of tolerances: the model asked at some tolerances, within budget and time.
 
 use super::constraint::{Constraint, kept};
 use super::cost::Priced;
@@ -20,7 +20,7 @@ use crate::summary::{RunSummary, StopReason};
 /// Rounds of derivatives, at most.
 pub(super) const ROUNDS: usize = 20;
 
-/// What was evaluated so far.
+/// The evaluations so far.
 #[derive(Default)]
 pub(super) struct Spent {
     pub(super) run: RunSummary,

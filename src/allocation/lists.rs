@@ -1,11 +1,11 @@
 //! Lists of options under rows that add up, as the knapsacks have them ([`knapsack`](super::knapsack)).
 
-/// What sums in another order may add to a row.
+/// The difference that sums in another order may make to a row.
 pub(super) const ROUNDING: f64 = 1e-13;
 /// Costs that differ by less are the same.
 pub(super) const SAME: f64 = 1e-12;
 
-/// What two exchanges of a list's option save, and which they are.
+/// The savings of two exchanges of a list's option, and the exchanges.
 type Moves = (f64, [(usize, usize); 2]);
 
 /// One option of a list.
@@ -13,7 +13,7 @@ type Moves = (f64, [(usize, usize); 2]);
 pub struct ListOption {
     /// Its cost.
     pub cost: f64,
-    /// What it uses of every row, 0 or more.
+    /// Its use of every row, 0 or more.
     pub uses: Vec<f64>,
     /// Its place in the list as given.
     pub place: usize,
@@ -24,7 +24,7 @@ pub struct ListOption {
 pub struct ListChoice {
     /// For every list the place of the option, as given.
     pub places: Vec<usize>,
-    /// What they cost together.
+    /// Their cost together.
     pub cost: f64,
     /// No choice costs less.
     pub bound: f64,
@@ -68,7 +68,7 @@ impl Lists {
         self.lists.iter().zip(picks).map(|(list, &pick)| list[pick].cost).sum()
     }
 
-    /// What a choice uses of every row.
+    /// The use of every row by a choice.
     pub(super) fn uses(&self, picks: &[usize]) -> Vec<f64> {
         let mut uses = vec![0.0; self.rows];
         for (list, &pick) in self.lists.iter().zip(picks) {

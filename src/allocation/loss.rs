@@ -13,7 +13,7 @@ use super::cost::Priced;
 use super::cost_error::CostError;
 use super::response::Responses;
 
-/// What deviations and rejects of a characteristic cost, per assembly.
+/// The cost of deviations and rejects of a characteristic, per assembly.
 ///
 /// ```
 /// use sensitol::allocation::QualityLoss;

@@ -42,7 +42,7 @@ fn choose_machines(setting: &Setting<'_>, start: &[f64]) -> Choice {
     };
     let mut sets: Vec<usize> = (0..1usize << setups.len()).collect();
     sets.sort_by(|&a, &b| of(a).total_cmp(&of(b)));
-    // What needs no thought of set-ups is a good choice to begin with.
+    // The choice without regard to set-ups is a good one to begin with.
     sets.insert(0, first);
     let (mut best, mut bound, mut nodes, mut rigorous) = (None, f64::INFINITY, 0, true);
     for (place, &set) in sets.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Smooth unconstrained minimisation: L-BFGS with the line search of Moré and Thuente, of the crate argmin.
 //!
-//! The best point seen is kept here: a line search that gives up loses nothing. What is not a number, or cannot be computed, is
-//! infinite before argmin sees it.
+//! The best point seen is kept here: a line search that gives up loses nothing. A value that is not a number, or cannot be
+//! computed, is infinite before argmin sees it.
 
 use std::cell::RefCell;
 

@@ -18,7 +18,7 @@
 //! the model again, and where that says otherwise, tolerances are chosen anew from the derivatives there, until both agree. Nominal values
 //! that may move are unknowns of the same problem.
 //!
-//! What is claimed is shown: the residual of the conditions of Karush, Kuhn and Tucker for free tolerances, a bound that no
+//! Evidence supports every claim: the residual of the conditions of Karush, Kuhn and Tucker for free tolerances, a bound that no
 //! choice can undercut for processes, and what every limit costs.
 
 mod augmented;

@@ -119,7 +119,7 @@ fn reduced(problem: &Lists, bound: f64, price: f64, known: f64) -> Option<Vec<Ve
     let priced = |one: &ListOption| one.cost + price * used(one);
     let left = problem.lists.iter().map(|list| {
         let least = list.iter().map(priced).fold(f64::INFINITY, f64::min);
-        // What rounding makes of sums is no reason.
+        // A difference by the rounding of sums is not a reason.
         let slack = 1e-9 * known.abs();
         let stays = |i: &usize| bound + (priced(&list[*i]) - least) <= known + slack;
         let left: Vec<usize> = (0..list.len()).filter(stays).collect();

@@ -2,12 +2,12 @@
 
 use crate::characteristic::SpecLimits;
 
-/// What some characteristics reject together.
+/// The joint rejects of some characteristics.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RejectFit {
     /// The characteristics with their limits.
     pub(super) of: Vec<(usize, SpecLimits)>,
-    /// What the laws make of the fits: a factor, as its logarithm.
+    /// The correction of the fits by the laws: a factor, as its logarithm.
     pub(super) ln: f64,
     /// Whether the laws reject nothing at the station.
     pub(super) nothing: bool,

@@ -110,7 +110,8 @@ impl RejectFit {
     }
 }
 
-/// What the Pearson fit rejects, and a little of what a normal distribution would: a fit with ends may reject nothing, and have no slope.
+/// The rejects by the Pearson fit, and a little of those by a normal distribution: a fit with ends may reject nothing, and have
+/// no slope.
 fn fitted(moments: &Moments, limits: SpecLimits) -> Option<f64> {
     const LITTLE: f64 = 1e-4;
     let law = Law::fit(moments).ok()?;
@@ -139,7 +140,7 @@ pub(super) fn of_scores(share: f64, allowed: f64) -> f64 {
 }
 
 impl Responses {
-    /// What these characteristics reject together, as a function of the tolerances.
+    /// The joint rejects of these characteristics, as a function of the tolerances.
     pub(super) fn rejects(&self, of: &[usize]) -> Arc<RejectFit> {
         let known = || self.reject_fits.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known().get(of) {

@@ -26,7 +26,7 @@ use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::surrogate::{InputShape, Inputs, Relocation, Surrogate, shapes};
 
-/// What is known of the characteristics near some tolerances.
+/// The characteristics near some tolerances, as far as they are known.
 pub(super) struct Responses {
     /// The dimensions as the derivatives were taken.
     pub(super) dimensions: Vec<Dimension>,
@@ -60,7 +60,7 @@ pub(super) struct Response {
     /// The law of the surface, where a yield comes from one.
     law: Option<SurfaceLaw>,
     pub(super) unknown: Unknown,
-    /// What samples of the model make of its moments, where they refute the surface.
+    /// The correction of its moments by samples of the model, where they refute the surface.
     pub(super) sampled: Option<SampledCorrection>,
     /// The worst case, where it is required; None where the slopes tell all of it.
     pub(super) worst: Option<WorstCase>,
@@ -154,7 +154,8 @@ impl Responses {
         matches!(self.scaling[position], Scaling::Similar { alpha } if alpha == 0.0)
     }
 
-    /// What the law of the surface makes of the room for a yield that `room` finds by four moments; None where that is unknown.
+    /// The correction by the law of the surface of the room for a yield that `room` finds by four moments; None where that is
+    /// unknown.
     pub(super) fn correction(
         &self,
         c: usize,

@@ -1,4 +1,4 @@
-//! What an allocation found out.
+//! The results of an allocation.
 
 use serde::{Serialize, Serializer};
 
@@ -106,7 +106,7 @@ pub struct Moved {
     pub after: f64,
 }
 
-/// What a characteristic must keep, and what it has.
+/// The requirement of a characteristic, and its values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -114,15 +114,15 @@ pub struct Kept {
     /// Index of the characteristic in the problem; reports name it.
     #[serde(skip)]
     pub characteristic: usize,
-    /// What is required.
+    /// The requirement.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "Required"))]
     pub requirement: Requirement,
-    /// What there was, by the analysis at the tolerances before.
+    /// The value by the analysis at the tolerances before.
     #[serde(flatten, serialize_with = "through::<Before, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "Before"))]
     pub before: Judged,
-    /// What there is, by the analysis at those found; None where none were.
+    /// The value by the analysis at those found; None where none were.
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "After"))]
     pub after: Option<Judged>,
@@ -138,15 +138,15 @@ pub struct Kept {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct JointKept {
-    /// What is required.
+    /// The requirement.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "Required"))]
     pub requirement: Requirement,
-    /// What there was, by the analysis at the tolerances before.
+    /// The value by the analysis at the tolerances before.
     #[serde(flatten, serialize_with = "through::<Before, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "Before"))]
     pub before: Judged,
-    /// What there is, by the analysis at those found; None where none were.
+    /// The value by the analysis at those found; None where none were.
     #[serde(flatten, serialize_with = "through::<After, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "After"))]
     pub after: Option<Judged>,
@@ -156,7 +156,7 @@ pub struct JointKept {
     pub sampled: Option<Judged>,
 }
 
-/// What a requirement costs: by how much the cost falls per unit by which something gives way.
+/// The price of a requirement: by how much the cost falls per unit by which something gives way.
 ///
 /// Where both sides of a requirement hold the cost up, widening one of them alone saves nothing, and only `both` is known. Where requirements
 /// of several characteristics hold it up in the same way, to widen one of them saves less than to narrow it costs, and there is no one price.
@@ -191,7 +191,7 @@ pub struct Attainable {
     pub characteristic: usize,
     /// Its unit.
     pub unit: Option<String>,
-    /// What is required.
+    /// The requirement.
     #[serde(flatten, serialize_with = "through::<Required, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "Required"))]
     pub requirement: Requirement,
@@ -234,7 +234,7 @@ pub struct Proof {
     pub gap: Option<f64>,
 }
 
-/// What an allocation found out. What is unknown is None.
+/// The results of an allocation. Unknown values are None.
 #[derive(Debug, Clone, Serialize)]
 #[non_exhaustive]
 pub struct Allocation {
@@ -253,15 +253,15 @@ pub struct Allocation {
     pub cost_before: Option<f64>,
     /// All costs after.
     pub cost_after: Option<f64>,
-    /// What of these costs is quality loss and scrap, before and after; None without losses, and where it is unknown.
+    /// The part of these costs that is quality loss and scrap, before and after; None without losses, and where it is unknown.
     #[serde(rename = "loss")]
     pub loss: [Option<f64>; 2],
-    /// What the cheapest tolerances cost that are not rounded to steps or standard grades, by the derivatives at those found; None where
-    /// there is no such rounding.
+    /// The cost of the cheapest tolerances that are not rounded to steps or standard grades, by the derivatives at those found;
+    /// None where there is no such rounding.
     pub cost_unrounded: Option<f64>,
     /// The machines that the processes need, and what it costs to set them up.
     pub setups: Vec<SetUp>,
-    /// What was sought.
+    /// The goal.
     pub goal: Goal,
     /// Where the costs come from.
     pub cost_basis: CostBasis,
@@ -274,7 +274,7 @@ pub struct Allocation {
     pub requirements: Vec<Kept>,
     /// The joint yield, where one is required.
     pub joint_requirement: Option<JointKept>,
-    /// What a requirement that holds the cost up costs; empty where everything is chosen from lists.
+    /// The prices of the requirements that hold the cost up; empty where everything is chosen from lists.
     #[serde(rename = "shadow_prices")]
     pub prices: Vec<ShadowPrice>,
     /// The evidence that nothing is cheaper.
@@ -293,7 +293,7 @@ pub struct Allocation {
     pub front: Vec<FrontPoint>,
     /// The model itself at the tolerances after, where it was asked for.
     pub confirmation: Option<Simulation>,
-    /// What it came to in points and time, those of a confirmation by Monte Carlo included, and why it ended early.
+    /// Its points and time, those of a confirmation by Monte Carlo included, and why it ended early.
     #[serde(flatten)]
     pub run: RunSummary,
     /// How often derivatives were taken.

@@ -24,7 +24,7 @@ const STEP: f64 = 0.05;
 /// Farther from the station, in `ln T`, a slope is not followed.
 const FAR: f64 = 0.7;
 
-/// What the model makes of the moments of a surface near a station.
+/// The correction by the model of the moments of a surface near a station.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SampledCorrection {
     sigma: f64,

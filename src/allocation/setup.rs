@@ -1,4 +1,4 @@
-//! What machines cost to set up.
+//! The cost of setting up machines.
 
 use serde::Serialize;
 

@@ -6,8 +6,8 @@
 //!
 //! Depth first: a node allows some options of every list, and its bound is the greatest `L` that steps from its parent's multipliers find.
 //! Steps follow the averages of the choices that they meet, the volume algorithm: F. Barahona, R. Anbil, "The volume algorithm", Mathematical
-//! Programming 87 (2000). The averages come near the fractional solution: the list that they split most is split in two. What an option adds
-//! to the bound rules it out at every node, and so does what it leaves to the others of a row.
+//! Programming 87 (2000). The averages come near the fractional solution: the list that they split most is split in two. The
+//! contribution of an option to the bound rules it out at every node, and so does what it leaves to the others of a row.
 
 use super::lists::{ListChoice, ListOption, Lists, SAME, fits, least_use};
 
@@ -29,7 +29,7 @@ struct Node {
     bound: f64,
 }
 
-/// What the steps of the multipliers found.
+/// The results of the steps of the multipliers.
 struct Bounded {
     bound: f64,
     multipliers: Vec<f64>,
@@ -168,7 +168,7 @@ impl Search<'_> {
         let bound = choose(&at, &mut picks);
         let mut weights: Vec<Vec<f64>> = lists.iter().map(|list| vec![0.0; list.len()]).collect();
         picks.iter().enumerate().for_each(|(j, &i)| weights[j][i] = 1.0);
-        // What the averages use of every row beyond it.
+        // The averages' use of every row beyond it.
         let mut over: Vec<f64> = self.problem.uses(&picks).iter().map(|use_| use_ - 1.0).collect();
         let mut best = Bounded { bound, multipliers: at.clone(), picks: picks.clone(), weights: Vec::new() };
         let (mut length, mut in_vain) = (1.0, 0);

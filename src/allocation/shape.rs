@@ -6,7 +6,7 @@ use crate::requirement::{Required, Requirement};
 use crate::shape::{ends, finite};
 use crate::verdict::{Judged, Verdict};
 
-/// What there was of a requirement, as it is written.
+/// The value of a requirement before, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct Before {
@@ -24,7 +24,7 @@ impl From<&Judged> for Before {
     }
 }
 
-/// What there is of a requirement, as it is written; all null where nothing was found.
+/// The value of a requirement after, as it is written; all null where nothing was found.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct After {
@@ -81,19 +81,19 @@ pub(super) struct RequiredOf<'r> {
     required: Required,
 }
 
-/// What a point of the front requires of a characteristic.
+/// The requirement of a characteristic at a point of the front.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct FrontRequirement {
     /// The characteristic; all with limits where a joint yield is required.
     pub characteristic: String,
-    /// What is required.
+    /// The requirement.
     pub requirement: Requirement,
     /// How much of it; of rss and worst case the part of the room that they may take.
     pub amount: f64,
 }
 
-/// What is required of every characteristic.
+/// The requirement of every characteristic.
 pub(super) fn required<S: Serializer>(all: &[FrontRequirement], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_seq(all.iter().map(|wanted| RequiredOf {
         characteristic: &wanted.characteristic,

@@ -19,15 +19,15 @@ use super::separable::{Row, Separable};
 use super::setup::SetUp;
 use crate::requirement::Requirement;
 
-/// What is required of which tolerances.
+/// The constraints, and the tolerances that they are on.
 #[derive(Clone, Copy)]
 pub(super) struct Setting<'a> {
     pub(super) responses: &'a Responses,
     pub(super) priced: &'a [Priced],
     pub(super) constraints: &'a [Constraint],
-    /// What deviations and rejects cost beside the tolerances.
+    /// The costs of deviations and rejects beside the tolerances.
     pub(super) losses: &'a [QualityLoss],
-    /// What machines cost to set up.
+    /// The costs of setting up machines.
     pub(super) setups: &'a [SetUp],
     pub(super) stopped: &'a dyn Fn() -> bool,
     /// Whether optima are sought from everywhere, where there may be several, rather than from the start alone.
@@ -74,7 +74,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const MOST_WORK: usize = 100_000;
 /// Ends whose costs differ by a smaller part are one.
 const SAME_END: f64 = 1e-6;
-/// What other orders of the same sums may say differently.
+/// The difference that other orders of the same sums may make.
 const RESERVE: f64 = 1e-13;
 /// A tolerance so near its bound is at it.
 const AT_BOUND: f64 = 1e-9;
@@ -384,8 +384,8 @@ impl Setting<'_> {
         Some(self.judged(at, &linearised, multipliers, false).residual)
     }
 
-    /// What it saves, per unit of half band, that the bound which a tolerance has met gives way; None within the bounds, and where processes
-    /// compete or slopes are unknown.
+    /// The saving, per unit of half band, where the bound that a tolerance has met gives way; None within the bounds, and where
+    /// processes compete or slopes are unknown.
     pub(super) fn bound_prices(&self, at: &[f64], multipliers: &[f64]) -> Vec<Option<f64>> {
         let nothing = vec![None; at.len()];
         let (Some(linearised), Some(losses)) = (self.linearised(at), self.loss_rows(at)) else { return nothing };
@@ -429,7 +429,7 @@ impl Setting<'_> {
     }
 }
 
-/// What one more of a group's tolerance, in `ln T`, uses of the constraints by their multipliers.
+/// The use of the constraints, by their multipliers, by one more of a group's tolerance in `ln T`.
 fn uses_of(linearised: &[Linearised], multipliers: &[f64], g: usize) -> f64 {
     linearised.iter().zip(multipliers).map(|(one, multiplier)| multiplier * one.slopes[g]).sum()
 }

@@ -40,7 +40,7 @@ const MOVED: f64 = 1e-4;
 /// Slopes that are this part of others, or less, are theirs.
 const DEPENDENT: f64 = 1e-6;
 
-/// What every limit costs, at tolerances that were found.
+/// The price of every limit, at tolerances that were found.
 pub(super) fn prices(setting: &Setting<'_>, solved: &Solved) -> Vec<ShadowPrice> {
     let (responses, priced) = (setting.responses, setting.priced);
     let mut prices: Vec<ShadowPrice> = Vec::new();
@@ -113,8 +113,8 @@ fn alike(setting: &Setting<'_>, solved: &Solved) -> Option<Vec<usize>> {
     dependent.then_some(characteristics)
 }
 
-/// What it saves to widen the limits of one characteristic alone, and costs to narrow them: by solving again with limits moved, extrapolated
-/// from two steps.
+/// The saving where the limits of one characteristic alone are widened, and the cost where they are narrowed: by solving again
+/// with limits moved, extrapolated from two steps.
 fn on_either_side(setting: &Setting<'_>, solved: &Solved, c: usize) -> ShadowPrice {
     let room = setting.constraints.iter().filter(|one| one.characteristic == c).find_map(Constraint::extent);
     let cost = |by: f64| {
@@ -129,7 +129,7 @@ fn on_either_side(setting: &Setting<'_>, solved: &Solved, c: usize) -> ShadowPri
         let here = cost(0.0)?;
         let per_unit = |step: f64| Some(sign * (here - cost(sign * step)?) / step);
         let price = 2.0 * per_unit(0.5 * step)? - per_unit(step)?;
-        // What rounding makes of the same cost is nothing.
+        // A difference by the rounding of the same cost is zero.
         Some(if price.abs() * step < DEPENDENT * MOVED * here.abs() { 0.0 } else { price })
     };
     let (widen, narrow) = (slope(1.0), slope(-1.0));

@@ -1,4 +1,4 @@
-//! What is to be allocated, and why it cannot be.
+//! The task of an allocation, and why it cannot be done.
 
 use super::basis::{CostBasis, relative, unscalable};
 use super::cost::Priced;
@@ -30,9 +30,9 @@ pub struct AllocationTask {
     pub basis: CostBasis,
     /// The objective.
     pub goal: Goal,
-    /// What deviations and rejects cost.
+    /// The costs of deviations and rejects.
     pub losses: Vec<QualityLoss>,
-    /// What machines cost to set up that processes need.
+    /// The costs of setting up the machines that processes need.
     pub setups: Vec<SetUp>,
 }
 
@@ -398,7 +398,7 @@ pub enum AllocateError {
 }
 
 impl AllocateError {
-    /// What to do about it.
+    /// The actions to take.
     pub(crate) fn advice(&self) -> Vec<Advice> {
         match self {
             Self::NothingToChoose => vec![Advice::WriteCosts, Advice::NameMovableDimensions],

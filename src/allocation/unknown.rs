@@ -1,4 +1,4 @@
-//! What is not known of a characteristic at a station.
+//! The uncertainty of a characteristic at a station.
 
 use crate::analysis::CharacteristicAnalysis;
 use crate::requirement::Requirement;

@@ -13,7 +13,7 @@
 use crate::extremes::{Model, Region};
 use crate::surrogate::Surrogate;
 
-/// A true worst case farther off than by this factor is no correction but another function: the difference is added.
+/// A true worst case farther off than by this factor is not a correction but another function: the difference is added.
 const NEAR: f64 = 2.0;
 
 /// The worst case of one characteristic about a station.
@@ -26,7 +26,7 @@ pub(super) struct WorstCase {
     varying: Vec<usize>,
     /// The surface at the means less the nominal value.
     rise: f64,
-    /// What the true reach below and above is made of the surface's: a factor, and what is added.
+    /// The corrections from the surface's reach below and above to the true one: a factor, and what is added.
     corrections: [(f64, f64); 2],
 }
 

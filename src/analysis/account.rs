@@ -1,4 +1,4 @@
-//! What `auto` found and what its points went to.
+//! The account of `auto`: its findings, and where its points went.
 
 use std::fmt;
 

@@ -2,8 +2,8 @@
 //!
 //! Every measured sample is drawn anew from itself, many times. Each time the surrogate stays the function of the
 //! dimensions that it is, and its moments are computed exactly for the law that the resample makes: no point is
-//! evaluated. What the resamples scatter by is what other samples of the same size would. Rows of one file are drawn as a whole, and
-//! everything else apart from one another.
+//! evaluated. The scatter of the resamples estimates that of other samples of the same size. Rows of one file are drawn as a
+//! whole, and everything else apart from one another.
 
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
@@ -30,7 +30,7 @@ const RESAMPLES: usize = 1000;
 const LEAST: usize = 200;
 /// Multiplications that all resamples together may take, before there are fewer of them: a second or two.
 const WORK: usize = 3_000_000_000;
-/// Multiplications that a fit of a Pearson law, and a part that is no parabola at one value, are worth.
+/// Multiplications that a fit of a Pearson law, and a part that is not a parabola at one value, are worth.
 const FIT: usize = 30_000;
 const VALUE: usize = 50;
 /// Groups of values that are left out in turn, of all samples together and of each at least.
@@ -355,7 +355,7 @@ fn figures(moments: &Moments, capability: Option<&Capability>, limits: SpecLimit
     ]
 }
 
-/// What each group of values adds to a figure, from the figure without it: for a mean of `n` values the sum of the
+/// The part that each group of values adds to a figure, from the figure without it: for a mean of `n` values the sum of the
 /// deviations in the group, by `n`.
 fn influences(without: impl Iterator<Item = f64>, one: &Measurement<'_>, groups: &Groups) -> Vec<f64> {
     let n = one.len() as f64;

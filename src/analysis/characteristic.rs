@@ -1,4 +1,4 @@
-//! What is known of one characteristic.
+//! The results of one characteristic.
 
 use std::collections::HashMap;
 
@@ -24,7 +24,7 @@ use crate::requirement::Requirement;
 use crate::shape::{Four, through};
 use crate::verdict::{self, Judged, Verdict};
 
-/// Moments, sensitivities and contributions of one characteristic. What is unknown is None.
+/// Moments, sensitivities and contributions of one characteristic. Unknown values are None.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
@@ -94,7 +94,7 @@ pub struct CharacteristicAnalysis {
     /// band that hurts, and a point of a circular zone ([`Dimension::within_zone`](crate::Dimension::within_zone)) at its edge.
     #[serde(skip)]
     pub worst_case: Option<[f64; 2]>,
-    /// What curvatures and interactions add to the worst case at most, by the surface; None where a curvature is missing.
+    /// The most that curvatures and interactions add to the worst case, by the surface; None where a curvature is missing.
     #[serde(skip)]
     pub(crate) curved: Option<f64>,
     /// The least and the greatest value in the box of the tolerance bands, where they were searched and found.
@@ -210,13 +210,13 @@ impl CharacteristicAnalysis {
         Some(sensitivity.linear_share? + sensitivity.curvature_share.unwrap_or(0.0))
     }
 
-    /// What interval arithmetic says of its worst case: beside the extremes where these were searched.
+    /// The bounds of its worst case by interval arithmetic: beside the extremes where these were searched.
     pub(crate) fn proof(&self) -> Option<&ExtremesProof> {
         self.extremes.as_ref().map_or(self.bounds.as_ref(), |found| found.proof.as_ref())
     }
 
     /// Within which the yield is known: the estimate and two of its errors, and down to 0 where there are assemblies without a value
-    /// and nobody counted them. None where an error is unknown.
+    /// and they were not counted. None where an error is unknown.
     pub fn yield_interval(&self) -> Option<[f64; 2]> {
         let value = self.capability?.yield_()?;
         let error = if self.constant { Some(0.0) } else { self.error_estimate.as_ref().and_then(|of| of.yield_) };
@@ -306,7 +306,7 @@ impl CharacteristicAnalysis {
         verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
     }
 
-    /// What is to be said of its target yield; None without one.
+    /// The verdict on its target yield; None without one.
     pub fn verdict(&self) -> Option<Verdict> {
         self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
     }
@@ -456,7 +456,7 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
     let position = plan.varying().iter().position(|&varying| varying == d);
     let of = |share: fn(&Shares, usize) -> Option<f64>| match (position, shares) {
         (Some(position), Some(shares)) => share(shares, position),
-        // What does not vary, or has no effect, adds nothing.
+        // A dimension that does not vary, or has no effect, adds nothing.
         (None, Some(_)) => Some(0.0),
         (_, None) => None,
     };
@@ -528,7 +528,7 @@ pub(super) fn missing(outcome: &Outcome, c: usize, dimensions: &[usize]) -> Miss
     if outcome.evaluated.stopped.is_some() && !failed() { Missing::NotEvaluated } else { Missing::Failed }
 }
 
-/// What slopes and bands say; None where a slope is missing.
+/// The linear results, from slopes and bands; None where a slope is missing.
 fn linear(problem: &Problem, varying: &[usize], sensitivities: &[Sensitivity]) -> Option<Linear> {
     let slopes: Option<Vec<(f64, usize)>> = varying.iter().map(|&d| Some((sensitivities[d].first?, d))).collect();
     Some(Linear::of(problem, &slopes?))

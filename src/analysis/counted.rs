@@ -19,7 +19,7 @@ const ERRORS: f64 = 2.95;
 /// no point of `n` leaves 1 % beyond 4.6/n.
 const UNSEEN: f64 = 3.0;
 
-/// What was counted of one characteristic.
+/// The counts of one characteristic.
 pub(super) struct Counted {
     /// Shares below and above the limits; None without that limit.
     pub(super) beyond: [Option<LawFigure>; 2],

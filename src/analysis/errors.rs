@@ -1,4 +1,4 @@
-//! What the estimated errors of the moments mean for the yield.
+//! The errors of the yield that follow from the estimated errors of the moments.
 
 use crate::capability::{Capability, Law};
 use crate::characteristic::SpecLimits;

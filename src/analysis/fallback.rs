@@ -34,7 +34,7 @@ const MORE: u64 = 4;
 const STRIDES: usize = 512;
 const COSTLY_PART: usize = 4;
 
-/// What the fallback cost.
+/// The cost of the fallback.
 #[derive(Debug, Default)]
 pub(super) struct Spent {
     pub(super) run: RunSummary,
@@ -85,7 +85,7 @@ pub(super) fn fall_back(
     let sampler = if costly || !few { Sampler::Random } else { Sampler::Sobol };
     let few_scramblings = if sampler == Sampler::Sobol { student(REPLICATES as usize) } else { 1.0 };
     let mut samples = ((needed / (PART * finest)).powi(2) as u64).clamp(FIRST, MOST).min(most);
-    // What was evaluated in strides is not evaluated again.
+    // Points that were evaluated in strides are not evaluated again.
     let most = most + if sampler == Sampler::Sobol { spent.run.evaluations } else { 0 };
     let recorded = Arc::new(Recorded::new(problem));
     // A cheap model is asked anew, and answers several batches at a time.
@@ -116,7 +116,7 @@ pub(super) fn fall_back(
     spent
 }
 
-/// What strides came to.
+/// The result of strides.
 enum Strided {
     /// Everything is known as well as it was wanted, or the run was stopped.
     Enough,
@@ -184,7 +184,7 @@ fn shortfall(one: &CharacteristicAnalysis, climbed: &Climbed, c: usize) -> Optio
     let error = one.error_estimate.as_ref()?.sigma?;
     let variance = moments.variance();
     let short = error > climbed.accuracy * moments.sigma() || excess(one, &climbed.accuracies) > 1.0;
-    // What is left alone decides how many points a control variate takes.
+    // The part that the surrogate does not explain decides how many points a control variate takes.
     short.then(|| (check.variance / variance).sqrt().clamp(0.01, 1.0))
 }
 

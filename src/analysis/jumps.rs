@@ -27,7 +27,7 @@ const ALL: usize = 6;
 /// A smooth function has 24 % of its change in the last eighth of a side, and 3 % in the last of 64 parts.
 const WHOLE: f64 = 0.5;
 
-/// What was found, and what it took.
+/// The jumps that were found, and the cost of finding them.
 #[derive(Default)]
 pub(super) struct FoundJumps {
     pub(super) warnings: Vec<Warning>,

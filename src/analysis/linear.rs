@@ -1,4 +1,4 @@
-//! What slopes and tolerance bands alone say: worst case, RSS, and the two usual inflations of it.
+//! Results of slopes and tolerance bands alone: worst case, RSS, and the two usual inflations of it.
 //!
 //! ```text
 //! worst case       W = sum of |b_i| T_i            b_i: slope, T_i: half band (three sigma without a band)
@@ -42,7 +42,7 @@ const MEAN_SHIFT: f64 = 0.5;
 pub(super) struct Linear {
     /// How far the characteristic is from nominal with every dimension in the middle of its band.
     pub(super) middle: f64,
-    /// What no assembly exceeds.
+    /// The bounds that no assembly exceeds.
     pub(super) worst_case: f64,
     /// Root of the sum of squares.
     pub(super) rss: f64,

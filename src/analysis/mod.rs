@@ -76,7 +76,7 @@ use crate::time::Instant;
 use crate::verdict::{self, Judged};
 use crate::warning::Warning;
 
-/// What an analysis found out.
+/// The results of an analysis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
@@ -87,7 +87,7 @@ pub struct Analysis {
     pub method: Method,
     /// Dimensions that vary and on which some characteristic can depend, N.
     pub varying: usize,
-    /// What it came to in points and time, and why it ended early; the seed, where one was given or random numbers were drawn.
+    /// Its points and time, and why it ended early; the seed, where one was given or random numbers were drawn.
     #[serde(flatten)]
     pub run: RunSummary,
     /// The results of every characteristic, in the problem's order.
@@ -109,7 +109,7 @@ pub struct Analysis {
     #[serde(flatten, serialize_with = "through::<shape::BasisShape, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "shape::BasisShape"))]
     pub basis: Basis,
-    /// What the moments follow from.
+    /// The surface that the moments follow from.
     #[serde(skip)]
     pub surface: Surface,
     /// Where an assumption fails.
@@ -123,7 +123,7 @@ pub struct Analysis {
 /// [`Options::extremes`] those of the search too.
 ///
 /// # Errors
-/// When the options do not fit the problem; nothing is evaluated then. A model that fails is no error: what it costs is
+/// When the options do not fit the problem; nothing is evaluated then. A model that fails is not an error: what it costs is
 /// missing from the result and named in the warnings.
 ///
 /// ```
@@ -231,7 +231,7 @@ fn joint_requirement(
     Some(judged.unless(characteristics.iter().any(|one| one.unfinished)))
 }
 
-/// The bounds of interval arithmetic, where a formula has them and nobody searched the extremes.
+/// The bounds of interval arithmetic, where a formula has them and the extremes were not searched.
 fn enclose_all(problem: &Problem, outcome: &Outcome, characteristics: &mut [CharacteristicAnalysis], run: &Run<'_>) {
     /// Of sigma: ends nearer than this look the same in print.
     const NEAR: f64 = 1e-3;
@@ -241,7 +241,7 @@ fn enclose_all(problem: &Problem, outcome: &Outcome, characteristics: &mut [Char
     }
 }
 
-/// What the method came to; its budget ended it where that is why it asked for no more.
+/// The points and time of the method; its budget ended it where that is why it asked for no more.
 fn spent(outcome: &Outcome, options: &Options) -> RunSummary {
     let spent = outcome.evaluated.summary();
     let rest = outcome.climbed.as_ref().map(|climbed| climbed.rest);

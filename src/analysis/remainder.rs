@@ -1,4 +1,4 @@
-//! What interactions make together that are not listed one by one.
+//! The joint effect of interactions that are not listed one by one.
 
 use serde::Serialize;
 

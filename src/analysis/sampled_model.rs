@@ -1,4 +1,4 @@
-//! What a sample of the model tells where its surrogate was not trusted.
+//! The results of a sample of the model where its surrogate was not trusted.
 
 use serde::Serialize;
 

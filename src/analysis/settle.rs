@@ -131,7 +131,7 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
     let law = one.surface_law.as_ref().filter(|law| exact && law.branch != Branch::Sampled)?;
     let beyond = [law.below, law.above];
     let outside = beyond.iter().flatten().all(|figure| figure.proven);
-    // What is outside of the range lies there by any rounding: the range has room for that.
+    // A limit outside of the proven range lies there by any rounding: the range has room for that.
     let rounding = if outside { 0.0 } else { one.error_estimate.as_ref()?.yield_? };
     let error = Some(law.error().hypot(rounding));
     Some(Rejected { source: YieldSource::Proof, beyond: beyond.map(|of| of.map(|of| of.value)), error })

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::method::{Basis, DerivativeSource};
 
-/// What the moments rest on, as it is written.
+/// The basis of the moments, as it is written.
 #[derive(Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct BasisShape {

@@ -1,4 +1,4 @@
-//! What the five points of an axis tell of a characteristic beside its polynomial: kinks, jumps, powers that matter.
+//! Effects of a characteristic that the five points of an axis show beside its polynomial: kinks, jumps, powers that matter.
 //!
 //! With second divided differences over the left three, the middle three and the right three points,
 //!
@@ -12,7 +12,7 @@
 
 use crate::surrogate::Univariate;
 
-/// What an axis looks like.
+/// The shape along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
     /// Two slopes meet.

@@ -1,4 +1,4 @@
-//! What the variance is made of, wherever a method has it from.
+//! The parts of the variance, wherever a method has it from.
 
 use crate::method::{Fitted, Integrated};
 use crate::moments::{Contributions, Moments, Sampled};

@@ -37,7 +37,7 @@ const FITTED: usize = 1 << 10;
 const KNOTS: usize = 1 << 12;
 const FEWEST: usize = 1 << 8;
 const NUMBERS: usize = 1 << 21;
-/// What so many points overlook: a difference of 0.004 sigma at 14 points, as at the check points of a costly model.
+/// The difference that so many points overlook: 0.004 sigma at 14 points, as at the check points of a costly model.
 const FLOOR: f64 = 0.004;
 const CHECKS: f64 = 14.0;
 /// A root mean square of a handful of differences is this much too small at times.
@@ -78,7 +78,7 @@ pub(super) struct Strides<'p> {
     pub(super) non_repeatable: Vec<NonRepeatable>,
 }
 
-/// What stands beside the model.
+/// The basis of the regression beside the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Basis {
     /// The known surface as it is.
@@ -108,7 +108,7 @@ struct Figures {
     errors: Vec<f64>,
 }
 
-/// What the points say of one characteristic.
+/// The estimates for one characteristic by the points.
 pub(super) struct StridedFigures {
     /// Mean, sigma, skewness, kurtosis.
     pub(super) moments: [Estimate; MOMENTS],
@@ -206,7 +206,7 @@ impl<'p> Strides<'p> {
         Beside { kind, chaos, surface, exact, parts: Vec::new(), rows: 0, far: 0.0 }
     }
 
-    /// What the points say, the regressions fitted anew while they are few.
+    /// The estimates by the points, the regressions fitted anew while they are few.
     pub(super) fn found(&self, c: usize, beside: &mut Vec<Beside<'_>>, left: f64) -> Option<StridedFigures> {
         for beside in beside.iter_mut().filter(|beside| beside.rows < self.rows()) {
             if REPLICATES * self.rows() <= FITTED {
@@ -277,7 +277,7 @@ impl<'p> Strides<'p> {
             }
             u
         };
-        // A difference plan is right where it stands: what it has on its axes is no point of the distribution.
+        // A difference plan is right where it stands: what it has on its axes is not a point of the distribution.
         let off_axes = |point: &&Point| point.at().len() > 2 || n <= 2 && point.at().len() == n;
         let looked = self.outcome.climbed.iter().flat_map(|climbed| &climbed.far);
         let far: Vec<&Point> = looked.filter(|(of, _)| *of == c).flat_map(|(_, points)| points).collect();

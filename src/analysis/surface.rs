@@ -1,4 +1,4 @@
-//! What the moments follow from, kept so that other tolerances and means can be tried without a further evaluation.
+//! The basis of the moments, kept so that other tolerances and means can be tried without a further evaluation.
 
 use super::CharacteristicAnalysis;
 use crate::method::Outcome;
@@ -17,7 +17,7 @@ pub struct Surface {
     pub characteristics: Vec<Result<Fit, NoFit>>,
 }
 
-/// What the moments of one characteristic follow from.
+/// The basis of the moments of one characteristic.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Fit {
@@ -74,7 +74,7 @@ impl Surface {
     /// Moments and contributions of one characteristic where inputs have moved and keep their shapes; None where they follow
     /// from no surrogate.
     ///
-    /// What the surrogate leaves out keeps its variance.
+    /// The part of the variance that the surrogate leaves out stays as it is.
     ///
     /// Shapes: `moved` has an element for every varying dimension. No evaluation; the error is that of the surrogate so far
     /// from where it was made.

@@ -52,7 +52,7 @@ const PLACES: usize = 240;
 /// or so many where each is a sum over points: lines between them are within 0.1 % of the peak of a normal density.
 const FEW_PLACES: usize = 96;
 
-/// What the law of a surface says of a characteristic.
+/// The shares of a characteristic by the law of its surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SurfaceShares {

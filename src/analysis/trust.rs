@@ -17,11 +17,11 @@ const HELD: f64 = 0.01;
 const SCATTER: f64 = 1e-4;
 /// Variance that is left unexplained is worth a warning from here on,
 const LEFT_OUT: f64 = 1e-3;
-/// and from here on the surrogate is no surrogate.
+/// and from here on the surrogate does not follow the model.
 const UNTRUSTED: f64 = 0.05;
 
 /// The Pearson fit is worth a warning where it is off by more than the interval of the yield, by this part of what is rejected, and by
-/// more than a hundredth of a part per million, which nobody counts.
+/// more than a hundredth of a part per million, which does not matter.
 const APART: f64 = 0.01;
 const COUNTED: f64 = 1e-8;
 
@@ -38,7 +38,7 @@ pub(super) fn of(problem: &Problem, outcome: &Outcome, c: usize, analysis: &Char
     warnings.extend(pearson(analysis));
     if let Some(climbed) = &outcome.climbed {
         let mut found = climb(outcome, climbed, c, (analysis, sigma));
-        // What a formula answers next to the means does not scatter: that is a kink, or a root that is not smooth.
+        // Scatter of a formula's answers next to the means is a kink, or a root that is not smooth.
         let formula = problem.function().switches(problem.outputs()[c]).is_some_and(|switches| switches.complete);
         if analysis.verification.is_some() {
             found.retain(|warning| match warning {
@@ -122,7 +122,7 @@ fn axes(problem: &Problem, outcome: &Outcome, c: usize, sigma: f64) -> Vec<Warni
     warnings
 }
 
-/// What `auto` has found out about its surrogate.
+/// Warnings by the findings of `auto` on its surrogate.
 fn climb(
     outcome: &Outcome,
     climbed: &Climbed,

@@ -35,11 +35,11 @@ const OFF: f64 = 3.0;
 const MATTERS: f64 = 0.01;
 /// Beyond so many standard errors `auto` takes the model's figure.
 const AGREES: f64 = 2.0;
-/// An error of sigma above this part of it says that the surface is no surface.
+/// An error of sigma above this part of it says that the surface does not follow the model.
 const UNKNOWN: f64 = 0.1;
 /// A switch is worth a warning from one assembly in ten million on.
 const SELDOM: f64 = 1e-7;
-/// What differences may make of one rounding of the value at the means.
+/// The largest error of a difference, in roundings of the value at the means.
 const ROUNDINGS: f64 = 8.0;
 
 /// Verifies every characteristic, unless that is switched off: see [`Options::verify`]. Returns what that took, and where the model answered
@@ -157,7 +157,7 @@ fn sample(
     let affords = |spent: usize, more: usize| left.is_none_or(|left| spent + more <= left);
     while core < MOST && coarse(&found) && !run.stopped() && affords(spent, most_points(MORE * core)) {
         core *= MORE;
-        // What is known stays known where there is no time for more.
+        // Results that are known stay known where there is no time for more.
         let Some(more) = verify_characteristic(problem, c, (seed, core), beside, run) else { break };
         found = more;
         spent += found.points;
@@ -270,7 +270,7 @@ fn check(
         (0..answers.rows()).any(|row| !given(row) || answers.is_open(row, c))
     };
     for &c in open {
-        // Points that nobody answered say nothing.
+        // Points without an answer say nothing.
         if !not_given(c) {
             let surrogate = outcome.fitted[c].surrogate.as_ref();
             let exact = surrogate.and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
@@ -316,7 +316,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
     });
 }
 
-/// What the verification of one characteristic warns of.
+/// The warnings that follow from the verification of one characteristic.
 pub(super) fn warnings(one: &CharacteristicAnalysis, wanted: Option<f64>) -> Vec<Warning> {
     let Some(verification) = &one.verification else { return Vec::new() };
     let characteristic = || one.characteristic.name().to_owned();

@@ -1,4 +1,4 @@
-//! What the verification of a characteristic found.
+//! The results of the verification of a characteristic.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub enum VerificationKind {
 /// Of the variance: a surface that leaves more unexplained says nothing of the tails, nor of an optimum.
 pub(crate) const TRUSTED: f64 = 0.01;
 
-/// What the model itself says of a characteristic.
+/// The results of the model itself for a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]

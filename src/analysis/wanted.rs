@@ -4,8 +4,8 @@ use super::CharacteristicAnalysis;
 use crate::method::Accuracies;
 use crate::warning::Figure;
 
-/// What is wanted beside sigma with its estimated error, infinite where nothing is known of it; without what the characteristic
-/// does not have: a shape where nothing varies, a yield without limits.
+/// The figures with an accuracy to reach beside sigma and their estimated errors, infinite where an error is unknown; without
+/// figures that the characteristic does not have: a shape where nothing varies, a yield without limits.
 pub(super) fn beside_sigma(one: &CharacteristicAnalysis, wanted: &Accuracies) -> Vec<(Figure, f64, f64)> {
     let Some(moments) = one.moments.filter(|moments| moments.sigma() > 0.0) else { return Vec::new() };
     let estimate = one.error_estimate.as_ref();

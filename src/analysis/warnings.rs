@@ -75,7 +75,7 @@ pub(super) fn of(
         warnings.extend(not_proven(analysis));
     }
     let possible = outcome.plan.possible_pairs();
-    // What `auto` did not examine stands in its comparison with the model.
+    // Pairs that `auto` did not examine show in its comparison with the model.
     if outcome.order == Order::Second && outcome.climbed.is_none() && outcome.pairs.len() < possible {
         warnings.push(Warning::PairsNotExamined { examined: outcome.pairs.len(), possible });
     }
@@ -150,7 +150,7 @@ fn described(problem: &Problem, outcome: &Outcome, point: &Point) -> String {
     at.collect::<Vec<_>>().join(", ")
 }
 
-/// Moments that could not be had by a method that is no difference plan.
+/// Moments that could not be had by a method that is not a difference plan.
 fn lost_moments(problem: &Problem, outcome: &Outcome, c: usize) -> Option<Warning> {
     let because = match outcome.fitted[c].lacking? {
         Lacking::Points { lost, of } if outcome.evaluated.stopped.is_some() => {
@@ -243,7 +243,7 @@ fn infinite_moment(problem: &Problem, outcome: &Outcome, analysis: &Characterist
         law.is_some_and(|law| !law.standard_moments().are_finite()) && slope(d).is_some_and(|slope| slope != 0.0)
     };
     let varying = outcome.plan.varying();
-    // What was not evaluated is another reason for a missing sigma.
+    // Points that were not evaluated are another reason for a missing sigma.
     if varying.iter().any(|&d| slope(d).is_none()) {
         return None;
     }

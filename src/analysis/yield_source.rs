@@ -1,4 +1,4 @@
-//! What a yield may come from.
+//! The sources that a yield may come from.
 
 use serde::Serialize;
 

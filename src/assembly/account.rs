@@ -1,6 +1,7 @@
-//! What an assembly function says of itself, and what was seen of its answers: the same for every kind of function.
+//! The description that an assembly function gives of itself, and observations of its answers: the same for every kind of
+//! function.
 
-/// What an external model says of itself when it is ready.
+/// The description that an external model gives of itself when it is ready.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct ModelInfo {
@@ -27,9 +28,9 @@ impl ModelInfo {
 pub struct NonRepeatable {
     /// The output.
     pub output: String,
-    /// What it was at first; None where it had no value.
+    /// Its first value; None where it had no value.
     pub expected: Option<f64>,
-    /// What it is now.
+    /// Its value now.
     pub found: Option<f64>,
     /// How far the output has been seen to vary.
     pub spread: f64,

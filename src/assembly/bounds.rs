@@ -1,4 +1,4 @@
-//! What is certain of an output over a box.
+//! Certain bounds of an output over a box.
 
 use super::formula::Interval;
 

@@ -49,7 +49,7 @@ pub enum CompositeError {
         name: String,
         /// Its place among the formulas, then those of the conditions.
         index: usize,
-        /// What is wrong with it.
+        /// The fault in it.
         error: FormulaError,
     },
     /// Conditions that determine no state.
@@ -99,7 +99,7 @@ enum Origin {
     Unknown(usize),
 }
 
-/// What an output is made of.
+/// The parts that an output is made of.
 #[derive(Debug, Clone, Default)]
 struct Needs {
     dimensions: Vec<usize>,
@@ -108,7 +108,7 @@ struct Needs {
     unknowns: bool,
 }
 
-/// What a [`Composite`] is made of.
+/// The parts of a [`Composite`].
 #[derive(Default)]
 pub struct Parts {
     /// The dimensions, in order.
@@ -119,7 +119,7 @@ pub struct Parts {
     pub model: Option<(Arc<dyn AssemblyFunction>, Vec<Source>)>,
     /// Formulas in any order; each name once.
     pub formulas: Vec<(String, Formula)>,
-    /// What holds in the assembled state, and the unknowns that it determines.
+    /// The conditions of the assembled state, and the unknowns that they determine.
     pub conditions: Option<Conditions>,
     /// Names and units of what can be asked: formulas, unknowns, or else outputs of the model.
     pub outputs: Vec<(String, Option<String>)>,
@@ -251,7 +251,7 @@ impl Composite {
         Some(dimensions)
     }
 
-    /// What an output is made of: what stands in it, and for an unknown all that the conditions depend on.
+    /// The needs of an output: what stands in it, and for an unknown all that the conditions depend on.
     fn needs(&self, origin: Origin) -> Needs {
         let mut needs = match origin {
             Origin::Formula(formula) => self.split(&self.formulas.variables(formula)),
@@ -286,7 +286,7 @@ impl Composite {
         self.signature.inputs.len() + self.model.as_ref().map_or(0, |model| model.function.signature().outputs.len())
     }
 
-    /// What all these outputs together are made of.
+    /// The needs of all these outputs together.
     fn all_needs(&self, origins: &[Origin]) -> Needs {
         let mut all = Needs::default();
         for needs in origins.iter().map(|&origin| self.needs(origin)) {
@@ -414,7 +414,7 @@ impl AssemblyFunction for Composite {
             .unzip();
         let (dimensions, given) = (self.signature.inputs.len(), self.given());
 
-        // What the model has answered is not lost to a stop: only the model itself is stopped.
+        // The answers of the model are not lost to a stop: only the model itself is stopped.
         let run = if needed.is_empty() { *run } else { run.unstopped() };
         in_blocks(request, &run, out, |points, rows, out| {
             let known = |index: usize| -> &[f64] {
@@ -437,7 +437,7 @@ impl AssemblyFunction for Composite {
                 None => known(index),
                 Some(unknown) => found.as_ref().map_or(&nothing[..], |found| &found.columns[unknown]),
             };
-            // What an output needs and has not got: then it is that error, or still open.
+            // A missing answer decides the output: then it is that error, or still open.
             let missing = |out: &mut Responses, row: usize, column: usize| -> bool {
                 let lacks = |&&output: &&usize| answers.value(rows.start + row, answer(output)).is_none();
                 if let Some(&output) = needs[column].answers.iter().find(lacks) {

@@ -10,7 +10,7 @@ pub enum EvaluationError {
     /// The function answered with NaN or an infinity.
     #[error("the model returned {value}")]
     NotFinite {
-        /// What it returned.
+        /// The value that it returned.
         value: f64,
     },
     /// A formula has no value there.
@@ -31,7 +31,7 @@ pub enum EvaluationError {
     /// The answer could not be kept, or what is kept could not be read.
     #[error("{message}")]
     NotKept {
-        /// What is wrong with the journal.
+        /// The fault of the journal.
         message: String,
     },
     /// The model said why itself.

@@ -17,7 +17,7 @@ pub struct Table {
     asked: Mutex<Asked>,
 }
 
-/// What was asked of a table so far.
+/// The questions to a table so far.
 #[derive(Debug, Default)]
 struct Asked {
     /// Rows that answered some point.
@@ -79,7 +79,7 @@ impl GivenAnswers {
                 Some((bits(&inputs.iter().map(|&column| cells[column]).collect::<Option<Vec<_>>>()?), row))
             })
             .collect();
-        // Somebody evaluates every point that is asked for: nobody samples such a model unasked.
+        // Every point that is asked for is evaluated outside of this program: such a model is never sampled unasked.
         let signature = Signature { costly: true, cheap: false, ..signature };
         Ok(Self { signature, table, inputs, exact })
     }

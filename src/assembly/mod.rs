@@ -50,7 +50,7 @@ pub trait AssemblyFunction: Send + Sync {
     fn signature(&self) -> &Signature;
 
     /// Starts whatever must run before the first point, for these outputs, and tells what an external program says of
-    /// itself. What fails here would fail at every point: nothing has been evaluated yet.
+    /// itself. A failure here would occur at every point: nothing has been evaluated yet.
     ///
     /// # Errors
     /// When the function cannot be had at all, such as a program that does not exist.
@@ -77,14 +77,14 @@ pub trait AssemblyFunction: Send + Sync {
     /// Exact derivatives of `outputs` at a point, in the order asked; None for an output of which the function does not
     /// know them at any point.
     ///
-    /// This is no evaluation: a function that would have to evaluate points for it answers None, as it does by default.
+    /// This is not an evaluation: a function that would have to evaluate points for it answers None, as it does by default.
     fn derivatives(&self, outputs: &[usize], directions: &Directions<'_>) -> Vec<Option<Derivatives>> {
         let _ = directions;
         vec![None; outputs.len()]
     }
 
-    /// What an external model is sent at these points, each point once, with the names of its inputs; None where it is sent the points
-    /// themselves. This is no evaluation.
+    /// The values that an external model is sent at these points, each point once, with the names of its inputs; None where it is
+    /// sent the points themselves. This is not an evaluation.
     fn sent(&self, points: &Points) -> Option<(Vec<Input>, Points)> {
         let _ = points;
         None
@@ -104,25 +104,26 @@ pub trait AssemblyFunction: Send + Sync {
     /// How far points are from each of an output's [`switches`](Self::switches), in the order of their list: a margin changes its sign
     /// where the output changes its form, and is NaN where the switch has no part in the value. None where there are none to tell.
     ///
-    /// Shapes: a column for every switch, a value for every point. This is no evaluation of a costly model: such a one answers None.
+    /// Shapes: a column for every switch, a value for every point. This is not an evaluation of a costly model: such a one
+    /// answers None.
     fn margins(&self, output: usize, points: &Points) -> Option<Vec<Vec<f64>>> {
         let _ = (output, points);
         None
     }
 
-    /// The degree of an output as a polynomial in the inputs that `varying` flags, the others fixed; None where it is no polynomial,
+    /// The degree of an output as a polynomial in the inputs that `varying` flags, the others fixed; None where it is not one,
     /// or that is not known. A certainty, which no evaluation gives.
     fn degree(&self, output: usize, varying: &[bool]) -> Option<u32> {
         let _ = (output, varying);
         None
     }
 
-    /// What became of the processes of an external model so far; None for a function without any.
+    /// The account of the processes of an external model so far; None for a function without any.
     fn account(&self) -> Option<process::EvaluatorAccount> {
         None
     }
 
-    /// What the function itself has to say of its answers for `outputs`, once some are given.
+    /// The function's own warnings about its answers for `outputs`, once some are given.
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {
         let _ = outputs;
         Vec::new()

@@ -1,4 +1,4 @@
-//! What is asked of an assembly function: points, and which outputs.
+//! A request to an assembly function: points, and which outputs.
 
 /// `R` points in `N` dimensions, stored a column per dimension.
 ///

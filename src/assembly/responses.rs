@@ -1,4 +1,4 @@
-//! What an assembly function answered.
+//! The answers of an assembly function.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -113,7 +113,7 @@ impl Responses {
         (0..self.rows).filter(|&row| (0..self.outputs).any(|output| !self.is_open(row, output)))
     }
 
-    /// What this batch came to, as one stage that the model took so long for.
+    /// The summary of this batch, as one stage that the model took so long for.
     pub(crate) fn summary(&self, in_model: Duration) -> RunSummary {
         RunSummary {
             evaluations: (self.answered().count() as i64 + self.extra).max(0) as u64,

@@ -40,7 +40,7 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Evaluates everything and tells nobody.
+    /// Evaluates everything and reports nothing.
     pub fn to_the_end() -> Self {
         Self::default()
     }
@@ -77,7 +77,7 @@ impl<'a> Run<'a> {
         Self { withdrawn: Some(withdrawn), ..self }
     }
 
-    /// The same, telling nobody: for a part of an answer that is not an answer yet.
+    /// The same, without reports: for a part of an answer that is not an answer yet.
     pub(crate) fn quiet(self) -> Self {
         Self { finished: None, ..self }
     }

@@ -1,4 +1,4 @@
-//! What is known of an assembly function before it is evaluated.
+//! The facts about an assembly function that are known before it is evaluated.
 
 /// Names, units and structure of an assembly function.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -10,7 +10,7 @@ pub struct Signature {
     /// Whether an evaluation costs so much that answers are worth keeping on disk.
     pub costly: bool,
     /// Whether tens of thousands of evaluations go unnoticed, as with formulas: results are then verified by a sample of the function
-    /// itself. Of a function of somebody else, such as a closure, neither is known.
+    /// itself. Neither is known of a foreign function, such as a closure.
     pub cheap: bool,
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// What happens to an output where the margin of a switch changes its sign.
+/// The change of an output where the margin of a switch changes its sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum SwitchKind {
@@ -21,11 +21,11 @@ pub enum SwitchKind {
 /// One place of a definition at which an output changes its form.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Switch {
-    /// What happens there.
+    /// The change there.
     pub kind: SwitchKind,
     /// The part of the definition that does it, as it is written: `max(a, b)`.
     pub text: String,
-    /// The formula that this stands in; None for what is no formula.
+    /// The formula that this stands in; None where it is not a formula.
     pub formula: Option<String>,
     /// Where it stands there, in bytes.
     pub span: Range<usize>,
@@ -41,7 +41,7 @@ pub struct Switches {
 }
 
 impl Switch {
-    /// What it is called in a report: the text, and the formula where the output has another name.
+    /// Its name in a report: the text, and the formula where the output has another name.
     ///
     /// ```
     /// use sensitol::assembly::{Switch, SwitchKind};

@@ -56,7 +56,7 @@ impl Law {
                 _ => Err(PearsonError::NotFinite),
             };
         };
-        // What differences of a linear stack leave of both; at 8 sigma a probability moves by 1e-10 of itself.
+        // Differences of a linear stack leave this much of both; at 8 sigma a probability moves by 1e-10 of itself.
         const ROUNDING: f64 = 1e-12;
         let nothing = skewness.abs() < ROUNDING && excess.abs() < ROUNDING;
         let [skewness, excess] = if nothing { [0.0; 2] } else { [skewness, excess] };

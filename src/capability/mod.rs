@@ -18,7 +18,7 @@ use crate::pearson::Pearson;
 /// Half of the share that six sigma of a normal leave out: 1 - 0.9973 on both sides.
 pub(crate) const TAIL: f64 = 0.001_349_898_031_630_094_6;
 
-/// How a distribution keeps limits. What does not exist, for want of a limit or because nothing varies, is None.
+/// How a distribution keeps limits. Figures that do not exist, for want of a limit or because nothing varies, are None.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Capability {
@@ -133,7 +133,7 @@ impl Capability {
         }
     }
 
-    /// What mean and sigma alone tell: Cp and Cpk.
+    /// The figures that follow from mean and sigma alone: Cp and Cpk.
     pub(crate) fn of_moments(mean: f64, sigma: f64, limits: SpecLimits) -> Self {
         let cp = limits.upper().zip(limits.lower()).and_then(|(upper, lower)| width(upper - lower, 6.0 * sigma));
         let cpk = cpk(mean, sigma, limits);

@@ -8,7 +8,7 @@ pub(super) fn help(advice: &[Advice]) -> Option<String> {
     (!all.is_empty()).then(|| all.join("; "))
 }
 
-/// What to do, as an option or a command where there is one, and otherwise as the library says it.
+/// The advice as an option or a command where there is one, and otherwise in the words of the library.
 fn words(advice: &Advice) -> String {
     match advice {
         Advice::UseMethod { methods } => {

@@ -40,9 +40,9 @@ pub(super) fn run(asked: &AllocateArgs, look: Look) -> Result<Exit, Failure> {
     .with_confirm_or_default(&study.problem, asked.confirm);
     let task = task(&study, asked);
     let allocation = allocate(&study, &task, &options, asked.threads, &clock, look)?;
-    // What was stopped before the model had its say is shown and not written.
+    // An allocation that was stopped before the model confirmed it is shown and not written.
     let found = allocation.after.is_some() && allocation.status != Status::OutOfTime;
-    // What cannot be written into the file can be shown all the same.
+    // Tolerances that cannot be written into the file can be shown all the same.
     let anew = if found { Some(study.rewritten(&allocation.problem)) } else { None };
     let table =
         anew.as_ref().and_then(|anew| anew.as_ref().ok()).map(|Rewritten { entries, replaced_fits, .. }| WrittenAnew {
@@ -105,10 +105,10 @@ fn stays_beside(path: &Path, study_path: &Path, study: &Study) -> Result<(), Fai
 /// The tables of an allocation, a file each.
 const TABLES: [&str; 3] = ["tolerances", "requirements", "front"];
 
-/// Points of a chart when nobody said how many.
+/// Points of a chart where their number is not given.
 const FRONT: usize = 12;
 
-/// What the study asks for; with relative costs where it has none, unless nominal values alone are to move.
+/// The task of the study; with relative costs where it has none, unless nominal values alone are to move.
 fn task(study: &Study, asked: &AllocateArgs) -> AllocationTask {
     let basis = asked.cost.map(|basis| match basis {
         CostArg::ToleranceUnit => CostBasis::ToleranceUnit,

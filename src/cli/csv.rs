@@ -19,7 +19,7 @@ impl CsvFolder {
     /// Makes the folder where it is missing.
     pub(super) fn make(folder: &Path) -> Result<(), Failure> {
         std::fs::create_dir_all(folder).map_err(|error| {
-            // What the system says of a file in the way depends on where in the path it is.
+            // The system's error for a file in the way depends on where in the path it is.
             let in_the_way = folder.ancestors().find(|path| path.is_file());
             match in_the_way {
                 Some(file) => Failure::NoFolder { path: file.to_owned() },

@@ -199,7 +199,7 @@ impl Session {
         let mut answers = Vec::new();
         let mut requests: Vec<(u64, Vec<f64>)> = Vec::new();
         for line in lines {
-            // What is neither a request nor anything known, such as a cancellation, is for others.
+            // A line that is not a request, such as a cancellation, is for others.
             let Ok(Asked { id: Some(id), x: Some(x) }) = serde_json::from_slice(line) else { continue };
             if x.len() != self.columns.len() {
                 answers

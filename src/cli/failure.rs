@@ -173,7 +173,7 @@ impl Failure {
         }
     }
 
-    /// What to do about it, where the library can say that.
+    /// The actions to take, where the library can name them.
     fn advice(&self) -> Vec<Advice> {
         match self {
             Self::Method(error) | Self::Sweep(SweepError::Method(error)) => error.advice(),
@@ -212,7 +212,7 @@ impl Failure {
     }
 }
 
-/// What to write instead, or what to do.
+/// The text to write instead, or the action to take.
 fn help(error: &StudyError) -> Option<String> {
     error.help().or_else(|| advice::help(&error.fault.advice()))
 }

@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::output::Destination;
 use crate::study::{FileRole, JournalPlace, Study};
 
-/// What is read, and what will be written, by the paths that links lead to.
+/// The files that are read, and those that will be written, by the paths that links lead to.
 #[derive(Debug, Default)]
 pub(super) struct Files {
     read: Vec<(PathBuf, &'static str)>,

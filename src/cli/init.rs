@@ -39,7 +39,7 @@ housing = { model = "reciprocal", a = 1.0, b = 0.20, min = 0.02, max = 0.40 }   
 bearing = { model = "reciprocal", a = 2.0, b = 0.24, min = 0.01, max = 0.20 }
 "#;
 
-/// What stands before the dimensions of a study whose model is a program.
+/// The text before the dimensions of a study whose model is a program.
 fn process(script: &str) -> String {
     format!(
         r#"# A model behind a program: it reads points as JSON lines and answers with values. {script} stands for what drives a CAD system.

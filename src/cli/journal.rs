@@ -119,7 +119,7 @@ fn print(journal: &Path, output: &OutputArgs, text: &str) -> Result<Exit, Failur
     Ok(Exit::Done)
 }
 
-/// Whether somebody at the terminal agrees that so much is lost.
+/// Whether the user at the terminal agrees that so much is lost.
 fn agreed(answers: usize) -> Result<bool, Failure> {
     let (mut said, stdin) = (String::new(), std::io::stdin());
     if !stdin.is_terminal() || !std::io::stderr().is_terminal() {
@@ -197,7 +197,7 @@ impl ModelReport {
         Self { id, since, points, values, errors, dimensions, identity }
     }
 
-    /// What it says, below what is there already.
+    /// Adds the model below the earlier text.
     fn put(&self, document: &mut Document) {
         let word = |key: &str| match &self.identity[key] {
             serde_json::Value::String(text) => text.clone(),

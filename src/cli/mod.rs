@@ -1,6 +1,6 @@
 //! The command line: the only place that prints.
 //!
-//! Results go to stdout; progress, warnings and errors to stderr. A closed pipe is no error.
+//! Results go to stdout; progress, warnings and errors to stderr. A closed pipe is not an error.
 
 mod advice;
 mod allocate;

@@ -63,7 +63,7 @@ fn list() -> Document {
     document
 }
 
-/// What a model is, what it takes, and what it gives.
+/// A model's description, its inputs, and its outputs.
 fn document(model: &Model) -> Document {
     let mut document = Document::default();
     document.line(format!("{}: {}", model.name, model.title));

@@ -20,7 +20,7 @@ use crate::warning::Warning;
 const EACH: usize = 3;
 const NAMED: usize = 5;
 
-/// What the user wants to see.
+/// The user's choice of output.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look<'s> {
     pub(super) color: ColorChoice,
@@ -111,7 +111,7 @@ pub(super) fn prompt(question: &str) {
     to_stderr(&shown(question));
 }
 
-/// What the parser of the command line says: it repeats what was typed.
+/// The message of the parser of the command line: it repeats what was typed.
 pub(super) fn usage(message: &str) {
     to_stderr(&shown(message));
 }
@@ -183,7 +183,7 @@ pub(super) enum Destination {
     File {
         path: PathBuf,
     },
-    /// What is no ordinary file, such as a pipe or a device, is written to as it is.
+    /// A pipe, a device or another special file is written to as it is.
     Special {
         path: PathBuf,
         file: std::fs::File,

@@ -170,7 +170,7 @@ fn rounds(report: &PlanReport) -> String {
 }
 
 impl PlanReport {
-    /// What it says: how many evaluations, in which stages, and where along every dimension.
+    /// The text of the plan: how many evaluations, in which stages, and where along every dimension.
     fn document(&self) -> Document {
         let mut document = Document::default();
         document.line(format!("{}: {}", self.method, self.about));

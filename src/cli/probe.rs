@@ -142,7 +142,7 @@ impl ProbeReport {
         }
     }
 
-    /// What it says: how fast the model is, how it passed every check, and of every characteristic which steps are safe.
+    /// The text of the probe: how fast the model is, how it passed every check, and of every characteristic which steps are safe.
     fn document(&self) -> Document {
         let mut document = Document::default();
         if let Some(AdapterReport { name, version, window }) = &self.adapter {

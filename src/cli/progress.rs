@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::assembly::Progress;
 use crate::simulation::Pace;
 
-/// How far the evaluations are. Invisible where stderr is no terminal.
+/// How far the evaluations are. Invisible where stderr is not a terminal.
 pub(super) struct Bar {
     bar: ProgressBar,
     so_far: Mutex<Progress>,
@@ -46,7 +46,7 @@ impl Bar {
     }
 }
 
-/// How far a simulation is. Invisible where stderr is no terminal.
+/// How far a simulation is. Invisible where stderr is not a terminal.
 pub(super) struct Samples {
     bar: ProgressBar,
 }

@@ -33,7 +33,7 @@ pub fn exit_codes() -> impl Iterator<Item = (u8, &'static str)> {
     Exit::ALL.into_iter().map(|(exit, meaning)| (exit as u8, meaning))
 }
 
-/// What the program reads of its surroundings.
+/// The environment variables that the program reads.
 const ENVIRONMENT: [(&str, &str); 2] = [
     ("NO_COLOR", "when set, no colours where --color does not ask for them"),
     (

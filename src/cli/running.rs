@@ -1,4 +1,4 @@
-//! What the commands that evaluate have in common: for how long, on how many threads, where answers are kept.
+//! The common part of the commands that evaluate: for how long, on how many threads, where answers are kept.
 
 use std::path::Path;
 use std::sync::{Arc, Once};
@@ -50,7 +50,7 @@ impl Clock {
         look.warn(&Warning::Stopped { cause, limit_s, done, planned, counted });
     }
 
-    /// What a report says of the study beside the results.
+    /// The facts about the study that a report shows beside the results.
     pub(super) fn about(&self, study: &Study) -> About {
         About {
             title: study.title.clone(),
@@ -66,7 +66,7 @@ pub(super) fn externals(journal: Option<&Path>, look: Look, points: Option<Arc<T
     Externals { journal: JournalPlace::asked(journal), listener: listener(look), points, ..Externals::default() }
 }
 
-/// Who shows what an external program writes to stderr: somebody, when all details are asked for.
+/// Who shows what an external program writes to stderr: the terminal, when all details are asked for.
 pub(super) fn listener(look: Look) -> Option<Listener> {
     look.verbose.then(|| Arc::new(|line: &str| output::model_line(line)) as Listener)
 }

@@ -1,4 +1,4 @@
-//! What `sensitol simulate` does with and without `--rare`.
+//! The runs of `sensitol simulate` with and without `--rare`.
 
 use std::sync::Mutex;
 use std::time::Duration;

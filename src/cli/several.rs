@@ -20,7 +20,7 @@ use crate::study::{Externals, Study};
 use crate::summary::StopReason;
 use crate::warning::{Counted, Warning};
 
-/// Tells what is wrong with one study, and how it ended. What ends all is that nothing can be printed any more.
+/// Tells what is wrong with one study, and how it ended. Only an output that can no longer be printed to ends all.
 pub(super) fn outcome(study: &str, result: Result<Exit, Failure>) -> Result<Exit, Failure> {
     match result {
         Err(failure @ (Failure::ClosedPipe | Failure::Stdout(_))) => Err(failure),

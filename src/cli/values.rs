@@ -1,4 +1,4 @@
-//! What stands behind an option: numbers, ranges and words.
+//! Values of options: numbers, ranges and words.
 
 use clap::ValueEnum;
 
@@ -149,14 +149,14 @@ pub(super) enum CostArg {
     EqualShares,
 }
 
-/// What is to be few for a cost.
+/// The quantity that is to be few for a cost.
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub(super) enum MinimiseArg {
     /// Rejected assemblies.
     Rejects,
 }
 
-/// What is to be high for a cost.
+/// The quantity that is to be high for a cost.
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub(super) enum MaximiseArg {
     /// The least Cpk.

@@ -19,11 +19,11 @@ const PAGE: &str = "workbench.html";
 const VARIABLE: &str = "SENSITOL_WORKBENCH";
 /// Where the study goes.
 const EMPTY: &str = "<script type=\"application/json\" id=\"study-data\">null</script>";
-/// What says which engine is in a page.
+/// The mark that says which engine is in a page.
 const GENERATOR: &str =
     concat!("<meta name=\"generator\" content=\"sensitol ", env!("CARGO_PKG_VERSION"), " workbench\">");
 
-/// What the page opens.
+/// The data that the page opens.
 #[derive(Serialize)]
 struct Given {
     name: String,

@@ -16,11 +16,11 @@ pub struct CorrelationError {
     pub refusal: Refusal,
 }
 
-/// What is wrong with a correlation.
+/// The faults of a correlation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// A pair names something that is no dimension.
+    /// A pair names something that is not a dimension.
     #[error("there is no dimension `{name}`{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
     UnknownDimension {
         /// The name.
@@ -52,7 +52,7 @@ pub enum Refusal {
         /// The dimensions.
         between: [String; 2],
     },
-    /// A value that is no coefficient.
+    /// A value that is not a coefficient.
     #[error("a correlation lies between -1 and 1, but is {value}")]
     NoCoefficient {
         /// The value.

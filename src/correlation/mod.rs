@@ -9,7 +9,7 @@
 //! rho_jk = sum_{n>=1} c_jn c_kn r_jk^n        rho: of the inputs,  r: of the normal variables
 //! ```
 //!
-//! which is solved for `r_jk` pair by pair. What the marginals allow lies between its values at -1 and 1.
+//! which is solved for `r_jk` pair by pair. The correlations that the marginals allow lie between its values at -1 and 1.
 //!
 //! Rows of measured parts and zones are blocks beside them: each vector is independent of everything else.
 
@@ -97,8 +97,8 @@ impl Correlation {
     /// The same beside blocks of dimensions by their positions: each of them in one block at most, and in none of the pairs.
     ///
     /// # Errors
-    /// When a pair names what is no dimension or does not vary, stands twice, or asks for what its distributions do not
-    /// allow; and when no distribution has all of it together: the matrix must not have a negative eigenvalue.
+    /// When a pair names something that is not a dimension or does not vary, stands twice, or asks for what its distributions do
+    /// not allow; and when no distribution has all of it together: the matrix must not have a negative eigenvalue.
     pub(crate) fn with_blocks(
         dimensions: &[Dimension],
         pairs: &[Pair],

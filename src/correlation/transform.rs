@@ -31,7 +31,7 @@ const REACH: i32 = 16;
 const PER_UNIT: i32 = 64;
 /// Terms of the series. Smooth laws take a dozen; a triangle, whose mode is a jump of a second derivative, leaves 1e-8 beyond these.
 const TERMS: usize = 256;
-/// What is asked may exceed what can be had by rounding.
+/// A required correlation may exceed the possible range by rounding.
 const SLACK: f64 = 1e-9;
 
 /// The places, and `sqrt(density)` there, whose squares times the spacing are the weights of the trapezoidal rule; that

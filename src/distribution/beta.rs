@@ -33,7 +33,7 @@ pub struct Beta {
     ends: [Option<End>; 2],
 }
 
-/// What the shape parameters may be: beyond, the law cannot be told from two atoms, or from a normal distribution.
+/// The range of the shape parameters: beyond, the law cannot be told from two atoms, or from a normal distribution.
 const RANGE: [f64; 2] = [1e-3, 1e9];
 const RANGE_WORDS: &str = "from 0.001 to 1e9";
 

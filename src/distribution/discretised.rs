@@ -35,7 +35,7 @@ impl Discretised {
         self.weights.iter_mut().for_each(|weight| *weight /= total);
         let mean = self.mean(|x| x);
         self.points.iter_mut().for_each(|point| *point -= mean);
-        // What the rounding of the mean has left.
+        // The rest that the rounding of the mean has left.
         let rest = self.mean(|x| x);
         self.points.iter_mut().for_each(|point| *point -= rest);
         let sigma = self.mean(|x| x * x).sqrt();

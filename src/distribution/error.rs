@@ -1,8 +1,8 @@
-//! What can be wrong with a distribution, and the checks that every one of them uses.
+//! The faults of distributions, and the checks that all of them use.
 
 use crate::pearson::PearsonError;
 
-/// What is wrong with a distribution's parameters.
+/// The faults of a distribution's parameters.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DistributionError {
@@ -37,7 +37,7 @@ pub enum DistributionError {
         parameter: &'static str,
         /// The value given.
         value: f64,
-        /// What it must be.
+        /// The range that it must be in.
         range: &'static str,
     },
     /// The mean of a distribution that begins at an origin does not lie above it.
@@ -112,7 +112,7 @@ pub enum DistributionError {
     NoVariation {
         /// How many there are.
         count: usize,
-        /// What they are.
+        /// Their value.
         value: Option<f64>,
     },
     /// No Pearson law has these moments.

@@ -26,7 +26,7 @@ pub struct Measured {
     jacobi: Jacobi,
 }
 
-/// What quadrature asks for at most; a higher order is computed when it is.
+/// The highest order that quadrature asks for at once; a higher order is computed when it is needed.
 const ORDER: usize = 9;
 
 impl Measured {

@@ -36,7 +36,7 @@ pub struct Mixture {
 /// One source of a mixture.
 #[derive(Debug, Clone)]
 pub struct Part {
-    /// What people call it.
+    /// Its common name.
     pub name: String,
     /// Its share, relative to those of the others.
     pub weight: f64,

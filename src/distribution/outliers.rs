@@ -65,7 +65,7 @@ pub fn extreme(values: &[f64], level: f64, most: usize) -> Vec<usize> {
     taken
 }
 
-/// What the farthest of `m` values may be off, in sigmas.
+/// The largest deviation that the farthest of `m` values may have, in sigmas.
 fn critical(m: f64, level: f64) -> f64 {
     let freedom = m - 2.0;
     // Student's law is the symmetric Pearson law with long tails.

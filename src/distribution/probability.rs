@@ -31,10 +31,10 @@ pub trait Probability: Send + Sync {
     /// Probability of more than `x`: the survival function.
     fn sf(&self, x: f64) -> f64;
 
-    /// The least value whose `cdf` is at least `p`; NaN where `p` is no probability.
+    /// The least value whose `cdf` is at least `p`; NaN where `p` is not a probability.
     fn quantile(&self, p: f64) -> f64;
 
-    /// The value above which the probability is `p`, with the digits of a small `p`; NaN where `p` is no probability.
+    /// The value above which the probability is `p`, with the digits of a small `p`; NaN where `p` is not a probability.
     fn upper_quantile(&self, p: f64) -> f64;
 
     /// Where the density is not smooth inside the support, ascending: corners and jumps at which a quadrature splits.

@@ -21,7 +21,7 @@ pub struct Sample {
     standard: Vec<f64>,
 }
 
-/// What a law that follows from a sample becomes when the measured values count otherwise.
+/// A law that follows from a sample, after the measured values count otherwise.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Reweighted {

@@ -1,4 +1,4 @@
-//! What the kinds with a tail have in common: they begin at an origin, and their mean lies above it.
+//! The common part of the kinds with a tail: they begin at an origin, and their mean lies above it.
 
 use super::{DistributionError, finite, positive};
 

@@ -18,43 +18,43 @@ pub enum Chart {
 /// Amounts beside one another, on one scale from 0 to 100.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Bars {
-    /// What they show, for those who do not see them.
+    /// The caption, for readers who do not see the bars.
     pub caption: String,
     /// The bars.
     pub rows: Vec<Bar>,
     /// Places marked on every bar.
     pub marks: Vec<f64>,
-    /// What the fills stand for.
+    /// The meaning of the fills.
     pub legend: Vec<(Fill, &'static str)>,
 }
 
 /// A bar of several parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bar {
-    /// What it belongs to.
+    /// The name of its row.
     pub name: String,
     /// Its parts: fill, beginning and width.
     pub parts: Vec<(Fill, [f64; 2])>,
     /// The amount.
     pub text: String,
-    /// What is to be said of it.
+    /// The remark on it.
     pub remark: Line,
 }
 
 /// How a part of a bar is filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fill {
-    /// What a straight line makes.
+    /// The linear part.
     Linear,
-    /// What curvature makes.
+    /// The part of curvature.
     Curvature,
-    /// What an interaction makes.
+    /// The part of an interaction.
     Interaction,
     /// An interval within the limits.
     Span,
     /// An interval that exceeds them.
     Over,
-    /// What was before.
+    /// The amount before.
     Before,
 }
 
@@ -71,7 +71,7 @@ pub struct SpreadChart {
     pub sampled: bool,
     /// Lower and upper limit.
     pub limits: [Option<f64>; 2],
-    /// What is rejected beyond each limit, in words.
+    /// The rejects beyond each limit, in words.
     pub rejects: [Option<String>; 2],
     /// Ranges below the axis of a page, by name.
     pub ranges: Vec<(String, [f64; 2])>,
@@ -81,29 +81,29 @@ pub struct SpreadChart {
     pub places: Vec<(f64, &'static str, &'static str)>,
     /// The standard deviation, by which numbers are rounded.
     pub sigma: f64,
-    /// What it shows, for those who do not see it.
+    /// The label, for readers who do not see the chart.
     pub label: String,
-    /// What stands below it.
+    /// The text below it.
     pub words: String,
 }
 
 /// Values over others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
-    /// What it is about.
+    /// The subject.
     pub name: String,
     /// Across.
     pub x: PlotAxis,
     /// Upwards.
     pub y: PlotAxis,
-    /// What is drawn, one over the other.
+    /// The layers, drawn one over the other.
     pub layers: Vec<Layer>,
 }
 
 /// An axis. It reaches over everything that is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlotAxis {
-    /// What it shows.
+    /// The label of the axis.
     pub label: String,
     /// Its scale.
     pub scale: PlotScale,
@@ -138,11 +138,11 @@ pub enum Layer {
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
-    /// What is to be looked at.
+    /// The main curve.
     Strong,
-    /// What joins points.
+    /// The lines that join points.
     Thin,
-    /// What it is compared with.
+    /// The curve to compare with.
     Dotted,
 }
 
@@ -153,7 +153,7 @@ pub struct PlotPoint {
     pub at: [f64; 2],
     /// The name beside it; empty where it has none.
     pub name: String,
-    /// What a pointer shows; empty for nothing.
+    /// The text that a pointer shows; empty for none.
     pub tip: String,
     /// Whether it is to be looked at.
     pub strong: bool,

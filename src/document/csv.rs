@@ -46,7 +46,7 @@ fn cell(cell: &Cell) -> String {
     }
 }
 
-/// What a spreadsheet takes a text for that begins with one of these is a formula.
+/// A text that begins with one of these is a formula to a spreadsheet.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
 /// Text that a spreadsheet would take for a formula begins with an apostrophe.
@@ -79,7 +79,8 @@ mod tests {
     use super::super::{Columns, Section};
     use super::*;
 
-    /// The tables of one name follow one another below one header; numbers keep every digit and their sign, and text is no formula.
+    /// The tables of one name follow one another below one header; numbers keep every digit and their sign, and text is not a
+    /// formula.
     #[test]
     fn tables_of_one_name_are_one() {
         let table = |name: &'static str, value: f64| {

@@ -141,7 +141,7 @@ pub fn table(table: &DataTable) -> String {
         return String::new();
     }
     let class = |place: usize| if table.right(place) { " class=\"n\"" } else { "" };
-    // What is wider than the window can be moved by keys.
+    // A table that is wider than the window can be moved by keys.
     let mut text = "<div class=\"wide\" tabindex=\"0\"><table>\n".to_owned();
     if places.iter().any(|&place| !table.columns[place].heading.is_empty()) {
         let title = |&place: &usize| {

@@ -52,7 +52,7 @@ fn tabled(table: &DataTable) -> String {
     text + "\n"
 }
 
-/// What Markdown would read as more than text.
+/// The text with the marks of Markdown escaped.
 fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for c in clean(text).chars() {

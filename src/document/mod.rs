@@ -22,7 +22,7 @@ pub(crate) use table::Column;
 pub use table::{Cell, Columns, DataTable, Value};
 pub use terminal::{Detail, Style};
 
-/// What a piece of text means for the reader.
+/// The meaning of a piece of text for the reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
     /// Nothing in particular.
@@ -63,7 +63,7 @@ pub enum Flow {
 /// A paragraph.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Paragraph {
-    /// What it says.
+    /// The text.
     pub line: Line,
     /// Spaces before it in a terminal.
     pub indent: usize,
@@ -74,7 +74,7 @@ pub struct Paragraph {
 /// Words after a title, shortened to a few lines unless everything is shown.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct List {
-    /// What they are.
+    /// The words of the list.
     pub title: String,
     /// The words; one that ends with `;` ends a group.
     pub words: Vec<String>,
@@ -85,9 +85,9 @@ pub struct List {
 pub struct Notice {
     /// The code of the warning.
     pub code: &'static str,
-    /// What happened, and what it means.
+    /// The event, and its meaning.
     pub message: String,
-    /// What to do.
+    /// The actions to take.
     pub actions: Vec<String>,
     /// How serious it is.
     pub tone: Tone,
@@ -98,7 +98,7 @@ pub struct Notice {
 pub struct Aside {
     /// Its heading; empty for none.
     pub title: &'static str,
-    /// What it says.
+    /// The content.
     pub blocks: Vec<Element>,
 }
 
@@ -109,11 +109,11 @@ pub enum Element {
     Gap,
     /// Text.
     Paragraph(Paragraph),
-    /// What pages say beside, for which a terminal has no room.
+    /// Additions on pages, for which a terminal has no room.
     Aside(Aside),
-    /// What pages say, and a terminal where everything is asked for.
+    /// Details for pages, and for a terminal where everything is asked for.
     Detail(Vec<Element>),
-    /// What a terminal says in place of the details.
+    /// The text of a terminal in place of the details.
     Brief(Vec<Element>),
     /// Words after a title.
     List(List),
@@ -127,16 +127,16 @@ pub enum Element {
     Finding(Notice),
 }
 
-/// What a document says of one thing.
+/// The part of a document on one thing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Section {
     /// The thing, by the name that it has in the study.
     pub name: String,
     /// Its unit.
     pub unit: Option<String>,
-    /// What follows the name and the unit.
+    /// The words after the name and the unit.
     pub words: String,
-    /// What is said.
+    /// The content.
     pub blocks: Vec<Element>,
 }
 
@@ -145,7 +145,7 @@ pub struct Section {
 pub struct Document {
     /// Its title.
     pub title: Option<String>,
-    /// What it says before its sections.
+    /// The text before its sections.
     pub head: Vec<Element>,
     /// Its sections; the first may be about everything, without a name.
     pub sections: Vec<Section>,
@@ -186,7 +186,7 @@ impl<T: Into<String>> From<T> for Line {
     }
 }
 
-/// What can be put down: blocks one after the other.
+/// A document or a part of it, to which blocks are added one after the other.
 pub trait Blocks {
     /// The blocks so far.
     fn blocks(&mut self) -> &mut Vec<Element>;

@@ -58,7 +58,7 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
 /// The number as it was written in the study, within reason.
 pub(crate) fn plain(value: f64) -> String {
     let text = format!("{value}");
-    // A tolerance computed from limits has a tail of rounding errors that nobody wrote.
+    // A tolerance computed from limits has a tail of rounding errors that the study does not write.
     let text = if text.len() > 10 { trimmed(&significant(value, 8)) } else { text };
     let exponent = shortened(&format!("{value:e}"));
     if exponent.len() + 2 < text.len() { exponent } else { text }

@@ -186,7 +186,7 @@ pub(super) fn figure(of: &SpreadChart) -> Option<String> {
     Some(format!("<figure>\n{}<figcaption>{}{legend}</figcaption>\n</figure>\n", drawn?, escaped(&of.words)))
 }
 
-/// What those hear who do not see it.
+/// The text for readers who do not see the chart.
 fn said(of: &SpreadChart) -> String {
     let near = of.sigma.abs();
     let number = |x: f64| if near > 0.0 { beside(x, near) } else { plain(x) };

@@ -72,7 +72,7 @@ impl Ruler {
         let [from, to] = match scale {
             PlotScale::Linear(margin) => {
                 let [from, to] = ends(&mut values.into_iter());
-                // What does not vary stands in the middle.
+                // A constant stands in the middle.
                 let room = if from < to { margin * (to - from) } else { 0.5 * from.abs().max(1.0) };
                 [from - room, to + room]
             }

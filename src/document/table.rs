@@ -3,7 +3,7 @@
 use super::number::{UNKNOWN, short};
 use super::{Line, Tone};
 
-/// What a cell holds, for programs.
+/// The content of a cell, for programs.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// Nothing.
@@ -25,7 +25,7 @@ pub struct Cell {
     pub value: Value,
     /// For people.
     pub line: Line,
-    /// What pages show instead, where terminals have room for less: the whole name, a remark.
+    /// The text of pages, where terminals have room for less: the whole name, a remark.
     pub full: Option<String>,
     /// The section that it names, by its place in the document: pages lead there.
     pub leads_to: Option<usize>,
@@ -59,7 +59,7 @@ pub struct DataTable {
     pub view: Vec<usize>,
     /// How many of these a terminal shows unless everything is asked for, and how many a page.
     pub most: [usize; 2],
-    /// What a terminal says where it does not show all.
+    /// The hint of a terminal where it does not show all.
     pub rest: String,
 }
 
@@ -225,7 +225,7 @@ impl Cell {
         Self { full: Some(name.to_owned()), ..Self::both(Value::Text(name.to_owned()), short(name)) }
     }
 
-    /// What people read differs from what programs read.
+    /// A cell with one content for people and another for programs.
     pub fn both(value: Value, line: impl Into<Line>) -> Self {
         Self { value, line: line.into(), full: None, leads_to: None }
     }
@@ -236,7 +236,7 @@ impl Cell {
         self
     }
 
-    /// What a page shows, which has room for whole names.
+    /// The text of a page, which has room for whole names.
     pub fn on_page(&self) -> Line {
         self.full.as_deref().map_or_else(|| self.line.clone(), Line::from)
     }

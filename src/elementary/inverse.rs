@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::{Elementary, choose, mask};
 
-/// What the double `pi/2` lacks.
+/// The difference between pi/2 and its double.
 const LACKS: f64 = 6.123_233_995_736_766e-17;
 
 /// `acos(x)`, in radians.

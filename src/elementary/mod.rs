@@ -14,8 +14,9 @@
 //! `libm`. Polynomials and their order are those of fdlibm (Sun Microsystems 1993); angles are reduced by parts of pi/2 (Cody
 //! and Waite 1980) with the rounding of the difference carried along.
 //!
-//! **Why no library.** `sleef` wants an unstable compiler, and `wide` takes the instructions from the compiler's command line. What runs on which processor is chosen by `pulp`,
-//! which the linear algebra brings along and which needs no unsafe code here.
+//! **Why no library.** `sleef` wants an unstable compiler, and `wide` takes the instructions from the compiler's command line.
+//! The instructions for each processor are chosen by `pulp`, which the linear algebra brings along and which needs no unsafe code
+//! here.
 
 mod double;
 mod exponential;

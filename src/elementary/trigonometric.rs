@@ -31,7 +31,7 @@ struct Reduced {
     /// The multiple, in its last two bits.
     quarters: u64,
     rest: f64,
-    /// What `rest` lacks.
+    /// The rounding error of `rest`.
     tail: f64,
     /// Whether this is not good enough.
     apart: bool,
@@ -44,8 +44,8 @@ fn reduced(x: f64) -> Reduced {
     let first = x - n * PARTS[0];
     let part = n * PARTS[1];
     let second = first - part;
-    // What the second difference has lost, without a comparison since the first is a multiple of the last digit of the part
-    // (Boldo, Graillat and Muller 2017), against the third part.
+    // The rounding error of the second difference, without a comparison since the first is a multiple of the last digit of the
+    // part (Boldo, Graillat and Muller 2017), against the third part.
     let less = n * PARTS[2] - ((first - second) - part);
     let rest = second - less;
     let tail = (second - rest) - less;

@@ -36,7 +36,7 @@ fn words(problem: &Problem, point: &[f64]) -> String {
     moved.map(|(dimension, x)| format!("{} = {x}", dimension.name())).collect::<Vec<_>>().join(", ")
 }
 
-/// What a model's processes went through: what was lost and sent again, answers that nothing confirmed, a journal of another model.
+/// The events of a model's processes: what was lost and sent again, answers that nothing confirmed, a journal of another model.
 fn processes(problem: &Problem) -> Vec<Warning> {
     let Some(account) = problem.function().account() else { return Vec::new() };
     let mut warnings = Vec::new();

@@ -1,4 +1,4 @@
-//! What the model has answered: every point asked once, for all characteristics, within the budget.
+//! The answers of the model: every point asked once, for all characteristics, within the budget.
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
@@ -30,7 +30,7 @@ pub(super) struct Failures {
     pub(super) first: Option<EvaluationError>,
 }
 
-/// What asking came to.
+/// The cost of the evaluations.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Spent {

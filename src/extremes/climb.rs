@@ -14,11 +14,11 @@ pub(super) struct Climb<'r> {
     pub(super) y: f64,
     /// For every dimension the step to both sides of an interior coordinate, relative to the box.
     step: Vec<f64>,
-    /// What is known of the products, as the surrogate has them.
+    /// The products, as far as the surrogate knows them.
     surrogate: &'r Model,
     phase: Phase,
     rounds: usize,
-    /// What the rounds along interior coordinates have gained since all coordinates were looked at.
+    /// The gain of the rounds along interior coordinates since all coordinates were looked at.
     gained: f64,
 }
 
@@ -225,7 +225,7 @@ impl<'r> Climb<'r> {
             interior.iter().for_each(|&d| self.step[d] = (self.step[d] * SHORTER).max(SHORTEST));
             return Phase::Interior;
         }
-        // What moved along the interior coordinates may have opened a way along the others.
+        // Moves along the interior coordinates may have opened a way along the others.
         if self.gained > much {
             self.gained = 0.0;
             return Phase::All;

@@ -8,7 +8,7 @@
 //! Correlation plays no part: the worst case is what can be, however rarely.
 //!
 //! 1. The surrogate is minimised and maximised over the box by coordinate search from several starts, which costs nothing.
-//!    What it finds, the vertices of the signs of the slopes, and two points elsewhere are evaluated.
+//!    The extremes that it finds, the vertices of the signs of the slopes, and two points elsewhere are evaluated.
 //! 2. Where the surrogate has foretold all of these values to a part in 10^9 of their range, this is the result.
 //! 3. Otherwise a search goes on from the best two points of either side: every coordinate is moved to the other end of the
 //!    box, to its middle and to the stationary point of a curve through the values on its line, one by one and several at
@@ -49,13 +49,13 @@ const GAIN: f64 = 1e-10;
 /// Searches after each other, of which each begins at a point that branch and bound has found beyond the last one's extremes.
 const REPEATED: usize = 4;
 
-/// What the search found for every characteristic, and what it took.
+/// The extremes that the search found for every characteristic, and their cost.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct SearchedExtremes {
     /// In the problem's order; None where no point in the box has a value.
     pub extremes: Vec<Option<Extremes>>,
-    /// What it took.
+    /// The cost of the search.
     pub spent: Spent,
 }
 
@@ -75,7 +75,7 @@ pub struct Extremes {
     pub failure: Option<String>,
     /// How the search ended.
     pub ended: Ended,
-    /// What interval arithmetic says, where the characteristic is a formula.
+    /// The bounds by interval arithmetic, where the characteristic is a formula.
     pub proof: Option<ExtremesProof>,
 }
 

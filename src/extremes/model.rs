@@ -1,4 +1,4 @@
-//! What is known of a characteristic in the box, as quartics along the axes and products: where it would be least.
+//! A model of a characteristic in the box, as quartics along the axes and products: where it would be least.
 
 /// The box of one characteristic's dimensions.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,7 +118,7 @@ impl Model {
         let line = [c1 + tilt, c2, c3, c4];
         let (from, to) = (u_of(d, region.lower[d]), u_of(d, region.upper[d]));
         let here = quartic(&line, u_of(d, x[d]));
-        // What rounding alone makes of the line is no gain.
+        // A change of the line by rounding alone is not a gain.
         let size = [from, to].map(|u| u.abs().max(1.0)).into_iter().fold(0.0, f64::max);
         let noise =
             8.0 * f64::EPSILON * line.iter().enumerate().map(|(n, c)| c.abs() * size.powi(n as i32 + 1)).sum::<f64>();

@@ -12,14 +12,14 @@ use crate::assembly::formula::Interval;
 /// A box, an interval for every dimension.
 type Region = Vec<[f64; 2]>;
 
-/// What is certain of the least value in a box.
+/// Certain bounds of the least value in a box.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Least {
     /// No value is below.
     pub(super) lower: f64,
     /// Boxes that were looked at.
     pub(super) boxes: usize,
-    /// What was believed to be the least value, or the upper bound of the value at a better point.
+    /// The value that was believed to be the least, or the upper bound of the value at a better point.
     pub(super) best: f64,
     /// A point whose value is below what was believed to be the least.
     pub(super) better: Option<Vec<f64>>,

@@ -26,7 +26,7 @@ const PROVEN: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 /// Boxes of either side, as long as there are few dimensions.
 const BOXES: usize = 20_000;
-/// Boxes of either side where nobody asked for a proof: a twentieth of those of a search.
+/// Boxes of either side where a proof is not asked for: a twentieth of those of a search.
 const ENCLOSING: usize = 1000;
 const FEW: usize = 10;
 /// More of them where a circular zone ends: boxes along its edge, whose number goes with the root of the accuracy.
@@ -192,7 +192,7 @@ impl Task {
         from.map(|(x, y)| Climb::new(&self.region, &self.surrogate, x, y)).collect()
     }
 
-    /// What interval arithmetic says of the function over a part of the box; None where it has no bounds.
+    /// The bounds of the function over a part of the box by interval arithmetic; None where it has none.
     fn bounds(&self, problem: &Problem, region: &[[f64; 2]]) -> Option<Bounds> {
         let mut all: Vec<[f64; 2]> = self.centre.iter().map(|&x| [x, x]).collect();
         self.dimensions.iter().zip(region).for_each(|(&d, &band)| all[d] = band);
@@ -262,7 +262,7 @@ impl Task {
             boxes: below.boxes + above.boxes,
         };
         if !self.zones.is_empty() {
-            // What lies beyond in the box may lie outside the zone.
+            // A better point in the box may lie outside the zone.
             return (Some(proof), Vec::new());
         }
         (Some(proof), below.better.into_iter().chain(above.better).collect())

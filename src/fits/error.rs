@@ -24,7 +24,7 @@ pub enum FitError {
         /// Those that there are, of holes or of shafts.
         known: Vec<&'static str>,
     },
-    /// A number that is no grade.
+    /// A number that is not a grade.
     #[error("there is no tolerance grade IT{found}")]
     UnknownGrade {
         /// As written.
@@ -77,7 +77,7 @@ impl FitError {
         Self::UnknownLetter { found: found.to_owned(), nearest, known }
     }
 
-    /// What there is instead.
+    /// The text to write instead.
     pub(crate) fn help(&self) -> Option<String> {
         match self {
             Self::NoClass { .. } => Some("write letters and one grade: H7 for a hole, g6 for a shaft".into()),

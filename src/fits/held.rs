@@ -20,7 +20,7 @@ impl HeldEnd {
 }
 
 /// The end of the band that the letter of a class gives, the one nearer to the nominal size; None of J and JS, which lie about it, and of what
-/// is no class. The grade gives the other end.
+/// is not a class. The grade gives the other end.
 #[cfg(feature = "study")]
 pub(crate) fn held_end(class: &str) -> Option<HeldEnd> {
     let first = class.trim().chars().next()?;

@@ -1,11 +1,12 @@
-//! What external programs answered, kept on disk: an evaluation may have cost a minute of CAD time.
+//! Answers of external programs, kept on disk: an evaluation may have cost a minute of CAD time.
 //!
 //! Every answer is in the file before anything is made of it, so that a run that is killed goes on where it was, and a
 //! repeated or enlarged one evaluates only what is new. An answer is known by the model (program and arguments, the contents
 //! of its script and of the files that it depends on, what the adapter says of itself, constants, names and units of the
 //! dimensions), the exact point, and the output. The nominal point is evaluated again by every run: where it has another value than
-//! the journal, the model has changed, and its answers are forgotten. What a sentinel puts in doubt is forgotten at once, and kept again only when
-//! another child has answered it in its right mind. What the program says has no value is kept too; a crash or a missed deadline is not: the next run tries again.
+//! the journal, the model has changed, and its answers are forgotten. An answer that a sentinel puts in doubt is forgotten at
+//! once, and kept again only when another, trusted process has answered it. A point that has no value by the program's own word is kept
+//! too; a crash or a missed deadline is not: the next run tries again.
 
 mod claims;
 pub(crate) mod store;
@@ -63,7 +64,7 @@ impl Journaled {
         Self { process, path, files, open: Mutex::new(None), turn: Mutex::new(()) }
     }
 
-    /// What the answers of this model are known by.
+    /// The key of the answers of this model.
     fn identity(&self, outputs: &[usize]) -> Result<String, EvaluationError> {
         let adapter = self.process.adapter(outputs).map_err(Box::new)?;
         let inputs = &self.signature().inputs;
@@ -154,7 +155,7 @@ impl AssemblyFunction for Journaled {
     }
 }
 
-/// What the journal has of some points.
+/// The journal's answers for some points.
 struct Recollection {
     /// Rows whose answers are known, with them.
     known: Vec<(usize, Vec<Answer>)>,
@@ -233,7 +234,8 @@ impl Journaled {
         }
     }
 
-    /// What is known is told, what no other run is at is evaluated, and what another one is at is waited for.
+    /// Known answers are returned, points that no other run is at are evaluated, and points that another one is at are waited
+    /// for.
     fn evaluated(&self, ask: &Request<'_>, run: &Run<'_>, out: &mut Responses) -> Result<(), JournalError> {
         let names: Vec<&str> =
             ask.outputs.iter().map(|&output| self.signature().outputs[output].name.as_str()).collect();
@@ -247,7 +249,7 @@ impl Journaled {
                 Ok((Recollection::of(open, &names, &rows, &wanted)?, version))
             })?;
             let unsettled = found.unsettled();
-            // What another run is at is not confirmed, and may still change.
+            // A point that another run is at is not confirmed, and may still change.
             let others: Vec<usize> = match unsettled.is_empty() {
                 true => Vec::new(),
                 false => self.with(|open| {
@@ -427,7 +429,7 @@ impl Journaled {
             note(self.with(|open| open.store.withdraw(model, &points)));
         };
         let beat = Mutex::new(Instant::now());
-        // What cannot be kept is not paid for: no more is asked, and what is known already stays.
+        // Answers that cannot be kept are not evaluated: no more is asked, and what is known already stays.
         let stop = || {
             let mut beat = beat.lock().unwrap_or_else(PoisonError::into_inner);
             if beat.elapsed() >= BEAT {
@@ -494,7 +496,7 @@ fn is_slow(elapsed: Duration, workers: usize, answers: usize) -> bool {
     elapsed * u32::try_from(workers).unwrap_or(u32::MAX) > SLOW * u32::try_from(answers).unwrap_or(u32::MAX)
 }
 
-/// What is still open is not evaluated, for this reason.
+/// Points that are still open are not evaluated, for this reason.
 fn refuse(out: &mut Responses, error: &EvaluationError) {
     let mut unsent = 0;
     for row in 0..out.rows() {

@@ -7,7 +7,7 @@ use rusqlite::{Connection, ErrorCode, OptionalExtension, Transaction, Transactio
 
 use super::claims::{self, Claimant};
 
-/// What is in the file, for `PRAGMA user_version`.
+/// The version of the file's content, for `PRAGMA user_version`.
 const VERSION: i32 = 1;
 /// Who wrote it, for `PRAGMA application_id`: "snsl".
 const APPLICATION: i32 = 0x736e_736c;
@@ -33,7 +33,7 @@ const TABLES: &str = "
         PRIMARY KEY (model, point, output)
     ) WITHOUT ROWID;
 ";
-/// What came later, and what an earlier version does without: stages that no replay has confirmed, and points that a run is at.
+/// Later additions, without which an earlier version works too: stages that no replay has confirmed, and points that a run is at.
 const LATER: &str = "
     CREATE TABLE IF NOT EXISTS stage (
         id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -59,18 +59,18 @@ const LATER: &str = "
     END;
 ";
 
-/// What is wrong with a journal.
+/// A fault of a journal.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("journal {}: {fault}", path.display())]
 #[non_exhaustive]
 pub struct JournalError {
     /// The file.
     pub path: PathBuf,
-    /// What is wrong.
+    /// The fault.
     pub fault: JournalFault,
 }
 
-/// What is wrong with a journal.
+/// The faults of a journal.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum JournalFault {
@@ -129,7 +129,7 @@ pub(super) struct Recalled {
 pub struct KnownModel {
     /// Its number in the file.
     pub id: i64,
-    /// What it is known by, as JSON.
+    /// The key of the model, as JSON.
     pub identity: String,
     /// Its dimensions, in the order of a point.
     pub dimensions: Vec<String>,
@@ -150,7 +150,7 @@ pub struct StoredAnswer {
     pub point: Vec<f64>,
     /// The output.
     pub output: String,
-    /// What the model said.
+    /// The answer of the model.
     pub answer: Answer,
 }
 
@@ -257,7 +257,7 @@ impl Store {
         self.failed(self.connection.query_row(find, [identity], |row| row.get(0)))
     }
 
-    /// What the model said of one output at one point, if that is known.
+    /// The model's answer for one output at one point, if that is known.
     ///
     /// # Errors
     /// When reading fails.

@@ -1,4 +1,4 @@
-//! What a tail has been computed with, to compute others with it: through an optimisation figures then are smooth in the
+//! The choices that a tail was computed with, to compute others with them: through an optimisation figures then are smooth in the
 //! coefficients of the surface, because neither a contour nor a point changes from one to the next.
 
 use std::sync::Arc;

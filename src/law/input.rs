@@ -6,7 +6,7 @@ use super::LawTail;
 use super::polynomial::{Quartic, derivative, roots, value};
 use crate::distribution::{Distribution, Normal, Probability, Uniform, standard_normal};
 
-/// What lies beyond these tails of an unbounded input is left out of quadratures: its part of a probability of 1e-30 is
+/// The part of an unbounded input beyond these tails is left out of quadratures: its part of a probability of 1e-30 is
 /// below the rounding of a double.
 const FAR: f64 = 1e-40;
 /// A panel whose mass by Gauss is within this part of the mass by the distribution function resolves the density.
@@ -138,7 +138,7 @@ impl Input {
         }
     }
 
-    /// Half widths of the uniform variables, in sigmas, whose sum the input is; None where it is no such sum.
+    /// Half widths of the uniform variables, in sigmas, whose sum the input is; None where it is not such a sum.
     pub(super) fn uniform_halves(&self) -> Option<Vec<f64>> {
         let half = 0.5 * (self.ends[1] - self.ends[0]);
         let middle = 0.5 * (self.ends[1] + self.ends[0]);
@@ -239,7 +239,7 @@ impl Input {
         while let Some((from, to)) = open.pop() {
             let mass = self.mass(from, to) - atom_mass(from, to);
             let by_gauss = gauss(from, to);
-            // What a difference of two probabilities can tell.
+            // The resolution of a difference of two probabilities.
             let rounding = 4e-16 * if from > 0.0 { self.sf(from) } else { self.cdf(to) };
             let half = 0.5 * (from + to);
             // Places are rounded, and next to an end of the support the density feels it.

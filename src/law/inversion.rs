@@ -31,7 +31,7 @@ const AGREED: f64 = 1e-11;
 const NEARLY: f64 = 1e-8;
 /// How steeply a window falls: at its ends it is 1e-13 off 1 and 0.
 const STEEPNESS: f64 = 10.4;
-/// What a window leaves, by the sum: its own ends.
+/// The part that a window leaves, by the sum: its own ends.
 const LEFT: f64 = 4e-13;
 /// Relative accuracy that the sums are stated to have: rounding of the transform, and the neighbours of the sum.
 const RELATIVE: f64 = 1e-12;
@@ -47,7 +47,7 @@ pub(super) struct Inversion {
     sides: [Side; 2],
 }
 
-/// What is summed along a contour.
+/// The quantity that is summed along a contour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Quantity {
     LawTail(LawTail),
@@ -178,7 +178,7 @@ impl Inversion {
             }
             (before, count) = (now, 2 * count);
         };
-        // What the terms have lost in their sum.
+        // The rounding error of the sum.
         let rounding = 1e-15 * (window.points as f64).sqrt() * largest;
         let level = libm::exp(contour.log - contour.theta * y) * contour.step / PI;
         let value = level * sum;

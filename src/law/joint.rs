@@ -82,13 +82,13 @@ fn overlap(limited: &[&(&SurfaceLaw, SpecLimits)], tails: f64) -> LawFigure {
     let n = REPLICATES as f64;
     let mean = several.iter().sum::<f64>() / n;
     let variance = several.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (n - 1.0);
-    // As for every other sampled figure; and no point with two broken limits is no proof that there is none.
+    // As for every other sampled figure; and no point with two broken limits is not a proof that there is none.
     let fewest = if mean == 0.0 { (3.0 / (n * POINTS as f64)).min(tails) } else { 0.0 };
     let error = 2.95 * (variance / n).sqrt();
     LawFigure::new(mean, error.max(fewest))
 }
 
-/// What the limits of several characteristics reject: the sum of the tails, and by how much that counts assemblies twice.
+/// The rejects of several characteristics by their limits: the sum of the tails, and by how much that counts assemblies twice.
 pub(crate) fn rejected(characteristics: &[(&SurfaceLaw, SpecLimits)]) -> (f64, LawFigure) {
     let sides = |law: &SurfaceLaw, limits: SpecLimits| {
         [limits.lower().map(|y| law.below(y).value), limits.upper().map(|y| law.above(y).value)]

@@ -181,7 +181,7 @@ pub enum LawError {
     NoVariance,
 }
 
-/// What the law of a surface may cost.
+/// The limits on the cost of a surface's law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LawOptions {
@@ -367,7 +367,7 @@ impl SurfaceLaw {
         }
     }
 
-    /// The limit beyond which this tail has the probability `p`; NaN where `p` is no probability.
+    /// The limit beyond which this tail has the probability `p`; NaN where `p` is not a probability.
     ///
     /// At 0 the end of the range that the tail points to, which may be infinite; at 1 the other one.
     pub fn quantile(&self, tail: LawTail, p: f64) -> LawFigure {

@@ -21,7 +21,7 @@ pub(super) struct Sample {
     pub(super) weights: Vec<f64>,
 }
 
-/// What is evaluated at the points.
+/// The surfaces that are evaluated at the points.
 pub(super) struct Along<'a> {
     pub(super) direction: &'a Direction,
     pub(super) full: &'a Terms,

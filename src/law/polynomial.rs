@@ -46,7 +46,7 @@ pub(super) fn roots(c: &Quartic, interval: [f64; 2]) -> Few {
 fn of_degree(most: usize, c: &Quartic, [low, high]: [f64; 2]) -> Few {
     let reach = low.abs().max(high.abs());
     let mut degree = most;
-    // A coefficient that moves nothing within the interval is no coefficient.
+    // A coefficient that moves nothing within the interval is not a coefficient.
     let scale = (1..5).map(|k| c[k].abs() * reach.powi(k as i32)).fold(0.0, f64::max);
     while degree > 0 && c[degree].abs() * reach.powi(degree as i32) <= 1e-17 * scale {
         degree -= 1;

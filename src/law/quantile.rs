@@ -170,7 +170,7 @@ fn near(law: &SurfaceLaw, side: &Together<'_>, sought: &Sought) -> LawFigure {
     }
 }
 
-/// What the quantiles of one tail have in common.
+/// The common part of the quantiles of one tail.
 enum Together<'l> {
     /// A contour, and how many points of it the last limit took.
     Line(&'l Inversion, Arc<Contour>, Cell<usize>),

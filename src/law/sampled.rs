@@ -1,9 +1,9 @@
 //! Surfaces with cycles of products, or with a tail that no transform bears: components that must be sampled are, and
 //! everything else is integrated.
 //!
-//! What is integrated is the exact law of all other components, where that is wide enough, or one direction of the sampled
-//! ones by its own distribution function. The nearest exact surface, without the products that make it inexact, is the
-//! control: `P = P_exact + mean(1 - 1_control)` at the same points.
+//! The integrand is the exact law of all other components, where that is wide enough, or one direction of the sampled ones by its
+//! own distribution function. The nearest exact surface, without the products that make it inexact, is the control:
+//! `P = P_exact + mean(1 - 1_control)` at the same points.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ const QUANTILE: f64 = 2.95;
 const WIDE: f64 = 0.5;
 /// A plain estimate of this relative error rules where a tilted one contradicts it, which may have seen one of two modes.
 const GOOD: f64 = 0.1;
-/// What a table of an exact law leaves, relative.
+/// The error of a table of an exact law, relative.
 const TABULATED: f64 = 1e-7;
 
 /// The law of a surface of which a part is sampled.
@@ -58,7 +58,7 @@ pub(super) struct Choice {
     beside: Cell<Option<bool>>,
 }
 
-/// What is averaged.
+/// The quantity that is averaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Quantity {
     LawTail(LawTail),
@@ -235,7 +235,7 @@ impl Sampled {
         let sample = self.sample(choice.tilted.as_ref().map(|(rung, proposal)| (tail, *rung, proposal.as_ref())));
         let exact = if choice.beside.get() == Some(false) { None } else { exact() };
         let found = self.estimates(&self.direction, &sample, y - self.surface.centre, quantity, exact);
-        // What rules the first limit rules them all: no quantile lies on a jump from one estimate to the other.
+        // The estimate of the first limit is used for them all: no quantile lies on a jump from one estimate to the other.
         let beside = choice.beside.get().unwrap_or_else(|| found.is_beside());
         choice.beside.set(Some(beside));
         found.beside.filter(|_| beside).unwrap_or(found.alone)

@@ -6,7 +6,7 @@ use crate::correlation::{Atom, JointLaw};
 
 /// Combinations that are listed at most.
 const MOST: usize = 1 << 20;
-/// What the values have lost by rounding, relative to the largest term: values nearer to each other are one.
+/// The rounding error of the values, relative to the largest term: values nearer to each other are one.
 const SAME: f64 = 1e-13;
 
 /// A place of one or several inputs: its probability, and where each of them is.

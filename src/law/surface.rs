@@ -221,7 +221,7 @@ impl Surface {
         // Infinite of both signs: no bound.
         let low = if total[0].is_nan() { f64::NEG_INFINITY } else { total[0] };
         let high = if total[1].is_nan() { f64::INFINITY } else { total[1] };
-        // What the sums may have lost by rounding is no part of a proof.
+        // The rounding errors of the sums are added on either side, so that the bounds are a proof.
         let slack = |end: f64| 4.0 * f64::EPSILON * (self.len() + 1) as f64 * end.abs().max(self.centre.abs());
         [low - slack(low), high + slack(high)]
     }

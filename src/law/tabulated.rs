@@ -9,7 +9,7 @@ use crate::distribution::Distribution;
 
 /// Phase per sigma that the nodes of a bounded input resolve, and of an unbounded one.
 const TOP: [f64; 2] = [100.0, 14.0];
-/// What lies beyond these tails of an unbounded input is left out: a page shows no probability of that size.
+/// The part of an unbounded input beyond these tails is left out: a page shows no probability of that size.
 const FAR: f64 = 1e-22;
 /// Nodes at most: a table of twice as many numbers.
 const MOST: usize = 3000;
@@ -24,7 +24,7 @@ pub(crate) struct TabulatedInput {
     normal: bool,
     /// Least and greatest value; null where there is none.
     support: [Option<f64>; 2],
-    /// Half widths of the uniform variables whose sum it is; empty where it is no such sum.
+    /// Half widths of the uniform variables whose sum it is; empty where it is not such a sum.
     halves: Vec<f64>,
     /// Places, and their weights.
     z: Vec<f64>,

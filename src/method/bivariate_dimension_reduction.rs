@@ -10,7 +10,7 @@
 //! 21 with S = 2. They integrate powers of the function itself plane by plane (their equation 26); here all four moments are those
 //! of the decomposition, exact at the nodes of the rules ([`Tables`](crate::moments::Tables)): third and fourth moments take
 //! products of planes that meet in one or two dimensions too. So everything is exact for functions whose terms have two
-//! dimensions each, as far as the rules are. What three dimensions do together is left out.
+//! dimensions each, as far as the rules are. Joint effects of three dimensions are left out.
 //!
 //! Correlated inputs go by eigenvectors, as in `dimension-reduction`.
 //!

@@ -8,7 +8,7 @@ use crate::surrogate::{InputShape, Surrogate, Univariate};
 /// A difference three sigma out that does not matter: higher powers have that, and the other points see them.
 const FAR: f64 = 0.1;
 
-/// Whether the model has no value at a point, rather than nobody an answer.
+/// Whether the model has no value at a point, rather than an answer that was not given.
 pub(super) fn failed(known: &KnownAnswers, point: &Point, characteristic: usize) -> bool {
     known.error(point, characteristic).is_some_and(|error| !matches!(error, EvaluationError::NotGiven))
 }
@@ -25,7 +25,7 @@ pub(super) fn failed(known: &KnownAnswers, point: &Point, characteristic: usize)
 /// kurtosis  E [(4 z^3 - 4 g - 4 k z) d] / sigma          k: kurtosis
 /// ```
 ///
-/// What is left out and has no part in these, as an interaction that was not examined, adds its own variance.
+/// An effect that is left out and has no part in these, as an interaction that was not examined, adds its own variance.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SurrogateCheck {

@@ -26,7 +26,7 @@ pub enum ClimbEnd {
 pub struct Climbed {
     /// The relative error of sigma that was wanted.
     pub accuracy: f64,
-    /// What was wanted of other results.
+    /// The accuracies to reach of other results.
     pub accuracies: Accuracies,
     /// Why it ended.
     pub rest: ClimbEnd,
@@ -42,10 +42,10 @@ pub struct Climbed {
     pub all_pairs: bool,
     /// For every characteristic what the check says; None where it has no surrogate, or nothing was checked.
     pub checked: Vec<Option<SurrogateCheck>>,
-    /// What answers next to the means scatter by.
+    /// The scatter of answers next to the means.
     pub noise: Vec<Option<f64>>,
     /// How many sigmas model and surrogate differ by three sigma out along the steepest line, infinite where the model has no
-    /// value there; None where nobody looked.
+    /// value there; None where the tails were not examined.
     pub tails: Vec<Option<f64>>,
     /// The share of the variance that interactions have which the screening did not find, where it was needed.
     pub unscreened: Vec<Option<f64>>,

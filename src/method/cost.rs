@@ -1,4 +1,4 @@
-//! What a method takes.
+//! The cost of a method.
 
 use super::{EvaluationLimit, Method, MethodError, Options};
 use crate::plan::Plan;

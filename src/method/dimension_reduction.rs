@@ -8,7 +8,7 @@
 //! integration in stochastic mechanics", Probabilistic Engineering Mechanics 19, equations 5 and 13. They integrate raw
 //! moments through a recurrence of binomials; here the cumulants of the parts, which add, come from one-dimensional quadrature of
 //! each part about its own mean, so that nothing cancels. Exact for sums of functions of one dimension each, as far as the rules
-//! are: with m nodes for a fourth power of degree 2m-1. What two dimensions do together is left out.
+//! are: with m nodes for a fourth power of degree 2m-1. Joint effects of two dimensions are left out.
 //!
 //! Correlated inputs go by the eigenvectors of their correlation, 2 or 4 points a direction and the centre: Youn, Xi and Wang
 //! (2008), "Eigenvector dimension reduction (EDR) method for sensitivity-free probability analysis", Structural and

@@ -1,7 +1,7 @@
 //! How far the results of a method may be off, by what it did not see.
 //!
 //! Every source changes the surrogate as what it stands for might, and the change of the moments is its part in the estimate; parts
-//! of different sources add. What nothing is known of makes the estimate None.
+//! of different sources add. A source of unknown size makes the estimate None.
 
 use serde::Serialize;
 
@@ -78,7 +78,7 @@ pub enum ErrorSource {
     },
     /// Interactions of three and more, from those of two.
     Triples,
-    /// What answers scatter by.
+    /// The scatter of answers.
     Scatter,
     /// A derivative that could not be had.
     Lost,
@@ -115,16 +115,16 @@ impl ErrorSource {
 }
 
 impl ErrorEstimate {
-    /// What it rests on, in words.
+    /// Its sources, in words.
     pub(crate) fn basis(&self) -> String {
         self.sources.iter().map(|source| source.words()).collect::<Vec<_>>().join("; ")
     }
 }
 
-/// What terms `u_j^2 u_k` may add to half the variance: in a product of functions, and in a function of a sum, they are `t a_j A_jk/b_j`
-/// with slopes `b` and curvatures `a` and `t` from 1 to 3, and a slope of `k` by their mean. Where two dimensions act by their
-/// squares, two corners cannot tell `u_j^2 u_k^2` from the product, and all of that is in doubt. And what `u_j^2 u_k^2`, in such
-/// functions `a_j a_k A_jk/(b_j b_k)`, may move the mean by.
+/// The amount that terms `u_j^2 u_k` may add to half the variance: in a product of functions, and in a function of a sum, they
+/// are `t a_j A_jk/b_j` with slopes `b` and curvatures `a` and `t` from 1 to 3, and a slope of `k` by their mean. Where two
+/// dimensions act by their squares, two corners cannot tell `u_j^2 u_k^2` from the product, and all of that is in doubt. And what
+/// `u_j^2 u_k^2`, in such functions `a_j a_k A_jk/(b_j b_k)`, may move the mean by.
 fn twists(parts: &[Univariate], products: &[(usize, usize, f64)]) -> [f64; 2] {
     let [slopes, curvatures]: [Vec<f64>; 2] =
         [0, 1].map(|i| parts.iter().map(|part| part.coefficients()[i].abs()).collect());
@@ -201,7 +201,7 @@ impl Estimate<'_> {
         self.outcome.plan.varying().iter().map(|&d| self.outcome.fitted[self.c].parts[d]).collect()
     }
 
-    /// What powers beyond the polynomials may add; None where a part is not even a parabola.
+    /// The amount that powers beyond the polynomials may add; None where a part is not even a parabola.
     fn hidden(&self, moments: &Moments) -> Option<Errors> {
         let plan = &self.outcome.plan;
         let parts = self.parts()?;

@@ -1,4 +1,4 @@
-//! What the polynomial through a dimension's nodes cannot show: terms that vanish at all of them.
+//! Terms that the polynomial through a dimension's nodes cannot show: those that vanish at all of them.
 //!
 //! With `w(u)` the product of `u` and `u - u_i` over the nodes, a part may as well be `g(u) + (p + q u) w(u)`. Its size is taken
 //! from how fast the known coefficients fall: from one power to the next but one by the same factor.
@@ -15,7 +15,7 @@ use crate::distribution::Rule;
 use crate::moments::Term;
 use crate::surrogate::{InputShape, Univariate};
 
-/// Factors above this say only that the polynomial is no good.
+/// Factors above this say only that the polynomial is bad.
 const MOST: f64 = 0.05;
 const MOST_OF_FOUR: f64 = 0.3;
 /// With a rule at the nodes of a long tail: this part of what is curved.

@@ -1,4 +1,4 @@
-//! What the derivative methods share: a difference plan, evaluated and fitted.
+//! The common part of the derivative methods: a difference plan, evaluated and fitted.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::plan::{DifferencePlan, KnownAnswers, Layout, Mixed, PairChoice, Plan,
 use crate::problem::Problem;
 use crate::surrogate::{Surrogate, Univariate};
 
-/// What the assembly function knows of every characteristic's derivatives.
+/// The derivatives of every characteristic that the assembly function knows.
 type KnownDerivatives = Vec<Option<ExactDerivatives>>;
 
 /// Parts and mixed derivatives that come from elsewhere.
@@ -96,7 +96,7 @@ impl Ladder {
         self.method == self.runs && (all || slopes) && gradients::serve(options)
     }
 
-    /// What is evaluated of a model that sends derivatives.
+    /// The plan and its cost for a model that sends derivatives.
     fn by_gradients(&self, problem: &Problem) -> (DifferencePlan, Cost) {
         let spread = match (self.order, self.method) {
             (Order::First, _) => Spread::Bare,

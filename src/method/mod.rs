@@ -134,14 +134,14 @@ pub enum MethodError {
         /// The option.
         option: &'static str,
     },
-    /// A pair names something that is no dimension.
+    /// A pair names something that is not a dimension.
     #[error("pair `{a}:{b}`: there is no dimension `{unknown}`{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
     UnknownPair {
         /// The first of the pair.
         a: String,
         /// The second of the pair.
         b: String,
-        /// The one that is no dimension.
+        /// The one that is not a dimension.
         unknown: String,
         /// The most similar dimension.
         nearest: Option<String>,
@@ -188,7 +188,7 @@ pub enum MethodError {
         /// The number given.
         nodes: usize,
     },
-    /// An accuracy that is no positive number.
+    /// An accuracy that is not a positive number.
     #[error("{}, a number above 0, not {accuracy}", accuracy_of(*figure))]
     BadAccuracy {
         /// Of what.
@@ -196,7 +196,7 @@ pub enum MethodError {
         /// The accuracy given.
         accuracy: f64,
     },
-    /// A step that is no positive number.
+    /// A step that is not a positive number.
     #[error("the step must be a number of sigmas above 0, not {step}")]
     BadStep {
         /// The step given.
@@ -205,7 +205,7 @@ pub enum MethodError {
 }
 
 impl MethodError {
-    /// What to do about it.
+    /// The actions to take.
     pub(crate) fn advice(&self) -> Vec<Advice> {
         match self {
             Self::OverBudget { fitting, .. } => {

@@ -1,4 +1,4 @@
-//! What can be chosen about an analysis.
+//! The options of an analysis.
 
 use std::fmt;
 
@@ -23,7 +23,7 @@ pub struct Options {
     pub method: Method,
     /// The relative error of sigma that is wanted; for `auto`.
     pub accuracy: Option<f64>,
-    /// What is wanted of the other results; for `auto`.
+    /// The accuracies to reach of the other results; for `auto`.
     pub accuracies: Accuracies,
     /// The most evaluations that may be spent.
     pub budget: Option<usize>,

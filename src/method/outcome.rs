@@ -1,4 +1,4 @@
-//! What a method found out.
+//! The outcome of a method.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use crate::moments::Moments;
 use crate::plan::{Mixed, Plan};
 use crate::surrogate::{Surrogate, Univariate};
 
-/// What a method found out.
+/// The outcome of a method.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Outcome {
@@ -20,9 +20,9 @@ pub struct Outcome {
     pub method: Method,
     /// The basis of the moments.
     pub basis: Basis,
-    /// What it planned.
+    /// Its plan.
     pub plan: Arc<dyn Plan>,
-    /// What it evaluated.
+    /// Its evaluations.
     pub evaluated: Evaluated,
     /// How much of it the surrogates use.
     pub order: Order,
@@ -34,7 +34,7 @@ pub struct Outcome {
     pub climbed: Option<Climbed>,
 }
 
-/// What is known of one characteristic.
+/// The fit of one characteristic.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Fitted {
@@ -52,7 +52,7 @@ pub struct Fitted {
     pub surrogate: Option<Surrogate>,
     /// The moments of a method that integrates without a surrogate.
     pub integrated: Option<Integrated>,
-    /// Why a method that is no difference plan has no moments.
+    /// Why a method that is not a difference plan has no moments.
     pub lacking: Option<Lacking>,
     /// How far a surrogate of least squares misses the values that it was fitted to.
     pub residual: Option<Residual>,
@@ -74,7 +74,7 @@ pub struct Integrated {
     pub nodes: usize,
 }
 
-/// What one dimension does by itself.
+/// The effect of one dimension by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct MainEffect {
@@ -86,7 +86,7 @@ pub struct MainEffect {
     pub mean_shift: Option<f64>,
 }
 
-/// What two dimensions do together, beyond what each does by itself.
+/// The joint effect of two dimensions, beyond the effects of each by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct InteractionEffect {

@@ -1,4 +1,4 @@
-//! What a method does.
+//! The procedure of a method.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::assembly::Run;
 use crate::plan::Plan;
 use crate::problem::Problem;
 
-/// What a method does.
+/// The procedure of a method.
 pub trait Procedure: Sync {
     /// Its place in the enumeration.
     fn method(&self) -> Method;
@@ -17,7 +17,7 @@ pub trait Procedure: Sync {
         self.method().name()
     }
 
-    /// What it does, in one line.
+    /// Its description, in one line.
     fn about(&self) -> &'static str;
 
     /// How many evaluations it takes for N dimensions, as a formula.
@@ -31,7 +31,7 @@ pub trait Procedure: Sync {
         self.plan(problem, options).map(drop)
     }
 
-    /// What it would take, or why it cannot be run.
+    /// Its cost, or why it cannot be run.
     ///
     /// # Errors
     /// As [`Procedure::plan`], and when it needs more evaluations than the budget allows.

@@ -1,4 +1,5 @@
-//! What the methods share that integrate values instead of derivatives: independent inputs, their rules, and their points.
+//! The common part of the methods that integrate values instead of derivatives: independent inputs, their rules, and their
+//! points.
 //!
 //! An input of its own is one variable, with a quadrature rule of its own distribution. Correlated inputs are functions of
 //! normal variables `z` (Nataf), and these go by the eigenvectors of their correlation `R = V D V'`, group by group:
@@ -41,7 +42,7 @@ pub(super) struct Variable {
     moves: Moves,
 }
 
-/// What a variable moves.
+/// The dimensions that a variable moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Moves {
     /// The dimension at this position among the varying ones.
@@ -216,7 +217,7 @@ fn directions(correlation: &Mat<f64>) -> Mat<f64> {
     })
 }
 
-/// What the options of a method that integrates come to: no step, no stencil, no pairs; and no blocks of inputs.
+/// Checks the options of a method that integrates: no step, no stencil, no pairs; and no blocks of inputs.
 pub(super) fn check(
     method: &'static str,
     problem: &Problem,
@@ -231,7 +232,7 @@ pub(super) fn check(
     Ok(())
 }
 
-/// What the options of a method without steps, stencil and pairs come to.
+/// Checks the options of a method without steps, stencil and pairs.
 pub(super) fn check_options(method: &'static str, options: &Options, nodes: bool) -> Result<(), MethodError> {
     let derivatives = "a method of derivatives";
     let given = [
@@ -250,7 +251,7 @@ pub(super) fn check_options(method: &'static str, options: &Options, nodes: bool
     }
 }
 
-/// What is known of one characteristic: its moments, or why there are none, and the mixed derivatives of the pairs examined.
+/// The results of one characteristic: its moments, or why there are none, and the mixed derivatives of the pairs examined.
 pub(super) type IntegratedParts = (Result<Integrated, Lacking>, Vec<Option<Mixed>>);
 
 /// A design over the variables of a problem.

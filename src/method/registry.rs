@@ -18,20 +18,20 @@ pub static ALL: &[&dyn Procedure] = &[
     &super::response_surface::ResponseSurface,
 ];
 
-/// What a method does.
+/// The procedure of a method.
 pub fn procedure(method: Method) -> &'static dyn Procedure {
     *ALL.iter().find(|procedure| procedure.method() == method).expect("every method is registered")
 }
 
 impl Method {
-    /// What it does.
+    /// Its procedure.
     pub(crate) fn procedure(self) -> &'static dyn Procedure {
         procedure(self)
     }
 }
 
 impl Options {
-    /// What an analysis of the problem takes, or why it cannot be run; nothing is evaluated.
+    /// The cost of an analysis of the problem, or why it cannot be run; nothing is evaluated.
     ///
     /// # Errors
     /// When the options do not fit the problem, and when the method needs more evaluations than the budget allows.

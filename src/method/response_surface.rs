@@ -15,10 +15,10 @@
 //! show as an interaction of two others.
 //!
 //! The surface is fitted in sigmas, by a QR decomposition with column pivoting. Its moments are exact, as those of the derivative
-//! methods, whatever the distributions, and sampled where correlated inputs are not normal. What it misses of the values is the
-//! residual standard error, from as many degrees of freedom as there are more points than coefficients; what follows from it for
-//! mean and sigma takes the misses for random, which those of a smooth function are not: it is a scale, and no bound. A point that is lost is
-//! left out of the fit, and there is none where the rest do not determine it.
+//! methods, whatever the distributions, and sampled where correlated inputs are not normal. The part of the values that it misses
+//! is the residual standard error, from as many degrees of freedom as there are more points than coefficients; the errors of mean
+//! and sigma that follow from it take the misses for random, which those of a smooth function are not: it is a scale, and no
+//! bound. A point that is lost is left out of the fit, and there is none where the rest do not determine it.
 //!
 //! Evaluations: `2^r + 2N + 1`; r is N up to four dimensions, and then 4, 5, 6 for N of 5, 6, 7 and 8, 7 up to 11, 8 up to 17.
 

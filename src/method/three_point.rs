@@ -11,8 +11,8 @@
 //! the products; a fourth moment is, where the function is linear in each dimension. Of curved functions mean and sigma are good
 //! and skewness and kurtosis are not: a warning says so.
 //!
-//! Shares of the variance come from the same values: of conditional means at the levels of one dimension and of two. What is left
-//! out is what three and more dimensions do together. Correlated inputs go by eigenvectors, as in `dimension-reduction`.
+//! Shares of the variance come from the same values: of conditional means at the levels of one dimension and of two. Joint
+//! effects of three and more dimensions are left out. Correlated inputs go by eigenvectors, as in `dimension-reduction`.
 //!
 //! Evaluations: 3 to the power of N, and 1 where the nominal is not among them.
 

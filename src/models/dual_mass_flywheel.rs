@@ -378,7 +378,7 @@ struct Crank {
     r: f64,
     l: f64,
     bore: f64,
-    /// What goes up and down.
+    /// The mass that goes up and down.
     mass: f64,
     p3: f64,
 }

@@ -43,7 +43,7 @@ pub(super) fn pressure(degrees: f64, p3: f64, start: f64, rod_by_crank: f64) -> 
     working(strokes(Sin::of(theta), Cos::of(theta), rod_by_crank), Exp::of(unburnt_log(degrees, start)), p3)
 }
 
-/// What the volume makes of the pressure: of the charge that is not burnt, Pa, and of the burnt one by p3.
+/// The pressure by the volume: of the charge that is not burnt, Pa, and of the burnt one by p3.
 #[inline]
 pub(super) fn strokes<T: Real>(sin: T, cos: T, rod_by_crank: f64) -> [T; 2] {
     let root = (-(sin * sin) + rod_by_crank * rod_by_crank).sqrt();
@@ -74,7 +74,7 @@ pub(super) fn blow_down<T: Real>(degrees: T, p3: f64) -> T {
     left * (p3 * Exp::of(-POWERS[1] * Ln::of(COMPRESSION)) - EXHAUST) + EXHAUST
 }
 
-/// What the exhaust's pressure has to do with p3: Pa, and by p3. Between 180 and 360 degrees.
+/// The dependence of the exhaust's pressure on p3: Pa, and by p3. Between 180 and 360 degrees.
 pub(super) fn exhaust(degrees: f64) -> [f64; 2] {
     let left = Exp::of(-(degrees - 180.0) / BLOW_DOWN);
     [EXHAUST * (1.0 - left), left * Exp::of(-POWERS[1] * Ln::of(COMPRESSION))]

@@ -4,7 +4,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::elementary::{Elementary, Exp, Ln};
 
-/// What the formulas of a mechanism are written in: numbers, or numbers with derivatives by the crank angle.
+/// The numbers in which the formulas of a mechanism are written: plain ones, or ones with derivatives by the crank angle.
 pub(super) trait Real:
     Copy
     + Neg<Output = Self>
@@ -165,7 +165,7 @@ const MOST_STEPS: usize = 64;
 
 /// The largest value of a smooth function within `ends`, and where it is, from a place in the same lobe.
 ///
-/// Newton's method on the first derivative within a bracket that the derivative's sign narrows. What is left of the last step is
+/// Newton's method on the first derivative within a bracket that the derivative's sign narrows. The rest of the last step is
 /// taken off by the parabola there, so that the value is smooth in whatever else the function depends on: neither the grid that
 /// the search began on nor where it ended shows.
 pub(super) fn climb(function: impl Fn(f64) -> Jet, start: f64, ends: [f64; 2]) -> Peak {

@@ -37,7 +37,7 @@ pub static ALL: &[&Model] = &[
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Model {
-    /// What study files call it.
+    /// Its name in study files.
     pub name: &'static str,
     /// One line.
     pub title: &'static str,
@@ -74,7 +74,7 @@ pub struct ModelInput {
     pub unit: &'static str,
     /// The value it has where a study does not say.
     pub nominal: f64,
-    /// What it is.
+    /// Its description.
     pub about: &'static str,
 }
 
@@ -86,13 +86,13 @@ pub struct ModelOutput {
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// What it is.
+    /// Its description.
     pub about: &'static str,
     /// Indices of the inputs that it depends on, ascending.
     pub depends_on: &'static [usize],
 }
 
-/// What a model is asked: some rows of points, and some of its outputs.
+/// A request to a model: some rows of points, and some of its outputs.
 #[derive(Debug)]
 pub(crate) struct Block<'a> {
     points: &'a Points,

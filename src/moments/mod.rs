@@ -118,7 +118,7 @@ pub struct Contributions {
     pub per_sigma: f64,
     /// For every product `j < k` its share, where inputs are correlated and it is not the square of its coefficient.
     pub products: Option<BTreeMap<(usize, usize), f64>>,
-    /// What sampling leaves uncertain; None where everything is exact.
+    /// The uncertainty that sampling leaves; None where everything is exact.
     pub sampled: Option<Sampled>,
 }
 

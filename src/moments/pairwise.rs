@@ -97,7 +97,7 @@ impl Tables<'_> {
         }
         let mut parts = self.uncorrelated(1.0 / scale);
         let variance = parts.variance();
-        // What rounding leaves of parts that cancel each other is no variation.
+        // The rest that rounding leaves of parts that cancel each other is not a variation.
         if variance <= (4.0 * f64::EPSILON).powi(2) * (n + self.pairs.len()) as f64 {
             let mean = self.constant + scale * parts.mean;
             return Pairwise { moments: Moments::constant(mean), ..nothing() };
@@ -293,7 +293,7 @@ impl Parts<'_> {
         let (of_j, of_k, of_l) = (self.weights[j], self.weights[k], self.weights[l]);
         let (q, r) = (of_k.len(), of_l.len());
         let at = |table: &[f64], place: usize| table.get(place).copied().unwrap_or(0.0);
-        // What two of the tables have in common through the third variable.
+        // The common part of two of the tables through the third variable.
         let meet = |rows: &[f64], columns: &[f64], through: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
             (0..rows.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b))).map(|(a, b)| through(a, b)).collect()
         };

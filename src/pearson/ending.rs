@@ -4,7 +4,7 @@ use super::shape::{End, Infinity};
 
 /// Terms that a series may take.
 const TERMS: usize = 120;
-/// What a term must fall below, twice in a row, for the series to end.
+/// The bound that a term must fall below, twice in a row, for the series to end.
 const SMALL: f64 = 1e-18;
 
 /// A closed form of the density beyond some place, up to a factor, as a function of `v`, the distance relative to where the
@@ -105,7 +105,7 @@ impl Ending {
         power + self.sum(self.powers(v)).ln()
     }
 
-    /// What lies beyond, by the density: Mills' ratio in z.
+    /// The mass that lies beyond, by the density: Mills' ratio in z.
     pub(super) fn mills(&self, v: f64) -> f64 {
         let x = self.powers(v);
         let first = match self.kind {

@@ -4,7 +4,7 @@ use super::shape::{Roots, Shape};
 
 /// Terms of a series before its panel is halved instead.
 const TERMS: usize = 48;
-/// What a term must fall below, twice in a row, for the series to end.
+/// The bound that a term must fall below, twice in a row, for the series to end.
 const SMALL: f64 = 1e-18;
 /// Half a panel by the distance of its middle to the next root: terms fall at least as this does.
 const REACH: f64 = 0.28;

@@ -54,7 +54,7 @@ pub enum PearsonError {
         skewness: f64,
         /// As given.
         kurtosis: f64,
-        /// What the kurtosis must exceed.
+        /// The bound that the kurtosis must exceed.
         bound: f64,
         /// The law at the bound.
         law: TwoPoint,

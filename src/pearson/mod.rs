@@ -186,7 +186,7 @@ impl Pearson {
         if x.is_nan() { f64::NAN } else { self.turned(self.standard.log_cdf_sf(self.z(x)))[1] }
     }
 
-    /// Below which the probability is p; NaN where p is no probability.
+    /// Below which the probability is p; NaN where p is not a probability.
     pub fn quantile(&self, p: f64) -> f64 {
         self.inverse([p, 1.0 - p])
     }

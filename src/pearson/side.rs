@@ -166,7 +166,7 @@ impl Side {
             let slope = (log + ending.log_density(v)).exp() * ending.length(v);
             (own - log.exp() * ending.inner(v, edge), slope)
         };
-        // What lies beyond is a good start, if only that.
+        // The place by the mass beyond is a good start, if only that.
         let start = ending.relative(self.with_mass_beyond((self.mass - mass).max(0.0).ln())).ln();
         Some(self.in_ending(ending, start, off))
     }

@@ -31,7 +31,7 @@ pub struct Axis {
     pub tail: Option<Tail>,
 }
 
-/// What replaces a node at which the model failed: half its distance, then a quarter.
+/// The replacements of a node at which the model failed: half its distance, then a quarter.
 const REPLACEMENTS: [f64; 2] = [0.5, 0.25];
 /// The step of a sensitivity without tolerance, relative to the larger of the nominal and 1.
 const SENSITIVITY_STEP: f64 = 1e-4;
@@ -59,8 +59,8 @@ impl Axis {
         axis.with_inner()
     }
 
-    /// Two nodes more, so that the axis has five with the mean; whether there are such. What was evaluated stays, and pairs
-    /// stand where they stood.
+    /// Two nodes more, so that the axis has five with the mean; whether there are such. Evaluated points stay, and pairs stand
+    /// where they stood.
     ///
     /// On either side the one of the matched five-point nodes that lies farther from the node that there is. Where the
     /// tail is too long for a quartic, or the five do not lie two on either side, all four are new.
@@ -142,7 +142,7 @@ impl Axis {
         }
     }
 
-    /// A node of a value that is no node yet.
+    /// A node of a value that is not a node yet.
     pub(super) fn open_node(&mut self, x: f64) -> u32 {
         let index = u32::try_from(self.nodes.len()).expect("fewer than four billion nodes on an axis");
         self.nodes.push(Node { x, u: (x - self.mean) / self.scale });

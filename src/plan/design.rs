@@ -83,7 +83,7 @@ impl Design {
     }
 
     /// Makes these values steps of a dimension: those from which its derivatives are taken, and that a plan shows. A value
-    /// that is the mean is no step.
+    /// that is the mean is not a step.
     pub(crate) fn steps(&mut self, dimension: usize, values: impl IntoIterator<Item = f64>) {
         for x in values {
             if let Some(node) = self.node(dimension, x) {

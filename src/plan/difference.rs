@@ -16,7 +16,7 @@ use crate::correlation::Correlation;
 use crate::dimension::Dimension;
 use crate::surrogate::{InputShape, Inputs, Univariate, shapes};
 
-/// What a difference plan evaluates.
+/// The points that a difference plan evaluates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     /// How many nodes an axis has.

@@ -5,7 +5,7 @@ use super::known_answers::KnownAnswers;
 use super::point::{AtNode, Point};
 use crate::surrogate::Inputs;
 
-/// What plans of every kind have in common. Positions count the dimensions that vary and matter.
+/// The common part of plans of every kind. Positions count the dimensions that vary and matter.
 #[derive(Debug, Clone)]
 pub struct Geometry {
     pub(super) axes: Vec<Axis>,

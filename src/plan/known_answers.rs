@@ -1,4 +1,4 @@
-//! What is known: the answers so far, per point and characteristic.
+//! The answers so far, per point and characteristic.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What to evaluate next, and why: pure functions from what is known to the next stage of points.
+//! The next points to evaluate, and why: pure functions from what is known to the next stage of points.
 //!
 //! A plan evaluates nothing. It names points by dimension and node, so that a point that serves two purposes is one
 //! point, and says at every step which points it still lacks; a point that failed is simply not known, and the plan
@@ -31,7 +31,7 @@ pub use stage::{Purpose, Stage};
 use std::fmt::Debug;
 use std::ops::Deref;
 
-/// What a method wants to be evaluated: points named by dimension and node, stage after stage.
+/// The evaluations that a method asks for: points named by dimension and node, stage after stage.
 ///
 /// A `DifferencePlan` is one, and so is a `Design`, whose points are all known beforehand. Everything that is known without a point
 /// is its `Geometry`.

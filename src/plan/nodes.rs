@@ -145,7 +145,7 @@ fn five(distribution: &dyn Distribution, [lower, upper]: [f64; 2]) -> Option<(Ve
     (usable(&u) && u.windows(2).all(|pair| pair[1] - pair[0] >= 0.5 * NEAREST)).then_some((u, rule))
 }
 
-/// The nodes that were wanted outside the support; a partner that goes with one of them is no fault of its own.
+/// The nodes that were wanted outside the support; a partner that goes with one of them is not a fault of its own.
 fn moved(wanted: &[f64], u: &[f64], [lower, upper]: [f64; 2]) -> Vec<MovedNode> {
     let outside = |from: f64| from <= lower || from >= upper;
     let both = wanted.iter().zip(u).filter(|(from, _)| outside(**from));

@@ -9,7 +9,7 @@ pub struct Stage {
     pub points: Vec<(Point, Purpose)>,
 }
 
-/// What a point is for. One that serves several purposes bears the first of them.
+/// The purpose of a point. One that serves several purposes bears the first of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Purpose {

@@ -1,4 +1,4 @@
-//! What weighted points say of a small probability.
+//! Estimates of a small probability by weighted points.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -193,8 +193,8 @@ impl Weighed {
     ///
     /// The interval is lognormal where many points bear it, wider by what these leave uncertain of the standard error, and that of a weighted count where few do or their weights
     /// differ widely (Fay and Feuer 1997; with a greater weight than any seen in the second case).
-    /// What lies next to the farthest of them, where no point was beyond, may hold as much as no hit leaves room for: the
-    /// two are joined as Zou and Donner (2008) do. What lies farther is taken to be as the points say: empty.
+    /// The region next to the farthest of them, where no point was beyond, may hold as much as no hit leaves room for: the
+    /// two are joined as Zou and Donner (2008) do. The region that lies farther is taken to be as the points say: empty.
     pub(super) fn found(&self) -> Option<ProbabilityEstimate> {
         if self.points == 0 {
             return None;

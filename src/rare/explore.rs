@@ -25,10 +25,10 @@ const LARGER: usize = 4;
 const MOST: usize = 400;
 const PART: [f64; 2] = [1.0 / 50.0, 1.0 / 25.0];
 const ENOUGH: f64 = 2000.0;
-/// What a bound leaves to chance: 2.5 %, the upper half of a 95 % interval.
+/// The probability that a bound is wrong by chance: 2.5 %, the upper half of a 95 % interval.
 const CHANCE: f64 = 0.025;
 
-/// What the model said before any points were drawn.
+/// The model's answers before any points were drawn.
 pub(super) struct Explored {
     /// Normal variables of all points.
     normals: Columns,
@@ -125,7 +125,7 @@ impl Explored {
         points.into_iter().map(|(_, point)| point).collect()
     }
 
-    /// What a target that no point has reached can be at most, if it is a half-space.
+    /// The largest probability of a target that no point has reached, if it is a half-space.
     ///
     /// A half-space at the distance `b` holds a point of `N(0, s^2)` with the probability `Phi(-b/s)`, whatever its direction. That none
     /// of `n_s` points of each scale lies in it has the probability `prod_s (1 - Phi(-b/s))^(n_s)`, which rises with `b`: where it is

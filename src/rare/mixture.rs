@@ -37,7 +37,7 @@ const LAYERS: [(f64, f64); 9] = [
 ];
 /// The levels where the surrogate does not reach a limit.
 const LEVELS: [f64; 5] = [0.1, 1e-2, 1e-4, 1e-6, 1e-9];
-/// What is more likely than this needs no component but the inputs' own density.
+/// A target that is more likely than this needs no component but the inputs' own density.
 const LIKELY: f64 = 0.2;
 /// The parts of the points from the inputs' own density and from a wider one, where that many points are to spare and where they are not.
 /// They find what nothing else knows of, and bound the weights there.

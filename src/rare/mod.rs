@@ -105,7 +105,7 @@ impl RareOptions {
     }
 }
 
-/// What was found out about rare events.
+/// The results for rare events.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
@@ -115,8 +115,8 @@ pub struct RareEvents {
     #[serde(rename = "surrogate")]
     #[cfg_attr(feature = "cli", schemars(with = "String"))]
     pub method: Method,
-    /// What it came to in points and time, those of the surrogate included; why it ended before all points were drawn or what was
-    /// wanted was reached.
+    /// Its points and time, those of the surrogate included; why it ended before all points were drawn or the accuracy was
+    /// reached.
     #[serde(flatten)]
     pub run: RunSummary,
     /// Points that were drawn and answered.
@@ -147,7 +147,7 @@ pub struct RareEvents {
     pub warnings: Vec<Warning>,
 }
 
-/// What is known of one characteristic.
+/// The results of one characteristic.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
@@ -177,7 +177,7 @@ pub struct RareCharacteristic {
     pub unfinished: bool,
 }
 
-/// What is known of what lies beyond one limit.
+/// The results beyond one limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -425,7 +425,7 @@ fn correct(places: Vec<Place>, targets: &[Target<'_>], budget: usize, model: &mu
     places.into_iter().zip(crosses).filter_map(kept).collect()
 }
 
-/// What the model said on the way to some places.
+/// The model's answers on the way to some places.
 struct Looked {
     /// For every place, distances and values, ascending.
     values: Vec<Vec<(f64, f64)>>,

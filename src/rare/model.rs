@@ -32,7 +32,7 @@ pub(super) struct Model<'a> {
     pub(super) non_repeatable: Vec<NonRepeatable>,
 }
 
-/// What the model said.
+/// The model's answers.
 pub(super) struct Answers {
     /// A column for every characteristic, NaN where there is no value.
     columns: Vec<Vec<f64>>,

@@ -18,7 +18,7 @@ use crate::sampling::Estimate;
 const GUIDES: usize = 2000;
 /// Fewer say nothing of where the others are.
 const FEW: usize = 8;
-/// What of the parts stays as it was at first, whatever was seen.
+/// The part of the components' shares that stays as it was at first, whatever was seen.
 const KEPT: f64 = 0.25;
 
 /// The most half-spaces of a target.
@@ -34,7 +34,7 @@ const STRAYED: f64 = 0.05;
 /// The part of a component without a place stays at least this much of its first.
 const WATCHING: f64 = 0.5;
 
-/// What has been drawn and answered so far.
+/// The points that have been drawn and answered so far.
 pub(super) struct Search<'a> {
     targets: &'a [Target<'a>],
     mixture: Mixture<'a>,
@@ -313,7 +313,7 @@ impl<'a> Search<'a> {
         Some((found.probability.map(|found| 1.0 - found.value), [1.0 - high, 1.0 - low]))
     }
 
-    /// What is known of every characteristic.
+    /// The results of every characteristic.
     pub(super) fn characteristics(self, model: &Model<'_>, unfinished: bool) -> Vec<RareCharacteristic> {
         let space = model.space;
         let beyond = |c: usize, sign: f64| {

@@ -1,4 +1,4 @@
-//! What is rare: a characteristic beyond one of its limits, as the surrogate sees it.
+//! A rare event: a characteristic beyond one of its limits, as the surrogate sees it.
 
 use super::space::{Columns, Space};
 use crate::surrogate::Surrogate;

@@ -51,7 +51,7 @@ pub(super) fn within(
     Some(Within { value, interval })
 }
 
-/// What keeps one limit, less what lies beyond the other.
+/// The probability of keeping one limit, less that of lying beyond the other.
 fn keeping(kept: ProbabilityEstimate, other: Option<&Beyond>) -> Within {
     let estimate = |probability: Option<Estimate>| probability.map_or(0.0, |estimate| estimate.value);
     let (keeps, lost) = (estimate(kept.probability), other.map_or(0.0, |beyond| estimate(beyond.probability)));
@@ -89,7 +89,7 @@ impl RareCharacteristic {
         verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
     }
 
-    /// What is to be said of its target yield; None without one.
+    /// The verdict on its target yield; None without one.
     pub fn verdict(&self) -> Option<Verdict> {
         self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
     }

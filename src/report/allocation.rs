@@ -24,7 +24,7 @@ use crate::warning::Warning;
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct AllocationReport {
-    /// What every report begins with.
+    /// The common head of every report.
     #[serde(flatten)]
     pub(crate) head: Head,
     /// The method by which derivatives were taken.
@@ -34,7 +34,7 @@ pub struct AllocationReport {
     pub(crate) status: Status,
     /// Whether the model was evaluated at the tolerances found.
     pub(crate) confirmed: bool,
-    /// What it came to in points and time, and why it ended early.
+    /// Its points and time, and why it ended early.
     #[serde(flatten)]
     pub(crate) run: RunSummary,
     /// How often derivatives were taken.
@@ -111,7 +111,7 @@ pub(crate) struct OfDimension<T> {
     pub(crate) dimension: String,
     /// Its unit.
     pub(crate) unit: Option<String>,
-    /// What there is of it.
+    /// Its result.
     #[serde(flatten)]
     pub(crate) of: T,
 }
@@ -122,7 +122,7 @@ pub(crate) struct OfDimension<T> {
 pub(crate) struct OfCharacteristic<T> {
     /// The characteristic.
     pub(crate) characteristic: String,
-    /// What there is of it.
+    /// Its result.
     #[serde(flatten)]
     pub(crate) of: T,
 }
@@ -131,7 +131,7 @@ pub(crate) struct OfCharacteristic<T> {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(crate) struct AllocatedReport {
-    /// What was found.
+    /// The allocated tolerance of the dimension.
     #[serde(flatten)]
     pub(crate) of: OfDimension<Allocated>,
     /// Lower and upper deviation from the nominal before and after, where there is a band.

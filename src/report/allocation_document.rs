@@ -29,8 +29,8 @@ const LABELS: usize = 6;
 const NAMED: usize = 5;
 
 impl AllocationReport {
-    /// What it says: what it came to, tolerances (table `tolerances`), requirements (table `requirements`), characteristics, the front
-    /// (table `front`), and what to paste into the study.
+    /// The text of the allocation: what it came to, tolerances (table `tolerances`), requirements (table `requirements`),
+    /// characteristics, the front (table `front`), and what to paste into the study.
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         self.heading(&mut document.head);
@@ -212,7 +212,7 @@ impl AllocationReport {
             .table("tolerances", &self.tolerances)
     }
 
-    /// What it saves when the bound of a tolerance gives way by a hundredth of it.
+    /// The savings where the bound of a tolerance gives way by a hundredth of it.
     fn bound_prices(&self, section: &mut Section) {
         /// As many as fit a line.
         const MOST: usize = 3;
@@ -251,7 +251,7 @@ impl AllocationReport {
         costs.flatten().fold(0.0, f64::max)
     }
 
-    /// What every dimension cost, and what it costs.
+    /// The cost of every dimension before and after.
     fn costs(&self) -> Bars {
         let highest = self.paid();
         let part = |fill: Fill, cost: Option<f64>| {
@@ -312,7 +312,7 @@ impl AllocationReport {
             .table("requirements", &self.requirements)
     }
 
-    /// What it saves when a limit gives way by a step that people can picture.
+    /// The saving where a limit gives way by a step that people can picture.
     fn prices(&self, section: &mut Section, price: &OfCharacteristic<ShadowPrice>) {
         let one = self.characteristics.iter().find(|one| one.name == price.characteristic);
         let unit = one.and_then(|one| one.unit.as_deref());
@@ -457,7 +457,7 @@ impl AllocationReport {
             .table("front", rows)
     }
 
-    /// What is required across, by the digits of what is rejected, or the Cpk; cost upwards. The open circle is what the tolerances
+    /// The requirement across, by the digits of the rejects, or the Cpk; cost upwards. The open circle is what the tolerances
     /// before keep and cost.
     fn plot(&self) -> Plot {
         let front: Vec<(f64, f64, String)> = (self.front.iter())
@@ -539,7 +539,7 @@ fn required(requirement: Requirement) -> String {
     }
 }
 
-/// What there is, in the requirement's own measure.
+/// The value in the requirement's own measure.
 fn measure(requirement: Requirement, value: f64) -> String {
     match requirement {
         Requirement::Yield(_) => yielded(value),

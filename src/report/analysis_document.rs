@@ -36,7 +36,8 @@ const DIFFERENT: f64 = 0.05;
 const LEAST_PPM: f64 = 1e-6;
 
 impl Report {
-    /// What it says. Its tables: `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and `warnings`.
+    /// The text of the analysis. Its tables: `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and
+    /// `warnings`.
     pub(crate) fn document(&self) -> Document {
         self.with_pairs(usize::MAX)
     }
@@ -121,7 +122,7 @@ impl Report {
         section
     }
 
-    /// What slopes and curvatures are, unless they are differences as everything else.
+    /// The source of slopes and curvatures, unless they are differences as everything else.
     fn source(&self, one: &CharacteristicAnalysis) -> Option<String> {
         let shown: Vec<_> = one.shown(&self.dimensions).map(|(row, _)| row).collect();
         let differences: Vec<String> = shown.iter().filter(|row| !row.exact).map(|row| short(&row.dimension)).collect();
@@ -359,7 +360,7 @@ impl CharacteristicAnalysis {
         ));
     }
 
-    /// What is rejected, with its error.
+    /// The rejects, with their error.
     pub(super) fn rejects(&self) -> Rejects {
         let error = self.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
         let [below, above] = [|of: &Capability| of.below, |of: &Capability| of.above]
@@ -378,7 +379,7 @@ impl CharacteristicAnalysis {
         far(seen(self.ppm_below()), seen(normal.ppm_below())) || far(seen(self.ppm_above()), seen(normal.ppm_above()))
     }
 
-    /// What the size of measured samples leaves open: intervals beside one another, below what they belong to.
+    /// The uncertainty by the size of measured samples: intervals beside one another, below what they belong to.
     fn sampling(&self, section: &mut Section) {
         let Some(interval) = &self.sampling else { return };
         let samples = interval.samples.iter().take(SAMPLES);
@@ -431,7 +432,7 @@ impl CharacteristicAnalysis {
         self.sensitivities.iter().zip(dimensions).filter(|(row, dimension)| matters(row, dimension))
     }
 
-    /// What the dimensions do, strongest first.
+    /// The contributions of the dimensions, strongest first.
     pub(super) fn contributions(&self, dimensions: &[DimensionReport]) -> DataTable {
         type Row<'r> = (&'r Sensitivity, &'r DimensionReport);
         let all: Vec<Row<'_>> = self.sensitivities.iter().zip(dimensions).collect();

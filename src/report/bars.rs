@@ -1,4 +1,4 @@
-//! What of a characteristic is drawn as bars: contributions to the variance, and intervals beside the limits.
+//! The bars of a characteristic: contributions to the variance, and intervals beside the limits.
 
 use super::figures::{Figures, Named};
 use crate::analysis::{CharacteristicAnalysis, Sensitivity};

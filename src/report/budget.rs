@@ -25,7 +25,7 @@ const STUDENT: &str = "student";
 /// A sigma this near to the combined uncertainty is the same.
 const SAME: f64 = 1e-3;
 
-/// The budget of one characteristic. What is unknown is None.
+/// The budget of one characteristic. Unknown values are None.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Budget {

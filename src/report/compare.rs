@@ -20,10 +20,10 @@ use crate::{compare::ErrorShape, simulation::SimulatedShape};
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CompareReport {
-    /// What every report begins with.
+    /// The common head of every report.
     #[serde(flatten)]
     pub(crate) head: Head,
-    /// What all of it came to in points and time, the reference included, and why it ended early.
+    /// The points and time of all of it, the reference included, and why it ended early.
     #[serde(flatten)]
     pub(crate) run: RunSummary,
     /// Points of the reference.
@@ -65,7 +65,7 @@ pub(crate) struct MethodReport {
     pub(crate) evaluation_s: f64,
     /// Seconds besides.
     pub(crate) engine_s: f64,
-    /// What it says.
+    /// Its figures.
     #[serde(flatten)]
     pub(crate) figures: Figures,
     /// How far that is off the reference.
@@ -115,7 +115,8 @@ impl MethodReport {
 }
 
 impl CompareReport {
-    /// What it says: for every characteristic a table (`comparison`), fewest evaluations first, and a chart of error over evaluations.
+    /// The text of the comparison: for every characteristic a table (`comparison`), fewest evaluations first, and a chart of
+    /// error over evaluations.
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let stopped = head::beside(&self.run);

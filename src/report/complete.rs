@@ -48,7 +48,7 @@ fn run_of(json: &Value, run: &RunSummary) {
 }
 
 fn characteristic(json: &Value, one: &CharacteristicAnalysis) {
-    // What sampling, resampling, searching and fitting left is null here, and there all the same.
+    // Fields that sampling, resampling, searching and fitting left are null here, and there all the same.
     complete!(json, one => CharacteristicAnalysis {
         characteristic: "/name", nominal: "/nominal", moments: "/kurtosis", sampled: "/surrogate_sampling",
         model_sampled: "/model_sampling", surface_law: "/surface_law", density: "", curved: "", yield_source: "/yield_source", pearson: "/pearson_fit", unfinished: "/unfinished", without_value: "/without_value",

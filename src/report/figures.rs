@@ -1,4 +1,4 @@
-//! What documents ask of every result of a characteristic.
+//! The figures that documents ask of every result of a characteristic.
 
 use crate::analysis::CharacteristicAnalysis;
 use crate::capability::{Capability, Law, Quantiles};

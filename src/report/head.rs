@@ -1,4 +1,4 @@
-//! What every report begins with.
+//! The common head of every report.
 
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ impl Head {
     }
 }
 
-/// What there is to say of a run beside its evaluations, as the end of a line: what was known, sent again and lost, and why it ended
+/// The facts of a run beside its evaluations, as the end of a line: what was known, sent again and lost, and why it ended
 /// early.
 pub(super) fn beside(run: &RunSummary) -> String {
     let some = |count: u64, text: String| if count > 0 { text } else { String::new() };

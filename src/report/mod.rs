@@ -71,10 +71,10 @@ pub const SCHEMA: u32 = 2;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Report {
-    /// What every report begins with.
+    /// The common head of every report.
     #[serde(flatten)]
     pub(crate) head: Head,
-    /// What was found out.
+    /// The analysis.
     #[serde(flatten, serialize_with = "Analysis::serialize")]
     #[cfg_attr(feature = "cli", schemars(with = "Analysis"))]
     pub(crate) analysis: Analysis,
@@ -134,7 +134,7 @@ pub(crate) struct WarningReport {
     pub(crate) at: Vec<f64>,
 }
 
-/// What a report says of the study beside the analysis.
+/// The facts about the study that a report shows beside the analysis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct About {
     /// The study's title.

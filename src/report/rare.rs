@@ -18,12 +18,12 @@ use crate::sampling::Estimate;
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RareReport {
-    /// What every report begins with.
+    /// The common head of every report.
     #[serde(flatten)]
     pub(crate) head: Head,
     /// `importance-sampling`.
     pub(crate) method: &'static str,
-    /// What was found out.
+    /// The results.
     #[serde(flatten, serialize_with = "RareEvents::serialize")]
     #[cfg_attr(feature = "cli", schemars(with = "RareEvents"))]
     pub(crate) found: RareEvents,
@@ -53,7 +53,8 @@ impl RareReport {
 const SHOWN: usize = 6;
 
 impl RareReport {
-    /// What it says: every probability with its interval (table `rare`), and the assembly in which it most likely comes about.
+    /// The text of the search for rare events: every probability with its interval (table `rare`), and the assembly in which it
+    /// most likely comes about.
     pub(crate) fn document(&self) -> Document {
         let found = &self.found;
         let mut document = Document::titled(self.head.title.as_deref());

@@ -1,4 +1,4 @@
-//! What is required, as every document says it.
+//! The requirement in the words of every document.
 
 use crate::document::number::{known, significant, yielded};
 use crate::document::{Line, Tone};

@@ -22,10 +22,10 @@ use crate::simulation::{IndexEstimate, SampledFactor, SimulatedCharacteristic, S
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SimulationReport {
-    /// What every report begins with.
+    /// The common head of every report.
     #[serde(flatten)]
     pub(crate) head: Head,
-    /// What was found out.
+    /// The results.
     #[serde(flatten, serialize_with = "Simulation::serialize")]
     #[cfg_attr(feature = "cli", schemars(with = "Simulation"))]
     pub(crate) simulation: Simulation,
@@ -54,7 +54,8 @@ impl SimulationReport {
 const INTERVALS: usize = 5;
 
 impl SimulationReport {
-    /// What it says: every number with its standard error (table `estimates`), and the histogram (table `histogram`).
+    /// The text of the simulation: every number with its standard error (table `estimates`), and the histogram (table
+    /// `histogram`).
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         let Simulation { sampler, run, samples, characteristics, .. } = &self.simulation;

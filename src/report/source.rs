@@ -1,4 +1,4 @@
-//! What the yield comes from, in words.
+//! The source of the yield, in words.
 
 use super::figures::Figures;
 use crate::analysis::{CharacteristicAnalysis, YieldSource};
@@ -8,7 +8,7 @@ use crate::document::number::{share, significant};
 /// The Pearson fit is named beside the yield where it has more than this part of what is rejected wrong.
 const DIFFERENT: f64 = 0.01;
 
-/// What the yield comes from, how far it may be off, and the Pearson fit where that says something else.
+/// The source of the yield, its error, and the Pearson fit where that says something else.
 pub(super) fn source(one: &CharacteristicAnalysis) -> Option<String> {
     let source = one.yield_source?;
     let error = one.error_estimate.as_ref().and_then(|estimate| estimate.yield_);

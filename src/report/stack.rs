@@ -23,7 +23,7 @@ const SIGMAS: f64 = 3.0;
 /// A part of a half width that rounding may make.
 const ROUNDING: f64 = 1e-9;
 
-/// The stack of one characteristic. What is unknown is None.
+/// The stack of one characteristic. Unknown values are None.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stack {
     /// The characteristic.
@@ -36,7 +36,7 @@ pub struct Stack {
     pub rows: Vec<StackRow>,
     /// The ways of adding it up, in the order of [`TotalKind`]. Of few dimensions the inflated RSS may exceed the worst case.
     pub totals: Vec<StackTotal>,
-    /// What must be known to read it.
+    /// The notes that are needed to read it.
     pub notes: Vec<StackNote>,
 }
 
@@ -86,7 +86,7 @@ pub enum TotalKind {
     SecondOrder,
 }
 
-/// What must be known to read a stack.
+/// A note that is needed to read a stack.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum StackNote {
@@ -99,7 +99,7 @@ pub enum StackNote {
     },
     /// The method takes it as linear.
     NotExamined,
-    /// It has no curvature, and nobody looked at these many interactions.
+    /// It has no curvature, and these many interactions were not examined.
     InteractionsNotExamined {
         /// How many.
         count: usize,
@@ -114,7 +114,7 @@ pub enum StackNote {
         /// The dimensions.
         dimensions: Vec<String>,
     },
-    /// Dimensions that do not vary and whose slope nobody asked for.
+    /// Dimensions that do not vary and whose slope was not asked for.
     Fixed {
         /// The dimensions.
         dimensions: Vec<String>,
@@ -183,7 +183,7 @@ impl Stack {
 
     /// Whether the interval of a total lies within the limits, and reaches them at most; None where it or every limit is unknown.
     pub fn keeps(&self, total: &StackTotal) -> Option<bool> {
-        // A stack that just reaches a limit keeps it: what rounding adds is no excess.
+        // A stack that just reaches a limit keeps it: what rounding adds is not an excess.
         let slack = ROUNDING * total.half_width? + 8.0 * f64::EPSILON * total.middle?.abs();
         let [from, to] = total.interval().map(|[from, to]| [from + slack, to - slack])?;
         match self.limits {
@@ -287,7 +287,7 @@ fn notes(report: &Report, one: &CharacteristicAnalysis, rows: &[StackRow]) -> Ve
     notes
 }
 
-/// What is known of the characteristic's being linear; what rounding alone can make of a derivative is none.
+/// The note on the characteristic's being linear; a derivative that rounding alone can make counts as none.
 fn shape(one: &CharacteristicAnalysis, rows: &[StackRow]) -> Option<StackNote> {
     let real = |value: Option<f64>, rounding: Option<f64>| match (value, rounding) {
         (Some(value), Some(rounding)) => value.abs() > 2.0 * rounding,
@@ -381,8 +381,8 @@ impl Stack {
         !self.rows.is_empty() && !self.notes.iter().any(bent)
     }
 
-    /// What dimensions contribute, and the totals. In CSV they are one table: of a total, `nominal` is the middle, and `lower` and
-    /// `upper` are its half width as deviations.
+    /// The contributions of dimensions, and the totals. In CSV they are one table: of a total, `nominal` is the middle, and
+    /// `lower` and `upper` are its half width as deviations.
     pub(super) fn tables(&self) -> [DataTable; 2] {
         let scale = self.totals.iter().filter_map(|total| total.half_width).fold(0.0, f64::max);
         let scaled = |value: Option<f64>| Cell::number(value, |value| beside(value, scale));

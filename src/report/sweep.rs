@@ -24,14 +24,14 @@ use crate::verdict::{Judged, Verdict};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SweepReport {
-    /// What every report begins with.
+    /// The common head of every report.
     #[serde(flatten)]
     pub(crate) head: Head,
     /// The swept parameter.
     pub(crate) parameter: ParameterReport,
     /// The method that was run; null where nothing was done.
     pub(crate) method: Option<&'static str>,
-    /// What it came to in points and time, and why it ended early.
+    /// Its points and time, and why it ended early.
     #[serde(flatten)]
     pub(crate) run: RunSummary,
     /// The results of every characteristic asked for.
@@ -140,7 +140,8 @@ impl SweepReport {
 }
 
 impl SweepReport {
-    /// What it says: for every characteristic a chart, and a table (`sweep`) with a row for every value of the parameter.
+    /// The text of the sweep: for every characteristic a chart, and a table (`sweep`) with a row for every value of the
+    /// parameter.
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
         document.line(format!(
@@ -216,7 +217,7 @@ impl SweptReport {
         columns.table("sweep", &self.points)
     }
 
-    /// What the yields come from, where there are any.
+    /// The sources of the yields, where there are any.
     fn source(&self) -> Option<String> {
         let mut sources: Vec<&str> = self.points.iter().filter_map(|point| Some(point.yield_source?.words())).collect();
         sources.sort_unstable();

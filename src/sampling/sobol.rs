@@ -46,7 +46,7 @@ impl Sobol {
     /// Coordinates of the points `first ..` of one dimension, from 0 to below 1; with a key scrambled.
     ///
     /// # Panics
-    /// When `first` is no multiple of the least power of two that holds the points.
+    /// When `first` is not a multiple of the least power of two that holds the points.
     pub fn column(&self, dimension: usize, first: u64, key: Option<u64>, out: &mut [f64]) {
         let mut digits = vec![0; out.len()];
         self.digits(dimension, first, &mut digits);

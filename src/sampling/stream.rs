@@ -106,7 +106,7 @@ impl TryRng for Stream {
 
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
         let (words, rest) = bytes.as_chunks_mut::<8>();
-        // What is left of the last step comes first.
+        // The numbers that are left of the last step come first.
         let left = (LANES - self.taken).min(words.len());
         let (before, words) = words.split_at_mut(left);
         before.iter_mut().for_each(|word| *word = self.next().to_le_bytes());

@@ -1,4 +1,4 @@
-//! What a simulation knows of one characteristic.
+//! The results of a simulation for one characteristic.
 
 use serde::{Serialize, Serializer};
 
@@ -18,7 +18,7 @@ use crate::shape::{millionths, text};
 use crate::verdict::{self, Judged, Verdict};
 use crate::warning::Warning;
 
-/// Estimates for one characteristic, each with its standard error. What is unknown is None.
+/// Estimates for one characteristic, each with its standard error. Unknown values are None.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
@@ -85,7 +85,7 @@ pub struct SimulatedCharacteristic {
     pub indices: Option<Vec<SampledFactor>>,
 }
 
-/// What a surrogate as control variate has done.
+/// The effect of a surrogate as control variate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SurrogateControl {
@@ -248,7 +248,7 @@ impl SimulatedCharacteristic {
         verdict::judged(&self.characteristic, |requirement| self.judge(requirement))
     }
 
-    /// What is to be said of its target yield; None without one.
+    /// The verdict on its target yield; None without one.
     pub fn verdict(&self) -> Option<Verdict> {
         self.characteristic.target_yield().map(|target| self.judge(Requirement::Yield(target)).verdict)
     }
@@ -272,7 +272,7 @@ impl SimulatedCharacteristic {
     }
 }
 
-/// What the counts say together, with the surrogate that stands beside the model.
+/// The evidence of all counts together, with the surrogate that stands beside the model.
 pub(super) struct Evidence<'a> {
     count: &'a Count,
     all: Summary,
@@ -339,7 +339,7 @@ impl<'a> Evidence<'a> {
 /// Judged by the scatter of all points as if they were random. Standard errors of 16 replicates are uncertain by a fifth: the smaller
 /// of two would be too small.
 fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Option<Estimate>) -> Option<Estimate> {
-    // What the standard error of the better of two estimates grows by: it was chosen by the same points.
+    // The factor by which the standard error of the better of two estimates grows: it was chosen by the same points.
     const CHOICE: f64 = 1.1;
     let Some(Controlled { estimate, random: own }) = controlled else { return plain };
     // Where powers of the values overflow, only the controlled figure, in units of its own sigma, is left.
@@ -408,7 +408,7 @@ fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Repl
             fine.at_rank(p * fine.total() as f64)
         })),
     };
-    // What the interpolation within a bin may have wrong is part of it.
+    // The error of the interpolation within a bin is part of it.
     let standard_error = standard_error.map(|error| error.hypot(fine.blur(p * n)));
     Some(Estimate { value, standard_error })
 }

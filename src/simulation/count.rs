@@ -1,11 +1,11 @@
-//! What was counted of one characteristic.
+//! The counts of one characteristic.
 
 use super::difference::Difference;
 use crate::assembly::EvaluationError;
 use crate::characteristic::SpecLimits;
 use crate::sampling::{Fine, Scale, Summary};
 
-/// What a portion is looked at with.
+/// The limits and the scale by which a portion is counted.
 #[derive(Clone, Copy)]
 pub(super) struct Lens {
     pub(super) limits: SpecLimits,

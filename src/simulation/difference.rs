@@ -238,7 +238,7 @@ pub(super) fn moments(replicates: &[&Difference], twin: &Twin) -> [Option<Contro
     let (differences, by_means) = coefficients.moments(all.sums.means(), twin);
     let found = standardised(&differences, twin);
     let known = replicates.iter().all(|one| one.valid() >= FEWEST);
-    // What fitting the coefficients took from the residuals.
+    // The degrees of freedom that fitting the coefficients took from the residuals.
     let n = all.sums.count() as f64;
     let fitted = if coefficients.fitted() { ((n - 1.0) / (n - 1.0 - CONTROLS as f64)).sqrt() } else { 1.0 };
     std::array::from_fn(|moment| {

@@ -165,7 +165,7 @@ const TASKS: usize = 64;
 /// Points of a costly model between two looks.
 const COSTLY: usize = 4096;
 
-/// What a simulation found out.
+/// The results of a simulation.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
@@ -175,8 +175,8 @@ pub struct Simulation {
     #[serde(flatten, serialize_with = "through::<shape::SamplerShape, _, _>")]
     #[cfg_attr(feature = "cli", schemars(with = "shape::SamplerShape"))]
     pub sampler: Sampler,
-    /// What it came to in points and time, those of the surrogate included; why it ended before all points were drawn or what was
-    /// wanted was reached.
+    /// Its points and time, those of the surrogate included; why it ended before all points were drawn or the accuracy was
+    /// reached.
     #[serde(flatten)]
     pub run: RunSummary,
     /// Points that were answered.
@@ -219,7 +219,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// What it will take in all, at the speed so far, in seconds.
+    /// The time that it will take in all, at the speed so far, in seconds.
     pub(crate) fn expected_s(&self) -> f64 {
         self.elapsed.as_secs_f64() * self.expected / self.samples.max(1) as f64
     }
@@ -271,7 +271,7 @@ pub enum SimulationError {
         characteristic: String,
         /// The method.
         method: Method,
-        /// What is unknown.
+        /// The reason why there is none.
         reason: String,
     },
     /// No or too many points.
@@ -300,7 +300,7 @@ pub enum SimulationError {
     /// A yield is wanted where there is no limit.
     #[error("a yield is to be known that well, but no characteristic asked for has a limit")]
     NoLimits,
-    /// What is wanted is no positive number.
+    /// The target of a standard error is not a positive number.
     #[error("what is wanted of a standard error is a number above 0, not {value}")]
     Wanted {
         /// The value.
@@ -309,7 +309,7 @@ pub enum SimulationError {
 }
 
 impl SimulationError {
-    /// What to do about it.
+    /// The actions to take.
     pub(crate) fn advice(&self) -> Vec<Advice> {
         match self {
             Self::NoSurrogate { method, .. } if !method.has_surrogate() => {

@@ -1,4 +1,4 @@
-//! What comes in, counted: the same whatever the order in which threads finish.
+//! The values that come in, counted: the same whatever the order in which threads finish.
 
 use std::borrow::Cow;
 use std::time::Duration;

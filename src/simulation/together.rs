@@ -1,4 +1,4 @@
-//! What a sample says of several characteristics at once: the share that keeps all limits, and how they vary together.
+//! Results of a sample for several characteristics at once: the share that keeps all limits, and how they vary together.
 
 use super::characteristic::YieldEstimate;
 use super::count::Lens;

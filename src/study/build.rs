@@ -36,7 +36,7 @@ use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::warning::{NameKind, Warning, aggregated};
 
-/// What a study file comes to.
+/// The content of a study file.
 pub(super) struct Built {
     pub(super) problem: Problem,
     pub(super) options: Options,
@@ -146,7 +146,7 @@ fn interference(closing: &Closing, dimensions: &[Dimension], blocks: &[joint::Bl
 
 /// Dimensions that are spread evenly over full turns inside a sine or cosine.
 fn full_turns(dimensions: &[Dimension], composite: &Composite) -> Option<Warning> {
-    /// What a band in degrees or a rounded pi may be off a whole number of turns.
+    /// The difference to a whole number of turns that a band in degrees or a rounded pi may have.
     const OFF: f64 = 1e-4;
     let turns = |&(d, radians): &(usize, f64)| {
         let law = dimensions[d].distribution().filter(|law| law.name() == "uniform")?;
@@ -161,7 +161,7 @@ fn full_turns(dimensions: &[Dimension], composite: &Composite) -> Option<Warning
     (!found.is_empty()).then_some(Warning::PeriodicInput { dimensions: found })
 }
 
-/// What each characteristic must keep.
+/// The requirement of each characteristic.
 fn requirements(file: &StudyFile, problem: &Problem) -> Result<Vec<(String, Requirement)>, Fault> {
     let mut requirements = Vec::new();
     for (characteristic, (name, entry)) in problem.characteristics().iter().zip(&file.characteristics.0) {
@@ -309,7 +309,7 @@ fn characteristics(
         let (text, key) = (name.get_ref(), format!("characteristics.{}", name.get_ref()));
         let entry = entry.get_ref();
         let mut unit = entry.unit.clone();
-        // What a program offers it says itself.
+        // The program itself says which outputs it offers.
         let unknowns = file.unknowns.names();
         if entry.formula.is_none() && !program && !unknowns.iter().any(|unknown| unknown.get_ref() == text) {
             let output = faults.take(offered(name, &key, model, &unknowns));
@@ -321,7 +321,7 @@ fn characteristics(
     faults.none().map(|()| (characteristics, outputs))
 }
 
-/// The model's output of this name, for a characteristic that has no formula and is no unknown.
+/// The model's output of this name, for a characteristic that has no formula and is not an unknown.
 fn offered<'m>(
     name: &Spanned<String>,
     key: &str,
@@ -448,7 +448,7 @@ fn of_several_words(file: &StudyFile, formula: &str, error: FormulaError) -> For
     }
 }
 
-/// What a program is asked for: characteristics without formula, and names in formulas that mean nothing else.
+/// The outputs that a program is asked for: characteristics without formula, and names in formulas that mean nothing else.
 fn asked_of_program(
     inputs: &[Input],
     constants: &[(String, f64)],

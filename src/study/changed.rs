@@ -49,7 +49,7 @@ impl Study {
         Ok(Self { options, seed, ..self.clone() })
     }
 
-    /// What it was read from.
+    /// The text that it was read from.
     #[doc(hidden)]
     pub fn text(&self) -> &str {
         &self.text
@@ -61,7 +61,7 @@ impl Study {
         self.place.path()
     }
 
-    /// What it was read from as JSON, whatever it was written in.
+    /// Its text as JSON, whatever it was written in.
     #[doc(hidden)]
     pub fn as_json(&self) -> String {
         self.tree().as_ref().map(as_json).unwrap_or_default()

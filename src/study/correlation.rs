@@ -12,7 +12,7 @@ use crate::warning::Warning;
 const ROUNDS: usize = 8;
 /// A correlation that is off by less is the same in print.
 const TRIFLE: f64 = 0.001;
-/// What is nearest to impossible is possible only beside it.
+/// Correlations at an end of the possible range are moved inside by this factor.
 const INSIDE: f64 = 1.0 - 1e-9;
 
 /// The problem with its dimensions correlated as its pairs say, as the rows of measured files are, and within zones.
@@ -99,7 +99,7 @@ fn nearer(pairs: &mut [Pair], written: usize, error: &CorrelationError) -> bool 
     }
 }
 
-/// What a pair says of dimensions whose rows say it already.
+/// The fault of a pair of dimensions whose rows give their correlation already.
 fn beside_rows(entry: &Spanned<CorrelationEntry>, blocks: &[Block]) -> Option<StudyFault> {
     let (a, b) = entry.get_ref().between.get_ref();
     let block = blocks.iter().find(|block| block.dimensions.iter().any(|name| name == a || name == b))?;

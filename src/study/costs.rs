@@ -22,7 +22,7 @@ use crate::requirement::Requirement;
 /// The present half band by this, and times this, where no bound is given.
 const RANGE: f64 = 10.0;
 
-/// What each characteristic must keep: what it says itself, or its target yield.
+/// The requirement of each characteristic: what it says itself, or its target yield.
 pub(super) fn requirement(
     characteristic: &Characteristic,
     entry: &CharacteristicEntry,
@@ -449,7 +449,7 @@ impl Numbers<'_> {
         let bound = |given: &Option<Spanned<f64>>, factor: f64| {
             given.as_ref().map_or(present.unwrap_or(f64::NAN) * factor, |given| *given.get_ref())
         };
-        // A dimension without tolerance is refused by whoever allocates; its line is no fault of the bounds.
+        // A dimension without tolerance is refused by whoever allocates; its line is not a fault of the bounds.
         let (mut min, mut max) = (bound(self.min, 1.0 / RANGE), bound(self.max, RANGE));
         if present == Some(0.0) {
             (min, max) = (1.0, 1.0);

@@ -9,7 +9,7 @@ use crate::names::nearest;
 use crate::table::{DELIMITERS, NumberFault, Style, delimiter, records};
 use crate::warning::Warning;
 
-/// What stands where nothing was measured, in any case of letters.
+/// The entries for values that were not measured, in any case of letters.
 const MISSING: [&str; 5] = ["", "-", "na", "n/a", "nan"];
 
 /// A file of measured values that cannot be used: file, line, column, what is wrong, and what to write instead.
@@ -23,11 +23,11 @@ pub struct DataFault {
     pub line: Option<u64>,
     /// The column's name; None where the fault has none.
     pub column: Option<String>,
-    /// What is wrong.
+    /// The fault.
     pub problem: Box<DataProblem>,
 }
 
-/// What is wrong with a file of measured values.
+/// The faults of a file of measured values.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DataProblem {
@@ -134,7 +134,7 @@ pub enum DataProblem {
     Constant {
         /// How many there are.
         count: usize,
-        /// What they are.
+        /// Their value.
         value: f64,
     },
 }
@@ -154,7 +154,7 @@ impl DataFault {
 }
 
 impl DataProblem {
-    /// What to write instead, where that can be said.
+    /// The text to write instead, where that can be said.
     pub(crate) fn help(&self) -> Option<String> {
         let columns = |known: &[String]| {
             format!("its columns are {}", known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))
@@ -192,7 +192,7 @@ impl DataProblem {
     }
 }
 
-/// What the dimensions of a study read beside it, and what is odd about that.
+/// The files that the dimensions of a study read beside it, and their oddities.
 pub(super) struct Data<'s> {
     place: &'s Place,
     /// Every file once, in the order of the dimensions.

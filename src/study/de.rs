@@ -105,7 +105,7 @@ pub(super) fn read<T: serde::de::DeserializeOwned>(tree: &Tree) -> Result<T, Fau
         let Err(error) = T::deserialize(&left) else { break };
         let on = left.remove(&error.path);
         let fault = error.into_fault();
-        // What lacks in an entry of which something was left out may be just that.
+        // A key that is missing in an entry from which a wrong one was removed may be that one.
         let entry = |key: &str| key.split('.').take(2).map(str::to_owned).collect::<Vec<_>>();
         let follows = matches!(*fault.fault, StudyFault::MissingKey { .. })
             && faults.0.iter().any(|earlier| entry(&earlier.key) == entry(&fault.key));
@@ -119,7 +119,7 @@ pub(super) fn read<T: serde::de::DeserializeOwned>(tree: &Tree) -> Result<T, Fau
     Err(faults)
 }
 
-/// What Rust expects, in the words of who writes a study.
+/// The type that Rust expects, in the words of who writes a study.
 fn words(expected: &dyn de::Expected) -> String {
     let text = expected.to_string();
     match text.as_str() {

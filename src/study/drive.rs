@@ -1,4 +1,4 @@
-//! What drives the model: its inputs by name, for a program those of `[model] inputs`.
+//! The values that drive the model: its inputs by name, for a program those of `[model] inputs`.
 
 use super::dimension;
 use super::error::{Fault, Faults, StudyFault, fault};
@@ -13,7 +13,7 @@ use crate::dimension::Dimension;
 use crate::models::{Model, ModelInput};
 use crate::names::nearest;
 
-/// What a program is sent.
+/// The values that a program is sent.
 pub(super) struct ToProgram {
     pub(super) inputs: Vec<Input>,
     pub(super) sources: Vec<assembly::Source>,
@@ -33,7 +33,7 @@ pub(super) fn of_built_in(
     model.inputs.iter().map(source).collect()
 }
 
-/// What bears this name.
+/// The thing that bears this name.
 fn named(
     name: &str,
     dimensions: &[Dimension],
@@ -46,7 +46,7 @@ fn named(
     dimension.or_else(formula).or_else(|| constant().map(assembly::Source::Fixed))
 }
 
-/// What a program is sent: the names of `[model] inputs`, or else all dimensions, with the constants told once.
+/// The inputs of a program: the names of `[model] inputs`, or else all dimensions, with the constants told once.
 pub(super) fn of_program(
     file: &StudyFile,
     dimensions: &[Dimension],

@@ -1,4 +1,4 @@
-//! What can be wrong with a study, and where.
+//! The faults of a study, and their places.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ pub struct StudyError {
     pub span: Option<Range<usize>>,
     /// The key concerned, with those around it, such as `dimensions.a.tolerance`; empty at the top.
     pub key: String,
-    /// What is wrong.
+    /// The fault.
     pub fault: Box<StudyFault>,
     /// The other faults of the same study, in the order of the file: 20 in all at most.
     pub more: Vec<StudyError>,
@@ -70,7 +70,7 @@ impl StudyError {
         Some((1 + before.matches('\n').count(), 1 + before[line_start..].chars().count()))
     }
 
-    /// What to write instead, where that can be said.
+    /// The text to write instead, where that can be said.
     pub(crate) fn help(&self) -> Option<String> {
         self.fault.help()
     }
@@ -92,7 +92,7 @@ impl StudyError {
     }
 }
 
-/// What is wrong with a study.
+/// The faults of a study.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyFault {
@@ -122,12 +122,12 @@ pub enum StudyFault {
         /// The study of this name with such an ending, if there is one.
         beside: Option<String>,
     },
-    /// The text is no TOML or JSON.
+    /// The text is neither TOML nor JSON.
     #[error("{message}")]
     Syntax {
         /// The parser's words.
         message: String,
-        /// What was probably meant.
+        /// The probable meaning.
         slip: Option<Slip>,
     },
     /// A key that means nothing here.
@@ -151,21 +151,21 @@ pub enum StudyFault {
     MissingKey {
         /// The key.
         key: String,
-        /// What to do about it.
+        /// The action to take.
         instead: String,
     },
     /// A value of the wrong kind.
     #[error("{found} stands where {expected} is needed")]
     WrongType {
-        /// What is needed.
+        /// The kind of value that is needed.
         expected: String,
-        /// What is there.
+        /// The kind of value that is there.
         found: String,
     },
     /// A word that none of the possible ones is.
     #[error("there is no {what} `{found}`")]
     UnknownWord {
-        /// What the word should name.
+        /// The kind of thing that the word should name.
         what: &'static str,
         /// As written.
         found: String,
@@ -185,7 +185,7 @@ pub enum StudyFault {
     OutOfRange {
         /// The number.
         value: f64,
-        /// What it must be.
+        /// The range that it must be in.
         range: &'static str,
     },
     /// Two keys that exclude or contradict each other.
@@ -205,7 +205,7 @@ pub enum StudyFault {
         key: &'static str,
         /// For what.
         to: String,
-        /// What to write instead.
+        /// The text to write instead.
         instead: &'static str,
     },
     /// Deviations or limits the wrong way round.
@@ -251,7 +251,7 @@ pub enum StudyFault {
     NameTaken {
         /// The name.
         name: String,
-        /// What bears it.
+        /// The thing that bears it.
         by: &'static str,
     },
     /// A name that stands in two sections.
@@ -387,9 +387,9 @@ pub enum StudyFault {
     /// Units that do not go together.
     #[error("{what}")]
     Units {
-        /// What is wrong.
+        /// The fault.
         what: String,
-        /// What to write instead.
+        /// The text to write instead.
         remedy: String,
     },
     /// A formula that drives the model and needs what it answers.
@@ -435,7 +435,7 @@ pub enum StudyFault {
     /// Answers evaluated elsewhere do not say for which value of a dimension.
     #[error(transparent)]
     MissingColumn(#[from] NoColumn),
-    /// Answers evaluated elsewhere, for a study that asks nobody.
+    /// Answers evaluated elsewhere, for a study that runs no model.
     #[error("points that were evaluated elsewhere are the answers of a [model] command, and the study has none")]
     NothingExternal,
     /// This build of the library runs no external programs.
@@ -572,7 +572,7 @@ pub(super) struct Fault {
 pub(super) struct Faults(pub(super) Vec<Fault>);
 
 impl Faults {
-    /// What a part of the study came to; None where it is at fault, which is kept.
+    /// The result of a part of the study; None where it is at fault, which is kept.
     pub(super) fn take<T>(&mut self, found: Result<T, impl Into<Self>>) -> Option<T> {
         found.map_err(|faults| self.0.extend(faults.into().0)).ok()
     }

@@ -1,4 +1,5 @@
-//! What a study file does not say: where the answers of external programs are kept, who hears them, and which configuration is meant.
+//! Settings that a study file does not hold: where the answers of external programs are kept, who hears them, and which
+//! configuration is meant.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -137,7 +138,7 @@ pub enum JournalPlace {
 }
 
 impl JournalPlace {
-    /// What the command line asks for: a file, `none`, or nothing.
+    /// The command line's choice: a file, `none`, or nothing.
     pub(crate) fn asked(path: Option<&Path>) -> Self {
         match path {
             None => Self::BesideStudy,

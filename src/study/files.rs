@@ -9,7 +9,7 @@ use super::spanned::Spanned;
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct NamedFile {
-    /// What it is to the study.
+    /// Its role in the study.
     pub role: FileRole,
     /// As it is written there.
     pub written: String,
@@ -17,7 +17,7 @@ pub struct NamedFile {
     pub path: PathBuf,
 }
 
-/// What a file is to a study.
+/// The role of a file in a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FileRole {

@@ -133,29 +133,29 @@ pub struct Study {
     pub seed: Option<u64>,
     /// The section `[dimensions]`: for every entry its keys, with their values as TOML.
     pub lines: Vec<(String, Vec<(String, String)>)>,
-    /// What tolerances cost, by groups that share one.
+    /// The costs of tolerances, by groups that share one.
     pub costs: Vec<Priced>,
-    /// What deviations and rejects cost.
+    /// The costs of deviations and rejects.
     pub losses: Vec<QualityLoss>,
-    /// What machines cost to set up.
+    /// The costs of setting up machines.
     pub setups: Vec<SetUp>,
-    /// What characteristics must keep, by name.
+    /// The requirements of characteristics, by name.
     pub requirements: Vec<(String, Requirement)>,
-    /// What is legal but most likely not meant.
+    /// Warnings of entries that are legal but most likely not meant.
     pub warnings: Vec<Warning>,
     /// SHA-256 of the file's bytes, followed by those of every file of measured values, each once, in the order of the
     /// dimensions; in hexadecimal. As `cat gap.toml pin.csv | sha256sum` prints it.
     pub sha256: String,
     /// The files that it names, in the order of the dimensions, those of the model last.
     pub files: Vec<NamedFile>,
-    /// What the title block of pages says, from the section `[about]`: name and text of every cell.
+    /// The title block of pages, from the section `[about]`: name and text of every cell.
     pub about: Vec<(&'static str, String)>,
     /// The names of its configurations.
     pub configurations: Vec<String>,
     /// The study in plain keys, as TOML: what stands for relative dimensions is written out, each with its origin as comment, and a
     /// configuration that was asked for is set. Analysing it gives the same numbers.
     pub expanded: String,
-    /// What it was read from.
+    /// The text that it was read from.
     text: Arc<str>,
     format: Format,
     name: String,
@@ -182,8 +182,8 @@ impl Study {
     /// Reads a `.toml` or `.json` file.
     ///
     /// # Errors
-    /// What is wrong: with the file or its syntax, or else with its keys and values, or else with what they mean together. Faults
-    /// that do not follow from each other are told together.
+    /// The faults in it: with the file or its syntax, or else with its keys and values, or else with what they mean together.
+    /// Faults that do not follow from each other are told together.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         Self::read_with(path, Externals::default())
     }

@@ -19,7 +19,7 @@ use crate::names::UnknownName;
 /// Most children side by side: more is a slip of the pen.
 const WORKERS: u64 = 1024;
 
-/// What a study evaluates beside its formulas.
+/// The model that a study evaluates beside its formulas.
 pub(super) enum ModelOf {
     BuiltIn(&'static Model),
     Program(Program),
@@ -30,7 +30,7 @@ pub(super) enum ModelOf {
 /// An external program.
 pub(super) struct Program {
     settings: Settings,
-    /// What it depends on beside its arguments.
+    /// The files that it depends on beside its arguments.
     files: Vec<PathBuf>,
 }
 

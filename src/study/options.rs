@@ -10,7 +10,7 @@ use crate::method::{Accuracies, MethodError, Options, Pairs};
 use crate::names::{UnknownName, nearest};
 use crate::problem::Problem;
 
-/// What stands for this word under a key of `[analysis]`.
+/// The value of this word under a key of `[analysis]`.
 fn named<T: FromStr<Err = UnknownName>>(word: &Spanned<String>, key: &str) -> Result<T, Fault> {
     word.get_ref().parse().map_err(|unknown: UnknownName| fault(word.span(), format!("analysis.{key}"), unknown))
 }

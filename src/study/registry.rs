@@ -1,4 +1,4 @@
-//! What the schema of a type takes from elsewhere: the names that are registered, and forms that serde does not know.
+//! The parts of a type's schema that come from elsewhere: the names that are registered, and forms that serde does not know.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
@@ -50,7 +50,7 @@ pub(super) fn kinds() -> Vec<&'static str> {
     words::kinds().map(|(name, _)| name).collect()
 }
 
-/// What can be made of measured values.
+/// The models of measured values.
 pub(super) fn measured_models() -> Vec<&'static str> {
     MEASURED_MODELS.to_vec()
 }

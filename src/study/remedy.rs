@@ -1,4 +1,4 @@
-//! What to do about a fault of a study, and what to write instead.
+//! The actions to take on a fault of a study, and the texts to write instead.
 
 use super::error::StudyFault;
 use super::slip::{Slip, percent};
@@ -13,12 +13,12 @@ use crate::requirement::RequirementError;
 use crate::warning::Advice;
 
 impl StudyFault {
-    /// What to do about it, beside changing what is written.
+    /// The actions to take, beside changing what is written.
     pub(crate) fn advice(&self) -> Vec<Advice> {
         if let Self::Method(error) = self { error.advice() } else { Vec::new() }
     }
 
-    /// What to write instead, where that can be said.
+    /// The text to write instead, where that can be said.
     pub(crate) fn help(&self) -> Option<String> {
         let meant = |name: &String| format!("did you mean `{name}`?");
         let one_of = |known: &[String]| format!("it is one of {}", known.join(", "));

@@ -1,7 +1,7 @@
 //! A study with other tolerances and nominal values, and otherwise as it was written, comments included.
 //!
-//! Only the numbers concerned are replaced in the text, at their places. What is written is read again and must say what was
-//! wanted.
+//! Only the numbers concerned are replaced in the text, at their places. The new text is read again and must hold the wanted
+//! values.
 
 use std::ops::Range;
 
@@ -35,13 +35,13 @@ pub enum RewriteError {
     ByHand {
         /// The dimension.
         dimension: String,
-        /// What stands in the way.
+        /// The reason that stands in the way.
         why: &'static str,
     },
-    /// What was written is no study.
+    /// The new text is not a study.
     #[error("the study written anew cannot be read: {0}")]
     Unreadable(Box<StudyError>),
-    /// What was written says something else.
+    /// The new text has another meaning.
     #[error("dimension `{dimension}` written anew is not what was wanted; change it by hand")]
     NotTheSame {
         /// The dimension.
@@ -182,7 +182,7 @@ struct Entry<'a> {
 }
 
 impl Entry<'_> {
-    /// What has to be replaced; true where a fit has become a tolerance.
+    /// The replacements; true where a fit has become a tolerance.
     fn edits(&self, edits: &mut Vec<(Range<usize>, String)>) -> Result<bool, RewriteError> {
         let by_hand = |why| RewriteError::ByHand { dimension: self.old.name().to_owned(), why };
         let Value::Table(keys) = &self.line.value else { return Err(by_hand("it is no table")) };
@@ -303,7 +303,7 @@ fn rounded(value: f64, scale: f64, up: bool) -> String {
     if scale == 0.0 || !value.is_finite() {
         return "0.0".to_owned();
     }
-    // What is a rounding error beside a round number is that number.
+    // A value that is a round number but for rounding is that number.
     let magnitude = (scale.abs() * (1.0 + 8.0 * f64::EPSILON)).log10().floor() as i32;
     let decimals = DIGITS as i32 - 1 - magnitude;
     let unit = 10f64.powi(decimals);

@@ -1,7 +1,7 @@
 //! The JSON Schema of study files, from the types that read them.
 //!
-//! A new key of a study needs nothing here: its type's `derive` and its doc comment make its schema. What is written by hand are
-//! the forms that serde does not know, such as a number or a pair of numbers, and the words that a registry knows.
+//! A new key of a study needs nothing here: its type's `derive` and its doc comment make its schema. The forms that serde does
+//! not know, such as a number or a pair of numbers, and the words that a registry knows are written by hand.
 
 use std::borrow::Cow;
 
@@ -19,7 +19,7 @@ use crate::method::Pairs;
 
 /// The schema of study files, draft 2020-12, in TOML and JSON alike.
 ///
-/// What it accepts is well formed; whether formulas, names and numbers fit each other only [`Study`](super::Study) knows.
+/// A study that it accepts is well formed; whether formulas, names and numbers fit each other only [`Study`](super::Study) knows.
 pub fn schema() -> Value {
     let schema = SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<StudyFile>();
     let mut schema = schema.to_value();
@@ -54,7 +54,7 @@ fn tidy(value: &mut Value) {
                     _ => _ = object.insert("anyOf".to_owned(), present.into()),
                 }
             }
-            // What is left out stands for something, but not for null.
+            // A key that is left out has a default, but this is not null.
             if object.get("default") == Some(&Value::Null) {
                 object.remove("default");
             }

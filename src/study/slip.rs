@@ -1,9 +1,9 @@
-//! What people type by habit, and what a study writes instead.
+//! Words that people type by habit, and those that a study writes instead.
 
 use std::fmt;
 use std::ops::Range;
 
-/// What was probably meant.
+/// The probable meaning of a fault.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Slip {
@@ -48,7 +48,7 @@ impl fmt::Display for Slip {
 }
 
 impl Slip {
-    /// What was meant in a text that no parser reads, with a fault at this place, of which the parser says this.
+    /// The probable meaning of a text that no parser reads, with a fault at this place, of which the parser says this.
     pub(super) fn of_syntax(text: &str, at: &Range<usize>, message: &str) -> Option<Self> {
         let start = text.get(..at.start)?.rfind('\n').map_or(0, |newline| newline + 1);
         let line = text[start..].lines().next().unwrap_or_default();
@@ -64,7 +64,7 @@ impl Slip {
         }
     }
 
-    /// What was meant by a value that is of the wrong kind.
+    /// The probable meaning of a value that is of the wrong kind.
     pub(super) fn of_value(expected: &str, found: &str) -> Option<Self> {
         let text = found.strip_prefix("the text \"")?.strip_suffix('"')?;
         if expected.starts_with("a list such as") {

@@ -1,4 +1,4 @@
-//! What a sweep makes of a study file: the swept parameter is a dimension, whatever it was.
+//! A study file as a sweep reads it: the swept parameter is a dimension, whatever it was.
 
 use super::dimension;
 use super::error::{Fault, StudyFault, fault};

@@ -31,7 +31,7 @@ pub(super) struct Units {
     /// Of dimensions, constants, unknowns and outputs of the model.
     named: HashMap<String, Unit>,
     unknown: Option<Warning>,
-    /// What the formulas are for: the named ones, then those of the conditions.
+    /// The roles of the formulas: the named ones, then those of the conditions.
     roles: Vec<Role>,
     /// Where they stand: key and text, and where the text stands in the file.
     places: Vec<Place>,
@@ -266,7 +266,7 @@ fn unknown_unit(mode: Mode, unknown: &[(&str, &str)]) -> Option<Warning> {
     Some(Warning::UnknownUnit { units })
 }
 
-/// What every formula is for.
+/// The role of every formula.
 fn roles(model: Option<&Model>, written: &Written<'_>) -> Vec<Role> {
     let of_named = |named: &Named<'_>| {
         let input = model.and_then(|model| model.inputs.iter().find(|input| input.name == named.name));

@@ -2,16 +2,16 @@
 
 /// Sigmas that half a tolerance band has unless the study says otherwise.
 pub(super) const SIGMAS: f64 = 3.0;
-/// What can be made of measured values; the first one unless the study says otherwise.
+/// The models of measured values; the first one unless the study says otherwise.
 pub(super) const MEASURED_MODELS: [&str; 2] = ["empirical", "pearson"];
 /// Which sensitivities can be asked for.
 pub(super) const SENSITIVITIES: [&str; 2] = ["all", "varying"];
 /// The requirements that have a name.
 pub(super) const REQUIREMENTS: [&str; 2] = ["worst-case", "rss"];
-/// What `[[correlation]]` must be.
+/// The form of `[[correlation]]`.
 pub(super) const CORRELATIONS: &str = "a list, each pair of dimensions below its own [[correlation]],";
 
-/// What `[[joint]]` must be.
+/// The form of `[[joint]]`.
 pub(super) const BLOCKS: &str = "a list, each block of dimensions below its own [[joint]],";
 /// The zones of `[[joint]]`.
 pub(super) const ZONES: [&str; 3] = ["disc", "rim", "diamond"];

@@ -1,4 +1,4 @@
-//! What a study writes as formulas, with the place of each.
+//! The formulas of a study, with the place of each.
 
 use std::ops::Range;
 

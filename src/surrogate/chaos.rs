@@ -40,7 +40,7 @@ const POINTS: usize = 3;
 const COLUMNS: usize = 80;
 /// After so many columns that did not help no further one is tried.
 const PATIENCE: usize = 12;
-/// A column that the others explain up to this part is no new one.
+/// A column that the others explain up to this part is not a new one.
 const DEPENDENT: f64 = 1e-8;
 
 /// `sqrt(beta_(n+1)) p_(n+1) = (u - alpha_n) p_n - sqrt(beta_n) p_(n-1)`, as far as the distribution has them.
@@ -98,7 +98,7 @@ pub(crate) struct Places<'a> {
     pub(crate) surface: &'a [f64],
 }
 
-/// What may be taken.
+/// The terms that may be taken.
 pub(crate) struct Chaos {
     recurrences: Vec<Recurrence>,
     terms: Vec<Term>,
@@ -408,7 +408,7 @@ mod tests {
         assert!((mean - 1.5).abs() < 1e-15 && (square - expected).abs() < 1e-9, "{square} for {expected}");
     }
 
-    /// What no polynomial explains is left alone: the constant is never beaten by a worse fit.
+    /// Noise that no polynomial explains is left alone: the constant is never beaten by a worse fit.
     #[test]
     fn noise_is_left() {
         let shapes = shapes([&Normal::new(0.0, 1.0).unwrap() as _]);

@@ -1,4 +1,4 @@
-//! What moments need to know of all inputs together.
+//! The facts about all inputs together that moments need.
 
 use std::sync::Arc;
 

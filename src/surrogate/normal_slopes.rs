@@ -17,7 +17,7 @@ use crate::distribution::StandardMoments;
 
 impl Surrogate {
     /// Derivatives of mean, `ln sigma`, skewness and excess by the logarithm of every input's scale, at fixed means. None where an input is not
-    /// normal, inputs are correlated, a part is no parabola or unknown, or nothing varies.
+    /// normal, inputs are correlated, a part is unknown or not a parabola, or nothing varies.
     ///
     /// Cost: one product of N by N matrices where inputs interact.
     pub(crate) fn normal_slopes(&self, inputs: &Inputs) -> Option<Vec<[f64; 4]>> {

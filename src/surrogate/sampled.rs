@@ -1,4 +1,4 @@
-//! What parabolas leave of a surrogate, by sampling it.
+//! The part of a surrogate that parabolas leave, by sampling it.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -185,7 +185,7 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// What stands in for the surrogate, about its mean.
+    /// The stand-in for the surrogate, about its mean.
     fn parabola(&self, z: &[f64], u: &[f64]) -> f64 {
         let parabolas = self.parabolas;
         let m = z.len();

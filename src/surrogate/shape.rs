@@ -1,10 +1,10 @@
-//! What moments need to know of an input, computed once per study.
+//! The facts about an input that moments need, computed once per study.
 
 use std::sync::Arc;
 
 use crate::distribution::{Distribution, Jacobi, Rule, StandardMoments};
 
-/// The standardised moments of an input, and a rule to integrate what is no quadratic.
+/// The standardised moments of an input, and a rule to integrate parts that are not quadratic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InputShape {
     /// Moments 3 to 8.

@@ -39,7 +39,7 @@ const PAIRS: [usize; 2] = [4, 3];
 /// Other points from which on the fewer pairs are drawn.
 const MANY: usize = 8;
 
-/// What a characteristic's surface says of where to look.
+/// A wish of a characteristic's surface for where to look.
 #[derive(Clone)]
 pub(super) struct Wish {
     /// The line that carries it, of length 1.

@@ -34,7 +34,7 @@ pub struct Target<'s> {
     pub shares: &'s [f64],
 }
 
-/// What the check points say of one characteristic.
+/// The figures of one characteristic by the check points.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CheckedFigures {
@@ -54,7 +54,7 @@ pub struct CheckedFigures {
     pub surface: Option<[f64; 4]>,
 }
 
-/// What checking came to.
+/// The results of checking.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Checked {

@@ -67,7 +67,7 @@ pub struct Verified {
     pub error: f64,
 }
 
-/// What sampling the model says of one characteristic.
+/// The figures of one characteristic by sampling the model.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SampledFigures {
@@ -174,8 +174,8 @@ pub(crate) fn unexplained(
     (variance > 0.0).then_some(square / variance)
 }
 
-/// What a sampled model says of its inputs: for every dimension on which a characteristic depends first-order and total share of the
-/// variance, by exchanging inputs on the model itself.
+/// The shares of the inputs by a sampled model: for every dimension on which a characteristic depends first-order and total share
+/// of the variance, by exchanging inputs on the model itself.
 ///
 /// None with correlated dimensions, of which shares add up in another way, with more than 256 of them, and where nothing varies.
 /// Evaluations: 65 536, for more than 126 inputs 512 for each. Accuracy: 311 of 312 shares of six functions with closed forms lay
@@ -226,7 +226,7 @@ pub(crate) fn factor_shares(
 }
 
 /// One characteristic, by a seed and so many points in the core, beside its surface over these dimensions; None where the run was stopped
-/// meanwhile: a part of the strata is no sample.
+/// meanwhile: a part of the strata is not a sample.
 pub(crate) fn verify_characteristic(
     problem: &Problem,
     c: usize,

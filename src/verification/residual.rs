@@ -1,4 +1,4 @@
-//! What check points say of a surface: an error estimate for every figure, by the difference at a dozen points.
+//! Figures of a surface by its check points: an error estimate for every figure, by the difference at a dozen points.
 //!
 //! With `d = (y - q)/sigma` the model minus the surface `q` in sigmas of it, at points of independent normal variables `z`:
 //!
@@ -22,7 +22,7 @@ use super::figures::{MOMENTS, moments};
 use super::space::Columns;
 use super::strata::along;
 
-/// What so many checks may overlook: a residual of this many sigmas.
+/// The residual that so many checks may overlook, in sigmas.
 const FLOOR: f64 = 0.004;
 const CHECKS: f64 = 14.0;
 /// A root mean square of a handful of residuals is this much too small at times.
@@ -33,7 +33,7 @@ const CLIPPED: f64 = 4.5;
 const NODES: f64 = 3.0;
 /// The part of the mean square of the idle inputs' differences, four sigmas out, that counts for all assemblies.
 const IDLE: f64 = 50.0;
-/// What a residual that follows the output adds to the figures by its square.
+/// The contribution of a residual that follows the output to the figures by its square.
 const SQUARES: [f64; MOMENTS] = [0.0, 0.5, 2.0, 6.0];
 
 /// A surface at weighted points of the whole distribution.
@@ -57,7 +57,7 @@ fn share_of(values: &[f64], weights: &[f64], [low, high]: [f64; 2]) -> f64 {
     within.map(|(_, weight)| weight).sum::<f64>() / weights.iter().sum::<f64>()
 }
 
-/// What the points say of one characteristic.
+/// The results of one characteristic by the points.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Judged {
     /// Errors of mean, sigma, skewness and kurtosis.

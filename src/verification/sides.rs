@@ -1,4 +1,4 @@
-//! What the switches of a model do seldom, as half-spaces, and how probable it is.
+//! The rare sides of the switches of a model, as half-spaces, and their probability.
 //!
 //! A switch whose smaller side holds less than a hundredth of all assemblies is met by few points of a sample or by none. Its margin is
 //! known, so that it is sought: from the nearest of some points two and three times as wide as the assemblies, steps of Hasofer and
@@ -71,7 +71,7 @@ pub struct FoundSwitch {
     pub probability: f64,
 }
 
-/// What was found of the switches of one output.
+/// The findings on the switches of one output.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sides {
     /// Strata for what is seldom.
@@ -257,7 +257,8 @@ impl Search<'_, '_> {
         (sum > 0.0).then_some(sum)
     }
 
-    /// What the output does where the way from the middle to a point beyond crosses the border; None where it does nothing.
+    /// The change of the output where the way from the middle to a point beyond crosses the border; None where it does not
+    /// change.
     fn crossing(&self, switch: usize, sign: f64, of: &Switch, beyond: &[f64]) -> Option<Crossing> {
         use crate::assembly::SwitchKind;
         if of.kind == SwitchKind::Edge {

@@ -1,4 +1,4 @@
-//! What to do about a warning or an error.
+//! The actions to take on a warning or an error.
 
 use std::fmt;
 

@@ -47,9 +47,9 @@ warnings! {
         column: usize,
         /// The part of it, as written.
         part: String,
-        /// What does not go together.
+        /// The parts that do not go together.
         what: String,
-        /// What to write instead.
+        /// The text to write instead.
         instead: String,
         /// Further formulas whose units do not go together.
         others: Vec<String>,
@@ -73,7 +73,7 @@ warnings! {
     };
     /// No characteristic of the study uses these constants, formulas or unknowns.
     UnusedName = "unused-name" by study::unused_name {
-        /// What they are.
+        /// The kind of the names.
         kind: NameKind,
         /// Their names.
         names: Vec<String>,
@@ -257,7 +257,7 @@ warnings! {
         retried: u64,
         /// Seconds without an answer of a process that failed.
         lost_s: f64,
-        /// What went wrong the last time.
+        /// The cause of the last failure.
         cause: String,
         /// The last lines that the process wrote to stderr.
         stderr: Vec<String>,
@@ -312,7 +312,7 @@ warnings! {
         characteristic: String,
         /// The dimension, or the two of a mixed derivative; empty where every derivative is lost.
         dimensions: Vec<String>,
-        /// What is lost.
+        /// The loss.
         loss: Loss,
         /// Further dimensions, or pairs as `a:b`, with the same loss.
         others: Vec<String>,
@@ -394,7 +394,7 @@ warnings! {
         characteristic: String,
         /// The mean shift of second order, in sigmas.
         mean_shift: f64,
-        /// What curvature adds to the variance, relative to the linear variance.
+        /// The contribution of curvature to the variance, relative to the linear variance.
         variance: f64,
     };
     /// Powers beyond the second have a visible effect.
@@ -474,7 +474,7 @@ warnings! {
         characteristic: String,
         /// The part of the formula that does it.
         switch: String,
-        /// What happens there.
+        /// The change there.
         change: Change,
         /// The probability of the smaller side.
         probability: f64,
@@ -638,7 +638,7 @@ warnings! {
     };
     /// The run was stopped before its end.
     Stopped = "stopped" by run::stopped {
-        /// What stopped it.
+        /// The reason why it stopped.
         cause: StopReason,
         /// The time limit in seconds, where that stopped it and is known.
         limit_s: Option<f64>,
@@ -646,7 +646,7 @@ warnings! {
         done: u64,
         /// How much there was to do, where that is known.
         planned: Option<u64>,
-        /// What is counted.
+        /// The things that are counted.
         counted: Counted,
     };
     /// The run will take long.

@@ -60,7 +60,7 @@ pub(super) fn branch_flip(
         .advise(Advice::SignedMeasure)
 }
 
-/// What became of answers that depend on the points before.
+/// The warning of answers that depend on the points before.
 fn nominal(
     output: &str,
     [expected, found]: [&Option<f64>; 2],

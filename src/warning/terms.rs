@@ -15,7 +15,7 @@ pub enum Ended {
     Stopped,
 }
 
-/// What happens to a characteristic at a switch of its formula.
+/// The change of a characteristic at a switch of its formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -77,7 +77,7 @@ impl Figure {
     }
 }
 
-/// What a name of a study stands for.
+/// The kind of thing that a name of a study stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -104,7 +104,7 @@ impl NameKind {
     }
 }
 
-/// What the progress of a run counts.
+/// The things that the progress of a run counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]

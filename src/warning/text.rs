@@ -1,4 +1,4 @@
-//! What the sentences of warnings are made of.
+//! The parts of the sentences of warnings.
 
 use super::Advice;
 

@@ -33,12 +33,12 @@ impl Serialize for WarningData<'_> {
 }
 
 impl Warning {
-    /// What happened, and what it means for the result, in sentences. It names no option of any front end.
+    /// The event, and its meaning for the result, in sentences. It names no option of any front end.
     pub fn message(&self) -> String {
         self.text().message
     }
 
-    /// What to do, the most promising first; empty where there is nothing to do.
+    /// The actions to take, the most promising first; empty where there are none.
     pub fn advice(&self) -> Vec<Advice> {
         self.text().advice
     }

@@ -213,7 +213,7 @@ def a_workbook_without_names_shows_a_declaration():
             refused(model, "plain.ods", "`w`", "Calc.B1", "no names")
             error = model.ready["error"]
         declared = error[error.index("document = ") :]
-        # What no formula reads is no dimension.
+        # A cell that no formula reads is not a dimension.
         assert "D9" not in declared, declared
         pathlib.Path(folder, "plain.toml").write_text(declared)
         with workbook("plain.toml", {"width": 2.0, "height": 3.0}, ("area", "Calc_B5"), folder) as model:

@@ -12,7 +12,7 @@ use super::coverage::{COLUMNS, checked, covered};
 use super::figures::says;
 use super::support::{data, repository};
 
-/// What is wanted of `auto`.
+/// The accuracies to reach with `auto`.
 const ACCURACIES: [f64; 3] = [0.05, 0.01, 0.001];
 /// References are known to that, relative to sigma, or better: their own stated errors are below 1e-7.
 const FLOOR: f64 = 1e-7;
@@ -183,7 +183,7 @@ fn clean_functions_warn_of_nothing() {
     assert!(warned.is_empty(), "{warned:#?}");
 }
 
-/// What is smooth and followed by a surrogate costs little more than every second derivative, and 16.
+/// A smooth function that a surrogate follows costs little more than every second derivative, and 16.
 #[test]
 fn auto_does_not_waste_evaluations() {
     for row in smooth() {
@@ -415,8 +415,8 @@ fn digit(error: f64) -> String {
     if error < FLOOR { "<1e-7".to_owned() } else { format!("{error:.0e}") }
 }
 
-/// What constants may be tuned on judges nothing: the functions by which the errors of all methods are judged have other names, and
-/// other inputs where the formula is the same.
+/// Functions for tuning constants judge nothing: the functions by which the errors of all methods are judged have other names,
+/// and other inputs where the formula is the same.
 #[test]
 fn functions_that_tune_are_not_those_that_test() {
     let bare = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();

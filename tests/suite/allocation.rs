@@ -134,7 +134,7 @@ fn slopes_and_limits(rng: &mut Xoshiro256PlusPlus, bands: &[f64]) -> ([Vec<f64>;
     (slopes, limits)
 }
 
-/// What [`convex`] makes of the same random numbers.
+/// The data that [`convex`] makes of the same random numbers.
 fn data(rng: &mut Xoshiro256PlusPlus, n: usize) -> ([Vec<f64>; 3], [[f64; 2]; 3]) {
     let bands = bands(rng, n);
     slopes_and_limits(rng, &bands)
@@ -408,7 +408,7 @@ fn the_optimum_of_a_curved_model_holds_when_it_is_simulated() {
         assert!(after >= required);
         let [low, high] = one.yield_.unwrap().interval;
         assert!(after > low && after < high, "{:?} {:?}", of, one.yield_);
-        // What is not known of the yield is kept beside it.
+        // The uncertainty of the yield is kept beside it.
         let [least, _] = of.after.unwrap().interval.unwrap();
         binding += usize::from(least < required + 1e-6);
     }
@@ -723,7 +723,7 @@ fn a_model_that_fails_farther_out_is_approached_in_steps() {
     assert!(kept(&found.requirements[0]) && found.confirmed);
 }
 
-/// What derivatives at wide tolerances say of tight ones is asked of the model before anything is called impossible.
+/// Extrapolations from derivatives at wide tolerances to tight ones are evaluated before anything is called impossible.
 #[test]
 fn nothing_is_called_impossible_by_extrapolation() {
     // Flat near the middle and steep beyond: seen from half bands of 1 its sigma at 0.1 seems larger than it is.

@@ -171,7 +171,7 @@ fn standard_grades_are_processes() {
     assert!(found.cost_unrounded.unwrap() < found.cost_after.unwrap());
 }
 
-/// What rounding costs: the optimum of free tolerances is known in closed form.
+/// The cost of rounding: the optimum of free tolerances is known in closed form.
 #[test]
 fn rounding_to_steps_has_a_cost() {
     let of = problem("step-of-5");
@@ -348,7 +348,7 @@ fn configurations_are_kept_by_the_same_tolerances() {
     for (name, expected) in of["optimum"]["tolerances"].as_object().unwrap() {
         assert!((band(&found, name) / expected.as_f64().unwrap() - 1.0).abs() < 1e-7, "{name}");
     }
-    // What is written is kept in every configuration by itself.
+    // The tolerances that are written are kept in every configuration by itself.
     let written = study.rewritten(&found.problem).unwrap().text;
     for name in ["cold", "hot"] {
         let externals = Externals::default().with_configuration(name);

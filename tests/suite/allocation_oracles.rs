@@ -32,8 +32,8 @@ fn all_met(found: &Allocation) -> bool {
     found.requirements.iter().all(|one| one.after.unwrap().verdict == Verdict::Met)
 }
 
-/// What is called optimal is: costs to 1e-6, of which the search itself keeps 1e-7 (tolerances are kept on the good side by 1e-9, and the
-/// enclosure of a worst case is a thousandth of a sigma wide at most), and the oracles 1e-8.
+/// Results that are called optimal are optimal: costs to 1e-6, of which the search itself keeps 1e-7 (tolerances are kept on the
+/// good side by 1e-9, and the enclosure of a worst case is a thousandth of a sigma wide at most), and the oracles 1e-8.
 ///
 /// Linear worst cases, sums of squares and lists are proven, and tolerances that are all at their loosest; the others are the best of several
 /// starts, and called that.

@@ -357,7 +357,7 @@ fn a_thousand_dimensions() {
     relative(sigma(&analysis), exact.sqrt(), 1e-10);
 }
 
-/// What saturates is smooth, and no polynomial follows it: the model is sampled. A flat function has nothing to say.
+/// A function that saturates is smooth, and no polynomial follows it: the model is sampled. A flat function has nothing to say.
 #[test]
 fn saturation_and_nothing_at_all() {
     let tanh = of(standard(2), |x| (2.0 * x[0]).tanh() + (2.0 * x[1]).tanh(), &auto(0.01));
@@ -425,7 +425,7 @@ fn points_that_check_are_of_the_distribution() {
     assert!(points.iter().flatten().all(|x| x.abs() <= 1.0));
 }
 
-/// What ended a climb is told as it was: a budget, or somebody.
+/// The end of a climb is reported with its cause: a budget, or the caller.
 #[test]
 fn the_account_says_what_ended_it() {
     let problem = || {
@@ -482,7 +482,7 @@ fn strides_end_where_a_regression_follows() {
         let found = analyze(&engine, &auto(accuracy)).unwrap();
         let (evaluations, off) = (found.run.evaluations, (sigma(&found) - truth.value).abs());
         assert!(evaluations < 1024 / 4, "{accuracy}: {evaluations}");
-        // What was wanted, and three errors of the sample.
+        // The accuracy to reach, and three errors of the sample.
         assert!(off < accuracy * truth.value + 3.0 * truth.standard_error.unwrap(), "{accuracy}: {off}");
     }
 }

@@ -1,5 +1,5 @@
-//! What `auto` takes by itself, without verification: evaluations, true and estimated error of sigma at 1 % and 0.1 %, on examples and on
-//! functions that tests of costs are spoken of with.
+//! The cost of `auto` by itself, without verification: evaluations, true and estimated error of sigma at 1 % and 0.1 %, on
+//! examples and on functions that tests of costs are spoken of with.
 //!
 //! `cargo test --test suite auto_cost -- --ignored --nocapture` prints it.
 

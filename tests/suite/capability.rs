@@ -91,7 +91,7 @@ fn two_values_have_no_pearson_law() {
     assert!(analysis.characteristics[0].capability.is_some());
 }
 
-/// What lies beyond the quantiles of one in ten thousand, by ten million assemblies of the model itself: 1000 beyond each,
+/// The rejects beyond the quantiles of one in ten thousand, by ten million assemblies of the model itself: 1000 beyond each,
 /// with a standard error of 3 %, where 20 % are allowed.
 #[test]
 fn yields_are_those_of_monte_carlo() {

@@ -60,7 +60,8 @@ impl Sources {
         Some((at.join("/"), rest.next().map(str::to_owned)))
     }
 
-    /// What each module imports of the same top module, the module in which a name is defined rather than one that passes it on.
+    /// The imports of each module from the same top module, by the module in which a name is defined rather than one that passes
+    /// it on.
     fn imports(&self) -> BTreeMap<&str, BTreeSet<String>> {
         let mut passed: BTreeMap<(String, String), String> = BTreeMap::new();
         for (module, code) in &self.0 {

@@ -18,7 +18,7 @@ use super::docs::generated;
 use super::support::repository;
 
 const PAGE: &str = "docs/published-cases.md";
-/// What a verdict may begin with; the page says what each one means.
+/// The beginnings that a verdict may have; the page says what each one means.
 const VERDICTS: [&str; 6] = ["reproduced", "explained", "refuted", "not recoverable", "misprint", "ours"];
 
 #[test]

@@ -83,7 +83,7 @@ fn plan_says_what_would_be_evaluated() {
     insta::assert_snapshot!("models", run(&["models"]) + &run(&["models", "engine-balance"]));
 }
 
-/// What the alternatives to derivatives say, and what they do not.
+/// The reports of the alternatives to derivatives, and their gaps.
 #[test]
 fn alternatives_are_reported() {
     let clearance = "examples/shaft-and-bore/study.toml";
@@ -288,7 +288,7 @@ fn files_are_written_whole_or_not_at_all() {
     assert!(output.status.success() && output.stdout.is_empty());
     let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
     assert_eq!(report["evaluations"], 61);
-    // What stands there stays when the command fails, and no other file is left behind.
+    // The file stays as it was when the command fails, and no other file is left behind.
     let output = sensitol(&["analyze", ENGINE, "--budget", "3", "-o", to]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(serde_json::from_slice::<serde_json::Value>(&std::fs::read(&path).unwrap()).unwrap(), report);

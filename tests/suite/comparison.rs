@@ -17,7 +17,7 @@ enum Ours {
     /// The vector loops of the same assembly, with exact derivatives.
     Loops,
     Points(Sampler, u64),
-    /// What the paper's equations 7 to 14 keep of the surface of `full`, with 2N^2 + 1 evaluations.
+    /// The part of the surface of `full` that the paper's equations 7 to 14 keep, with 2N^2 + 1 evaluations.
     Printed,
 }
 
@@ -58,7 +58,7 @@ fn sampled(problem: &Problem, options: &SimulationOptions) -> [f64; 4] {
     [one.mean, one.sigma, one.skewness, one.kurtosis].map(|estimate| estimate.unwrap().value)
 }
 
-/// What remains of second order where the third and fourth raw moment keep first-order terms alone.
+/// The moments of second order where the third and fourth raw moment keep first-order terms alone.
 fn printed(problem: &Problem) -> (u64, [f64; 4]) {
     let found = analyze(problem, &Options::from(Method::Classic).with_verify(0)).unwrap();
     let one = &found.characteristics[0];

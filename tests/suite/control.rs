@@ -139,7 +139,7 @@ fn the_reduction_is_that_of_the_plain_sample() {
     assert_eq!(control.mean.unwrap(), error(without.mean) / error(with.mean));
     assert_eq!(control.sigma.unwrap(), error(without.sigma) / error(with.sigma));
     assert_eq!((control.method, without.control), (Method::Full, None));
-    // What the surrogate knows nothing of stays as it is.
+    // Figures that the surrogate does not estimate stay as they are.
     assert_eq!((with.quantiles, &with.histogram, with.range), (without.quantiles, &without.histogram, without.range));
 }
 

@@ -1,4 +1,4 @@
-//! What processes hold, and the inflations of the RSS: printed stacks, and every form by hand.
+//! The capability that processes hold, and the inflations of the RSS: printed stacks, and every form by hand.
 
 use sensitol::distribution::{Distribution, Drifting};
 use sensitol::report::{About, Detail, Report, Style, ToDocument, TotalKind, text};

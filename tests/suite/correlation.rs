@@ -153,7 +153,7 @@ fn correlated_and_independent_inputs_mix() {
     close(shares, 1.0, 1e-12, 0.0);
 }
 
-/// What Nataf's normal variables need where that is known in closed form (Liu and Der Kiureghian 1986, table 4).
+/// The correlations of Nataf's normal variables where they are known in closed form (Liu and Der Kiureghian 1986, table 4).
 #[test]
 fn normal_variables_are_correlated_as_in_closed_form() {
     let normal = Transform::of(&Normal::new(3.0, 0.1).unwrap()).unwrap();
@@ -171,7 +171,7 @@ fn normal_variables_are_correlated_as_in_closed_form() {
     relative(uniform.behind(&uniform, 1.0).unwrap(), 1.0, 1e-6);
 }
 
-/// What stands in the table between its places, and what the series leaves out, against the quantiles themselves.
+/// The table between its places, and the terms that the series leaves out, against the quantiles themselves.
 #[test]
 fn the_table_and_the_series_of_a_transform_are_good() {
     let laws: [Box<dyn Distribution>; 4] = [
@@ -366,7 +366,7 @@ fn corners_lie_where_parts_are() {
     relative(moments.sigma(), (50.0 * (1.0 + r) + 1.0 + r * r).sqrt(), 1e-10);
 }
 
-/// What does not vary has no moments to share.
+/// A constant has no moments to share.
 #[test]
 fn a_constant_stays_constant() {
     let problem = Problem::new(standard(2), Closure::scalar("y", |_| 4.0)).unwrap();

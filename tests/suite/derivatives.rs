@@ -26,7 +26,7 @@ fn of_first(text: &str, x: [f64; 3]) -> (Option<f64>, Option<f64>) {
     (jet.first(0), jet.second())
 }
 
-/// Every function, written and random formulas. What a formula amplifies of the rounding of its parts it amplifies in its
+/// Every function, written and random formulas. The factor by which a formula amplifies the rounding of its parts holds for its
 /// derivatives too: errors count against the largest derivative of that order, or the value (1e-14 seen).
 #[test]
 fn derivatives_are_exact() {

@@ -1,4 +1,4 @@
-//! What the documentation shows is what the program does: every console block is run, every quoted study is a file, and
+//! The documentation shows the program's own output: every console block is run, every quoted study is a file, and
 //! the measured table is measured again. `TRYCMD=overwrite` and `SENSITOL_UPDATE_DOCS=1` write what has changed.
 
 use std::collections::BTreeSet;
@@ -52,7 +52,7 @@ fn the_measured_table_is_measured() {
     generated("docs/methods.md", "measured", &measured());
 }
 
-/// What stands in a document between the marks of this name is what was generated now.
+/// The part of a document between the marks of this name is the text that was generated now.
 pub fn generated(document: &str, name: &str, text: &str) {
     let path = repository(document);
     let found = read(document);
@@ -226,7 +226,7 @@ fn one_digit(error: f64) -> String {
     if error < 1e-8 { "<1e-8".to_owned() } else { format!("{error:.0e}") }
 }
 
-/// What the suite leaves to `tests/adapters/run` is shown there.
+/// The examples that the suite leaves to `tests/adapters/run` are shown there.
 #[test]
 fn examples_that_need_an_installation_are_run_elsewhere() {
     let scripts = ["freecad", "spreadsheet", "opencascade", "um_bridge", "octave", "fmi", "cluster"]
@@ -304,7 +304,7 @@ fn every_warning_is_explained() {
     assert_eq!(explained.collect::<BTreeSet<_>>(), codes);
 }
 
-/// What the tutorial changes in its study is one line at a time.
+/// The tutorial changes one line of its study at a time.
 #[test]
 fn the_tutorials_studies_differ_in_one_line() {
     let study = read("examples/first-study/study.toml");

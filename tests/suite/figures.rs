@@ -19,7 +19,7 @@ pub fn says(document: &str, sentence: &str) {
     assert!(plain(&text).contains(&plain(sentence)), "{document} does not say: {sentence}");
 }
 
-/// What a command prints as JSON.
+/// The JSON that a command prints.
 fn json(arguments: &[&str]) -> Value {
     let output = sensitol(&[arguments, &["--json", "-q"]].concat()).output().unwrap();
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments:?}: {error}"))
@@ -88,7 +88,7 @@ fn the_tutorial_reads_its_output_right() {
     says(TUTORIAL, &format!("the error of that yield is {error:.3} %."));
 }
 
-/// What is required of the first study, what its tolerances cost, and what the model says of them.
+/// The requirements of the first study, the costs of its tolerances, and the model's answers on them.
 #[test]
 fn the_tutorials_requirements_were_tried() {
     let study = std::fs::read_to_string(repository("examples/first-study/study.toml")).unwrap();

@@ -113,8 +113,8 @@ fn printed_tolerances_and_fundamental_deviations() {
 }
 
 /// Every entry of the tables of fundamental deviations, against the standard's formula at the mean size: the rounding is
-/// to whole micrometres at first and to tens and fifties above. What the standard prints otherwise than its
-/// formula gives is listed, and stands in the printed tables of the tests above.
+/// to whole micrometres at first and to tens and fifties above. Entries that the standard prints otherwise than its formula gives
+/// are listed, and stand in the printed tables of the tests above.
 #[test]
 fn fundamental_deviations_follow_their_formulas() {
     let mut entries = 0;
@@ -135,7 +135,7 @@ fn fundamental_deviations_follow_their_formulas() {
     assert_eq!(entries, 3 * 25 + 3 * 6 + 4 * 13 + 4 * 13 + 25 * 8 + 19 + 21 + 20, "the whole table");
 }
 
-/// What rounding makes of a value: the standard rounds to 1 um at first, to 5 and 10 above 200 (a to g: above 60), to 20 and 50
+/// The rounding of a value: the standard rounds to 1 um at first, to 5 and 10 above 200 (a to g: above 60), to 20 and 50
 /// above 600, a to c to tens throughout.
 fn rounding(letter: &str, value: f64) -> f64 {
     match value {

@@ -113,7 +113,7 @@ fn every_command_has_an_example_that_can_be_typed() {
         assert!(!lines.is_empty(), "{name} has no `Examples:`");
         for line in lines {
             assert!(line.starts_with(name), "{name}: {line}");
-            // What a shell makes of it: only our own commands are parsed, without their redirection.
+            // The line as a shell reads it: only our own commands are parsed, without their redirection.
             for part in line.split(" && ").flat_map(|part| part.split(" | ")) {
                 let own = part.split(" > ").next().unwrap();
                 let words: Vec<&str> = own.split_whitespace().collect();
@@ -129,7 +129,7 @@ fn every_command_has_an_example_that_can_be_typed() {
     }
 }
 
-/// What this shell says to a script that is given on the command line, with the completions of its kind in its folder.
+/// The output of this shell for a script that is given on the command line, with the completions of its kind in its folder.
 fn shell(folder: &Path, name: &str, arguments: &[&str]) -> Option<String> {
     let output = sensitol(&["completions", name]).output().unwrap();
     assert!(output.status.success());

@@ -32,7 +32,7 @@ fn with(mode: &str, seed: usize, sentinels: bool) -> Process {
     Process::new(Signature::of_names(names, ["y"]), greeting, settings)
 }
 
-/// What a method says of a model: sigma, and the codes of its warnings.
+/// The report of a method on a model: sigma, and the codes of its warnings.
 struct Said {
     sigma: Option<f64>,
     codes: Vec<&'static str>,

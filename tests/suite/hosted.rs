@@ -1,4 +1,5 @@
-//! What a calling program asks of studies: a function of its own as the model, keys of `[analysis]`, folders, the exit code.
+//! The interface of a calling program to studies: a function of its own as the model, keys of `[analysis]`, folders, the exit
+//! code.
 
 use std::sync::{Arc, Mutex};
 
@@ -62,7 +63,7 @@ fn a_function_stands_in_place_of_a_program_and_not_of_a_built_in_model() {
     assert!(error.to_string().contains("leave out [model], or the function"), "{error}");
 }
 
-/// What an allocation writes is read again, with the function.
+/// A study that an allocation writes is read again, with the function.
 #[test]
 fn a_study_with_a_function_is_written_anew() {
     let study = hosted(GAP).unwrap();

@@ -220,7 +220,7 @@ fn long_formulas_make_short_messages() {
     }
 }
 
-/// What a killed run has left goes when the next one writes there; what another run is writing at the moment stays.
+/// The leftovers of a killed run go when the next one writes there; files that another run is writing at the moment stay.
 #[test]
 fn leftovers_go_at_the_next_start() {
     let folder = tempfile::tempdir().unwrap();

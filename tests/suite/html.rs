@@ -1,5 +1,5 @@
 //! Pages of HTML: nothing in them that was not meant, nothing that asks for a network, and a what-if that computes what the
-//! engine computes. What needs a browser is in `tests/browser`.
+//! engine computes. The tests that need a browser are in `tests/browser`.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -99,7 +99,7 @@ fn page(study: &Study) -> String {
     analysed(study, &study.options).1
 }
 
-/// What a page may hold: one style and at most one script and its data, all known to the policy, and no address.
+/// The contents that a page may have: one style and at most one script and its data, all known to the policy, and no address.
 fn is_closed(page: &str) {
     assert!(page.starts_with("<!DOCTYPE html>"));
     let policy = page.split("Content-Security-Policy\" content=\"").nth(1).unwrap().split('"').next().unwrap();
@@ -262,7 +262,7 @@ fn settings(study: &Study, analysis: &Analysis, rng: &mut Xoshiro256PlusPlus) ->
     (Value::Array(given), moved)
 }
 
-/// What the engine says of every characteristic.
+/// The results of the engine for every characteristic.
 fn engine(study: &Study, analysis: &Analysis, moved: &[Relocation], by_law: bool) -> Value {
     let one = |c: usize| {
         let found = analysis.surface.at(c, moved)?;
@@ -357,7 +357,7 @@ fn costs_follow_the_tolerances() {
         let groups = pasted.costs.iter();
         let expected: Option<f64> =
             groups.map(|group| group.cost_to_hold(group.tightest_member(&pasted.problem))).sum();
-        // What no process holds is infinite to the script, and null in JSON.
+        // The cost of a tolerance that no process holds is infinite to the script, and null in JSON.
         match (found["cost"].as_f64(), expected) {
             (Some(found), Some(expected)) => {
                 assert!((found / expected - 1.0).abs() < 1e-11, "{found}, not {expected}: {text}")
@@ -426,7 +426,7 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
     assert!(page.contains("id=\"terms\""));
 }
 
-/// What two dimensions make jointly stands in a map below what each makes alone.
+/// The joint effects of two dimensions stand in a map below the effects of each alone.
 #[test]
 fn interactions_are_a_map() {
     let text = r##"
@@ -595,7 +595,7 @@ fn an_unchanged_what_if_is_the_verdict() {
     }
 }
 
-/// What is copied is a study's section: pasted, it analyses to what the page showed. Exactly so where the surrogate is the
+/// The copied text is a study's section: pasted, it analyses to what the page showed. Exactly so where the surrogate is the
 /// function, which it is of second degree; the bound is what differences of values near 160 leave of a kurtosis.
 #[test]
 fn what_is_copied_analyses_to_the_same() {

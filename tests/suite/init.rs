@@ -19,7 +19,7 @@ fn done(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// What `init` writes is right, runs as it is, and does what it says is next.
+/// The study that `init` writes is right, runs as it is, and does what it says is next.
 #[test]
 fn every_first_study_runs() {
     let folder = tempfile::tempdir().unwrap();
@@ -44,7 +44,7 @@ fn every_first_study_runs() {
     }
 }
 
-/// What is said to be next can be typed as it stands.
+/// The next command can be typed as it stands.
 #[test]
 fn a_name_with_a_space_is_quoted() {
     let folder = tempfile::tempdir().unwrap();

@@ -76,7 +76,7 @@ proptest! {
             if y.is_finite() {
                 prop_assert!(within(bounds.value, y), "{text} is {y} at {x:?}, outside {:?}", bounds.value);
             } else {
-                // What has no value somewhere is not said to be whole; what is too large for a double is no break.
+                // A result with no value somewhere is not said to be whole; one that is too large for a double is not a break.
                 prop_assert!(y.is_infinite() || !bounds.value.is_whole(), "{text} has no value at {x:?}");
             }
             if !bounds.value.is_whole() {
@@ -169,7 +169,7 @@ fn rounding_is_outward() {
     for (text, exact) in [("a + b", 0.75), ("a*b", 0.125), ("b/a", 2.0), ("sqrt(a)", 0.5), ("a - a", 0.0)] {
         assert_eq!(ends(text, [0.25; 2], [0.5; 2]), [exact; 2], "{text}");
     }
-    // What is lost below the least double is enclosed all the same.
+    // A value below the least double is enclosed all the same.
     let [lower, upper] = ends("exp(a)", [-800.0; 2], [0.0; 2]);
     assert!(lower == 0.0 && upper > 0.0);
     let [lower, upper] = ends("a*a*a*a", [-1e-100; 2], [0.0; 2]);

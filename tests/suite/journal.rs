@@ -1,4 +1,4 @@
-//! What external models answered is never lost: killed runs, shared journals, full disks, broken files, Ctrl-C.
+//! The answers of external models are never lost: killed runs, shared journals, full disks, broken files, Ctrl-C.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -162,8 +162,8 @@ fn killed_runs_go_on_where_they_were() {
     assert!(field(&resumed, "cached") > 0, "some of it was kept");
 }
 
-/// What a sentinel puts in doubt does not stay in the file: the point that flips the model flips the fresh child too, and is
-/// asked again by every run; all others are kept as they were answered in the end.
+/// An answer that a sentinel puts in doubt does not stay in the file: the point that flips the model flips the fresh child too,
+/// and is asked again by every run; all others are kept as they were answered in the end.
 #[test]
 fn doubtful_answers_are_not_kept() {
     let folder = tempfile::tempdir().unwrap();
@@ -246,7 +246,7 @@ fn a_model_that_changed_is_noticed() {
     };
     // Sigmas are a third of the tolerances; the sum is linear.
     let sigma = (0.01f64 + 0.04).sqrt() / 3.0;
-    // What the model has at the nominal point now is known when the plan comes to it.
+    // The model's value at the nominal point now is known when the plan comes to it.
     for (factor, cached, warns) in [(1.0, 0, false), (1.0, 7, false), (2.0, 1, true), (2.0, 7, false)] {
         let found = run(&factor.to_string());
         // Rounding of sums of 15 over differences of 0.1.

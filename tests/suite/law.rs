@@ -108,7 +108,7 @@ fn group(oracle: &Value) -> Group {
     }
 }
 
-/// What a law has made of an oracle: the largest errors, and by how much the stated error has covered them.
+/// The errors of a law against an oracle: the largest errors, and by how much the stated error has covered them.
 #[derive(Debug, Default, Clone, Copy)]
 struct Worst {
     absolute: f64,

@@ -1,5 +1,5 @@
-//! What programs may say beside their answers: heartbeats, starts, places, windows that grow, points that are taken back. The
-//! child is `tests/children/flips.c`, in another language than the SDK.
+//! Messages that programs may send beside their answers: heartbeats, starts, places, windows that grow, points that are taken
+//! back. The child is `tests/children/flips.c`, in another language than the SDK.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -97,7 +97,7 @@ fn places_and_a_crash() {
         (2, 1, 0, 0),
         "{account:?}"
     );
-    // What was under way: the child read and answered what it had before it died.
+    // The points under way are sent again: the child read and answered what it had before it died.
     assert!((1..=8).contains(&account.counts.retried), "{account:?}");
     assert!(account.counts.lost_s > 0.0 && account.last.unwrap().to_string().contains("exit code 9"));
     let places: Vec<&str> = account.places.keys().map(String::as_str).collect();

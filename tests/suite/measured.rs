@@ -682,7 +682,7 @@ fn measured_dimensions_at_fault() {
     insta::assert_snapshot!(all.join("\n"));
 }
 
-/// What is odd is a warning with lines; nothing is dropped for it.
+/// Odd values give a warning with lines; none is dropped for it.
 #[test]
 fn odd_values_are_named() {
     let mut table = String::from("n,d\n");

@@ -189,7 +189,7 @@ fn the_kink_is_seen_and_sampled_around() {
     let rod = &Case::rods()[0];
     let problem = rod.problem(&["Fn_opt"]);
     let theirs = &rod.truth["monte_carlo"]["Fn_opt"];
-    // What the methods do by themselves: a verification would sample a built-in model.
+    // The methods run by themselves: a verification would sample a built-in model.
     let alone = |method: Method| sensitol::Options::from(method).with_verify(0);
     let warned = |method: Method| {
         let analysis = analyze(&problem, &alone(method)).unwrap();

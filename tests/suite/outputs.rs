@@ -39,7 +39,7 @@ fn kinked_characteristics_are_asked_themselves() {
     assert!((found.value.unwrap() - exact).abs() < 3.0 * error && error < 0.01, "{found:?} for {exact}");
 }
 
-/// What does not vary is correlated with nothing; one characteristic has no other.
+/// A constant is correlated with nothing; one characteristic has no other.
 #[test]
 fn what_is_not_known_is_null() {
     let still = &of("p = { formula = \"u\" }\nq = { formula = \"7\" }\n", None).correlations;

@@ -447,7 +447,7 @@ fn mean_and_sigma_only_move_and_stretch() {
         let law = Pearson::new(mean, sigma, 0.4, 3.3).unwrap();
         for z in [-2.0, 0.3, 4.0] {
             let x = mean + sigma * z;
-            // What the mean takes of the digits of z.
+            // The digits of z that are lost to the mean.
             let lost = 10.0 * f64::EPSILON * (1.0 + (mean / sigma).abs()) * 10.0;
             assert!(off(law.cdf(x), standard.cdf(z)) < lost && off(law.pdf(x) * sigma, standard.pdf(z)) < lost);
         }

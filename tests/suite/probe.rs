@@ -1,4 +1,4 @@
-//! What a probe finds out of models that behave, drift, flip, and hiss.
+//! The findings of a probe on models that behave, drift, flip, and hiss.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 

@@ -56,7 +56,7 @@ fn right_but(a: &[f64], out: &Responses, wrong: &[usize]) {
     }
 }
 
-/// What went wrong at an entry.
+/// The fault at an entry.
 #[track_caller]
 fn fault(out: &Responses, row: usize, output: usize) -> ProcessFault {
     match out.error(row, output) {
@@ -118,7 +118,7 @@ fn workers_share_the_points() {
     assert_eq!(told.load(Ordering::Relaxed), 60);
 }
 
-/// What keeps a model from being used at all is known before any point is sent.
+/// A fault that keeps a model from being used at all is known before any point is sent.
 #[test]
 fn models_that_cannot_start() {
     let fault_of = |settings: Settings| match model(settings).prepare(&[0, 1]) {
@@ -226,7 +226,7 @@ fn what_fails_once_succeeds_the_second_time() {
     assert_eq!((fault(&out, 2, 0), out.extra()), (ProcessFault::NoValue { message: "licence busy".into() }, 3));
 }
 
-/// What the child says itself is an error of just that characteristic or point, and not tried again.
+/// A failure that the program itself reports is an error of just that characteristic or point, and not tried again.
 #[test]
 fn a_child_may_have_no_value() {
     let no_value = |message: &str| ProcessFault::NoValue { message: message.into() };
@@ -414,7 +414,7 @@ fn no_orphan_is_left() {
         let forever = format!("300.{}", std::process::id());
         let model = model(settings("grandchild", &[&forever]));
         right_but(&POINTS, &at(&model, &POINTS), &[]);
-        // What it started may still be on its way from `fork` to `exec`.
+        // A process that it started may still be on its way from `fork` to `exec`.
         let begun = Instant::now();
         let mut family = Vec::new();
         while family.len() < 3 {

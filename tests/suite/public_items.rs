@@ -46,7 +46,7 @@ struct Item {
 /// The items of a file, and for every type the names of its public functions and constants.
 type Defined = (Vec<Item>, Vec<(String, String)>);
 
-/// What the code of a file defines beside functions of types, and for every type the public functions and constants of it.
+/// The items that the code of a file defines beside functions of types, and for every type its public functions and constants.
 fn defined(code: &str) -> Defined {
     let (mut items, mut members) = (Vec::new(), Vec::new());
     let (mut hidden, mut of): (bool, Option<(String, String)>) = (false, None);
@@ -160,7 +160,7 @@ impl<'s> Surface<'s> {
             let next = all.into_iter().find(|path| path.last() == Some(&name) && path.len() > 1);
             match next {
                 Some(next) => self.passed_on(&target, &next, depth + 1),
-                // What a macro defines stands in its file.
+                // An item that a macro defines stands in its file.
                 None => {
                     let within = |module: &&str| module.starts_with(&format!("{target}/"));
                     let defines = |module: &&str| self.defined[*module].0.iter().any(|item| item.name == name);

@@ -1,4 +1,4 @@
-//! What the papers draw and do not print, against computations of other people: `tests/data/*.info.json` says whose.
+//! Figures that the papers draw and do not print, against computations of other people: `tests/data/*.info.json` says whose.
 
 use serde_json::Value;
 

@@ -445,7 +445,7 @@ fn a_lost_point_is_not_made_up() {
     );
 }
 
-/// What the options do not allow is one error, before anything is evaluated.
+/// A value that the options do not allow is one error, before anything is evaluated.
 #[test]
 fn wrong_wishes_are_refused() {
     let asked = Asked::default();

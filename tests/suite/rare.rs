@@ -35,7 +35,7 @@ fn sides(found: &RareEvents) -> [Option<Beyond>; 2] {
     [found.characteristics[0].below.clone(), found.characteristics[0].above.clone()]
 }
 
-/// What a hundred seeds make of a probability.
+/// The estimates of a probability by a hundred seeds.
 #[derive(Debug, Default)]
 struct Record {
     covered: usize,
@@ -335,8 +335,8 @@ fn the_command_reports_it() {
     assert_eq!(table.lines().count(), 3);
 }
 
-/// Limits on the far side of the means: nearly everything lies below the lower one. What is left is known by its own estimate, not as the
-/// rest of one.
+/// Limits on the far side of the means: nearly everything lies below the lower one. The rest is known by its own estimate, not as
+/// the rest of one.
 #[test]
 fn limits_on_the_far_side() {
     let function = Closure::scalar("gap", |x: &[f64]| 0.3 * x[0] + 0.4 * x[1]);

@@ -82,7 +82,7 @@ fn in_use(section: &str) -> String {
 struct Keys<'s> {
     defs: &'s Value,
     text: String,
-    /// What has been shown, and where.
+    /// The values that have been shown, and where.
     done: Vec<(&'s Value, String)>,
 }
 
@@ -193,13 +193,13 @@ impl<'s> Keys<'s> {
         self.text.push('\n');
     }
 
-    /// What it means, in its own words or those of its type.
+    /// Its meaning, in its own words or those of its type.
     fn about(&self, value: &'s Value) -> String {
         let own = value["description"].as_str().or_else(|| self.resolved(value)["description"].as_str());
         own.unwrap_or_else(|| panic!("no description: {value}")).to_owned()
     }
 
-    /// What may stand there.
+    /// The values that may stand there.
     fn kind(&self, value: &'s Value) -> String {
         let value = self.resolved(value);
         if let Some(forms) = value["anyOf"].as_array().or_else(|| value["allOf"].as_array()) {
@@ -310,7 +310,7 @@ pub fn examples(command: &Command) -> Vec<String> {
     lines.unwrap_or_default()
 }
 
-/// What an option means, and what it is when it is not there: `[default: ..]` within the help, or the parser's.
+/// The meaning of an option, and its default: `[default: ..]` within the help, or the parser's.
 fn help(one: &Arg) -> (String, String) {
     let text = one.get_long_help().or(one.get_help()).unwrap().to_string();
     let of_parser: Vec<String> = one.get_default_values().iter().map(|value| code(value.to_str().unwrap())).collect();

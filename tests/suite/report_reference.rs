@@ -36,7 +36,7 @@ pub fn json_report() -> String {
     page.text.trim_end().to_owned() + "\n"
 }
 
-/// What a reference leads to.
+/// The target of a reference.
 fn name(value: &Value) -> Option<&str> {
     value["$ref"].as_str().map(|path| path.strip_prefix("#/$defs/").unwrap())
 }

@@ -1,4 +1,4 @@
-//! What `--json` prints is what `sensitol schema --report` says.
+//! The output of `--json` follows `sensitol schema --report`.
 
 use serde_json::{Value, json};
 

@@ -97,7 +97,7 @@ fn a_comparison_measures_every_method() {
     assert!(chart.contains(">monte-carlo 1000<"));
 }
 
-/// What the program prints, but for seconds.
+/// The output of the program, without seconds.
 #[test]
 fn a_comparison_is_a_table() {
     let text = run(&["compare", BLOCKS, "--samples", "65536", "--budget", "5000", "--threads", "1"]);
@@ -126,8 +126,8 @@ fn a_comparison_of_a_program_shares_its_points() {
     let report = json(&["compare", PYTHON, "--samples", "200", "--json", "--journal", journal.to_str().unwrap()]);
     let methods = report["characteristics"][0]["methods"].as_array().unwrap();
     let named = |name: &str| methods.iter().find(|method| method["method"] == name).unwrap();
-    // What rss has evaluated the others need not evaluate again. It alone had the nominal point once more, as a sentinel, and seven
-    // answers replayed by walks of four evaluations.
+    // Points that rss has evaluated are not evaluated again for the others. It alone had the nominal point once more, as a
+    // sentinel, and seven answers replayed by walks of four evaluations.
     assert_eq!((&named("rss")["evaluations"], &named("second-order")["evaluations"]), (&46.into(), &17.into()));
     assert!(named("second-order")["cached"].as_u64().unwrap() >= 17);
     assert!(named("second-order")["evaluation_s"].as_f64().unwrap() > 0.0);

@@ -99,7 +99,7 @@ fn every_section_is_valid() {
     Study::from_toml(text, "study.toml").unwrap();
 }
 
-/// What the schema refuses, the reader refuses.
+/// A study that the schema refuses is refused by the reader.
 #[test]
 fn wrong_studies_are_invalid() {
     let validator = validator();
@@ -171,7 +171,7 @@ fn every_key_is_described() {
     walk(&sensitol::internals::schema(), "");
 }
 
-/// What the schema calls a default is what a study without the key has.
+/// The default of the schema is the value of a study without the key.
 #[test]
 fn defaults_are_what_is_left_out() {
     let schema = sensitol::internals::schema();

@@ -1,4 +1,4 @@
-//! `sensitol serve`: a folder of studies, for a page that knows the token. What the page does with it is tested in a browser.
+//! `sensitol serve`: a folder of studies, for a page that knows the token. The page's use of it is tested in a browser.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpStream};

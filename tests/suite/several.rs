@@ -47,7 +47,7 @@ fn reports_follow_each_other() {
     insta::assert_snapshot!("several-markdown", markdown);
 }
 
-/// What one call prints of a study is what a call of its own prints, in JSON too.
+/// The output of one call for a study is that of a call of its own, in JSON too.
 #[test]
 fn a_report_is_that_of_a_call_of_its_own() {
     let alone = [CLEARANCE, BLOCKS].map(|study| parts(&["analyze", study]).1);
@@ -103,7 +103,7 @@ fn the_worst_is_the_exit_code() {
         assert_eq!((&report["study"], report["error"].is_string()), (&study.into(), failed));
         assert_eq!(report["characteristics"].is_array(), !failed);
     }
-    // What only one of them asks for, or can pay for.
+    // A characteristic that only one of them has, and a budget that suffices for one.
     let (code, text, error) = parts(&["analyze", &good, CLEARANCE, "--kc", "clearance"]);
     assert!(code == 2 && text.starts_with(&format!("==> {CLEARANCE}")), "{text}");
     assert!(error.starts_with(&format!("error: {good}: ")), "{error}");
@@ -168,7 +168,7 @@ fn pages_of_one_name_have_their_folders() {
     assert_eq!((code, names(&pages).join(" ")), (0, "alone.html gear-study.html pump-Study.html".to_owned()));
 }
 
-/// What cannot be written, or would be written twice, is said before anything is evaluated.
+/// A file that cannot be written, or would be written twice, is reported before anything is evaluated.
 #[test]
 fn wrong_calls_evaluate_nothing() {
     let folder = tempfile::tempdir().unwrap();

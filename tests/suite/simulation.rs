@@ -21,7 +21,7 @@ fn run(problem: &Problem, samples: u64, sampler: Sampler, seed: u64) -> Simulati
         .unwrap()
 }
 
-/// What is true of a characteristic: mean, sigma, skewness, kurtosis, the 0.00135 quantile, the yield.
+/// The true values of a characteristic: mean, sigma, skewness, kurtosis, the 0.00135 quantile, the yield.
 pub type Truth = [f64; 6];
 
 /// In how many of the runs each truth lies within two standard errors, or the interval.
@@ -146,7 +146,7 @@ fn every_point_is_counted() {
     assert_eq!(run(&problem, 2, Sampler::Sobol, 1).samples, 16);
 }
 
-/// What has no value is counted, named, and bounds the yield.
+/// A point without a value is counted, named, and bounds the yield.
 #[test]
 fn failed_points_bound_the_yield() {
     let limits = SpecLimits::new(Some(-1.0), None).unwrap();
@@ -239,7 +239,7 @@ fn it_goes_on_until_it_is_sure() {
     let options = SimulationOptions::default().with_samples(1 << 40).with_until_yield(0.001);
     let share = simulate(&problem, &options).unwrap().characteristics[0].yield_.unwrap();
     assert!(0.5 * (share.interval[1] - share.interval[0]) <= 0.001);
-    // What the points do not suffice for is told.
+    // An accuracy for which the points do not suffice is reported.
     let options = SimulationOptions::default().with_until(1e-9);
     let short = simulate(&problem, &options).unwrap();
     assert_eq!((short.reached, short.samples), (Some(false), 100_000));

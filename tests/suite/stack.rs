@@ -97,7 +97,7 @@ fn a_stack_that_reaches_its_limit_keeps_it() {
     assert_eq!(fit(0.007, 0.040_999_9), Some(false));
 }
 
-/// What a table cannot show stands below it.
+/// Facts that a table cannot show stand below it.
 #[test]
 fn notes_say_what_a_stack_leaves_out() {
     let notes = |study: &str, options: Options| report(study, options).stacks().remove(0).notes;
@@ -298,7 +298,7 @@ fn csv_files_are_written() {
     let all = ["characteristics", "dimensions", "interactions", "quantiles", "sensitivities", "stack-gap", "warnings"];
     assert_eq!(written(&to), all.map(|name| format!("{name}.csv")));
     let before = std::fs::read_to_string(to.join("characteristics.csv")).unwrap();
-    // What fails leaves what was there, and nothing else.
+    // A run that fails leaves the earlier files, and nothing else.
     let (code, _, _) = run(&["analyze", blocks, "--csv", shown, "--budget", "3"]);
     assert_eq!((code, written(&to).len()), (2, 7));
     assert_eq!(std::fs::read_to_string(to.join("characteristics.csv")).unwrap(), before);

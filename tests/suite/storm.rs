@@ -179,7 +179,7 @@ fn no_signal_breaks_anything() {
             assert!(Store::open(&journal).is_ok(), "{what}: {:?}", Store::open(&journal).err());
         }
     }
-    // What the storm has left in the journal is right.
+    // The journal is right after the storm.
     assert!(ended(&mut storm.run("analyze")));
     assert_eq!(report()["characteristics"], expected);
 }

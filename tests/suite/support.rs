@@ -1,4 +1,4 @@
-//! What the themes share.
+//! The common part of the themes.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};

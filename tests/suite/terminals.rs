@@ -1,4 +1,4 @@
-//! What reaches a terminal: a real one, `tests/children/on_terminal.py`, where colours and progress bars are shown.
+//! The output on a terminal: a real one, `tests/children/on_terminal.py`, where colours and progress bars are shown.
 //!
 //! Texts of others stand in studies, file names, arguments, models and journals. Whatever they hold, no escape sequence of theirs and
 //! nothing that turns the direction of text reaches the terminal, on any command.
@@ -13,7 +13,7 @@ use super::support::repository;
 /// Clears the screen, sets the window's title, rings, goes back, turns the direction; C1 codes do so in one character.
 const HOSTILE: &str = "\u{1b}[2J\u{1b}]0;title\u{7}\u{8}\u{202e}\u{2066}\u{9b}2J\u{9d}x\u{9c}";
 
-/// What a command shows on a terminal.
+/// The output of a command on a terminal.
 fn shown(folder: &Path, arguments: &[&str]) -> String {
     let output = Command::new("python3")
         .arg(repository("tests/children/on_terminal.py"))

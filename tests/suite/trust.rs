@@ -18,8 +18,8 @@ use serde_json::{Value, json};
 
 use super::support::repository;
 
-/// What nobody can feel, beyond which an error is one: of mean and sigma in sigmas, skewness, kurtosis, a share of the tails, a
-/// central share. The thresholds of the design by which the references were made.
+/// The smallest differences that can be felt, beyond which an error is one: of mean and sigma in sigmas, skewness, kurtosis, a
+/// share of the tails, a central share. The thresholds of the design by which the references were made.
 const FELT: [f64; 6] = [1e-4, 1e-4, 1e-3, 0.01, 2e-6, 1e-4];
 const FIGURES: [&str; 6] = ["mean", "sigma", "skewness", "kurtosis", "yield", "mid"];
 
@@ -184,7 +184,7 @@ fn seldom_switches_are_found_and_named() {
     }
 }
 
-/// What is smooth, or never reached, is no switch: nothing to warn of.
+/// A smooth function has no switch, and one that is never reached does not count: nothing to warn of.
 #[test]
 fn smooth_formulas_have_no_switches() {
     let smooth = [
@@ -453,7 +453,7 @@ fn a_seldom_switch_is_warned_of() {
     assert!(warning.contains("`atan2(q, p)`") && warning.contains("13 ppm"), "{warning}");
 }
 
-/// What a formula answers next to the means does not scatter, where it has a kink or a root there.
+/// The answers of a formula next to the means do not scatter, where it has a kink or a root there.
 #[test]
 fn an_exact_formula_does_not_scatter() {
     let dimensions = || json!({ "a": { "nominal": 0, "sigma": 0.1 }, "b": { "nominal": 0, "sigma": 0.2 } });

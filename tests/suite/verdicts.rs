@@ -125,8 +125,8 @@ fn verdicts(report: &Value) -> Vec<(String, String, String)> {
     report["characteristics"].as_array().unwrap().iter().flat_map(of).collect()
 }
 
-/// What `allocate` says of the tolerances that it has found is what `analyze` says of the study that it writes, and nothing that
-/// `simulate` contradicts.
+/// The results of `allocate` for the tolerances that it has found are those of `analyze` for the study that it writes, and
+/// `simulate` contradicts none of them.
 #[test]
 fn allocate_analyze_and_simulate_say_the_same() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! `sensitol workbench`: a study goes into the page that web/build makes. What the page does is tested in a browser.
+//! `sensitol workbench`: a study goes into the page that web/build makes. The page itself is tested in a browser.
 
 use std::path::Path;
 use std::process::Output;
@@ -25,7 +25,7 @@ fn refused(folder: &Path, arguments: &[&str], said: &str) {
     assert!(error.contains(said), "{error}");
 }
 
-/// What stands in the page is the study's own text with the files that it names, and nothing in it ends its element.
+/// The page holds the study's own text with the files that it names, and nothing in it ends its element.
 #[test]
 fn a_study_goes_into_the_page() {
     let folder = tempfile::tempdir().unwrap();

@@ -247,7 +247,7 @@ fn objects(book: &mut Xlsx<std::io::BufReader<std::fs::File>>, sheet: &str) -> V
     rows.map(|row| header.iter().cloned().zip(row.iter().cloned()).collect()).collect()
 }
 
-/// What a cell of a column holds.
+/// The content of a cell of a column.
 fn cell(row: &[(String, Data)], column: &str) -> Data {
     row.iter().find(|(name, _)| name == column).unwrap_or_else(|| panic!("no column {column}")).1.clone()
 }
@@ -300,7 +300,7 @@ fn a_workbook_is_the_report() {
             assert!(same(cell(row, column), &expected[column]), "{column}: {row:?}");
         }
     }
-    // What looks like a formula is text, in the title, in a part, and nowhere is one but on the stack.
+    // A text that looks like a formula is text, in the title and in a part; formulas stand on the stack alone.
     assert_eq!(cell(&inputs[0], "part"), Data::String("=HYPERLINK(A1)".to_owned()));
     for sheet in ["Results", "Contributions", "Joint", "Inputs", "Study"] {
         assert!(book.worksheet_formula(sheet).unwrap().used_cells().next().is_none(), "{sheet}");

@@ -1,4 +1,4 @@
-//! What a yield comes from, and that it is the share within the limits.
+//! The source of a yield, and that it is the share within the limits.
 
 use sensitol::analysis::YieldSource;
 use sensitol::internals::reach::*;

@@ -5,7 +5,7 @@ use sensitol::internals::task::{Task, TaskPlace, models as built_in};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsError, JsValue};
 
-/// What a page calls once: a panic then has a message, which the page shows.
+/// The function that a page calls once: a panic then has a message, which the page shows.
 #[wasm_bindgen(start)]
 pub fn start() {
     std::panic::set_hook(Box::new(|panic| wasm_bindgen::throw_str(&format!("the engine failed: {panic}"))));

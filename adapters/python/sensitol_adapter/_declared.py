@@ -89,7 +89,7 @@ def load(module, *, places, install):
     """Imports a library that only the system's Python may have; called before `serve`.
 
     After a plain import, `places` are tried: pairs of a folder with the library (or None) and the interpreter it is made
-    for, which replaces this process: its descriptors stay, and nothing has been read from them. What the library prints
+    for, which replaces this process: its descriptors stay, and nothing has been read from them. Output of the library
     while it loads goes to stderr.
     """
     sys.stdout.flush()

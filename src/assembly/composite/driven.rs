@@ -1,4 +1,4 @@
-//! What a model is sent: dimensions, fixed values, and formulas that drive its inputs.
+//! The inputs that a model is sent: dimensions, fixed values, and formulas that drive its inputs.
 //!
 //! With dimensions `x` and formulas `z(x)` a characteristic is `y(x) = F(z(x))`. By the chain rule `dy/dx = F_z z_x`, where `z_x` is exact.
 
@@ -12,7 +12,7 @@ use crate::assembly::{
     AssemblyFunction, EvaluationError, Input, NonRepeatable, Points, Request, Responses, Run, Signature,
 };
 
-/// What a model is sent at some points.
+/// The values that a model is sent at some points.
 pub(super) struct Sent {
     /// A column for every input of the model, NaN where a formula has no value.
     pub(super) columns: Points,
@@ -34,7 +34,7 @@ impl Composite {
         self.split(&self.formulas.variables(formula)).unknowns
     }
 
-    /// What drives the model does not need its answers.
+    /// The formulas that drive the model do not need its answers.
     pub(super) fn drives_without_circle(&self, names: &[String]) -> Result<(), CompositeError> {
         for index in self.driving() {
             let mut needs = self.split(&self.formulas.variables(index));
@@ -58,7 +58,7 @@ impl Composite {
         }
     }
 
-    /// What the model is sent at these points.
+    /// The values that the model is sent at these points.
     pub(super) fn sent(&self, points: &Points, run: &Run<'_>) -> Sent {
         let rows = points.rows();
         let driving = self.driving();
@@ -133,7 +133,7 @@ impl Composite {
         Some((Arc::clone(&self.model.as_ref()?.function), needed))
     }
 
-    /// What the model would be sent at these points; None where a formula has no value at one of them.
+    /// The values that the model would be sent at these points; None where a formula has no value at one of them.
     pub(crate) fn drivers(&self, points: &Points) -> Option<Points> {
         let Sent { columns, errors } = self.sent(points, &Run::to_the_end());
         errors.iter().all(Option::is_none).then_some(columns)

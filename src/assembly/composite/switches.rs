@@ -18,7 +18,7 @@ impl Composite {
             Origin::Model(_) | Origin::Unknown(_) => Vec::new(),
         };
         let conditions = if self.needs(origin).unknowns { self.named..self.formulas.len() } else { 0..0 };
-        // What drives the model changes the form of what the model answers.
+        // A switch of a driving formula changes the form of the model's answers.
         let driving = if self.needs(origin).answers.is_empty() { Vec::new() } else { self.driving() };
         own.into_iter().chain(driving).chain(conditions).collect()
     }

@@ -1,4 +1,4 @@
-//! What can be wrong with a formula: as it is written, and at one point.
+//! The faults of a formula: as it is written, and at one point.
 
 use std::ops::Range;
 
@@ -12,11 +12,11 @@ use crate::names::shortened_to;
 pub struct FormulaError {
     /// Byte range in the formula's text.
     pub span: Range<usize>,
-    /// What is wrong there.
+    /// The fault there.
     pub fault: FormulaFault,
 }
 
-/// What is wrong with a formula's text.
+/// The faults of a formula's text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FormulaFault {
@@ -28,7 +28,7 @@ pub enum FormulaFault {
     UnexpectedCharacter {
         /// The character or operator.
         found: String,
-        /// What to write instead, where that is known.
+        /// The text to write instead, where that is known.
         instead: Option<&'static str>,
     },
     /// A number that no double holds.
@@ -61,19 +61,19 @@ pub enum FormulaFault {
     /// An operand is missing.
     #[error("a number, a name or `(` is missing before {before}")]
     MissingOperand {
-        /// What stands there instead.
+        /// The text that stands there instead.
         before: String,
     },
     /// Two operands stand side by side.
     #[error("an operator is missing before {before}")]
     MissingOperator {
-        /// What stands there instead.
+        /// The text that stands there instead.
         before: String,
     },
     /// `a < b < c`
     #[error("comparisons cannot be chained")]
     ChainedComparison,
-    /// A call of something that is no function.
+    /// A call of something that is not a function.
     #[error("there is no function `{name}`")]
     UnknownFunction {
         /// As written.
@@ -132,7 +132,7 @@ fn path_words(path: &[String]) -> String {
 }
 
 impl FormulaFault {
-    /// What to write instead, where that can be said.
+    /// The text to write instead, where that can be said.
     pub(crate) fn help(&self) -> Option<String> {
         let nearest = |nearest: &Option<String>| nearest.as_ref().map(|name| format!("did you mean `{name}`?"));
         match self {

@@ -78,7 +78,7 @@ pub(crate) enum Binary {
     Hypot,
 }
 
-/// What a name in front of a parenthesis stands for.
+/// The function that a name in front of a parenthesis stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Callable {
     Unary(Unary),
@@ -163,8 +163,8 @@ impl Unary {
         }
     }
 
-    /// What its argument must fulfil for it to have a value; None for a function that has one everywhere or fails by
-    /// being too large only.
+    /// The condition that its argument must fulfil for it to have a value; None for a function that has one everywhere or fails
+    /// by being too large only.
     pub(super) fn domain(self) -> Option<&'static str> {
         match self {
             Self::Asin | Self::Acos => Some("the argument must lie in -1 .. 1"),

@@ -7,7 +7,7 @@ use super::scalar::{Scalar, Verdict};
 
 /// All values from `lower` to `upper`, both included; NaN where there is none.
 ///
-/// What an operation returns encloses its value for every choice of its operands, rounding included: sums, products,
+/// The result of an operation encloses its value for every choice of its operands, rounding included: sums, products,
 /// quotients and roots are rounded outward by their exact errors, and what a mathematical library computes is widened by
 /// four units in the last place, more than any in use is off. Where an operation has a value for some operands only, the
 /// others are left out, as a point without value is.
@@ -19,11 +19,11 @@ pub struct Interval {
     whole: bool,
 }
 
-/// What a library's function may be off, in units in the last place.
+/// The error that a library's function may have, in units in the last place.
 const LIBRARY: usize = 4;
 /// An angle as large as this has lost its place on the circle.
 const LOST: f64 = 1e8;
-/// Below this the error of a product is no double any more.
+/// Below this the error of a product is not a double any more.
 const TINY: f64 = 1e-280;
 
 impl Interval {
@@ -41,7 +41,7 @@ impl Interval {
     fn point(value: f64) -> Self {
         match value {
             _ if value.is_nan() => Self::EMPTY,
-            // What is made of an infinity depends on how it came about.
+            // The result of an operation on an infinity depends on how it came about.
             _ if value.is_infinite() => Self::EVERYTHING,
             _ => Self::between(value, value),
         }
@@ -96,7 +96,7 @@ impl Interval {
         Self { lower, upper, whole: self.whole && other.whole }
     }
 
-    /// What both have in common.
+    /// The intersection of both.
     fn within(&self, lower: f64, upper: f64) -> Self {
         if self.is_empty() || self.lower > upper || self.upper < lower {
             return Self::EMPTY;

@@ -7,7 +7,7 @@ use super::scalar::{Scalar, Verdict};
 /// the pure one, for two unit vectors the mixed one. Nothing is lost to differences.
 ///
 /// A derivative that does not exist is NaN and stays so: at the edge of a domain (`sqrt` at 0), at a kink (`abs` at 0,
-/// `min` of equals), at a jump (`floor`, the cut of `atan2`), beyond an infinity. What is the same on both sides to the
+/// `min` of equals), at a jump (`floor`, the cut of `atan2`), beyond an infinity. A value that is the same on both sides to the
 /// second order, such as both branches of an `if` at its limit, has a derivative all the same.
 ///
 /// ```

@@ -15,14 +15,14 @@ pub(super) enum Token {
     Open,
     Close,
     Comma,
-    /// What stands in brackets after a number.
+    /// The text in brackets after a number.
     Unit(String),
 }
 
 /// Longest first, so that `<=` is not read as `<`.
 const OPERATORS: [&str; 11] = ["<=", ">=", "==", "!=", "<", ">", "+", "-", "*", "/", "^"];
 
-/// What people write by habit, and what formulas write instead.
+/// Spellings from other languages, and the ones that formulas use instead.
 const HABITS: [(&str, &str); 12] = [
     ("**", "powers are written with `^`"),
     ("&&", "write `if(a, b, 0)` for a and b"),

@@ -19,7 +19,7 @@ pub(super) enum Step {
     If { condition: Operand, then: Branch, otherwise: Branch, to: usize },
 }
 
-/// What is computed only where some row takes this branch, and its result.
+/// The steps that are computed only where some row takes this branch, and their result.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Branch {
     pub(super) steps: Vec<Step>,

@@ -3,7 +3,7 @@
 use super::functions::{Binary, Unary, select};
 use super::program::{Branch, Operand, Program, Step};
 
-/// What a program can be run on in place of columns of numbers.
+/// A value that a program can be run on in place of columns of numbers.
 pub(crate) trait Scalar: Clone {
     /// A number that never changes.
     fn constant(value: f64) -> Self;
@@ -19,14 +19,14 @@ pub(crate) trait Scalar: Clone {
         Self::binary(Binary::Multiply, a, a)
     }
 
-    /// What this value means as the condition of an `if`.
+    /// The meaning of this value as the condition of an `if`.
     fn verdict(&self) -> Verdict;
 
     /// The value of an `if` whose condition is open, from both its branches.
     fn join(condition: &Self, then: Self, otherwise: Self) -> Self;
 }
 
-/// What a condition comes to.
+/// The outcome of a condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// It is not 0: the first branch alone is run.

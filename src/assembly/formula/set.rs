@@ -17,7 +17,7 @@ use super::slopes::Sloped;
 use crate::assembly::Bounds;
 use crate::names::nearest;
 
-/// What a name stands for, where it is no formula.
+/// The meaning of a name that is not a formula.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Meaning {
     /// The column of this index.
@@ -82,7 +82,7 @@ impl Routine {
 pub(super) struct Entry {
     pub(super) name: String,
     pub(super) formula: Formula,
-    /// What the names among the formula's nodes stand for.
+    /// The meanings of the names among the formula's nodes.
     pub(super) references: HashMap<usize, Reference>,
 }
 

@@ -152,7 +152,7 @@ impl Scalar for Sloped {
     }
 }
 
-/// What of it is not negative.
+/// The part of it that is not negative.
 fn positive(x: &Interval) -> Interval {
     Interval::between(x.lower().max(0.0), x.upper().max(0.0))
 }

@@ -1,4 +1,4 @@
-//! What the formulas' own tree tells: where they change their form, and their degree as polynomials.
+//! Facts from the formulas' own tree: where they change their form, and their degree as polynomials.
 //!
 //! Every switch has a margin, a function of the variables that changes its sign where the formula changes its form:
 //!
@@ -57,7 +57,7 @@ impl FormulaSet {
         columns
     }
 
-    /// The degree of a formula as a polynomial in its variables, of which `variable` says the degree; None where it is no polynomial.
+    /// The degree of a formula as a polynomial in its variables, of which `variable` says the degree; None where it is not one.
     ///
     /// Constants and other formulas are followed. Cost: one pass over the operations.
     ///

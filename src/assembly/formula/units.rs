@@ -16,7 +16,7 @@ const FOLLOWED: usize = 8;
 /// Factors and divisors that hide no unit.
 const SIMPLE: [f64; 7] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, std::f64::consts::PI];
 
-/// What a formula is for, where its unit follows from that.
+/// The role of a formula, where its unit follows from that.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Role {
     /// Anything.
@@ -38,15 +38,15 @@ pub(crate) struct UnitFinding {
     pub(crate) formula: usize,
     /// The part of its text.
     pub(crate) span: Range<usize>,
-    /// What is wrong.
+    /// The fault.
     pub(crate) what: String,
-    /// What to write instead.
+    /// The text to write instead.
     pub(crate) remedy: String,
     /// Whether a number without a unit could explain it.
     pub(crate) doubtful: bool,
 }
 
-/// What a part of a formula measures.
+/// The quantity that a part of a formula measures.
 #[derive(Debug, Clone, PartialEq)]
 struct Quantity {
     unit: Unit,
@@ -106,7 +106,7 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
-/// What was found in one formula: the first finding counts, as the others follow from it.
+/// The finding in one formula: the first finding counts, as the others follow from it.
 struct Pass<'f> {
     formula: &'f Formula,
     index: usize,
@@ -115,8 +115,8 @@ struct Pass<'f> {
 }
 
 impl FormulaSet {
-    /// What every formula measures, and the first thing in each that does not go together; `unit` knows what is named outside, and
-    /// `role` what a formula is for. With `convert` all names are taken in SI.
+    /// The quantity that every formula measures, and the first fault of units in each; `unit` knows the names from outside, and
+    /// `role` the purpose of a formula. With `convert` all names are taken in SI.
     ///
     /// Cost: one pass over the formulas, and no evaluation.
     pub(crate) fn units(
@@ -188,7 +188,7 @@ impl Pass<'_> {
             && self.formula.text()[self.formula.nodes[node].1.clone()].trim_matches(['(', ')', ' ']) == "deg"
     }
 
-    /// What the formula measures; None where a unit is unknown.
+    /// The quantity that the formula measures; None where a unit is unknown.
     fn run(&mut self, of_name: &dyn Fn(usize, &str) -> Option<Quantity>) -> Option<Quantity> {
         let formula = self.formula;
         let mut all: Vec<Option<Quantity>> = Vec::with_capacity(formula.nodes.len());
@@ -446,7 +446,7 @@ impl Pass<'_> {
         Some(a.clone())
     }
 
-    /// What a formula gives is in the unit that it is said to be in.
+    /// The result of a formula is in its declared unit.
     fn declared(&mut self, found: Option<&Quantity>, declared: &Unit) {
         let Some(found) = found.filter(|found| !found.literal) else { return };
         let node = self.formula.nodes.len() - 1;

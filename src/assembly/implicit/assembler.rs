@@ -35,7 +35,7 @@ pub(in crate::assembly) struct Anchor {
 const OFF: f64 = 0.25;
 /// As is one that took more steps than this.
 const STEPS: usize = 12;
-/// What is followed may be off by this part of a step, and a step that is off by less may grow.
+/// A root that is followed may be off by this part of a step, and a step that is off by less may grow.
 const FOLLOWED: f64 = 0.5;
 const EASY: f64 = 0.1;
 /// Rounding may set a root off its prediction by this.
@@ -234,7 +234,7 @@ impl Assembler {
         Err(done)
     }
 
-    /// What a search that got stuck says; `begun` are the equations at the start values of the nominal state.
+    /// The error of a search that got stuck; `begun` are the equations at the start values of the nominal state.
     fn failure(
         &self,
         set: &FormulaSet,

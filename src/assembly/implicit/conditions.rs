@@ -18,7 +18,7 @@ pub enum Condition {
     Equation {
         /// Its name.
         name: String,
-        /// What is zero.
+        /// The formula that is zero.
         formula: Formula,
     },
     /// Vectors that close: two equations.

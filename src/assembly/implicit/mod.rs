@@ -8,7 +8,7 @@
 //! A safeguarded Newton method with exact Jacobians, iterated until rounding stops it. It starts at every point from the
 //! nominal solution and its exact sensitivities, so that a result depends neither on the order of the points nor on
 //! threads. Where it fails, lands on another determinant's sign or far off its prediction, the solution is followed from
-//! the nominal dimensions to the point in steps that adapt. What cannot be followed is an error.
+//! the nominal dimensions to the point in steps that adapt. A path that cannot be followed is an error.
 //!
 //! # Derivatives
 //! `F_u u' = -F_x x'`, and once more with the second derivatives on the right: both exact, by jets of the conditions. First

@@ -20,7 +20,7 @@ pub(super) struct System {
     pub(super) uses: Vec<usize>,
 }
 
-/// What the values of the routine make: an equation of one, a loop of twice as many as it has links.
+/// The equations that the values of the routine make: an equation of one, a loop of twice as many as it has links.
 enum Kind {
     Equation,
     Loop { links: usize },

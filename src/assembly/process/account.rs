@@ -1,4 +1,4 @@
-//! What became of the children of a model, beside its answers.
+//! The account of a model's processes, beside its answers.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What is left to do of a batch of points, and what came of them.
+//! The work that is left of a batch of points, and its results.
 
 use std::collections::{HashMap, HashSet, VecDeque};
 
@@ -6,7 +6,7 @@ use super::error::{ProcessError, ProcessFault, StderrTail};
 use super::protocol::Line;
 use crate::assembly::{Points, Progress, Responses, Run};
 
-/// What is left to do of a batch.
+/// The work that is left of a batch.
 pub(super) struct Batch<'a> {
     pub(super) points: &'a Points,
     pub(super) out: &'a mut Responses,
@@ -101,7 +101,7 @@ impl<'a> Batch<'a> {
         self.finish(row);
     }
 
-    /// Evaluates rows again whose answers are in doubt; once. What is in doubt a second time stays so.
+    /// Evaluates rows again whose answers are in doubt; once. An answer that is in doubt a second time stays so.
     pub(super) fn distrust(&mut self, rows: &[usize]) {
         self.withdrawn.extend(rows);
         for &row in rows {
@@ -121,7 +121,7 @@ impl<'a> Batch<'a> {
         self.done.push(row);
     }
 
-    /// What the model said: values, and for what has none the reason.
+    /// The answers of the model: values, and for what has none the reason.
     pub(super) fn settle(&mut self, row: usize, line: Line, names: &[String]) {
         let no_value = |message: String| {
             Box::new(ProcessError { fault: ProcessFault::NoValue { message }, stderr: StderrTail::default() }).into()
@@ -157,7 +157,7 @@ impl<'a> Batch<'a> {
                 self.fail(row, error);
             }
         }
-        // What was to be evaluated again keeps its first answer.
+        // A row that was to be evaluated again keeps its first answer.
         self.waiting.clear();
         self.suspects.clear();
         self.left = 0;

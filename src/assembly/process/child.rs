@@ -71,7 +71,7 @@ impl Child {
             command.args(&argv[1..]).current_dir(folder);
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         });
-        // The whole group ends with its leader: what a child started for itself is no orphan.
+        // The whole group ends with its leader: what a child started for itself is not an orphan.
         #[cfg(unix)]
         command.wrap(process_wrap::std::ProcessGroup::leader());
         #[cfg(windows)]
@@ -84,7 +84,7 @@ impl Child {
         })?;
         let (requests, lines) = channel::<Vec<u8>>();
         let mut stdin = process.stdin().take().expect("stdin is a pipe");
-        // A child that never reads blocks this thread, and nobody else.
+        // A child that never reads blocks this thread alone.
         let write = move || {
             for line in lines {
                 if stdin.write_all(&line).and_then(|()| stdin.flush()).is_err() {
@@ -156,7 +156,7 @@ impl Child {
         drop(self.guard.take());
         let _ = self.process.start_kill();
         let status = status.or_else(|| self.process.wait().ok());
-        // The pipes are closed now, unless somebody left the group: their last lines are worth a moment.
+        // The pipes are closed now, unless a process left the group: their last lines are worth a moment.
         let begun = Instant::now();
         while !self.readers.iter().all(JoinHandle::is_finished) && begun.elapsed() < Duration::from_millis(200) {
             std::thread::sleep(Duration::from_millis(1));

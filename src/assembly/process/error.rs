@@ -1,4 +1,4 @@
-//! What an external process can do wrong.
+//! The faults of an external process.
 
 use std::fmt;
 use std::time::Duration;
@@ -8,13 +8,13 @@ use std::time::Duration;
 #[error("{fault}{stderr}")]
 #[non_exhaustive]
 pub struct ProcessError {
-    /// What went wrong.
+    /// The fault.
     pub fault: ProcessFault,
     /// The last lines of its stderr.
     pub stderr: StderrTail,
 }
 
-/// What went wrong with a process.
+/// The faults of a process.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProcessFault {
@@ -67,7 +67,7 @@ pub enum ProcessFault {
     /// Its first line was none of the protocol.
     #[error("the model's first line is not a `ready` of this protocol: {line}{}", hint(line))]
     NotReady {
-        /// What it wrote.
+        /// The line that it wrote.
         line: Quoted,
     },
     /// It ended with points under way.
@@ -85,9 +85,9 @@ pub enum ProcessFault {
     /// It wrote a line that is not an answer.
     #[error("the model wrote a line that is not an answer ({reason}): {line}{}", hint(line))]
     Garbage {
-        /// What is wrong with it.
+        /// The reason why the line is invalid.
         reason: String,
-        /// What it wrote.
+        /// The line that it wrote.
         line: Quoted,
     },
     /// It wrote a line without end.
@@ -114,7 +114,7 @@ pub enum ProcessFault {
         /// A number for each dimension.
         columns: usize,
     },
-    /// It answered a point that nobody asked for.
+    /// It answered a point that was not asked for.
     #[error("the model answered point {id}, which was not under way")]
     UnknownPoint {
         /// The point's number.
@@ -172,7 +172,7 @@ impl fmt::Display for Exit {
     }
 }
 
-/// The beginning of a line that somebody else wrote, fit to be shown.
+/// The beginning of a line from outside of this program, fit to be shown.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Quoted(pub String);
 
@@ -222,7 +222,7 @@ fn in_own(name: &str, own: &str, factor: Option<f64>) -> String {
     }
 }
 
-/// What to do about a line that was printed for people.
+/// The action to take on a line that was printed for people.
 fn hint(line: &Quoted) -> &'static str {
     match line.0.is_empty() || line.0.starts_with('{') {
         true => "",

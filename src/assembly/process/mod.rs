@@ -11,7 +11,7 @@
 //! A point that fails is tried again `retries` times, in a fresh child and alone, so that a point that crashes children is
 //! found out and takes no other with it. A child that fails is started again, after a pause that doubles every time.
 //!
-//! What a program is told and what can go wrong with it is known without the feature `process`, which runs it.
+//! The messages to a program and its possible faults are known without the feature `process`, which runs it.
 
 mod account;
 #[cfg(feature = "process")]

@@ -50,7 +50,7 @@ pub(super) struct Pool {
     pub(super) account: EvaluatorAccount,
     /// Answers so far, of which some are replayed.
     pub(super) answers: Answers,
-    /// What every output differs by when the nominal point is evaluated again.
+    /// The difference of every output when the nominal point is evaluated again.
     pub(super) noise: Vec<f64>,
     /// Whether an answer was found to depend on the points before it.
     pub(super) flips: bool,
@@ -164,7 +164,7 @@ impl Pool {
             self.account.counts.unconfirmed += work.twice.len() as u64;
         }
         work.out.retried(work.resent);
-        // After giving up, somebody may still work on points of this batch: the next one must not hear of them.
+        // After giving up, a process may still work on points of this batch: the next one must not hear of them.
         for slot in &mut self.slots {
             if let State::Ready(worker) = &mut slot.state {
                 worker.unchecked.clear();
@@ -211,7 +211,7 @@ impl Pool {
             };
             // One child for each window of points: no more than there is work for.
             wanted = wanted.saturating_sub(self.adapter.as_ref().map_or(1, |adapter| adapter.window));
-            // What goes wrong later is heard of as an event.
+            // Later failures arrive as events.
             if start && let Err(error) = self.start(index) {
                 self.lost_start(index, error)?;
             }
@@ -616,7 +616,7 @@ impl Pool {
 }
 
 impl Slot {
-    /// Whether nothing is left that its child has answered and nobody has checked.
+    /// Whether nothing is left that its child has answered and that is not checked.
     fn is_checked(&self) -> bool {
         match &self.state {
             State::Ready(worker) => worker.unchecked.is_empty() && worker.under_way.is_empty(),

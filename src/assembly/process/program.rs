@@ -32,7 +32,7 @@ impl Process {
         Self { signature, settings, greeting, pool: Mutex::new(None) }
     }
 
-    /// What the program says of itself; starts it if need be.
+    /// The program's description of itself; starts the program if need be.
     ///
     /// # Errors
     /// When it does not start, or does not serve the study.
@@ -46,7 +46,7 @@ impl Process {
         pool.as_ref().is_some_and(|pool| pool.converts)
     }
 
-    /// What became of its processes so far: nothing where none was started.
+    /// The account of its processes so far: nothing where none was started.
     pub(crate) fn account(&self) -> EvaluatorAccount {
         let pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         pool.as_ref().map(|pool| pool.account.clone()).unwrap_or_default()
@@ -57,7 +57,7 @@ impl Process {
         &self.settings
     }
 
-    /// What its first line says beside names.
+    /// The content of its first line beside names.
     pub(crate) fn greeting(&self) -> &Greeting {
         &self.greeting
     }
@@ -92,7 +92,7 @@ impl Process {
     }
 }
 
-/// What came of holding the answers of an earlier run against the model as it is.
+/// The result of a comparison of an earlier run's answers with the model as it is.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Recheck {
     /// They are its answers, and this is what the nominal point has.
@@ -107,7 +107,7 @@ pub(crate) enum Recheck {
 
 /// Answers of an earlier run.
 pub(crate) struct Kept<'a> {
-    /// What the nominal point had; None where that was not kept.
+    /// The answers of the nominal point; None where they were not kept.
     pub(crate) nominal: Option<&'a [Option<f64>]>,
     /// Points and their values, by which noise is told from a difference.
     pub(crate) points: &'a [Vec<f64>],

@@ -53,7 +53,7 @@ pub(super) struct Line {
     #[serde(rename = "where")]
     pub(super) place: Option<String>,
     pub(super) cost_s: Option<f64>,
-    /// What the program can do; with `ready`.
+    /// The abilities of the program; with `ready`.
     #[serde(default)]
     pub(super) isolated: bool,
     #[serde(default)]
@@ -120,7 +120,7 @@ impl Line {
         ModelInfo { name: self.name.clone(), version, window, gradients: self.gradients }
     }
 
-    /// What is wrong with the shape of an answer.
+    /// The fault in the shape of an answer.
     pub(super) fn misshapen(&self, rows: usize, columns: usize) -> Option<ProcessFault> {
         let found = self.y.as_ref().map_or(rows, Vec::len);
         if found != rows {

@@ -13,7 +13,7 @@ use crate::assembly::{EvaluationError, NonRepeatable, Points, Responses, Run};
 
 /// Equal steps of a walk.
 const STEPS: usize = 3;
-/// Noise of the model, times this, is no difference.
+/// Noise of the model, times this, is not a difference.
 const NOISY: f64 = 10.0;
 /// Answers of an earlier run that are replayed before any is used.
 const REUSED: usize = 2;
@@ -59,7 +59,7 @@ impl Route {
 /// Values of one point, None where it has none.
 type Values = Vec<Option<f64>>;
 
-/// What came of one walk.
+/// The result of one walk.
 #[derive(Debug, Clone, PartialEq)]
 enum Walked {
     /// A stop came before its end.
@@ -169,8 +169,8 @@ impl Pool {
         }
     }
 
-    /// What the nominal point has now, and whether that is what was kept of it; None where a stop came first. A model that does not
-    /// repeat itself is asked three times, and may differ by its noise.
+    /// The values of the nominal point now, and whether they are those that were kept; None where a stop came first. A model that
+    /// does not repeat itself is asked three times, and may differ by its noise.
     pub(super) fn is_as_kept(
         &mut self,
         kept: Option<&[Option<f64>]>,
@@ -242,7 +242,7 @@ impl Pool {
         let first = self.walk(&place(chosen), Route::Straight, out, run)?;
         let suspicious = self.differing(chosen, &first, all);
         self.confirm_others(chosen, &suspicious, rows);
-        // What a process does not get to in small steps is no sign of a flip.
+        // A point that a process does not reach in small steps is not a sign of a flip.
         if !self.flips && !suspicious.iter().any(|(_, walked)| walked.is_some()) {
             return Some(Vec::new());
         }
@@ -340,7 +340,7 @@ impl Pool {
                 }
             }
         }
-        // What it is now is what two ways agree on, or nothing.
+        // The value now is the one that two ways agree on, or none.
         self.answers.confirm(point);
         self.account.counts.unconfirmed += u64::from(unsettled);
         unsettled

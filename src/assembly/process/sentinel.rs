@@ -13,7 +13,7 @@ const NOISE: f64 = 1e-7;
 /// and this part of themselves.
 const ROUNDING: f64 = 1e-12;
 
-/// What is known of the nominal point, and of how far answers vary.
+/// The reference answers of the nominal point, and how far answers vary.
 #[derive(Debug, Default)]
 pub(super) struct Reference {
     nominal: Option<Vec<Option<f64>>>,
@@ -60,7 +60,7 @@ impl Reference {
         self.range.get(output).map_or(0.0, |range| (range[1] - range[0]).max(0.0))
     }
 
-    /// What later answers to the nominal point are held against from now on.
+    /// Sets the values that later answers to the nominal point are compared with.
     pub(super) fn trust(&mut self, nominal: &[Option<f64>]) {
         self.nominal = Some(nominal.to_vec());
     }

@@ -119,7 +119,7 @@ impl Settings {
     }
 }
 
-/// What the first line to a child says beside the names that are asked for.
+/// The content of the first line to a process beside the names that are asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Greeting {

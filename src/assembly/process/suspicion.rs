@@ -13,7 +13,7 @@ const KEPT: usize = 20_000;
 const PART: f64 = 0.05;
 const LEAST: usize = 5;
 const RANDOM: usize = 2;
-/// What keeps a quotient finite, as a part of the median effect.
+/// The part of the median effect that keeps a quotient finite.
 const FLOOR: f64 = 0.02;
 
 /// A point by its bits; 0 has one sign only.

@@ -8,7 +8,7 @@ use super::child::Child;
 use super::protocol::Line;
 use super::sentinel::SENTINEL;
 
-/// What a program declares in `ready` beside its window.
+/// The abilities that a program declares in `ready` beside its window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Abilities {
     /// Points do not share the process's fate: after a crash none of them is suspected.

@@ -1,4 +1,4 @@
-//! What one number says of all interactions that were not examined, from the points that check.
+//! One number for all interactions that were not examined, from the points that check.
 //!
 //! A product of functions of one dimension each, and a function of a sum, have with slopes `b`, curvatures `a` and one `l`
 //!
@@ -16,7 +16,7 @@ use super::chosen::ChosenPoints;
 use crate::plan::{Corner, DifferencePlan};
 use crate::surrogate::Univariate;
 
-/// What a fit leaves of a part must be below this part of it, for the products,
+/// The rest of a part after a fit must be below this part of it, for the products,
 const EXPLAINS: f64 = 0.2;
 /// and for the powers beyond.
 const EXPLAINS_ODD: f64 = 0.5;
@@ -24,7 +24,7 @@ const EXPLAINS_ODD: f64 = 0.5;
 const SQUARE: f64 = 0.1;
 /// With fewer pairs of points than that nothing is fitted to them.
 const FEWEST: usize = 4;
-/// Beyond this `t` is no property of a function that anybody writes down: 3 for a root.
+/// A larger `t` indicates a bad fit: a root has 3.
 const LARGEST: f64 = 6.0;
 
 /// Slopes and curvatures of all parts.
@@ -79,7 +79,7 @@ impl Bends {
         together * (bends * p1 - own - direct) + together * together * triples + cubes
     }
 
-    /// What the terms `u_j^2 u_k` add to the slopes.
+    /// The contribution of the terms `u_j^2 u_k` to the slopes.
     fn slopes_of_thirds(&self, factor: f64, but: &[(usize, usize)]) -> Vec<f64> {
         let all: f64 = self.curvatures.iter().sum();
         let mut bends: Vec<f64> = self.curvatures.iter().map(|own| all - own).collect();
@@ -95,8 +95,8 @@ impl Bends {
         (self.curvatures[j] * self.curvatures[k]).abs() > SQUARE * (self.slopes[j] * self.slopes[k]).abs()
     }
 
-    /// What the corners of an examined pair say beside its product: `u_j^2 u_k` and `u_j u_k^2`, which are to each other as
-    /// `a_j b_k` to `a_k b_j`, and `u_j^2 u_k^2` where all four are known.
+    /// The terms that the corners of an examined pair show beside its product: `u_j^2 u_k` and `u_j u_k^2`, which are to each
+    /// other as `a_j b_k` to `a_k b_j`, and `u_j^2 u_k^2` where all four are known.
     pub(super) fn twist(&self, (j, k): (usize, usize), corners: &[Option<Corner>; 4]) -> Option<Twist> {
         let [Some((u1, v1, d1)), Some((u2, v2, d2)), ..] = *corners else { return None };
         let [first, second] = [self.curvatures[j] * self.slopes[k], self.curvatures[k] * self.slopes[j]];
@@ -125,22 +125,22 @@ impl Bends {
     }
 }
 
-/// What the corners of a pair say.
+/// The terms that the corners of a pair show.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Twist {
     /// `A_jk`
     pub(super) product: f64,
-    /// What the odd terms add to the slopes of `j` and `k`.
+    /// The contribution of the odd terms to the slopes of `j` and `k`.
     pub(super) slopes: [f64; 2],
     /// The factor of `u_j^2 u_k^2 = 1 + (u_j^2 - 1) + (u_k^2 - 1) + (u_j^2 - 1)(u_k^2 - 1)`: what it adds to both curvatures.
     pub(super) square: f64,
 }
 
-/// What the points that check say of the interactions that were not examined.
+/// The estimate of the interactions that were not examined, by the points that check.
 pub(super) struct Atoms {
     /// `l`, where it was not known before.
     pub(super) together: Option<f64>,
-    /// What is added to the slopes.
+    /// The amounts that are added to the slopes.
     pub(super) slopes: Option<Vec<f64>>,
 }
 
@@ -176,7 +176,7 @@ pub(super) fn atoms(
 
 struct OneFactor {
     factor: f64,
-    /// What it leaves, as a part of what there was.
+    /// The part that it leaves of the values.
     left: f64,
 }
 

@@ -73,7 +73,7 @@ pub(super) struct Climb<'p> {
     problem: &'p Problem,
     pub(super) plan: DifferencePlan,
     pub(super) bought: ChosenPoints,
-    /// What is wanted of sigma in the end,
+    /// The accuracy of sigma to reach in the end,
     wanted: f64,
     /// and for now: it falls in steps that are the same for everybody, so that what a finer error takes begins with what a coarser
     /// one takes.
@@ -156,13 +156,13 @@ impl<'p> Climb<'p> {
         }
     }
 
-    /// What every characteristic is known to be.
+    /// The view of every characteristic.
     pub(super) fn views(&self, known: &KnownAnswers) -> Vec<Option<View>> {
         let characteristics = 0..self.problem.characteristics().len();
         characteristics.map(|c| View::of(&self.plan, known, &self.bought, c, self.accuracy)).collect()
     }
 
-    /// What has been chosen and is not known.
+    /// The points that have been chosen and are not evaluated yet.
     pub(super) fn wanted(&self, known: &KnownAnswers) -> Stage {
         let mut stage = self.plan.next(known).unwrap_or_default();
         let checks = self.bought.checks.iter().flatten().map(|point| (point, Purpose::Check));
@@ -310,7 +310,7 @@ impl<'p> Climb<'p> {
         self.bought.noise = points.iter().all(|point| *point != Point::Centre).then_some(points);
     }
 
-    /// What even and odd powers leave, as shares of the variance.
+    /// The parts that even and odd powers leave, as shares of the variance.
     fn left(&self, view: &View) -> [f64; 2] {
         let Some(check) = &view.check else { return [0.0; 2] };
         if self.plan.inputs().shapes().iter().any(|shape| skewed(&shape.moments)) {

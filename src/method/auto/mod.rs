@@ -9,8 +9,8 @@
 //!   all dimensions at once and a sparse fit to them, growing, until every pair for itself is nearly as cheap;
 //! - two nodes more for the strongest of the others, where odd powers are left.
 //!
-//! What is left in the end adds to the variance as the unexplained part that it is, and is the estimate of the error. All points
-//! are those of a fixed design: the same study gives the same numbers, whatever the seed.
+//! The rest that is left in the end adds to the variance as the unexplained part that it is, and is the estimate of the error.
+//! All points are those of a fixed design: the same study gives the same numbers, whatever the seed.
 
 mod atoms;
 mod chosen;
@@ -43,7 +43,7 @@ pub(super) struct Auto;
 
 pub(super) const AUTO: Auto = Auto;
 
-/// What it begins with.
+/// The ladder that it begins with.
 const BASE: Ladder = Ladder {
     method: Method::Auto,
     runs: Method::Auto,
@@ -141,7 +141,7 @@ fn climb<'p>(problem: &'p Problem, options: &Options) -> Result<Climb<'p>, Metho
     Ok(Climb::new(problem, BASE.differences(problem, options)?, accuracy, options))
 }
 
-/// What the climb has found out.
+/// The results of the climb.
 fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &Evaluated) -> Outcome {
     let known = &evaluated.known;
     let views = climb.views(known);

@@ -21,7 +21,7 @@ pub(super) struct Probed<'a> {
     pub(super) seen: Vec<f64>,
 }
 
-/// What was found of one characteristic.
+/// The fit of one characteristic.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Fit {
     /// Factor of the products of all slopes.
@@ -34,7 +34,7 @@ pub(super) struct Fit {
 
 /// A pair for every so many probes.
 const PROBES_PER_PAIR: f64 = 2.5;
-/// A column that the others explain up to this part is no new one.
+/// A column that the others explain up to this part is not a new one.
 const DEPENDENT: f64 = 1e-8;
 
 /// The best fit to the first, judged by the second; `slopes` in units of the signs, `enough` the mean square that may be left.
@@ -190,11 +190,11 @@ mod tests {
         assert!((found.together - 0.02).abs() < 1e-12 && found.pairs.is_empty(), "{found:?}");
     }
 
-    /// What no fit explains is left: the fit without interactions is never beaten by a worse one.
+    /// Noise that no fit explains is left: the fit without interactions is never beaten by a worse one.
     #[test]
     fn noise_is_left() {
         let (fitted, judging) = (signs(8, 30, 5), signs(12, 30, 6));
-        // A product of four dimensions is no pair.
+        // A product of four dimensions is not a pair.
         let seen = |e: &[f64]| e[0] * e[1] * e[2] * e[3];
         let found = fit(&probed(&fitted, seen), &probed(&judging, seen), &[1.0; 30], 1e-9);
         assert!(found.left <= 1.0);

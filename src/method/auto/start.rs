@@ -1,4 +1,4 @@
-//! What `auto` evaluates in any case: the plan that it begins with.
+//! The points that `auto` evaluates in any case: the plan that it begins with.
 
 use super::climb::Climb;
 use crate::plan::{DifferencePlan, Geometry, KnownAnswers, Plan, Stage};

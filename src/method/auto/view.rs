@@ -1,4 +1,4 @@
-//! What is known of one characteristic on the way: its surrogate, and how far that may be off.
+//! The state of one characteristic on the way: its surrogate, and how far that may be off.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub(super) struct View {
     /// Of the surrogate.
     pub(super) moments: Moments,
     pub(super) check: Option<SurrogateCheck>,
-    /// What parts may hide, by position: variance.
+    /// The amounts that parts may hide, by position: variance.
     pub(super) hidden: Vec<f64>,
     /// Variance of every part, and what of it is curved, as a share of the surrogate's.
     pub(super) shares: Vec<[f64; 2]>,
@@ -30,7 +30,7 @@ pub(super) struct View {
     pub(super) products: BTreeMap<(usize, usize), Mixed>,
     /// Mean square of what the screening's fit left at the probes that judge it, as a share of the variance.
     pub(super) unscreened: Option<f64>,
-    /// What answers scatter by.
+    /// The scatter of the answers.
     pub(super) noise: Option<f64>,
     /// The largest difference of model and surrogate along the steepest line, in sigmas; infinite where the model fails.
     pub(super) tail: Option<f64>,
@@ -64,7 +64,7 @@ impl View {
             Some(left.into_iter().flatten().map(|left| left * left).sum::<f64>())
         };
         if !bought.direct.is_empty() {
-            // What corners say beside products is taken where the points that check agree.
+            // The terms of corners beside products are taken where the points that check agree.
             let (mut other, mut twisted, mut lower) = (parts.clone(), products.clone(), centre);
             for (&(j, k), corners) in bought.direct.iter().zip(plan.twists(known, c, &bought.direct)) {
                 let Some(twist) = bends.twist((j, k), &corners) else { continue };
@@ -160,7 +160,7 @@ impl View {
         }
     }
 
-    /// What is left at the check, as a share of the variance; nothing is known without one.
+    /// The part that is left at the check, as a share of the variance; None without a check.
     pub(super) fn left(&self) -> Option<f64> {
         self.check.as_ref().map(|check| self.share(check.variance))
     }
@@ -192,7 +192,7 @@ fn add_slopes(parts: &mut [Option<Univariate>], more: &[f64]) {
     }
 }
 
-/// What the surrogate leaves at the points that check.
+/// The differences between the model and the surrogate at the points that check.
 fn left_at(
     plan: &DifferencePlan,
     known: &KnownAnswers,
@@ -209,7 +209,7 @@ fn left_at(
     Some(points.iter().zip(&rises).map(left).collect())
 }
 
-/// What answers next to the means scatter by, beyond what the surrogate says of them.
+/// The scatter of answers next to the means, beyond the changes by the surrogate.
 fn scatter(
     plan: &DifferencePlan,
     known: &KnownAnswers,
@@ -225,7 +225,7 @@ fn scatter(
     Some((rise(0)? + rise(1)?).abs() / 6f64.sqrt())
 }
 
-/// What model and surrogate differ by far out along the lines on which it was looked.
+/// The difference between model and surrogate far out along the lines on which it was looked.
 fn tail(
     plan: &DifferencePlan,
     known: &KnownAnswers,
@@ -252,7 +252,7 @@ struct Screened<'a> {
     /// Half the distance of the two nodes, by position.
     half: Vec<f64>,
     slopes: Vec<f64>,
-    /// What a mean square of the probes is to a variance.
+    /// The ratio of a mean square of the probes to a variance.
     unit: f64,
 }
 

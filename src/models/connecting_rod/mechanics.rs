@@ -108,7 +108,7 @@ impl<T: Real> Motion<T> {
     }
 }
 
-/// What is made as large as it gets.
+/// The effect that is maximised.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Effect {
     Compression,

@@ -419,7 +419,7 @@ struct Rows {
     count: usize,
 }
 
-/// What the inputs' units are in SI; degrees and rpm stay.
+/// The inputs' units in SI; degrees and rpm stay.
 const SI: [f64; INPUTS] = {
     let mut si = [1e-3; INPUTS];
     si[input::I_G] = 1e-6;

@@ -18,7 +18,7 @@ pub(super) const STEP: f64 = 5.0;
 pub(super) struct Grid {
     pub(super) degrees: Vec<f64>,
     pub(super) strokes: Vec<[f64; 2]>,
-    /// What the exhaust's pressure is made of, by 1 and by p3, after the stroke that does work.
+    /// The parts of the exhaust's pressure, by 1 and by p3, after the stroke that does work.
     pub(super) exhaust: Vec<[f64; 2]>,
     pub(super) turns: Vec<[f64; 2]>,
     pub(super) ends: [f64; 2],

@@ -18,7 +18,7 @@ struct Analysed<'r> {
     no_what_if: Option<String>,
 }
 
-/// What can be changed.
+/// The dimensions and characteristics that can be tried.
 #[derive(Serialize)]
 struct Tries<'r> {
     dimensions: Vec<Try<'r>>,

@@ -1,8 +1,8 @@
 //! Reports as pages: one file each that opens from disk and asks nothing of any network.
 //!
 //! Everything that comes from a study or an adapter goes through the templates, which escape it; drawings are made of
-//! numbers alone, and data for the page's script stand in a block of JSON in which no `<` is left. What may run is told to the
-//! browser by a content-security policy: this script and this style, known by their hashes, and nothing else.
+//! numbers alone, and data for the page's script stand in a block of JSON in which no `<` is left. A content-security policy
+//! tells the browser the parts that may run: this script and this style, known by their hashes, and nothing else.
 
 mod analysis;
 mod evidence;
@@ -40,7 +40,7 @@ const SCRIPT: &str = concat!(
 const TEMPLATES: [(&str, &str); 2] =
     [("page.html", include_str!("page.html")), ("what_if.html", include_str!("what_if.html"))];
 
-/// What every page begins with, and the page's own content.
+/// The common head of every page, and the page's own content.
 #[derive(Serialize)]
 struct Page<'p, T: Serialize> {
     title: &'p str,
@@ -60,7 +60,7 @@ struct Page<'p, T: Serialize> {
     warnings: String,
     /// What stands at the end.
     terms: String,
-    /// What a template adds.
+    /// The content that a template adds.
     of: T,
 }
 

@@ -1,4 +1,4 @@
-//! What the page needs to compute the results of other tolerances by itself.
+//! The data that the page needs to compute the results of other tolerances by itself.
 
 use serde::Serialize;
 
@@ -287,7 +287,7 @@ impl WhatIf {
         &self.characteristics
     }
 
-    /// What the tolerances cost as analysed; None where nothing has a cost, and none inside where no process holds them.
+    /// The cost of the tolerances as analysed; None where nothing has a cost, and none inside where no process holds them.
     pub(super) fn paid(&self) -> Option<Option<f64>> {
         (!self.costs.is_empty()).then_some(self.paid)
     }

@@ -213,7 +213,7 @@ fn lean(entry: &DimensionEntry, nominal: f64, offset: f64, half: f64) -> Result<
         return Ok(0.0);
     };
     let lean = ((mode.get_ref() - nominal) - offset) / half;
-    // The rounding of a mode at an end of the band is no fault.
+    // The rounding of a mode at an end of the band is not a fault.
     if lean.abs() > 1.0 + 1e-9 {
         let (value, range) = (*mode.get_ref(), "within the tolerance band");
         let outside = DistributionError::OutOfRange { parameter: "mode", value, range };

@@ -120,7 +120,7 @@ fn is_pearson(entry: &DimensionEntry) -> Result<bool, Fault> {
     }
 }
 
-/// What is odd about the values.
+/// Warns of odd values.
 fn warn(name: &str, file: &str, column: &Column, law: &Measured, data: &mut Data<'_>) {
     let (dimension, file, values) = (|| name.to_owned(), file.to_owned(), column.values.len());
     if !column.missing.is_empty() {
@@ -151,7 +151,7 @@ fn warn(name: &str, file: &str, column: &Column, law: &Measured, data: &mut Data
 pub(super) fn outside(name: &str, nominal: f64, band: Option<[f64; 2]>, law: &Law, data: &mut Data<'_>) {
     let Some([lower, upper]) = band else { return };
     let (low, high) = (nominal + lower, nominal + upper);
-    // What was computed from limits may be off them by a rounding.
+    // Values that were computed from limits may be off them by a rounding.
     let slack = 4.0 * f64::EPSILON * low.abs().max(high.abs());
     let far = |value: f64| value < low - slack || value > high + slack;
     let column = &law.column;

@@ -27,7 +27,7 @@ fn distribution(entry: &DimensionEntry, nominal: f64, tolerance: Option<[f64; 2]
 }
 
 /// The dimensions of this line, or what is wrong at which key below the dimension's; `model` knows the values that the model
-/// gives by itself. What is needed beside the study, and what is odd about that, is in `data`.
+/// gives by itself. The files that it reads beside the study, and their oddities, are in `data`.
 pub(super) fn dimensions(
     name: &Spanned<String>,
     entry: &Spanned<DimensionEntry>,

@@ -7,7 +7,7 @@ use crate::study::error::{Fault, Faults, StudyFault, fault};
 use crate::study::tree::Key;
 use crate::unit::Unit;
 
-/// What a dimension is relative to, before it is checked.
+/// The value that a dimension is relative to, before it is checked.
 struct Relative {
     /// Its place in the section.
     place: usize,
@@ -58,7 +58,7 @@ fn relatives(tree: &Tree, faults: &mut Faults) -> Option<Vec<Relative>> {
     (!relatives.is_empty()).then_some(relatives)
 }
 
-/// What is wrong with one of them.
+/// The fault of one of them.
 fn checked(tree: &Tree, relative: &Relative, all: &[Relative]) -> Option<Fault> {
     let dimensions = tree.get("dimensions")?.entries();
     let (key, entry) = &dimensions[relative.place];

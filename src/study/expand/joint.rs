@@ -29,7 +29,7 @@ pub(super) fn expand(expanded: &mut Expanded) {
                     }
                 }
             }
-            // What else is wrong is said where the block is read, and not of a distribution that nobody wrote.
+            // Other faults are reported where the block is read, and not of a distribution that the study does not write.
             (None, Some(law)) if names.len() == 2 => {
                 let Some(distribution) = distribution(law) else { continue };
                 for name in &names {

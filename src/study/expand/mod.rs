@@ -1,7 +1,7 @@
-//! What a study writes in short, in the keys that everything below knows: dimensions, constants and formulas.
+//! The short forms of a study, in the keys that everything below knows: dimensions, constants and formulas.
 //!
-//! The expansion is of the file's tree, before its types are read. What is read is therefore just what `expanded` writes, and no
-//! analysis knows of the short form.
+//! The expansion is of the file's tree, before its types are read. The study that is read is therefore just what `expanded`
+//! writes, and no analysis knows of the short form.
 
 mod configurations;
 mod from;

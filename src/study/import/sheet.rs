@@ -38,7 +38,7 @@ impl Content {
 pub(crate) struct Sheet {
     /// Every row with its number in the file, from 1.
     pub(crate) rows: Vec<(u64, Vec<Content>)>,
-    /// Whether commas separate its columns, so that a comma in a cell is no decimal one.
+    /// Whether commas separate its columns, so that a comma in a cell is not a decimal one.
     pub(crate) commas_separate: bool,
 }
 
