@@ -8,6 +8,7 @@ use super::driver::{Chosen, Driver, Ended, Near, ROUNDS, Spent, kept_within, uni
 use super::joint::joint;
 use super::machines::choose;
 use super::result::{Allocation, Attainable, JointKept, Proof, Status};
+use super::sampled::SampledCorrection;
 use super::scaling::loosest;
 use super::solve::{Setting, Solved, tightened};
 use super::station::{Station, required};
@@ -187,7 +188,9 @@ impl Driver<'_> {
                 break;
             }
             let stopped = || self.run.stopped();
-            let priced = within_reach(&self.task.priced, &at, reach);
+            let sampled = constraints.iter().any(|one| station.responses.is_sampled(one.characteristic));
+            let followed = if sampled { reach.min(SampledCorrection::REACH) } else { reach };
+            let priced = within_reach(&self.task.priced, &at, followed);
             let (responses, anywhere) = (&station.responses, last.is_none() && haven.is_none());
             let (losses, setups) = (&self.task.losses, &self.task.setups);
             let setting =
