@@ -229,6 +229,12 @@ impl Dimension {
         }
     }
 
+    /// The same with the band and the distribution of another.
+    #[cfg_attr(not(feature = "study"), allow(dead_code))]
+    pub(crate) fn remade(&self, other: Self) -> Self {
+        Self { tolerance: other.tolerance, distribution: other.distribution, ..self.clone() }
+    }
+
     /// With one end of its band held; without a band nothing is.
     #[cfg_attr(not(feature = "study"), allow(dead_code))]
     pub(crate) fn holding(mut self, end: HeldEnd) -> Self {

@@ -1,23 +1,18 @@
 //! The cheapest tolerances at fixed derivatives: free ones, processes, or both.
 
 use super::branch::{Chosen, branch};
+pub(super) use super::choice::Choice;
+use super::choose_made::{any, choose_made};
 use super::constraint::{Constraint, kept};
 use super::cost::Priced;
 use super::result::{Attainable, Proof};
 use super::solve::{Setting, Solved, Starts};
 
-/// What came of one search at fixed derivatives.
-pub(super) enum Choice {
-    /// Tolerances that keep every requirement.
-    Found { solved: Solved, offers: Vec<usize>, proof: Proof },
-    /// There are none; with the half bands at which the best of it is to be had.
-    Infeasible(Attainable, Vec<f64>),
-    /// Stopped before any were found.
-    Stopped,
-}
-
 /// The cheapest tolerances at fixed derivatives, without set-ups.
 pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
+    if any(setting.priced) {
+        return choose_made(setting);
+    }
     let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
     let free = setting.priced.iter().all(|group| group.offers.len() == 1);
     // A limit that the start keeps can be kept: means that move with tolerances may make the tightest ones the worst.

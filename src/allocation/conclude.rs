@@ -4,7 +4,7 @@ use super::box_sample::worst_in_box;
 use super::choose::Choice;
 use super::constraint::Constraint;
 use super::cost::{Offer, Priced};
-use super::driver::{Chosen, Driver, Ended, cost, kept_within, unit, with_tolerances};
+use super::driver::{Chosen, Driver, Ended, cost, kept_within, unit, with_choice};
 use super::front::front;
 use super::joint::joint;
 use super::machines::choose;
@@ -130,8 +130,8 @@ impl Driver<'_> {
             });
         }
         // A budget that ended before the model was asked at these tolerances leaves nothing to say of them.
-        if let (false, Some((solved, ..))) = (ended.within_budget, &last) {
-            allocation.problem = with_tolerances(station.problem, &self.task.priced, &solved.at)?;
+        if let (false, Some((solved, offers, _))) = (ended.within_budget, &last) {
+            allocation.problem = with_choice(station.problem, &self.task.priced, &solved.at, offers)?;
             return Ok(());
         }
         allocation.requirements.iter_mut().zip(judged).for_each(|(one, judged)| one.after = Some(judged));

@@ -42,7 +42,7 @@ pub(super) struct Constraint {
     limits: SpecLimits,
     side: Side,
     /// The part of the room that rss and worst case may take.
-    part: f64,
+    pub(super) part: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,6 +86,11 @@ impl Constraint {
     /// With this part of the room for rss and worst case.
     pub(super) fn taking(self, part: f64) -> Self {
         Self { part, ..self }
+    }
+
+    /// Whether it is of the upper limit.
+    pub(super) fn is_above(&self) -> bool {
+        self.side == Side::Above
     }
 
     /// Whether it is of all characteristics with limits together.
@@ -318,7 +323,7 @@ impl Constraint {
     }
 
     /// The room that is left beside a value on this side; None where there is none.
-    fn room_about(&self, value: f64) -> Option<f64> {
+    pub(super) fn room_about(&self, value: f64) -> Option<f64> {
         let room = match self.side {
             Side::Below => value - self.limits.lower()?,
             Side::Above => self.limits.upper()? - value,
@@ -328,7 +333,7 @@ impl Constraint {
     }
 
     /// What is required, made stricter by what is not known at the station: a yield, a Cpk, a sigma.
-    fn target(&self, responses: &Responses) -> f64 {
+    pub(super) fn target(&self, responses: &Responses) -> f64 {
         let reach = |of: fn(&Unknown) -> f64| of(&responses.of[self.characteristic].unknown);
         match self.requirement {
             Requirement::Yield(least) if self.is_joint() => 1.0 - Correction::allowed(least, responses.joint_unknown),
@@ -348,7 +353,7 @@ impl Constraint {
     }
 
     /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it is no matter of the mean.
-    fn room(&self, moments: &Moments, target: f64) -> Option<f64> {
+    pub(super) fn room(&self, moments: &Moments, target: f64) -> Option<f64> {
         let (below, above) =
             (self.limits.lower().map(|l| moments.mean() - l), self.limits.upper().map(|u| u - moments.mean()));
         let side = match self.side {

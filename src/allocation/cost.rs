@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::cost_error::CostError;
+use super::made::Made;
 use super::written_cost::WrittenCost;
 use crate::assembly::formula::{Formula, FormulaError};
 use crate::problem::Problem;
@@ -216,6 +217,8 @@ pub struct Offer {
     pub max: f64,
     /// The machine that it needs, which has a set-up cost of its own.
     pub machine: Option<String>,
+    /// The dimensions as it makes them, where it says how its parts lie.
+    pub(crate) made: Option<Made>,
 }
 
 impl Offer {
@@ -232,7 +235,7 @@ impl Offer {
         if let Some(written) = &curve.written {
             written.check(min, max)?;
         }
-        Ok(Self { process: None, curve, min, max, machine: None })
+        Ok(Self { process: None, curve, min, max, machine: None, made: None })
     }
 
     /// A process that holds one half band at one cost.
@@ -281,7 +284,10 @@ impl Priced {
         if offers.is_empty() {
             return Err(CostError::NoProcess);
         }
-        let single = |offer: &Offer| (offer.min == offer.max).then_some((offer.min, offer.curve.cost(offer.min)));
+        // A looser process may hold its mean better, and cost more for that.
+        let single = |offer: &Offer| {
+            (offer.min == offer.max && offer.made.is_none()).then_some((offer.min, offer.curve.cost(offer.min)))
+        };
         let mut points: Vec<(f64, f64)> = offers.iter().filter_map(single).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         if let Some(pair) = points.windows(2).find(|pair| pair[0].0 < pair[1].0 && pair[1].1 > pair[0].1) {

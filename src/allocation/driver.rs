@@ -1,5 +1,6 @@
 //! The common part of all searches of tolerances: the model asked at some tolerances, within budget and time.
 
+use super::choose_made::remade;
 use super::constraint::{Constraint, kept};
 use super::cost::Priced;
 use super::response::Responses;
@@ -161,6 +162,18 @@ pub(super) fn cost(priced: &[Priced], at: &[f64], offers: &[usize]) -> f64 {
 /// The problem with the groups at these half bands.
 pub(super) fn with_tolerances(problem: Problem, priced: &[Priced], at: &[f64]) -> Result<Problem, AllocateError> {
     let dimensions: Vec<Dimension> = scaled(&problem, priced, at)?;
+    Ok(problem.with_dimensions(dimensions)?)
+}
+
+/// The same with the distributions of the chosen processes, where these say how their parts lie.
+pub(super) fn with_choice(
+    problem: Problem,
+    priced: &[Priced],
+    at: &[f64],
+    offers: &[usize],
+) -> Result<Problem, AllocateError> {
+    let mut dimensions: Vec<Dimension> = scaled(&problem, priced, at)?;
+    remade(&problem, priced, offers).into_iter().for_each(|(d, dimension)| dimensions[d] = dimension);
     Ok(problem.with_dimensions(dimensions)?)
 }
 

@@ -26,7 +26,9 @@ mod bands;
 mod basis;
 mod box_sample;
 mod branch;
+mod choice;
 mod choose;
+mod choose_made;
 mod closed_form;
 mod conclude;
 mod constraint;
@@ -41,12 +43,14 @@ pub(crate) mod knapsack;
 pub(crate) mod lists;
 mod loss;
 mod machines;
+mod made;
 mod minimise;
 mod one_row;
 mod proportion;
 mod recentre;
 mod reject_fit;
 mod rejects;
+mod remade;
 mod response;
 mod result;
 mod run;
@@ -72,6 +76,8 @@ pub use cost::{Curve, Offer, Priced};
 pub use cost_error::CostError;
 pub use joint::JointYield;
 pub use loss::QualityLoss;
+#[cfg(feature = "study")]
+pub(crate) use made::Made;
 #[cfg(feature = "cli")]
 pub(crate) use result::ProofShape;
 

@@ -31,16 +31,16 @@ pub(super) struct Responses {
     /// The dimensions as the derivatives were taken.
     pub(super) dimensions: Vec<Dimension>,
     /// Indices of those that vary and matter.
-    varying: Vec<usize>,
-    inputs: Inputs,
-    scaling: Vec<Scaling>,
-    reach: Vec<Reach>,
-    correlated: Vec<(usize, usize, f64)>,
+    pub(super) varying: Vec<usize>,
+    pub(super) inputs: Inputs,
+    pub(super) scaling: Vec<Scaling>,
+    pub(super) reach: Vec<Reach>,
+    pub(super) correlated: Vec<(usize, usize, f64)>,
     pub(super) of: Vec<Response>,
     /// The distributions of the varying dimensions; None where one has moments only.
-    laws: Option<Vec<Arc<dyn Distribution>>>,
+    pub(super) laws: Option<Vec<Arc<dyn Distribution>>>,
     /// What was found for a characteristic and a required yield, by its bits.
-    corrections: Mutex<BTreeMap<(usize, u64), Arc<Correction>>>,
+    pub(super) corrections: Mutex<BTreeMap<(usize, u64), Arc<Correction>>>,
     /// What characteristics reject together, by their indices.
     pub(super) reject_fits: Mutex<BTreeMap<Vec<usize>, Arc<RejectFit>>>,
     /// By how much more may be rejected of all limits together than their laws say.
@@ -49,16 +49,16 @@ pub(super) struct Responses {
 
 /// One characteristic.
 pub(super) struct Response {
-    surrogate: Option<Surrogate>,
+    pub(super) surrogate: Option<Surrogate>,
     /// Its value at the nominal dimensions.
     pub(super) nominal: Option<f64>,
     /// Derivatives by every dimension at the means, in their own units; None where one is lost.
-    slopes: Option<Vec<f64>>,
+    pub(super) slopes: Option<Vec<f64>>,
     /// Whether it can depend on each dimension.
-    depends: Vec<bool>,
+    pub(super) depends: Vec<bool>,
     pub(super) limits: SpecLimits,
     /// The law of the surface, where a yield comes from one.
-    law: Option<SurfaceLaw>,
+    pub(super) law: Option<SurfaceLaw>,
     pub(super) unknown: Unknown,
     /// The correction of its moments by samples of the model, where they refute the surface.
     pub(super) sampled: Option<SampledCorrection>,
@@ -541,7 +541,7 @@ fn worst_case(
 }
 
 /// Whether a surface has neither curvature nor products, but for rounding.
-fn is_straight(surrogate: &Surrogate) -> bool {
+pub(super) fn is_straight(surrogate: &Surrogate) -> bool {
     surrogate.parts.iter().all(|part| part.is_some_and(|part| part.is_straight(SAME)))
         && surrogate.interactions.pairs().iter().all(|&(j, k, product)| {
             let slope = |at: usize| surrogate.parts[at].map_or(0.0, |part| part.slope().abs());
@@ -549,7 +549,7 @@ fn is_straight(surrogate: &Surrogate) -> bool {
         })
 }
 
-fn shapes_of(dimension: &Dimension) -> Option<InputShape> {
+pub(super) fn shapes_of(dimension: &Dimension) -> Option<InputShape> {
     shapes(dimension.distribution()).pop()
 }
 

@@ -1,13 +1,15 @@
 //! From a problem with costs to tolerances that the model confirms.
 
 use super::choose::{Choice, within_bounds};
+use super::choose_made;
 use super::conclude::doubts;
 use super::constraint::Constraint;
 use super::cost::Priced;
-use super::driver::{Chosen, Driver, Ended, Near, ROUNDS, Spent, kept_within, unit, with_tolerances};
+use super::driver::{Chosen, Driver, Ended, Near, ROUNDS, Spent, kept_within, unit, with_choice, with_tolerances};
 use super::joint::joint;
 use super::machines::choose;
 use super::result::{Allocation, Attainable, JointKept, Proof, Status};
+use super::sampled::SampledCorrection;
 use super::scaling::loosest;
 use super::solve::{Setting, Solved, tightened};
 use super::station::{Station, required};
@@ -187,7 +189,9 @@ impl Driver<'_> {
                 break;
             }
             let stopped = || self.run.stopped();
-            let priced = within_reach(&self.task.priced, &at, reach);
+            let sampled = constraints.iter().any(|one| station.responses.is_sampled(one.characteristic));
+            let followed = if sampled { reach.min(SampledCorrection::REACH) } else { reach };
+            let priced = within_reach(&self.task.priced, &at, followed);
             let (responses, anywhere) = (&station.responses, last.is_none() && haven.is_none());
             let (losses, setups) = (&self.task.losses, &self.task.setups);
             let setting =
@@ -236,7 +240,12 @@ impl Driver<'_> {
                 }
                 Choice::Infeasible(attainable, _) => {
                     // Where every tolerance does harm only, the tightest are the proof.
-                    let proven = setting.is_exact() && self.options.recentre.is_empty();
+                    let exact = if choose_made::any(setting.priced) {
+                        choose_made::is_proof(&setting)
+                    } else {
+                        setting.is_exact()
+                    };
+                    let proven = exact && self.options.recentre.is_empty();
                     allocation.status = if proven { Status::Infeasible } else { Status::NoFeasiblePointFound };
                     let unit = unit(&original, attainable.characteristic);
                     allocation.attainable = Some(Attainable { unit, ..attainable });
@@ -253,8 +262,10 @@ impl Driver<'_> {
             }
             (proof.starts, proof.reached, proof.other_optimum) = (searched[0], searched[1], other);
             let change = farthest(&at, &solved.at);
+            // Processes of one tolerance may differ in how their parts lie.
+            let alike = !choose_made::any(&priced) || last.as_ref().is_some_and(|(_, chosen, _)| *chosen == offers);
             // The model has been asked at these tolerances, and would not choose others.
-            if still && here && last.is_some() && change <= near.agree {
+            if still && here && last.is_some() && alike && change <= near.agree {
                 last = last.map(|(old, offers, _)| {
                     let residual = setting.residual(&old.at, &solved.multipliers).unwrap_or(solved.residual);
                     let proof = Proof { residual: proof.residual.map(|_| residual), ..proof };
@@ -272,7 +283,7 @@ impl Driver<'_> {
                 proof.residual = setting.residual(&solved.at, &solved.multipliers);
             }
             let from = std::mem::replace(&mut at, solved.at.clone());
-            match self.station(with_tolerances(next, &self.task.priced, &at)?)? {
+            match self.station(with_choice(next, &self.task.priced, &at, &offers)?)? {
                 Some(there) if self.spent.stopped || there.answers(constraints) => {
                     let left = (std::mem::replace(&mut station, there), from, last.take());
                     (haven, haven_cost) = if safe { (Some(left), cost_here) } else { (haven, haven_cost) };

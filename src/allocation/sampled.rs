@@ -46,6 +46,8 @@ fn difference(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
 impl SampledCorrection {
     /// More groups would take more than four million points for every round: their surfaces stay as they are, and no optimum is claimed.
     pub(super) const MOST_GROUPS: usize = 128;
+    /// The factor up to which slopes are followed: a search that goes no farther meets no bend of its own making.
+    pub(super) const REACH: f64 = 2.0;
 
     /// For every listed characteristic, with its verified moments; None where a sample has no moments.
     ///

@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use super::dimension;
 use super::error::{Fault, StudyFault, fault};
-use super::file::{CharacteristicEntry, StudyFile};
+use super::file::{CharacteristicEntry, DimensionEntry, StudyFile};
 use super::grades::graded;
 use super::price::{CostEntry, ProcessEntry, RequireEntry};
 use super::source::{Source, in_formula};
 use super::spanned::Spanned;
 use super::words::REQUIREMENTS;
-use crate::allocation::{CostError, Curve, CurveKind, Offer, Priced};
+use crate::allocation::{CostError, Curve, CurveKind, Made, Offer, Priced};
 use crate::assembly::formula::Formula;
 use crate::characteristic::Characteristic;
 use crate::dimension::Dimension;
@@ -130,7 +130,12 @@ pub(super) fn costs(file: &StudyFile, source: &Source, problem: &Problem) -> Res
     }
     let priced = |Group { name, members, parts, offers }: Group<'_>| {
         let at = |error| fault(name.span(), format!("costs.{}", name.get_ref()), StudyFault::Cost(error));
-        let Offers { all, rounded } = offers;
+        let Offers { mut all, rounded } = offers;
+        let entry = file.costs.0.iter().find(|(other, _)| other.get_ref() == name.get_ref());
+        if let Some(processes) = entry.and_then(|(_, entry)| entry.get_ref().processes.as_ref()) {
+            let key = format!("costs.{}.processes", name.get_ref());
+            made(&mut all, processes.get_ref(), &members, problem, &key)?;
+        }
         Priced::new(members, all).map(|priced| Priced { parts, ..priced }.rounding(rounded)).map_err(at)
     };
     groups.into_iter().map(priced).collect()
@@ -319,6 +324,70 @@ fn offers(
     // The loosest first, so that neighbours in the list are neighbours in cost.
     offers.sort_by(|x, y| (y.max, y.min).partial_cmp(&(x.max, x.min)).unwrap_or(std::cmp::Ordering::Equal));
     Ok(Offers { all: offers, rounded: None })
+}
+
+/// The line of a dimension that says of how its parts lie what a process does, and nothing else.
+fn spread_of(process: &ProcessEntry) -> DimensionEntry {
+    DimensionEntry {
+        distribution: process.distribution.clone(),
+        sigma: process.sigma.clone(),
+        sigmas: process.sigmas.clone(),
+        cp: process.cp.clone(),
+        cpk: process.cpk.clone(),
+        side: process.side.clone(),
+        drift: process.drift.clone(),
+        ..DimensionEntry::default()
+    }
+}
+
+/// Gives offers the dimensions as their processes make them, where these say how their parts lie: all of a list or none.
+fn made(
+    offers: &mut [Offer],
+    processes: &[Spanned<ProcessEntry>],
+    members: &[usize],
+    problem: &Problem,
+    key: &str,
+) -> Result<(), Fault> {
+    if processes.iter().all(|process| process.get_ref().spread().is_none()) {
+        return Ok(());
+    }
+    for (index, process) in processes.iter().enumerate() {
+        let (line, process) = (process.span(), process.get_ref());
+        let key = format!("{key}[{}]", index + 1);
+        let Some((own, span)) = process.spread() else {
+            let instead = "in a list where one process says how its parts lie, each does: cp = 1.0 is three sigma within the band";
+            return Err(fault(line, key, StudyFault::MissingKey { key: "cp".into(), instead: instead.into() }));
+        };
+        let apart = |to: &str, instead| {
+            let found = StudyFault::DoesNotApply { key: own, to: to.to_owned(), instead };
+            fault(span.clone(), format!("{key}.{own}"), found)
+        };
+        if process.model.is_some() {
+            return Err(apart("a process with a model", "give it one tolerance and one cost"));
+        }
+        let (Some(tolerance), Some(offer)) = (
+            &process.tolerance,
+            offers.iter_mut().find(|offer| offer.process.as_ref() == Some(process.name.get_ref())),
+        ) else {
+            continue;
+        };
+        let spread = spread_of(process);
+        let of = |&d: &usize| {
+            let old = &problem.dimensions()[d];
+            if old.zone().is_some() {
+                return Err(apart("a position", "write how its parts lie at the position itself"));
+            }
+            if old.tolerance().is_none() {
+                return Err(apart("a dimension without a tolerance", "give the dimension a tolerance"));
+            }
+            dimension::made(old, &spread, *tolerance.get_ref(), line.clone()).map_err(|found| Fault {
+                key: if found.key.is_empty() { key.clone() } else { format!("{key}.{}", found.key) },
+                ..found
+            })
+        };
+        offer.made = Some(Made::new(members.iter().map(of).collect::<Result<_, _>>()?));
+    }
+    Ok(())
 }
 
 /// The cost as a formula or a table.

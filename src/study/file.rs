@@ -1,11 +1,12 @@
 //! The study file as it is written: one set of types for TOML and JSON.
 
 use std::fmt;
-use std::marker::PhantomData;
 use std::ops::Range;
 
 use super::about::AboutEntry;
 pub(super) use super::analysis_entry::{AnalysisEntry, FactorEntry, PairsEntry};
+pub(super) use super::distribution_entry::{DistributionEntry, PartEntry, distribution};
+pub(super) use super::entries::Entries;
 use super::guard::GuardEntry;
 pub(super) use super::named_values::{ConstantEntry, UnknownEntry};
 use super::price::{CostEntry, LossEntry, RequireEntry};
@@ -91,10 +92,6 @@ pub(super) struct StudyFile {
     #[serde(default)]
     pub(super) analysis: AnalysisEntry,
 }
-
-/// Named entries in the order of the file, every name and entry with its place.
-#[derive(Debug, Clone)]
-pub(super) struct Entries<T>(pub(super) Vec<(Spanned<String>, Spanned<T>)>);
 
 /// One line of `[dimensions]`.
 #[derive(Debug, Default, Deserialize)]
@@ -274,67 +271,6 @@ impl PartEntry {
     }
 }
 
-/// `"uniform"` or `{ kind = "beta", alpha = 2, beta = 5 }`: the parameters of all kinds.
-#[derive(Debug, Clone, Default, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub(super) struct DistributionEntry {
-    /// The kind of distribution.
-    #[cfg_attr(feature = "cli", schemars(extend("enum" = registry::kinds())))]
-    pub(super) kind: String,
-    /// Of a triangular distribution its most probable value; the band's middle unless given.
-    pub(super) mode: Option<Spanned<f64>>,
-    /// Of a trapezoidal distribution the share of the band over which it is flat, from 0 to 1.
-    pub(super) top: Option<Spanned<f64>>,
-    /// Of a beta distribution the exponent at the lower end, above 0.
-    pub(super) alpha: Option<Spanned<f64>>,
-    /// Of a beta distribution the exponent at the upper end, above 0.
-    pub(super) beta: Option<Spanned<f64>>,
-    /// Of a curvilinear trapezoid by how much the two ends of the band may be off, above 0 and below half the band.
-    pub(super) inexactness: Option<Spanned<f64>>,
-    /// Of a student distribution the degrees of freedom, above 2.
-    pub(super) degrees: Option<Spanned<f64>>,
-    /// Of a student distribution the scale, in place of sigma: sigma is scale sqrt(degrees/(degrees - 2)). A standard uncertainty with
-    /// degrees of freedom is a scale.
-    pub(super) scale: Option<Spanned<f64>>,
-    /// Where a distribution with a tail begins.
-    #[cfg_attr(feature = "cli", schemars(extend("default" = 0)))]
-    pub(super) origin: Option<Spanned<f64>>,
-    /// The parts of a mixture by name.
-    pub(super) parts: Option<Spanned<Entries<PartEntry>>>,
-    /// Of a table of quantiles the normal scores, ascending: the value at the score z has the probability Phi(z) below it.
-    pub(super) scores: Option<Spanned<Vec<f64>>>,
-    /// Of a table of quantiles the values of the dimension at its scores, ascending; the first and last are its ends.
-    pub(super) values: Option<Spanned<Vec<f64>>>,
-}
-
-/// A part of a mixture: a weight, and what of a dimension is its own.
-#[derive(Debug, Clone, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, expecting = "a table such as { weight = 0.6, shift = 0.02, sigma = 0.01 }")]
-pub(super) struct PartEntry {
-    /// Its share, relative to those of the other parts.
-    pub(super) weight: Spanned<f64>,
-    /// Its nominal value; that of the dimension unless given.
-    pub(super) nominal: Option<Spanned<f64>>,
-    /// Its tolerance; that of the dimension unless given.
-    pub(super) tolerance: Option<Spanned<ToleranceEntry>>,
-    /// Its limits, in place of a tolerance.
-    pub(super) limits: Option<Spanned<[f64; 2]>>,
-    /// How it is distributed: the name of a kind, or a table with its parameters.
-    #[serde(default, deserialize_with = "distribution")]
-    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::distribution::<DistributionEntry>", extend("default" = "normal")))]
-    pub(super) distribution: Option<Spanned<DistributionEntry>>,
-    /// Standard deviation.
-    pub(super) sigma: Option<Spanned<f64>>,
-    /// How many sigmas half a tolerance band has.
-    pub(super) sigmas: Option<Spanned<f64>>,
-    /// Process capability: sigmas/3.
-    pub(super) cp: Option<Spanned<f64>>,
-    /// How far its mean lies off the middle of the band.
-    pub(super) shift: Option<Spanned<f64>>,
-}
-
 /// One line of `[formulas]`: a text, or `{ formula = "a + b", unit = "mm" }`.
 #[derive(Debug)]
 pub(super) struct FormulaEntry {
@@ -444,66 +380,6 @@ pub(super) struct ModelEntry {
     pub(super) verify: Option<Spanned<u64>>,
     /// Files that the model depends on, relative to the study's folder: with other contents nothing kept in the journal is used.
     pub(super) files: Option<Vec<Spanned<String>>>,
-}
-
-impl<T> Default for Entries<T> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
-}
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Entries<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Table<T>(PhantomData<T>);
-        impl<'de, T: Deserialize<'de>> Visitor<'de> for Table<T> {
-            type Value = Entries<T>;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a table of names")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-                let mut entries = Vec::new();
-                while let Some(entry) = map.next_entry()? {
-                    entries.push(entry);
-                }
-                Ok(Entries(entries))
-            }
-        }
-        deserializer.deserialize_map(Table(PhantomData))
-    }
-}
-
-/// A text names the kind alone; a table may have parameters. To be used with `deserialize_with`.
-pub(super) fn distribution<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Option<Spanned<DistributionEntry>>, D::Error> {
-    Option::<Spanned<WordOrTable>>::deserialize(deserializer)
-        .map(|entry| entry.map(|entry| Spanned::new(entry.span(), entry.into_inner().0)))
-}
-
-struct WordOrTable(DistributionEntry);
-
-impl<'de> Deserialize<'de> for WordOrTable {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Distribution;
-        impl<'de> Visitor<'de> for Distribution {
-            type Value = WordOrTable;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a distribution such as \"uniform\", or { kind = \"uniform\" },")
-            }
-
-            fn visit_str<E>(self, kind: &str) -> Result<Self::Value, E> {
-                Ok(WordOrTable(DistributionEntry { kind: kind.to_owned(), ..Default::default() }))
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
-                DistributionEntry::deserialize(value::MapAccessDeserializer::new(map)).map(WordOrTable)
-            }
-        }
-        deserializer.deserialize_any(Distribution)
-    }
 }
 
 impl<'de> Deserialize<'de> for FormulaEntry {

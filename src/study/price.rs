@@ -1,10 +1,12 @@
 //! `[costs]` and `require` as they are written.
 
 use std::fmt;
+use std::ops::Range;
 
-use serde::de::{Visitor, value};
+use serde::de::{IgnoredAny, Visitor, value};
 use serde::{Deserialize, Deserializer};
 
+use super::distribution_entry::{DistributionEntry, distribution};
 #[cfg(feature = "cli")]
 use super::registry;
 use super::spanned::Spanned;
@@ -90,6 +92,46 @@ pub(super) struct ProcessEntry {
     pub(super) min: Option<Spanned<f64>>,
     /// Greatest half band that it holds.
     pub(super) max: Option<Spanned<f64>>,
+    /// A line of [processes], whose keys count where this one does not have them.
+    #[serde(default, rename = "process")]
+    #[cfg_attr(feature = "cli", schemars(with = "Option<String>"))]
+    pub(super) _process: Option<IgnoredAny>,
+    /// How its parts are distributed, as of a dimension; beside `tolerance`. Where one process of a list says how its parts lie, each does, and
+    /// what the dimension says of that does not count.
+    #[serde(default, deserialize_with = "distribution")]
+    #[cfg_attr(feature = "cli", schemars(schema_with = "registry::word_or_table"))]
+    pub(super) distribution: Option<Spanned<DistributionEntry>>,
+    /// Standard deviation of its parts.
+    pub(super) sigma: Option<Spanned<f64>>,
+    /// How many sigmas half its tolerance band has.
+    pub(super) sigmas: Option<Spanned<f64>>,
+    /// Its capability: half band by three sigma.
+    pub(super) cp: Option<Spanned<f64>>,
+    /// Its capability with the place of the mean, as of a dimension.
+    pub(super) cpk: Option<Spanned<f64>>,
+    /// Beside cp and cpk "+" or "-": where the mean lies.
+    #[cfg_attr(feature = "cli", schemars(extend("enum" = ["+", "-"])))]
+    pub(super) side: Option<Spanned<String>>,
+    /// How far the mean of a lot lies off the mean of all, at most.
+    pub(super) drift: Option<Spanned<f64>>,
+}
+
+impl ProcessEntry {
+    /// The first key that says how its parts lie, with its place.
+    pub(super) fn spread(&self) -> Option<(&'static str, Range<usize>)> {
+        let span = |of: &Option<Spanned<f64>>| of.as_ref().map(Spanned::span);
+        [
+            ("distribution", self.distribution.as_ref().map(Spanned::span)),
+            ("sigma", span(&self.sigma)),
+            ("sigmas", span(&self.sigmas)),
+            ("cp", span(&self.cp)),
+            ("cpk", span(&self.cpk)),
+            ("side", self.side.as_ref().map(Spanned::span)),
+            ("drift", span(&self.drift)),
+        ]
+        .into_iter()
+        .find_map(|(key, span)| Some((key, span?)))
+    }
 }
 
 /// `"worst-case"`, `"rss"`, or `{ yield = 0.9973 }`, `{ cpk = 1.33 }`, `{ sigma = 0.05 }`.

@@ -80,6 +80,13 @@ pub(super) fn zone(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "number", "minimum": 0 })
 }
 
+/// A distribution, whose table is that of a dimension.
+pub(super) fn word_or_table(_: &mut SchemaGenerator) -> Schema {
+    let kind = json!({ "description": "The kind of distribution; beside it its parameters, as of a dimension.", "type": "string", "enum": kinds() });
+    let table = json!({ "type": "object", "properties": { "kind": kind }, "required": ["kind"] });
+    json_schema!({ "anyOf": [{ "type": "string", "enum": kinds() }, table] })
+}
+
 pub(super) fn truth(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "boolean" })
 }

@@ -11,6 +11,7 @@ use super::externals::Externals;
 use super::place::Format;
 use super::tree::{Key, Tree, Value};
 use super::write;
+use crate::allocation::Offer;
 use crate::dimension::Dimension;
 use crate::problem::Problem;
 
@@ -55,6 +56,8 @@ const DIGITS: usize = 6;
 const SAME: f64 = 1e-5;
 /// And a nominal value, in sigmas.
 const SAME_PLACE: f64 = 1e-3;
+/// Shapes that differ by less are one.
+const ALIKE: f64 = 1e-9;
 
 impl Study {
     /// The study with the tolerances and nominal values of `wanted`, a problem with the same dimensions.
@@ -79,8 +82,9 @@ impl Study {
         let lines = tree.as_ref().and_then(|tree| tree.entry("dimensions"));
         let mut edits: Vec<(Range<usize>, String)> = Vec::new();
         let (mut changed, mut replaced_fits) = (Vec::new(), Vec::new());
-        for (old, new) in self.problem.dimensions().iter().zip(wanted.dimensions()) {
-            if old.half_band() == new.half_band() && old.nominal() == new.nominal() {
+        for (d, (old, new)) in self.problem.dimensions().iter().zip(wanted.dimensions()).enumerate() {
+            let process = if alike(old, new) { None } else { self.process_of(d, new) };
+            if process.is_none() && old.half_band() == new.half_band() && old.nominal() == new.nominal() {
                 continue;
             }
             let name = old.zone().unwrap_or(old.name());
@@ -95,7 +99,8 @@ impl Study {
                 let why = "it has no entry of its own";
                 return Err(RewriteError::ByHand { dimension: name.to_owned(), why });
             };
-            let entry = Entry { text: &self.text, format: self.format, line, old, new };
+            let spread = process.and_then(|(cost, process)| spread_of(tree.as_ref()?, cost, process));
+            let entry = Entry { text: &self.text, format: self.format, line, old, new, spread };
             if entry.edits(&mut edits)? {
                 replaced_fits.push(name.to_owned());
             }
@@ -120,6 +125,15 @@ impl Study {
         }
         let entries = read.entries(&changed);
         Ok(Rewritten { text, entries, replaced_fits })
+    }
+
+    /// The dimension with the cost and the name of the process that makes this one so, where it says how its parts lie.
+    fn process_of(&self, d: usize, new: &Dimension) -> Option<(&str, &str)> {
+        let group = self.costs.iter().find(|group| group.members.contains(&d))?;
+        let place = group.members.iter().position(|&member| member == d)?;
+        let made = |offer: &&Offer| offer.made.as_ref().is_some_and(|made| alike(&made.dimensions()[place], new));
+        let process = group.offers.iter().find(made)?.process.as_deref()?;
+        Some((self.problem.dimensions()[group.members[0]].name(), process))
     }
 
     /// What it was read from.
@@ -158,6 +172,29 @@ impl Study {
     }
 }
 
+/// Keys that say how parts lie within a band.
+const SPREAD: [&str; 9] = ["process", "cp", "cpk", "sigma", "sigmas", "side", "drift", "shift", "distribution"];
+
+/// The keys by which a process of a list of costs says how its parts lie.
+fn spread_of<'t>(tree: &'t Tree, cost: &str, process: &str) -> Option<Vec<&'t (Key, Tree)>> {
+    let Value::Array(list) = &tree.entry("costs")?.entry(cost)?.entry("processes")?.value else { return None };
+    let is_named =
+        |line: &&Tree| matches!(line.entry("name").map(|name| &name.value), Some(Value::Text(name)) if name == process);
+    let Value::Table(keys) = &list.iter().find(is_named)?.value else { return None };
+    Some(keys.iter().filter(|(key, _)| SPREAD.contains(&key.name.as_str())).collect())
+}
+
+/// Whether two dimensions lie alike within bands of the same width about their nominal values.
+fn alike(a: &Dimension, b: &Dimension) -> bool {
+    let (Some(of), Some(found)) = (a.distribution(), b.distribution()) else { return false };
+    let offset = |of: &Dimension| (of.mean() - of.nominal()) / of.sigma();
+    let near = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.abs().max(b.abs()).max(1.0);
+    let figures = [a.half_band() / b.half_band(), a.sigma() / b.sigma(), 1.0 + offset(a) - offset(b)];
+    let (of, found) = (of.standard_moments().raw(), found.standard_moments().raw());
+    figures.into_iter().all(|figure| near(figure, 1.0))
+        && of.iter().zip(found).all(|(&a, b)| a.is_nan() && b.is_nan() || near(a, b))
+}
+
 /// A table of its own on one line.
 fn inline(text: &str, line: &Tree) -> String {
     let Value::Table(keys) = &line.value else { return String::new() };
@@ -179,6 +216,8 @@ struct Entry<'a> {
     line: &'a Tree,
     old: &'a Dimension,
     new: &'a Dimension,
+    /// The keys of the process that says how its parts lie.
+    spread: Option<Vec<&'a (Key, Tree)>>,
 }
 
 impl Entry<'_> {
@@ -193,7 +232,13 @@ impl Entry<'_> {
         let moves = self.old.nominal() != self.new.nominal();
         let nominal = self.nominal();
         let mut fit = false;
+        if let Some(spread) = &self.spread {
+            self.respread(keys, spread, edits);
+        }
         for (key, value) in keys {
+            if self.spread.is_some() && SPREAD.contains(&key.name.as_str()) {
+                continue;
+            }
             let mut replace = |text: String| edits.push((value.span.clone(), text));
             match (key.name.as_str(), &value.value) {
                 ("nominal", _) if moves => replace(nominal.0.clone()),
@@ -255,6 +300,30 @@ impl Entry<'_> {
             self.insert_nominal(keys, &nominal.0, edits);
         }
         Ok(fit)
+    }
+
+    /// The keys of the line that say how its parts lie give way to those of the process.
+    fn respread(&self, keys: &[(Key, Tree)], spread: &[&(Key, Tree)], edits: &mut Vec<(Range<usize>, String)>) {
+        let inline = self.text[self.line.span.clone()].starts_with('{');
+        let between = if inline { ", " } else { "\n" };
+        let of = |(key, value): &&(Key, Tree)| {
+            let text = |span: &Range<usize>| &self.text[span.clone()];
+            write::pair(self.format, &key.name, text(&value.span))
+        };
+        let own: Vec<String> = spread.iter().map(of).collect();
+        let own = own.join(between);
+        let old = |(key, _): &(Key, Tree)| SPREAD.contains(&key.name.as_str());
+        let mut written = false;
+        for (at, (key, value)) in keys.iter().enumerate().filter(|(_, line)| old(line)) {
+            match written {
+                false => edits.push((key.span.start..value.span.end, own.clone())),
+                true => edits.push((keys[at - 1].1.span.end..value.span.end, String::new())),
+            }
+            written = true;
+        }
+        if let (false, Some((_, last))) = (written, keys.last()) {
+            edits.push((last.span.end..last.span.end, format!("{between}{own}")));
+        }
     }
 
     /// The nominal of a built-in model, written where it moves.

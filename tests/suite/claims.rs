@@ -98,15 +98,18 @@ fn report(command: &str) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("sensitol {command}: {error}"))
 }
 
-/// The number at a place such as `F/sensitivities/R/first`; `H_req#5/nominal` is at the value 5 of a sweep, and
-/// `@correlation/R/X` that of two characteristics.
+/// The number at a place such as `F/sensitivities/R/first`; `H_req#5/nominal` is at the value 5 of a sweep,
+/// `@correlation/R/X` that of two characteristics, and `@report/cost_after` is sought from the root of the report.
 fn found(report: &Value, place: &str) -> Option<f64> {
     if let Some(pair) = place.strip_prefix("@correlation/") {
         let between: Vec<&str> = pair.split('/').collect();
         let pairs = report["characteristic_correlation"].as_array()?;
         return pairs.iter().find(|pair| pair["between"] == serde_json::json!(between))?["value"].as_f64();
     }
-    let mut at = &report["characteristics"];
+    let (mut at, place) = match place.strip_prefix("@report/") {
+        Some(place) => (report, place),
+        None => (&report["characteristics"], place),
+    };
     for part in place.split('/') {
         let (part, value) = part.split_once('#').map_or((part, None), |(name, value)| (name, Some(value)));
         at = match at {

@@ -5,6 +5,7 @@ mod allocation;
 mod allocation_cli;
 mod allocation_costs;
 mod allocation_lists;
+mod allocation_made;
 mod allocation_oracles;
 mod analysis;
 mod architecture;

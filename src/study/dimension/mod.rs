@@ -97,6 +97,23 @@ fn built(
     Ok(dimension.with_convention(convention(entry, tolerance)?))
 }
 
+/// A dimension as a process makes it whose line says how its parts lie, within this half band.
+pub(super) fn made(
+    old: &Dimension,
+    process: &DimensionEntry,
+    half: f64,
+    line: Range<usize>,
+) -> Result<Dimension, Fault> {
+    let band = old.opened(old.reach(), half / old.half_band());
+    let distribution = distribution(process, old.nominal(), Some(band))?;
+    let own = convention(process, Some(band))?;
+    let spread = distribution.ok_or_else(|| fault(line.clone(), "", spread::needs_band("distribution")))?;
+    let made = Dimension::distributed(old.name(), old.nominal(), Some(band), spread);
+    let whole = |error: DimensionError| fault(line, "", error.fault);
+    let convention = Convention { lot: own.lot, ..*old.convention() };
+    Ok(old.remade(made.map_err(whole)?).with_convention(convention))
+}
+
 /// How stacks take this line beside its band.
 fn convention(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Result<Convention, Fault> {
     let rss_factor = entry.rss_factor.as_ref().map(|given| conventions::factor(given, "rss_factor")).transpose()?;

@@ -1,4 +1,4 @@
-//! `[processes]`: capabilities by name, at the dimensions that name one.
+//! `[processes]`: capabilities by name, at the dimensions and the processes of costs that name one.
 
 use std::ops::Range;
 
@@ -13,7 +13,8 @@ const KEYS: [&str; 7] = ["cp", "cpk", "sigma", "sigmas", "side", "drift", "distr
 /// Keys that say how far a dimension spreads: one at the dimension itself takes the place of all of the process.
 const SPREADS: [&str; 4] = ["sigma", "sigmas", "cp", "cpk"];
 
-/// Gives every dimension with a `process` the keys of that process which it does not have itself, and leaves the section out.
+/// Gives every dimension and every process of a cost with a `process` the keys of that one which it does not have itself, and leaves the
+/// section out.
 pub(super) fn expand(expanded: &mut Expanded, data: &mut Data<'_>) -> Result<(), Faults> {
     let processes = match expanded.tree.get("processes") {
         Some(section) => read(section, data)?,
@@ -23,22 +24,33 @@ pub(super) fn expand(expanded: &mut Expanded, data: &mut Data<'_>) -> Result<(),
         sections.retain(|(key, _)| key.name != "processes");
     }
     let mut faults = Faults::default();
-    let Some(dimensions) = expanded.tree.get_mut("dimensions").and_then(Tree::entries_mut) else { return Ok(()) };
-    for (dimension, line) in dimensions {
-        let Some(line) = line.entries_mut() else { continue };
-        let Some(place) = line.iter().position(|(key, _)| key.name == "process") else { continue };
-        let (_, named) = line.remove(place);
-        let at = format!("dimensions.{}.process", dimension.name);
-        let Value::Text(name) = &named.value else {
-            faults.0.push(wrong_type(&named, at, "the name of a process such as \"turning\""));
-            continue;
-        };
-        match processes.iter().find(|(known, _)| known == name) {
-            Some((_, keys)) => merge(line, keys),
-            None => faults.0.push(unknown(name, named.span.clone(), at, &processes)),
+    for (dimension, line) in expanded.tree.get_mut("dimensions").and_then(Tree::entries_mut).into_iter().flatten() {
+        taken(line, &processes, &format!("dimensions.{}", dimension.name), &mut faults);
+    }
+    for (dimension, line) in expanded.tree.get_mut("costs").and_then(Tree::entries_mut).into_iter().flatten() {
+        let Some(Value::Array(list)) = line.get_mut("processes").map(|list| &mut list.value) else { continue };
+        for (index, process) in list.iter_mut().enumerate() {
+            let at = format!("costs.{}.processes[{}]", dimension.name, index + 1);
+            taken(process, &processes, &at, &mut faults);
         }
     }
     faults.none()
+}
+
+/// Gives a line with a `process` the keys of that one which it does not have itself.
+fn taken(line: &mut Tree, processes: &Processes, at: &str, faults: &mut Faults) {
+    let Some(line) = line.entries_mut() else { return };
+    let Some(place) = line.iter().position(|(key, _)| key.name == "process") else { return };
+    let (_, named) = line.remove(place);
+    let at = format!("{at}.process");
+    let Value::Text(name) = &named.value else {
+        faults.0.push(wrong_type(&named, at, "the name of a process such as \"turning\""));
+        return;
+    };
+    match processes.iter().find(|(known, _)| known == name) {
+        Some((_, keys)) => merge(line, keys),
+        None => faults.0.push(unknown(name, named.span.clone(), at, processes)),
+    }
 }
 
 /// Processes by name, with their keys.
