@@ -121,10 +121,8 @@ impl Surface {
 
     /// Every product once, `j < k`.
     pub(super) fn products(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-        let own = |(j, row): (usize, &'_ Vec<(usize, f64)>)| {
-            row.iter().filter(move |(k, _)| *k > j).map(move |&(k, value)| (j, k, value)).collect::<Vec<_>>()
-        };
-        self.neighbours.iter().enumerate().flat_map(own)
+        let rows = self.neighbours.iter().enumerate();
+        rows.flat_map(|(j, row)| row.iter().filter(move |(k, _)| *k > j).map(move |&(k, value)| (j, k, value)))
     }
 
     /// Whether the part is a parabola of a normal input.
