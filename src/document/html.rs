@@ -115,7 +115,9 @@ pub fn blocks(blocks: &[Element]) -> String {
 fn block(block: &Element) -> String {
     match block {
         Element::Gap => String::new(),
-        Element::Paragraph(one) if one.flow == Flow::Verbatim => format!("<pre>{}</pre>\n", escaped(&one.line.text())),
+        Element::Paragraph(one) if one.flow == Flow::Verbatim => {
+            format!("<pre tabindex=\"0\">{}</pre>\n", escaped(&one.line.text()))
+        }
         Element::Paragraph(one) => {
             let class = if one.indent > 0 { " class=\"note\"" } else { "" };
             format!("<p{class}>{}</p>\n", toned(&one.line))

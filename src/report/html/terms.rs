@@ -25,7 +25,7 @@ const TERMS: [(&str, &str, &[&str]); 16] = [
     (
         "Most likely",
         "The assembly at a limit that comes about most often, in standard deviations off the means.",
-        &["simulate --rare"],
+        &["rare"],
     ),
     ("Reference", "Points of the model itself, by which every method is measured.", &["compare"]),
     ("Sigma", "Standard deviation.", &["compare", "sweep"]),
@@ -62,7 +62,7 @@ const TERMS: [(&str, &str, &[&str]); 16] = [
 /// The section of the terms that the page of a command has.
 pub(super) fn terms(command: &str, rare: bool) -> String {
     let has = |all: &&[&str]| match rare {
-        true => all.contains(&"simulate --rare") || *all == ALL,
+        true => all.contains(&"rare") || *all == ALL,
         false => all.contains(&command),
     };
     let mut text =
