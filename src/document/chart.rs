@@ -98,6 +98,8 @@ pub struct Plot {
     pub y: PlotAxis,
     /// The layers, drawn one over the other.
     pub layers: Vec<Layer>,
+    /// What its lines and points mean, below it on a page.
+    pub words: String,
 }
 
 /// An axis. It reaches over everything that is drawn.

@@ -1,8 +1,11 @@
 //! Documents as fragments of HTML: the page around them has the style sheet that their classes stand in.
 
-use super::svg::{drawn, escaped};
+use super::svg::{escaped, figure};
 use super::{Bar, Bars, Cell, Chart, DataTable, Document, Element, Fill, Flow, Line, Section, Tone, spread};
 use crate::names::clean;
+
+/// A table of a sweep with more rows is folded.
+const FOLDED: usize = 6;
 
 /// What is said before all others.
 pub fn head(document: &Document) -> String {
@@ -18,10 +21,10 @@ pub fn sections(document: &Document) -> String {
 }
 
 fn section(index: usize, section: &Section) -> String {
-    let body = blocks(&section.blocks);
     if section.name.is_empty() {
-        return format!("<section>\n{body}</section>\n");
+        return format!("<section>\n{}</section>\n", blocks(&section.blocks));
     }
+    let body = figure_first(&section.blocks, &format!("warned-{index}"));
     let unit = section.unit.as_deref().map(|unit| format!(" <small>[{}]</small>", escaped(unit))).unwrap_or_default();
     let title = format!("<h2 id=\"kc-title-{index}\">{}{unit}</h2>\n", escaped(&section.name));
     let remark = match section.words.trim_start_matches([',', ':', ' ']) {
@@ -74,6 +77,27 @@ fn bars(bars: &Bars) -> String {
     text
 }
 
+/// Blocks with the first figure before all others, and below it the warnings that they begin with, which concern it.
+fn figure_first(all: &[Element], id: &str) -> String {
+    let found = all.iter().take_while(|block| matches!(block, Element::Finding(_))).count();
+    let (findings, rest) = all.split_at(found);
+    let findings = blocks(findings).replacen("<ul", &format!("<ul id=\"{id}\""), 1);
+    let drawn = |block: &Element| matches!(block, Element::Chart(Chart::Spread(_) | Chart::Plot(_)));
+    for (place, block) in rest.iter().enumerate() {
+        let without = |inside: &str| blocks(&rest[..place]) + inside + &blocks(&rest[place + 1..]);
+        match block {
+            one if drawn(one) => return self::block(one) + &findings + &without(""),
+            Element::Detail(inner) => {
+                let Some(inside) = inner.iter().position(drawn) else { continue };
+                let others = blocks(&inner[..inside]) + &blocks(&inner[inside + 1..]);
+                return self::block(&inner[inside]) + &findings + &without(&others);
+            }
+            _ => {}
+        }
+    }
+    findings + &blocks(rest)
+}
+
 /// Blocks one after the other; findings beside one another are one list.
 pub fn blocks(blocks: &[Element]) -> String {
     let mut text = String::new();
@@ -91,7 +115,9 @@ pub fn blocks(blocks: &[Element]) -> String {
 fn block(block: &Element) -> String {
     match block {
         Element::Gap => String::new(),
-        Element::Paragraph(one) if one.flow == Flow::Verbatim => format!("<pre>{}</pre>\n", escaped(&one.line.text())),
+        Element::Paragraph(one) if one.flow == Flow::Verbatim => {
+            format!("<pre tabindex=\"0\">{}</pre>\n", escaped(&one.line.text()))
+        }
         Element::Paragraph(one) => {
             let class = if one.indent > 0 { " class=\"note\"" } else { "" };
             format!("<p{class}>{}</p>\n", toned(&one.line))
@@ -105,11 +131,7 @@ fn block(block: &Element) -> String {
             format!("<p class=\"note\">{}: {}</p>\n", escaped(list.title.trim()), escaped(&list.words.join(" ")))
         }
         Element::Table(one) => table(one),
-        Element::Chart(Chart::Plot(one)) => {
-            // What a drawing names its own format by asks for nothing, and is left out all the same.
-            let svg = drawn(&[one], &one.name).replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-            format!("<div class=\"trade\">{svg}</div>\n")
-        }
+        Element::Chart(Chart::Plot(one)) => figure(one),
         Element::Chart(Chart::Bars(one)) => bars(one),
         Element::Chart(Chart::Spread(one)) => spread::figure(one).unwrap_or_default(),
         Element::Finding(one) => {
@@ -144,8 +166,10 @@ pub fn table(table: &DataTable) -> String {
     // A table that is wider than the window can be moved by keys.
     let mut text = "<div class=\"wide\" tabindex=\"0\"><table>\n".to_owned();
     if places.iter().any(|&place| !table.columns[place].heading.is_empty()) {
-        let title = |&place: &usize| {
-            format!("<th scope=\"col\"{}>{}</th>", class(place), escaped(table.columns[place].heading))
+        let title = |&place: &usize| match table.columns[place].heading {
+            // Nothing to be read as the title of a column.
+            "" => "<td></td>".to_owned(),
+            heading => format!("<th scope=\"col\"{}>{}</th>", class(place), escaped(heading)),
         };
         text += &format!("<thead><tr>{}</tr></thead>\n", places.iter().map(title).collect::<String>());
     }
@@ -162,5 +186,11 @@ pub fn table(table: &DataTable) -> String {
         };
         text += &format!("<tr>{}</tr>\n", places.iter().enumerate().map(cell).collect::<String>());
     }
-    text + "</tbody></table></div>\n"
+    text += "</tbody></table></div>\n";
+    // Of many values a chart says more: the numbers are there for those who ask, and on paper.
+    if table.name == "sweep" && table.view.len() > FOLDED {
+        let rows = table.view.len();
+        return format!("<details class=\"fold\"><summary>The {rows} values as a table</summary>\n{text}</details>\n");
+    }
+    text
 }

@@ -1,7 +1,7 @@
 //! Names beside the points of a chart, none over another.
 
 /// Width of a letter and height of a line, generously, at a font size of 12.
-const LETTER: f64 = 6.9;
+pub(super) const LETTER: f64 = 6.9;
 const LINE: f64 = 13.0;
 /// Of a point's circle.
 const RADIUS: f64 = 5.0;
@@ -45,8 +45,9 @@ impl Label {
 }
 
 /// Labels for points within `[left, right, above, below]`: beside their point where there is room, else as near as may be.
-/// Points in one place share a label, and the first has the first choice.
-pub(super) fn placed(points: &[([f64; 2], &str)], within: [f64; 4]) -> Vec<Label> {
+/// Points in one place share a label, and the first has the first choice. Nothing is put where another text is
+/// `held`; a name without room lies over others where `all` are wanted, and is left out elsewhere.
+pub(super) fn placed(points: &[([f64; 2], &str)], within: [f64; 4], held: &[[f64; 4]], all: bool) -> Vec<Label> {
     let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < SAME;
     let mut named: Vec<(usize, String)> = Vec::new();
     for (i, (at, name)) in points.iter().enumerate() {
@@ -56,11 +57,11 @@ pub(super) fn placed(points: &[([f64; 2], &str)], within: [f64; 4]) -> Vec<Label
         }
     }
     let circle = |&([x, y], _): &([f64; 2], &str)| Space([x - RADIUS, x + RADIUS, y - RADIUS, y + RADIUS]);
-    let mut taken: Vec<Space> = points.iter().map(circle).collect();
+    let mut taken: Vec<Space> = points.iter().map(circle).chain(held.iter().map(|of| Space(*of))).collect();
     let [left, right, above, below] = within;
     named
         .into_iter()
-        .map(|(point, text)| {
+        .filter_map(|(point, text)| {
             let [x, y] = points[point].0;
             // Beside the point, and then farther and farther up and down.
             let levels = [-5.0, 13.0].into_iter().chain((1..12).flat_map(|i| {
@@ -85,10 +86,10 @@ pub(super) fn placed(points: &[([f64; 2], &str)], within: [f64; 4]) -> Vec<Label
                 inside && !taken.iter().any(|other| space.meets(other))
             };
             let mut choices = choices.peekable();
-            let first = choices.peek().cloned();
-            let label = choices.find(fits).or(first).expect("there is always a first choice");
+            let first = choices.peek().cloned().filter(|_| all);
+            let label = choices.find(fits).or(first)?;
             taken.push(label.space());
-            label
+            Some(label)
         })
         .collect()
 }
@@ -107,22 +108,26 @@ mod tests {
             .enumerate()
             .map(|(i, name)| ([100.0 + 9.0 * i as f64, 200.0 + (i % 3) as f64], &**name))
             .collect();
-        let labels = placed(&points, WITHIN);
+        let labels = placed(&points, WITHIN, &[], true);
         assert_eq!(labels.len(), 14);
         for (i, one) in labels.iter().enumerate() {
             assert!(labels[i + 1..].iter().all(|other| !one.space().meets(&other.space())), "{one:?}");
         }
         // One alone stands to the right, above its point.
-        let alone = placed(&points[..1], WITHIN);
+        let alone = placed(&points[..1], WITHIN, &[], true);
         assert_eq!((alone[0].x, alone[0].y, alone[0].ends, alone[0].far), (107.0, 195.0, false, false));
         // At the right edge there is no room but to the left.
-        assert!(placed(&[([700.0, 200.0], "monte-carlo 100000")], WITHIN)[0].ends);
+        assert!(placed(&[([700.0, 200.0], "monte-carlo 100000")], WITHIN, &[], true)[0].ends);
     }
 
     #[test]
     fn points_in_one_place_share_a_name() {
-        let labels =
-            placed(&[([100.0, 100.0], "rss"), ([101.0, 100.0], "worst-case"), ([300.0, 90.0], "full")], WITHIN);
+        let labels = placed(
+            &[([100.0, 100.0], "rss"), ([101.0, 100.0], "worst-case"), ([300.0, 90.0], "full")],
+            WITHIN,
+            &[],
+            true,
+        );
         let texts: Vec<&str> = labels.iter().map(|label| label.text.as_str()).collect();
         assert_eq!(texts, ["rss, worst-case", "full"]);
         assert_eq!(labels[1].point, 2);

@@ -23,7 +23,7 @@ use crate::verdict::{Judged, Verdict};
 const LEAST: f64 = 1e-12;
 /// Digits of a cost.
 const COST: usize = 5;
-/// Labels along the chart of the front: more would stand in one another's way.
+/// Labels along the chart of the front: of more only every power of ten is there.
 const LABELS: usize = 6;
 /// Dimensions that are named as the reason why a requirement cannot be kept.
 const NAMED: usize = 5;
@@ -485,18 +485,21 @@ impl AllocationReport {
             circle([*place, *cost], true, "", format!("{label}: {}", significant(*cost, 6)))
         });
         let points = points.chain(before.map(|at| circle(at, false, "before", String::new()))).collect();
-        let every = front.len().div_ceil(LABELS).max(1);
         let mut x = PlotAxis::new(
             format!("{} required", first.map_or("yield", |wanted| wanted.requirement.key())),
             PlotScale::Linear(0.05),
         );
-        x.ticks = front.iter().step_by(every).map(|(place, _, label)| (*place, label.clone())).collect();
+        if let Some(Requirement::Yield(_)) = first.map(|wanted| wanted.requirement) {
+            let places = front.iter().map(|(place, ..)| *place);
+            x.ticks = round_yields(places.clone().fold(f64::INFINITY, f64::min), places.fold(0.0, f64::max));
+        }
         let line = front.iter().map(|(place, cost, _)| (*place, Some(*cost))).collect();
         Plot {
             name: self.head.title.clone().unwrap_or_else(|| "Cost against what is required".to_owned()),
             x,
             y: PlotAxis::new("cost", PlotScale::Linear(0.05)),
             layers: vec![Layer::Curve(line, Stroke::Thin), Layer::Points(points)],
+            words: "Filled: the cheapest tolerances that keep what is required. Open: what the tolerances before keep and cost.".to_owned(),
         }
     }
 }
@@ -577,6 +580,26 @@ fn placed(requirement: Requirement, required: f64) -> (f64, String) {
             (-rejected.log10(), share(rejected))
         }
         _ => (required, significant(required, 3)),
+    }
+}
+
+/// Round yields between two places of the chart: 90 %, 95 %, 98 %, 99 % and so on, or without those between powers of ten.
+fn round_yields(from: f64, to: f64) -> Vec<(f64, String)> {
+    let rejected = (1..=12).flat_map(|decade| [1.0, 0.5, 0.2].map(|digit| digit * 10f64.powi(-decade)));
+    let all: Vec<f64> = rejected.filter(|rejected| (from..=to).contains(&-rejected.log10())).collect();
+    let whole = |rejected: &&f64| (rejected.log10() - rejected.log10().round()).abs() < 1e-9;
+    let decades: Vec<f64> = all.iter().filter(whole).copied().collect();
+    let label = |rejected: f64| {
+        let percent = 100.0 * rejected;
+        // As many decimals as the one digit of the rejects has.
+        let decimals = (-(percent * (1.0 + 1e-9)).log10().floor()).max(0.0) as usize;
+        (-rejected.log10(), format!("{:.decimals$} %", 100.0 - percent))
+    };
+    match (all.len() > LABELS && decades.len() > 1, all.is_empty()) {
+        (true, _) => decades.into_iter().map(label).collect(),
+        // A front within less than a step: its ends.
+        (false, true) => [from, to].map(|place| (place, share(10f64.powf(-place)))).into(),
+        (false, false) => all.into_iter().map(label).collect(),
     }
 }
 

@@ -227,6 +227,9 @@ impl ComparedReport {
             x: PlotAxis::new("evaluations", PlotScale::Decades),
             y: PlotAxis::new("error of mean and sigma, in sigmas", PlotScale::Decades),
             layers,
+            words: "Each circle is a method: farther left is cheaper, farther down is more accurate. Blue, and joined by the line: no other \
+                    method has a smaller error for as many evaluations. Open: its error is below what the reference resolves, the dashed line."
+                .to_owned(),
         }
     }
 }

@@ -247,6 +247,11 @@ impl SweptReport {
             x: PlotAxis::new(parameter, PlotScale::Linear(0.0)),
             y: PlotAxis::new(with_unit(&self.name, self.unit.as_deref()), PlotScale::Linear(0.05)),
             layers,
+            words: format!(
+                "Line: the mean. Band: from the 0.135 % to the 99.865 % quantile, which holds all but 0.27 % of the assemblies. Dotted: the value of \
+                 the nominal dimensions.{}",
+                if self.lower.or(self.upper).is_some() { " Dashed: the limits." } else { "" }
+            ),
         }
     }
 }
@@ -301,7 +306,7 @@ impl SweptPointReport {
         }
     }
 
-    fn rejects(&self) -> Rejects {
+    pub(super) fn rejects(&self) -> Rejects {
         let error = self.error_estimate.as_ref().and_then(|estimate| estimate.yield_);
         let [below, above] = [self.ppm_below, self.ppm_above].map(|ppm| ppm.map(|ppm| 1e-6 * ppm));
         Rejects::new(below, above, error)

@@ -122,9 +122,16 @@ class Page {
     return Buffer.from(data, "base64");
   }
 
-  async pdf() {
-    const { data } = await this.send("Page.printToPDF", { printBackground: false });
+  /// As it prints, on a sheet of this width and height in inches.
+  async pdf([paperWidth, paperHeight] = [8.5, 11]) {
+    const { data } = await this.send("Page.printToPDF", { printBackground: false, paperWidth, paperHeight });
     return Buffer.from(data, "base64");
+  }
+
+  /// Laid out as on paper of this width in pixels.
+  async asPaper(width) {
+    await this.send("Emulation.setDeviceMetricsOverride", { width: Math.floor(width), height: 1000, deviceScaleFactor: 1, mobile: false });
+    await this.send("Emulation.setEmulatedMedia", { media: "print" });
   }
 
   async close() {

@@ -8,6 +8,7 @@ import { dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { Browser } from "./chromium.mjs";
+import { FAULTS, MARGINS, SHEETS, filled } from "./paper.mjs";
 
 const sensitol = process.env.SENSITOL, cases = process.env.SENSITOL_CASES;
 const root = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
@@ -32,7 +33,7 @@ const quiet = (page) => assert.deepEqual(page.complaints, []);
 // Labels of a chart that lie over one another, by as much as a pixel.
 const OVERLAPS = `(() => {
   const found = [];
-  for (const svg of document.querySelectorAll("svg.density, svg.gauge")) {
+  for (const svg of document.querySelectorAll("svg.density, svg.gauge, svg.tail")) {
     const boxes = [...svg.querySelectorAll("text")].map((text) => [text.textContent, text.getBoundingClientRect()]).filter(([, box]) => box.width > 0);
     boxes.forEach(([a, p], i) => boxes.slice(i + 1).forEach(([b, q]) => {
       if (p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 2 && q.top < p.bottom - 2) found.push(a + " | " + b);
@@ -208,6 +209,96 @@ ${rest}`);
   quiet(page);
   await page.close();
   await again.close();
+});
+
+// One of every command, and those with the widest tables, the most dimensions and a map of interactions.
+const PRINTED = [
+  ["analyze", "first-study"], ["analyze", "stacked-blocks"], ["analyze", "bearing-housing"], ["analyze", "engine-balance"],
+  ["simulate", "shaft-and-bore", ["--samples", "2000"]], ["simulate", "stacked-blocks", ["--rare", "--samples", "600"]],
+  ["compare", "stacked-blocks", ["--samples", "2048", "--budget", "300"]], ["sweep", "stacked-blocks", ["--over", "th=15:19:9"]],
+  ["allocate", "shaft-and-housing", ["--pareto", "4"]],
+];
+
+test("pages print on A4 and Letter: no page nearly empty, nothing cut off, no tiny text", async () => {
+  for (const [command, name, more = []] of PRINTED) {
+    const page = await browser.open(report(command, `examples/${name}/study.toml`, `paper-${name}${more.length}`, more));
+    for (const [sheet, size] of Object.entries(SHEETS)) {
+      const full = filled(await page.pdf(size)), what = `${command} ${name} on ${sheet}`;
+      assert.ok(full.length > 0 && full.at(-1) > 0, what);
+      full.slice(0, -1).forEach((part, i) => assert.ok(part > 1 / 3, `${what}: page ${i + 1} of ${full.length} is ${(100 * part).toFixed(0)} % full`));
+    }
+    for (const [sheet, [width]] of Object.entries(SHEETS)) {
+      await page.asPaper(96 * width - 2 * MARGINS[1] * 96 / 72);
+      assert.deepEqual(await page.evaluate(FAULTS), [], `${command} ${name} on ${sheet}`);
+    }
+    quiet(page);
+    await page.close();
+  }
+});
+
+test("pages of all commands have the parts of a review, and pass axe", async () => {
+  for (const [command, name, more = []] of PRINTED.slice(4)) {
+    const file = report(command, `examples/${name}/study.toml`, `parts-${name}${more.length}`, more);
+    for (const options of [{}, { dark: true }, { width: 390, height: 844 }]) {
+      const page = await browser.open(file, options);
+      for (const part of ["verdict", "summary", "sure", "about", "terms"]) {
+        assert.equal(await page.evaluate(`document.querySelectorAll("h2#${part}").length`), 1, `${command} ${name}: ${part}`);
+      }
+      assert.ok(await page.evaluate("document.querySelectorAll('.gauges .gauge').length") > 0, command);
+      // No warning after the figures: the last section has none.
+      assert.equal(await page.evaluate("document.getElementById('about').parentElement.querySelector('.warnings')"), null);
+      // Every name of a plot is in what is read aloud, and the ends of every band.
+      const silent = await page.evaluate("[...document.querySelectorAll('svg.plot')].flatMap((svg) => [...svg.querySelectorAll('.of-mark, .of-best, .of-other')].flatMap((text) => text.textContent.split(', ')).filter((text) => !svg.getAttribute('aria-label').includes(text)))");
+      assert.deepEqual(silent, [], command);
+      if (process.env.AXE) {
+        await page.evaluate(readFileSync(process.env.AXE, "utf8"));
+        const found = await page.evaluate("axe.run(document, { resultTypes: ['violations'] }).then((all) => all.violations.map((one) => `${one.id}: ${one.nodes.map((node) => node.html.slice(0, 160)).slice(0, 3).join(' | ')}`))");
+        assert.deepEqual(found, [], `${command} ${name} ${JSON.stringify(options)}`);
+      }
+      quiet(page);
+      await page.close();
+    }
+  }
+});
+
+test("the first screen answers: title block, sentence, all verdicts, and the top of the first density", async () => {
+  const study = join(folder, "first-screen.toml");
+  writeFileSync(study, `title = "Cover"
+[about]
+part = "Cover"
+drawing = "4711-002"
+revision = "C"
+author = "A. Engineer"
+[dimensions]
+a = { nominal = 10, tolerance = 0.3 }
+b = { nominal = 6, tolerance = 0.1 }
+[characteristics]
+gap = { formula = "a - b", lower = 3.8, upper = 4.5, target_yield = 0.9973 }
+sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
+`);
+  const page = await browser.open(report("analyze", study, "first-screen"), { width: 1280, height: 900 });
+  for (const part of [".block", ".lead", ".gauges"]) {
+    assert.ok(await page.evaluate(`document.querySelector("${part}").getBoundingClientRect().bottom`) <= 900, part);
+  }
+  assert.equal(await page.evaluate("document.querySelectorAll('.gauges tbody tr').length"), 3);
+  // A third of its height at least.
+  const below = await page.evaluate("(() => { const { top, height } = document.querySelector('svg.density.wide').getBoundingClientRect(); return top + height / 3; })()");
+  assert.ok(below <= 900, `the density begins at ${below}`);
+  await page.close();
+});
+
+test("numbers of a sweep's chart are those of its data", async () => {
+  const study = "examples/stacked-blocks/study.toml", over = ["--over", "th=15:19:5"];
+  const page = await browser.open(report("sweep", study, "numbers", over));
+  const { stdout } = spawnSync(sensitol, ["sweep", study, "--json", "-q", ...over], { cwd: root, encoding: "utf8" });
+  const [{ points, lower, upper }] = JSON.parse(stdout).characteristics;
+  const label = await page.evaluate("document.querySelector('svg.plot').getAttribute('aria-label')");
+  const quantiles = (point) => Object.values(point.quantiles);
+  for (const value of [points[0].mean, points.at(-1).mean, quantiles(points[0])[0], quantiles(points.at(-1)).at(-1)]) {
+    assert.ok(label.includes(value.toPrecision(4)), `${value} is not in: ${label}`);
+  }
+  for (const limit of [`lower limit ${lower}`, `upper limit ${upper}`]) assert.ok(label.includes(limit), label);
+  await page.close();
 });
 
 test("hostile names are shown as text", async () => {

@@ -178,6 +178,23 @@ fn two_hundred_dimensions_stay_below_two_megabytes() {
     std::fs::write(cases().join("two-hundred.html"), page).unwrap();
 }
 
+/// A usual study is a small page: 22 dimensions and 3 characteristics below 300 kB.
+#[test]
+fn a_usual_page_is_small() {
+    let mut text = "[dimensions]\n".to_owned();
+    let mut sum = String::new();
+    for i in 0..22 {
+        let _ = writeln!(text, "x{i} = {{ nominal = {}, tolerance = 0.1 }}", 1.0 + 0.1 * f64::from(i));
+        let _ = write!(sum, "{}{}*x{i}", if i == 0 { "" } else { " + " }, 1.0 + 0.1 * f64::from(i % 7));
+    }
+    let _ = write!(
+        text,
+        "[characteristics]\ny = {{ formula = \"sqrt({sum})\", lower = 9 }}\nz = {{ formula = \"{sum}\", upper = 90 }}\nw = {{ formula = \"x0*x1 + x2*x3\", lower = 2, upper = 4 }}\n"
+    );
+    let page = page(&study(&text));
+    assert!(page.len() < 300_000, "{} bytes", page.len());
+}
+
 /// What cannot be tried is named, with its reason.
 #[test]
 fn what_cannot_be_tried_is_said() {
@@ -227,6 +244,88 @@ fn the_command_line_writes_pages() {
     assert!(bars("was") > 0 && bars("was") == bars("linear"), "{page}");
     let page = std::fs::read_to_string(path("simulate.html")).unwrap();
     assert!(page.contains("importance sampling") && page.contains("most likely above"), "{page}");
+}
+
+/// Every page has the parts of a review: the verdict first, how sure it is, terms; warnings stand below the figure that they concern,
+/// and never at the end.
+#[test]
+fn pages_of_all_commands_have_the_same_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = r##"
+title = "Cover \\ \"A\""
+[about]
+part = "Cover <7>"
+revision = "C"
+[dimensions]
+a = { nominal = 10, tolerance = 0.3 }
+b = { nominal = 6, tolerance = 0.1 }
+idle = { nominal = 1, tolerance = 0.1 }
+[characteristics]
+gap = { formula = "a - b", lower = 3.8, upper = 4.5, target_yield = 0.9973 }
+[costs]
+a = { model = "reciprocal", a = 1.0, b = 0.1, min = 0.01, max = 0.5 }
+b = { model = "reciprocal", a = 1.0, b = 0.1, min = 0.01, max = 0.5 }
+"##;
+    let study = folder.path().join("study.toml");
+    std::fs::write(&study, text).unwrap();
+    let study = study.to_str().unwrap();
+    let calls: [(&str, &[&str]); 5] = [
+        ("simulate", &["--samples", "2000"]),
+        ("simulate", &["--rare", "--samples", "400"]),
+        ("compare", &["--samples", "2048", "--budget", "100"]),
+        ("sweep", &["--over", "a=9.8:10.2:9"]),
+        ("allocate", &["--pareto", "4"]),
+    ];
+    for (command, more) in calls {
+        let file = folder.path().join("page.html").to_str().unwrap().to_owned();
+        let output = sensitol(&[&[command, study, "--html", &file, "-q"], more].concat()).output().unwrap();
+        let page = std::fs::read_to_string(&file).unwrap_or_else(|_| panic!("{command}: {output:?}"));
+        is_closed(&page);
+        let at =
+            |part: &str| page.find(part).unwrap_or_else(|| panic!("{command} {more:?}: {part} is not in the page"));
+        let order = [
+            "<h2 id=\"verdict\"",
+            "class=\"gauge\"",
+            "<h2 id=\"summary\"",
+            "<h2 id=\"sure\"",
+            "<h2 id=\"about\"",
+            "<h2 id=\"terms\"",
+        ];
+        assert!(order.map(at).is_sorted(), "{command}: {:?}", order.map(at));
+        assert!(
+            page.contains("<dd>Cover &lt;7&gt;</dd>") && page.contains("<dd>C</dd>"),
+            "the title block of {command}"
+        );
+        // Below every printed page, where nothing of a name is style.
+        assert!(page.contains("content: \"Cover \\3c 7\\3e \\2c  revision C\\2c  study "), "{command}");
+        if command != "allocate" {
+            assert!(page.contains("gap misses its target"), "{command}");
+        }
+        // Of those who analyse.
+        if command == "sweep" || command == "allocate" {
+            let (warning, summary) = (at("unused-dimension"), at("<h2 id=\"summary\""));
+            assert!(warning < summary, "{command}: a warning of the whole study stands below the verdict");
+        }
+    }
+}
+
+/// The front of yields has round numbers below it, whatever yields were asked for.
+#[test]
+fn ticks_of_a_front_are_round() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("front.svg").to_str().unwrap().to_owned();
+    let study = "examples/first-study/study.toml";
+    let output = sensitol(&["allocate", study, "--pareto", "4", "--svg", &file, "-q"]).output().unwrap();
+    let drawing = std::fs::read_to_string(&file).unwrap_or_else(|_| panic!("{output:?}"));
+    let ticks: Vec<&str> =
+        drawing.split("<text").filter_map(|text| text.split('>').nth(1)?.strip_suffix(" %</text")).collect();
+    assert!(ticks.len() > 1, "{drawing}");
+    for tick in ticks {
+        // 100 less one digit of 1, 2 or 5.
+        let rejected = 100.0 - tick.parse::<f64>().unwrap();
+        let digit = rejected / 10f64.powf((rejected.log10() + 1e-9).floor());
+        assert!([1.0, 2.0, 5.0, 10.0].iter().any(|round| (digit - round).abs() < 1e-6), "{tick}");
+    }
 }
 
 fn study_title(path: &str) -> String {

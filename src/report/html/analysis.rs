@@ -3,8 +3,11 @@
 use serde::Serialize;
 
 use super::super::Report;
+use super::super::head::seed;
+use super::terms::terms;
+use super::verdict::{Found, Together, Words, verdict};
 use super::what_if::WhatIf;
-use super::{Fact, evidence, fact, json, others, provenance, render, review};
+use super::{Fact, evidence, fact, json, others, provenance, render, sure};
 use crate::analysis::Analysis;
 use crate::document::html::{head, sections};
 use crate::document::number::{plain, plural, significant};
@@ -46,11 +49,33 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let mut document = report.brief_document();
     evidence::add(report, &mut document.sections);
     let analysed = Analysed { what_if: possible.map(tries), no_what_if: what_if.and_then(WhatIf::impossible) };
-    let (parts, warnings) = (
-        [review::verdict(report) + &head(&document), sections(&document) + &evidence::how_sure(report)],
-        others(&document, &report.warnings),
-    );
-    render("what_if.html", &report.head, facts(report), parts, warnings, possible.map(json), analysed)
+    let all = &report.analysis.characteristics;
+    let rows: Vec<Found<'_>> =
+        all.iter().enumerate().map(|(place, one)| Found::analysed(place, one).warned(&report.warnings)).collect();
+    let joint = report.analysis.joint.as_ref();
+    let joint = joint.map(|of| Together::about(of.value, of.error, report.analysis.joint_requirement.as_ref()));
+    let words = Words { warnings: others(&document, &report.warnings), ..Words::default() };
+    let errors: Vec<sure::Row> = all.iter().flat_map(|one| sure::analysed(one, None)).collect();
+    let sure = sure::section(&errors, sure::ANALYSED, &repeated(report));
+    let judged = verdict(&rows, joint, &words);
+    // What the verdict says already does not stand before the figures.
+    let [first, rest] = match rows.iter().any(Found::counts) {
+        true => [judged, head(&document) + &sure],
+        false => [judged + &head(&document), sure],
+    };
+    let parts = [first, sections(&document), rest, terms("analyze", false)];
+    render("what_if.html", &report.head, facts(report), parts, possible.map(json), analysed)
+}
+
+/// What gives the same figures again.
+fn repeated(report: &Report) -> String {
+    let run = &report.analysis.run;
+    let spent = plural(run.evaluations as usize, "evaluation", "evaluations");
+    let (method, seed) = (report.analysis.method.name(), seed(run));
+    format!(
+        "The analysis took {spent} by the method {method}{seed}, which give the same figures again. A simulation of a million points holds \
+         them against the model itself."
+    )
 }
 
 /// How many there were, and how often the next ones waited for the last.

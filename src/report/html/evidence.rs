@@ -1,5 +1,4 @@
-//! The next questions of a review, for each characteristic: the tails, why the mean is not the nominal value, the chain of dimensions; and
-//! how sure all of it is.
+//! The next questions of a review, for each characteristic: the tails, why the mean is not the nominal value, the chain of dimensions.
 
 use std::fmt::Write;
 
@@ -7,7 +6,7 @@ use super::super::figures::{Figures, Named};
 use super::super::{DimensionReport, Report};
 use crate::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::capability::Law;
-use crate::document::number::{band, beside, estimated, plain, plural, uncertainty};
+use crate::document::number::{band, beside, estimated, plain};
 use crate::document::svg::escaped;
 use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section};
 use crate::pearson::Pearson;
@@ -37,7 +36,7 @@ pub(super) fn add(report: &Report, sections: &mut [Section]) {
         drawn("Dimension chain", chain(one, &report.dimensions).map(Element::Markup));
         let shifts = shifts(one, &report.dimensions).map(|bars| Element::Chart(Chart::Bars(bars)));
         drawn("From the nominal value to the mean", shifts);
-        drawn("Interactions", super::review::map(one).map(Element::Markup));
+        drawn("Interactions", super::map::map(one).map(Element::Markup));
     }
 }
 
@@ -320,60 +319,4 @@ fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], clas
     }
     arrow(links.len(), [0.0, at], (one.name(), nominal, String::new(), "link gap"));
     svg + "</svg>\n"
-}
-
-/// The section of all errors: every figure with its estimated error, beside what points of the model say of it.
-pub(super) fn how_sure(report: &Report) -> String {
-    let rows: String = report.analysis.characteristics.iter().map(errors).collect();
-    if rows.is_empty() {
-        return rows;
-    }
-    let run = &report.analysis.run;
-    let spent = plural(run.evaluations as usize, "evaluation", "evaluations");
-    let method = report.analysis.method.name();
-    let seed = run.seed.map(|seed| format!(", seed {seed}")).unwrap_or_default();
-    format!(
-        "<section aria-labelledby=\"sure\">\n<h2 id=\"sure\">How sure is this</h2>\n<div class=\"wide\" tabindex=\"0\"><table><thead><tr><th scope=\"col\">characteristic</th><th scope=\"col\">figure</th><th scope=\"col\" class=\"n\">value</th><th scope=\"col\" class=\"n\">estimated error</th><th scope=\"col\" class=\"n\">points of the model say</th></tr></thead><tbody>\n{rows}</tbody></table></div>\n\
-         <p class=\"note\">The analysis took {spent} by the method {method}{seed}, which give the same figures again. A simulation of a million points holds them against the model itself.</p>\n</section>\n"
-    )
-}
-
-fn errors(one: &CharacteristicAnalysis) -> String {
-    let estimate = one.error_estimate.as_ref();
-    let by_model = one.verification.as_ref();
-    let figure = |place: usize| by_model.and_then(|found| found.figures[place]);
-    let all = [
-        ("mean", one.mean(), estimate.and_then(|of| of.mean), figure(0)),
-        ("sigma", one.sigma(), estimate.and_then(|of| of.sigma), figure(1)),
-        ("skewness", one.skewness(), estimate.and_then(|of| of.skewness), figure(2)),
-        ("kurtosis", one.kurtosis(), estimate.and_then(|of| of.kurtosis), figure(3)),
-        ("yield", one.yield_(), estimate.and_then(|of| of.yield_), by_model.and_then(|found| found.yield_)),
-    ];
-    let mut text = String::new();
-    for (name, value, error, model) in all {
-        let Some(value) = value else { continue };
-        let scale = one.sigma().filter(|_| ["mean", "sigma"].contains(&name)).unwrap_or(1.0);
-        let shown = |value: f64, error: Option<f64>| match error {
-            // Rounding alone: more digits say nothing to a reader.
-            Some(error) if error > 1e-6 * scale => estimated(value, Some(error)),
-            _ => beside(value, scale),
-        };
-        let first = if text.is_empty() {
-            format!("<th scope=\"row\">{}</th>", escaped(one.name()))
-        } else {
-            "<td></td>".to_owned()
-        };
-        let _ = writeln!(
-            text,
-            "<tr>{first}<td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>",
-            shown(value, error),
-            error.map_or("unknown".to_owned(), |error| format!("± {}", uncertainty(error))),
-            model.map_or("–".to_owned(), |model| format!(
-                "{} ± {}",
-                shown(model.value, Some(model.error)),
-                uncertainty(model.error)
-            )),
-        );
-    }
-    text
 }

@@ -6,10 +6,15 @@
 
 mod analysis;
 mod evidence;
-mod review;
+mod map;
+mod pages;
+mod sure;
+mod terms;
+mod verdict;
 mod what_if;
 
 pub use analysis::analyze_html;
+pub(crate) use pages::{allocate_html, compare_html, rare_html, simulate_html, sweep_html};
 pub use what_if::WhatIf;
 
 use minijinja::syntax::SyntaxConfig;
@@ -19,9 +24,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::head::findings;
-use super::{
-    AllocationReport, CompareReport, DifferenceReport, Head, RareReport, SimulationReport, SweepReport, WarningReport,
-};
+use super::{DifferenceReport, Head, WarningReport};
 use crate::document::Document;
 use crate::document::html::{blocks, head as summary, sections};
 use crate::document::number::significant;
@@ -46,7 +49,7 @@ struct Page<'p, T: Serialize> {
     title: &'p str,
     command: &'static str,
     policy: String,
-    style: &'static str,
+    style: String,
     /// Empty where the page has nothing to run.
     script: &'static str,
     /// JSON for the script, without any `<`.
@@ -54,11 +57,10 @@ struct Page<'p, T: Serialize> {
     /// The cells of the title block.
     block: Vec<(&'p str, &'p str)>,
     facts: Vec<Fact>,
-    /// What is said before everything else, then of each thing, and warnings of no characteristic in particular; all of it markup.
+    /// What is said before everything else, of each thing, beside all of them, and at the end; all of it markup.
     head: String,
     sections: String,
-    warnings: String,
-    /// What stands at the end.
+    rest: String,
     terms: String,
     /// The content that a template adds.
     of: T,
@@ -92,31 +94,6 @@ fn provenance(head: &Head, run: &RunSummary) -> Vec<Fact> {
     facts
 }
 
-/// A simulation as one page of HTML: every estimate with its standard error, the histogram with the error of every bar.
-pub(crate) fn simulate_html(report: &SimulationReport) -> String {
-    page(&report.head, &report.simulation.run, &report.document(), &report.warnings)
-}
-
-/// Rare events as one page of HTML: every probability with its interval, and the assembly in which it most likely comes about.
-pub(crate) fn rare_html(report: &RareReport) -> String {
-    page(&report.head, &report.found.run, &report.document(), &report.warnings)
-}
-
-/// A comparison as one page of HTML: evaluations against error, and a table for every characteristic.
-pub(crate) fn compare_html(report: &CompareReport) -> String {
-    page(&report.head, &report.run, &report.document(), &[])
-}
-
-/// A sweep as one page of HTML: mean and band over the parameter, and a table for every characteristic.
-pub(crate) fn sweep_html(report: &SweepReport) -> String {
-    page(&report.head, &report.run, &report.document(), &report.warnings)
-}
-
-/// An allocation as one page of HTML: what it saves first, then tolerances, costs and requirements before and after.
-pub(crate) fn allocate_html(report: &AllocationReport) -> String {
-    page(&report.head, &report.run, &report.document(), &report.warnings)
-}
-
 /// Two revisions of a study as one page of HTML: what changed in inputs, results and contributions.
 pub(crate) fn difference_html(report: &DifferenceReport) -> String {
     let document = report.document();
@@ -128,14 +105,8 @@ pub(crate) fn difference_html(report: &DifferenceReport) -> String {
         fact("evaluations", format!("{} and {}", report.evaluations[0], report.evaluations[1])),
         fact("sensitol", format!("{}, report schema {}", report.head.sensitol, report.head.schema)),
     ];
-    let parts = [summary(&document), sections(&document)];
-    render("page.html", &report.head, facts, parts, String::new(), None, ())
-}
-
-/// A page of a document.
-fn page(head: &Head, run: &RunSummary, document: &Document, warnings: &[WarningReport]) -> String {
-    let parts = [summary(document), sections(document)];
-    render("page.html", head, provenance(head, run), parts, others(document, warnings), None, ())
+    let parts = [summary(&document), sections(&document), String::new(), terms::terms("analyze", false)];
+    render("page.html", &report.head, facts, parts, None, ())
 }
 
 /// Warnings that stand in no section of their own, as markup.
@@ -154,16 +125,32 @@ fn block(head: &Head) -> Vec<(&str, &str)> {
     cells
 }
 
+/// What stands below every printed page: part, revision, the study's hash, and which page it is.
+fn footer(head: &Head) -> String {
+    let cell = |wanted: &str| head.block.iter().find(|(name, _)| *name == wanted).map(|(_, text)| text.as_str());
+    let revision = cell("Revision").map(|revision| format!("revision {revision}"));
+    let hash = head.study_sha256.get(..12).map(|hash| format!("study {hash}"));
+    let what = cell("Part").or(head.title.as_deref()).map(str::to_owned);
+    let text: Vec<String> = [what, revision, hash].into_iter().flatten().collect();
+    // Nothing but letters and digits stays as it is: names come from studies.
+    let safe = |c: char| match c {
+        c if c.is_alphanumeric() || c == ' ' => c.to_string(),
+        c => format!("\\{:x} ", u32::from(c)),
+    };
+    let text: String = text.join(", ").chars().filter(|c| !c.is_control()).map(safe).collect();
+    format!("@page {{ @bottom-left {{ content: \"{text}\"; }} }}\n")
+}
+
 /// A page from its template.
 fn render<T: Serialize>(
     template: &str,
     head: &Head,
     facts: Vec<Fact>,
-    [first, sections]: [String; 2],
-    warnings: String,
+    [first, sections, rest, terms]: [String; 4],
     data: Option<String>,
     of: T,
 ) -> String {
+    let style = format!("{STYLE}{}", footer(head));
     let script = if data.is_some() { SCRIPT } else { "" };
     let allowed = match data {
         Some(_) => format!(" script-src '{}';", hash(SCRIPT)),
@@ -174,17 +161,17 @@ fn render<T: Serialize>(
         command: head.command,
         policy: format!(
             "default-src 'none'; style-src '{}';{allowed} base-uri 'none'; form-action 'none'",
-            hash(STYLE)
+            hash(&style)
         ),
-        style: STYLE,
+        style,
         script,
         data: data.unwrap_or_default(),
         block: block(head),
         facts,
         head: first,
         sections,
-        warnings,
-        terms: if template == "what_if.html" { review::terms() } else { String::new() },
+        rest,
+        terms,
         of,
     };
     let mut environment = Environment::new();
