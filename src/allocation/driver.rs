@@ -9,6 +9,7 @@ use super::sampled::SampledCorrection;
 use super::solve::Solved;
 use super::station::Station;
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
+use super::unknown::Unknown;
 use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_keeping};
 use crate::assembly::Run;
 use crate::dimension::Dimension;
@@ -27,7 +28,14 @@ pub(super) struct Spent {
     pub(super) run: RunSummary,
     pub(super) rounds: usize,
     pub(super) stopped: bool,
+    /// The greatest uncertainties since rounds have [settled](SETTLED), of every characteristic and of the joint yield.
+    unknown: Vec<Unknown>,
+    joint_unknown: f64,
 }
+
+/// Rounds after which uncertainties only grow. Those of a sample jump as an assembly passes a limit, and stations next to each other would
+/// be left for each other again and again.
+const SETTLED: usize = 6;
 
 pub(super) struct Driver<'a> {
     pub(super) task: &'a AllocationTask,
@@ -103,6 +111,15 @@ impl Driver<'_> {
         self.spent.rounds += 1;
         self.spent.stopped |= analysis.run.unfinished();
         let mut responses = Responses::of(&problem, &outcome, &analysis, &self.task.requirements);
+        if self.spent.rounds > SETTLED {
+            self.spent.unknown.resize(responses.of.len(), Unknown::default());
+            for (one, most) in responses.of.iter_mut().zip(&mut self.spent.unknown) {
+                *most = most.most(one.unknown);
+                one.unknown = *most;
+            }
+            self.spent.joint_unknown = self.spent.joint_unknown.max(responses.joint_unknown);
+            responses.joint_unknown = self.spent.joint_unknown;
+        }
         self.correct(&problem, &analysis, &mut responses);
         Ok(Station { problem, analysis, responses })
     }

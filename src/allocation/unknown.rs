@@ -28,4 +28,9 @@ impl Unknown {
             sigma: of(sigma.value, sigma.interval.map(|[_, high]| high)),
         }
     }
+
+    /// The greater of two, each by itself.
+    pub(super) fn most(self, other: Self) -> Self {
+        Self { yield_: self.yield_.max(other.yield_), cpk: self.cpk.max(other.cpk), sigma: self.sigma.max(other.sigma) }
+    }
 }
