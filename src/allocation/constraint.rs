@@ -332,7 +332,7 @@ impl Constraint {
         (room > 0.0).then_some(room)
     }
 
-    /// What is required, made stricter by what is not known at the station: a yield, a Cpk, a sigma.
+    /// The requirement, made stricter by the uncertainty at the station: a yield, a Cpk, a sigma.
     pub(super) fn target(&self, responses: &Responses) -> f64 {
         let reach = |of: fn(&Unknown) -> f64| of(&responses.of[self.characteristic].unknown);
         match self.requirement {

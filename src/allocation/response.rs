@@ -39,9 +39,9 @@ pub(super) struct Responses {
     pub(super) of: Vec<Response>,
     /// The distributions of the varying dimensions; None where one has moments only.
     pub(super) laws: Option<Vec<Arc<dyn Distribution>>>,
-    /// What was found for a characteristic and a required yield, by its bits.
+    /// The corrections found so far, by characteristic and the bits of the required yield.
     pub(super) corrections: Mutex<BTreeMap<(usize, u64), Arc<Correction>>>,
-    /// What characteristics reject together, by their indices.
+    /// The rejects of several characteristics together, by their indices.
     pub(super) reject_fits: Mutex<BTreeMap<Vec<usize>, Arc<RejectFit>>>,
     /// By how much more may be rejected of all limits together than their laws say.
     pub(super) joint_unknown: f64,

@@ -98,7 +98,7 @@ pub struct Plot {
     pub y: PlotAxis,
     /// The layers, drawn one over the other.
     pub layers: Vec<Layer>,
-    /// What its lines and points mean, below it on a page.
+    /// The meaning of its lines and points, below it on a page.
     pub words: String,
 }
 

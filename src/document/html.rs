@@ -7,7 +7,7 @@ use crate::names::clean;
 /// A table of a sweep with more rows is folded.
 const FOLDED: usize = 6;
 
-/// What is said before all others.
+/// The parts before all sections.
 pub fn head(document: &Document) -> String {
     format!(
         "<section aria-labelledby=\"summary\">\n<h2 id=\"summary\">Summary</h2>\n{}</section>\n",

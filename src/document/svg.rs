@@ -12,7 +12,7 @@ const FAINT: &str = "#666";
 /// Names beside the chart are no nearer to one another.
 const NEAR: f64 = 13.0;
 
-/// What a plot is drawn on.
+/// The sheet of a plot: its size, margins and steps of axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sheet {
     width: f64,
@@ -34,7 +34,7 @@ const PAGES: [(&str, Sheet); 2] = [
     ("narrow", Sheet { width: 358.0, height: 270.0, margin: [40.0, 16.0, 28.0, 44.0], ticks: [3.0, 4.0], page: true }),
 ];
 
-/// What is drawn, by what it means.
+/// The ink of a mark, by its meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Ink {
     Grid,
@@ -136,7 +136,7 @@ pub(super) fn figure(of: &Plot) -> String {
     text + &format!("<figcaption>{}</figcaption>\n</figure>\n", escaped(&of.words))
 }
 
-/// What those hear who do not see it.
+/// The text of a plot for screen readers.
 fn said(of: &Plot) -> String {
     let number = |value: f64| significant(value, 4);
     let ends = |known: Vec<(f64, f64)>| Some((*known.first()?, *known.last()?));
@@ -294,7 +294,7 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
     if sheet.page {
         let widest = |lengths: &mut dyn Iterator<Item = usize>| LETTER * lengths.max().unwrap_or(0) as f64;
         sheet.margin[0] = sheet.margin[0].max(widest(&mut upwards.iter().map(|(_, label)| letters(label))) + 12.0);
-        // What takes too much of the width stands inside.
+        // A name that takes too much of the width stands inside.
         let room = 0.25 * sheet.width;
         let outside = names.iter().map(|(_, name, _)| name.len()).filter(|length| LETTER * *length as f64 <= room);
         sheet.margin[1] = sheet.margin[1].max(widest(&mut outside.into_iter()) + 10.0);

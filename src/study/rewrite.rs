@@ -136,7 +136,7 @@ impl Study {
         Some((self.problem.dimensions()[group.members[0]].name(), process))
     }
 
-    /// What it was read from.
+    /// The tree of the text that it was read from.
     pub(super) fn tree(&self) -> Option<Tree> {
         match self.format {
             Format::Toml => Tree::of_toml(&self.text).ok(),

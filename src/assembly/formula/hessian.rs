@@ -288,7 +288,7 @@ mod tests {
         for text in ["abs(x) + y", "min(x, y)", "sqrt(x)*y", "if(x, 1, y)", "floor(x)*y", "x/0", "if(x < y, x, y*x)"] {
             assert_eq!(set(text, &["x", "y"]).mixed(0, &[0.0, 0.0], &[(0, 1)]), None, "{text}");
         }
-        // What does not move has no kink, and a branch that is not taken does not count.
+        // A constant has no kink, and a branch that is not taken does not count.
         let names = ["x", "y"];
         assert_eq!(set("abs(0) + x*y", &names).mixed(0, &[0.0, 0.0], &[(0, 1)]), Some(vec![1.0]));
         assert_eq!(set("if(x < 1, x*y, sqrt(x - 1))", &names).mixed(0, &[0.0, 2.0], &[(0, 1)]), Some(vec![1.0]));

@@ -58,7 +58,7 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let errors: Vec<sure::Row> = all.iter().flat_map(|one| sure::analysed(one, None)).collect();
     let sure = sure::section(&errors, sure::ANALYSED, &repeated(report));
     let judged = verdict(&rows, joint, &words);
-    // What the verdict says already does not stand before the figures.
+    // The verdict's own words are not repeated before the figures.
     let [first, rest] = match rows.iter().any(Found::counts) {
         true => [judged, head(&document) + &sure],
         false => [judged + &head(&document), sure],
@@ -67,7 +67,7 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     render("what_if.html", &report.head, facts(report), parts, possible.map(json), analysed)
 }
 
-/// What gives the same figures again.
+/// The method and the seed that give the same figures again.
 fn repeated(report: &Report) -> String {
     let run = &report.analysis.run;
     let spent = plural(run.evaluations as usize, "evaluation", "evaluations");

@@ -18,7 +18,7 @@ const GREYS: [f64; 4] = [1e-3, 1e-2, 0.1, 0.5];
 pub(super) fn map(one: &CharacteristicAnalysis) -> Option<String> {
     let examined = one.interactions.len();
     let strongest = one.interactions.iter().filter_map(|pair| pair.share).fold(0.0, f64::max);
-    // What all that was examined leaves out may be interactions.
+    // The variance that nothing examined explains may be interactions.
     let left_out = one.left_out_share.unwrap_or(0.0);
     if one.possible_interactions == 0 || strongest.max(left_out) < 5.0 * SEEN {
         return None;

@@ -57,7 +57,7 @@ struct Page<'p, T: Serialize> {
     /// The cells of the title block.
     block: Vec<(&'p str, &'p str)>,
     facts: Vec<Fact>,
-    /// What is said before everything else, of each thing, beside all of them, and at the end; all of it markup.
+    /// The parts of the page in their order, all of them markup.
     head: String,
     sections: String,
     rest: String,
@@ -125,7 +125,7 @@ fn block(head: &Head) -> Vec<(&str, &str)> {
     cells
 }
 
-/// What stands below every printed page: part, revision, the study's hash, and which page it is.
+/// The footer of every printed page: part, revision, the study's hash, page number.
 fn footer(head: &Head) -> String {
     let cell = |wanted: &str| head.block.iter().find(|(name, _)| *name == wanted).map(|(_, text)| text.as_str());
     let revision = cell("Revision").map(|revision| format!("revision {revision}"));

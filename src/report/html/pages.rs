@@ -99,7 +99,7 @@ pub(crate) fn compare_html(report: &CompareReport) -> String {
     let rows: Vec<Found<'_>> = all.map(|(place, one)| Found::simulated(place, &one.reference)).collect();
     let errors: Vec<Row> = report.characteristics.iter().flat_map(|one| sure::simulated(&one.reference)).collect();
     let said = format!(
-        "The errors of the reference, {} points by {}{}. What a method is off by less than two of them is not told apart from nothing.",
+        "The errors of the reference, {} points by {}{}. A method that is off by less than two of them cannot be told from an exact one.",
         report.reference_samples,
         report.reference_method,
         seed(&report.run)
@@ -207,7 +207,7 @@ pub(crate) fn allocate_html(report: &AllocationReport) -> String {
             let now = one.after.as_ref().unwrap_or(&one.before);
             let mut row = Found::analysed(0, now).nowhere();
             row.before = one.after.as_ref().and(crate::report::figures::Figures::yield_(&one.before));
-            // What was required of the tolerances, which may be other than what the study asks.
+            // The requirements of the allocation, which may differ from those of the study.
             let kept: Vec<_> = report.requirements.iter().filter(|kept| kept.characteristic == one.name).collect();
             if !kept.is_empty() {
                 (row.target, row.verdict) = (None, None);
@@ -274,7 +274,7 @@ fn headed(section: &mut Section) {
     section.blocks.splice(0..0, heading);
 }
 
-/// What the cost does, in a sentence.
+/// The change of the cost, in a sentence.
 fn cause(report: &AllocationReport) -> Option<String> {
     let [before, after] = [report.cost_before.and_then(finite)?, report.cost_after.and_then(finite)?];
     let part = 100.0 * (1.0 - after / before);

@@ -16,11 +16,11 @@ pub(super) struct Row {
     figure: &'static str,
     value: String,
     error: String,
-    /// What else is known of it.
+    /// A second figure: the model's own, or an interval.
     beside: String,
 }
 
-/// What stands above the columns of value, error and what else is known.
+/// Headings of the columns: value, error, second figure.
 pub(super) const ANALYSED: [&str; 3] = ["value", "estimated error", "points of the model say"];
 pub(super) const SAMPLED: [&str; 3] = ["value", "standard error", "95 % interval"];
 pub(super) const SOUGHT: [&str; 3] = ["ppm", "standard error", "points there"];

@@ -23,7 +23,7 @@ const NAMED: usize = 6;
 /// A rejected share below this is none in a sentence.
 const NONE: f64 = 1e-9;
 
-/// What is known of one characteristic with limits or requirements, whoever found it out.
+/// The findings of one characteristic with limits or requirements, by whatever command.
 pub(super) struct Found<'r> {
     name: &'r str,
     unit: Option<&'r str>,
@@ -32,7 +32,7 @@ pub(super) struct Found<'r> {
     /// Warnings in that section.
     warned: usize,
     limits: [Option<f64>; 2],
-    /// What is said below its name.
+    /// A line below its name.
     pub(super) at: String,
     /// The target yield, and what is to be said of it.
     pub(super) target: Option<f64>,
@@ -71,16 +71,16 @@ pub(super) struct Together<'r> {
     judged: Option<&'r Judged>,
 }
 
-/// What a verdict rests on, and how its page says so.
+/// The source of a verdict, in the words of its page.
 #[derive(Default)]
 pub(super) struct Words {
     /// A sentence before the others, as markup.
     pub(super) before: String,
     /// A sentence after them.
     pub(super) after: String,
-    /// What else the gauges show.
+    /// A note on the gauges.
     pub(super) gauge: &'static str,
-    /// What ends after the table: warnings that belong to no section.
+    /// Warnings that belong to no section, after the table.
     pub(super) warnings: String,
 }
 
@@ -307,7 +307,7 @@ pub(super) fn verdict(all: &[Found<'_>], together: Option<Together<'_>>, words: 
     text + &words.warnings + "</section>\n"
 }
 
-/// What fails first, by how much, on which side and why; then what is met.
+/// The failures first, by how much, on which side and why; then the requirements that are met.
 fn sentence(all: &[Found<'_>]) -> String {
     let mut parts = Vec::new();
     for (wanted, more) in [
@@ -392,7 +392,7 @@ fn side(one: &Found<'_>) -> Option<String> {
     Some(format!(", {part} {word} {}{unit}", plain(limit)))
 }
 
-/// What makes most of the variance.
+/// The dimension with most of the variance.
 fn driver(one: &Found<'_>) -> Option<String> {
     let (name, share) = one.driver?;
     let percent = (100.0 * share).round();
