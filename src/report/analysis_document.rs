@@ -36,8 +36,7 @@ const DIFFERENT: f64 = 0.05;
 const LEAST_PPM: f64 = 1e-6;
 
 impl Report {
-    /// The text of the analysis. Its tables: `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and
-    /// `warnings`.
+    /// All it says, in the tables `characteristics`, `dimensions`, `sensitivities`, `interactions`, `quantiles` and `warnings`.
     pub(crate) fn document(&self) -> Document {
         self.with_pairs(usize::MAX)
     }

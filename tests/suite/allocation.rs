@@ -408,9 +408,10 @@ fn the_optimum_of_a_curved_model_holds_when_it_is_simulated() {
         assert!(after >= required);
         let [low, high] = one.yield_.unwrap().interval;
         assert!(after > low && after < high, "{:?} {:?}", of, one.yield_);
-        // The uncertainty of the yield is kept beside it.
+        // The uncertainty of the yield is kept beside it: the greatest of some rounds, in which a few of 41,984 points of the model, of
+        // 2.4e-5 each, lie on one side of a limit or the other.
         let [least, _] = of.after.unwrap().interval.unwrap();
-        binding += usize::from(least < required + 1e-6);
+        binding += usize::from(least < required + 1e-4);
     }
     assert!(binding >= 1, "the optimum is at a limit");
 }

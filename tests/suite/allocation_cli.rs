@@ -87,7 +87,8 @@ fn a_study_written_anew_is_the_same_but_for_its_tolerances() {
         assert_eq!(second["requirements"][0]["verdict_before"], "met", "{study}");
         let cost = |report: &Value, key: &str| report[key].as_f64().unwrap();
         relative(cost(&second, "cost_before"), cost(&first, "cost_after"), 1e-5);
-        relative(cost(&second, "cost_after"), cost(&first, "cost_after"), 1e-5);
+        // The uncertainty of the yield is that of a sample, which is another where the search begins elsewhere.
+        relative(cost(&second, "cost_after"), cost(&first, "cost_after"), 1e-4);
     }
 }
 

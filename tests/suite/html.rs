@@ -392,7 +392,7 @@ fn tried() -> Vec<(&'static str, Study, Options)> {
     vec![
         with("stacked-blocks", example("stacked-blocks"), None),
         with("stacked-blocks-auto", example("stacked-blocks"), Some(Method::Auto)),
-        with("four-bar", example("four-bar"), Some(Method::Auto)),
+        with("four-bar", example("four-bar"), Some(Method::Full)),
         with("engine-balance", example("engine-balance"), None),
         with("measured-pin", example("measured-pin"), None),
         with("mixed", study(MIXED), None),

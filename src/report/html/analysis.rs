@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::super::Report;
 use super::super::head::seed;
 use super::terms::terms;
-use super::verdict::{Found, Together, Words, verdict};
+use super::verdict::{JudgedCharacteristic, Together, Words, verdict};
 use super::what_if::WhatIf;
 use super::{Fact, evidence, fact, json, others, provenance, render, sure};
 use crate::analysis::Analysis;
@@ -50,8 +50,11 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     evidence::add(report, &mut document.sections);
     let analysed = Analysed { what_if: possible.map(tries), no_what_if: what_if.and_then(WhatIf::impossible) };
     let all = &report.analysis.characteristics;
-    let rows: Vec<Found<'_>> =
-        all.iter().enumerate().map(|(place, one)| Found::analysed(place, one).warned(&report.warnings)).collect();
+    let rows: Vec<JudgedCharacteristic<'_>> = all
+        .iter()
+        .enumerate()
+        .map(|(place, one)| JudgedCharacteristic::analysed(place, one).warned(&report.warnings))
+        .collect();
     let joint = report.analysis.joint.as_ref();
     let joint = joint.map(|of| Together::about(of.value, of.error, report.analysis.joint_requirement.as_ref()));
     let words = Words { warnings: others(&document, &report.warnings), ..Words::default() };
@@ -59,7 +62,7 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let sure = sure::section(&errors, sure::ANALYSED, &repeated(report));
     let judged = verdict(&rows, joint, &words);
     // The verdict's own words are not repeated before the figures.
-    let [first, rest] = match rows.iter().any(Found::counts) {
+    let [first, rest] = match rows.iter().any(JudgedCharacteristic::counts) {
         true => [judged, head(&document) + &sure],
         false => [judged + &head(&document), sure],
     };

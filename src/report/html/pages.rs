@@ -5,7 +5,7 @@ use super::super::head::{findings, seed};
 use super::super::sweep::SweptReport;
 use super::super::{AllocationReport, CompareReport, Head, RareReport, SimulationReport, SweepReport, WarningReport};
 use super::sure::Row;
-use super::verdict::{Asked, Found, Together, Words, verdict};
+use super::verdict::{Asked, JudgedCharacteristic, Together, Words, verdict};
 use super::{others, provenance, render, sure, terms};
 use crate::document::html::{head as summary, sections};
 use crate::document::number::{plain, plural, significant};
@@ -41,7 +41,8 @@ fn words(document: &Document, warnings: &[WarningReport]) -> Words {
 pub(crate) fn simulate_html(report: &SimulationReport) -> String {
     let (document, simulation) = (report.document(), &report.simulation);
     let all = simulation.characteristics.iter().enumerate();
-    let rows: Vec<Found<'_>> = all.map(|(place, one)| Found::simulated(place, one).warned(&report.warnings)).collect();
+    let rows: Vec<JudgedCharacteristic<'_>> =
+        all.map(|(place, one)| JudgedCharacteristic::simulated(place, one).warned(&report.warnings)).collect();
     let judged = simulation.joint_requirement.as_ref();
     let joint = simulation.joint.as_ref().map(|share| Together::within(share, judged));
     let errors: Vec<Row> = simulation.characteristics.iter().flat_map(sure::simulated).collect();
@@ -64,7 +65,8 @@ pub(crate) fn rare_html(report: &RareReport) -> String {
     let (mut document, found) = (report.document(), &report.found);
     warn(&mut document.sections, &report.warnings);
     let all = found.characteristics.iter().enumerate();
-    let rows: Vec<Found<'_>> = all.map(|(place, one)| Found::rare(place, one).warned(&report.warnings)).collect();
+    let rows: Vec<JudgedCharacteristic<'_>> =
+        all.map(|(place, one)| JudgedCharacteristic::rare(place, one).warned(&report.warnings)).collect();
     let joint = found.joint.zip(found.joint_interval);
     let joint =
         joint.map(|(value, ends)| Together::about(value, one_error(value, ends), found.joint_requirement.as_ref()));
@@ -96,7 +98,8 @@ fn warn(sections: &mut [Section], warnings: &[WarningReport]) {
 pub(crate) fn compare_html(report: &CompareReport) -> String {
     let document = report.document();
     let all = report.characteristics.iter().enumerate();
-    let rows: Vec<Found<'_>> = all.map(|(place, one)| Found::simulated(place, &one.reference)).collect();
+    let rows: Vec<JudgedCharacteristic<'_>> =
+        all.map(|(place, one)| JudgedCharacteristic::simulated(place, &one.reference)).collect();
     let errors: Vec<Row> = report.characteristics.iter().flat_map(|one| sure::simulated(&one.reference)).collect();
     let said = format!(
         "The errors of the reference, {} points by {}{}. A method that is off by less than two of them cannot be told from an exact one.",
@@ -133,8 +136,9 @@ pub(crate) fn compare_html(report: &CompareReport) -> String {
 pub(crate) fn sweep_html(report: &SweepReport) -> String {
     let (document, parameter) = (report.document(), report.parameter.name.as_str());
     let all = report.characteristics.iter().enumerate();
-    let rows: Vec<Found<'_>> =
-        all.filter_map(|(place, one)| Some(Found::swept(place, one, parameter)?.warned(&report.warnings))).collect();
+    let rows: Vec<JudgedCharacteristic<'_>> = all
+        .filter_map(|(place, one)| Some(JudgedCharacteristic::swept(place, one, parameter)?.warned(&report.warnings)))
+        .collect();
     let along: Vec<String> = report.characteristics.iter().filter_map(|one| along(one, parameter)).collect();
     let words = Words {
         after: along.join(" "),
@@ -202,10 +206,10 @@ pub(crate) fn allocate_html(report: &AllocationReport) -> String {
     let mut document = report.document();
     document.sections.iter_mut().for_each(headed);
     let found = report.cost_after.is_some() || report.characteristics.iter().any(|one| one.after.is_some());
-    let rows: Vec<Found<'_>> = (report.characteristics.iter())
+    let rows: Vec<JudgedCharacteristic<'_>> = (report.characteristics.iter())
         .map(|one| {
             let now = one.after.as_ref().unwrap_or(&one.before);
-            let mut row = Found::analysed(0, now).nowhere();
+            let mut row = JudgedCharacteristic::analysed(0, now).nowhere();
             row.before = one.after.as_ref().and(crate::report::figures::Figures::yield_(&one.before));
             // The requirements of the allocation, which may differ from those of the study.
             let kept: Vec<_> = report.requirements.iter().filter(|kept| kept.characteristic == one.name).collect();

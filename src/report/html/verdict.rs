@@ -24,7 +24,7 @@ const NAMED: usize = 6;
 const NONE: f64 = 1e-9;
 
 /// The findings of one characteristic with limits or requirements, by whatever command.
-pub(super) struct Found<'r> {
+pub(super) struct JudgedCharacteristic<'r> {
     name: &'r str,
     unit: Option<&'r str>,
     /// The section about it.
@@ -56,7 +56,7 @@ pub(super) struct Found<'r> {
     driver: Option<(&'r str, f64)>,
 }
 
-/// A requirement that is no yield: in words, what there is of it, and what is to be said.
+/// A requirement other than a yield: in words, what there is of it, and what is to be said.
 pub(super) struct Asked {
     what: String,
     found: String,
@@ -84,7 +84,7 @@ pub(super) struct Words {
     pub(super) warnings: String,
 }
 
-impl<'r> Found<'r> {
+impl<'r> JudgedCharacteristic<'r> {
     fn of(one: &'r impl Named, place: usize) -> Self {
         Self { unit: one.unit(), target: one.target(), ..Self::named(one.name(), Named::limits(one), place) }
     }
@@ -273,11 +273,11 @@ impl<'r> Together<'r> {
 }
 
 /// The section that answers whether it works; empty where nothing is asked.
-pub(super) fn verdict(all: &[Found<'_>], together: Option<Together<'_>>, words: &Words) -> String {
+pub(super) fn verdict(all: &[JudgedCharacteristic<'_>], together: Option<Together<'_>>, words: &Words) -> String {
     let lead = [words.before.as_str(), &sentence(all), &words.after];
     let lead: Vec<&str> = lead.into_iter().filter(|part| !part.is_empty()).collect();
     let lead = lead.join(" ");
-    let rows: Vec<&Found<'_>> = all.iter().filter(|one| one.counts()).collect();
+    let rows: Vec<&JudgedCharacteristic<'_>> = all.iter().filter(|one| one.counts()).collect();
     if lead.is_empty() && rows.is_empty() {
         return words.warnings.clone();
     }
@@ -308,7 +308,7 @@ pub(super) fn verdict(all: &[Found<'_>], together: Option<Together<'_>>, words: 
 }
 
 /// The failures first, by how much, on which side and why; then the requirements that are met.
-fn sentence(all: &[Found<'_>]) -> String {
+fn sentence(all: &[JudgedCharacteristic<'_>]) -> String {
     let mut parts = Vec::new();
     for (wanted, more) in [
         (Verdict::Missed, "more targets are missed"),
@@ -335,7 +335,7 @@ fn of_asked(name: &str, Asked { what, found, verdict }: &Asked) -> String {
     }
 }
 
-fn of_target(one: &Found<'_>, wanted: Verdict) -> String {
+fn of_target(one: &JudgedCharacteristic<'_>, wanted: Verdict) -> String {
     let name = escaped(one.name);
     let ppm = |target: f64| significant(1e6 * (1.0 - target), 4);
     let allowed = one.target.map(ppm).unwrap_or_default();
@@ -374,7 +374,7 @@ fn of_target(one: &Found<'_>, wanted: Verdict) -> String {
 }
 
 /// On which side most of the rejects lie.
-fn side(one: &Found<'_>) -> Option<String> {
+fn side(one: &JudgedCharacteristic<'_>) -> Option<String> {
     let [lower, upper] = one.limits;
     let [below, above] = one.ppm.map(|ppm| ppm.unwrap_or(0.0));
     let unit = one.unit.map(|unit| format!(" {}", escaped(unit))).unwrap_or_default();
@@ -393,7 +393,7 @@ fn side(one: &Found<'_>) -> Option<String> {
 }
 
 /// The dimension with most of the variance.
-fn driver(one: &Found<'_>) -> Option<String> {
+fn driver(one: &JudgedCharacteristic<'_>) -> Option<String> {
     let (name, share) = one.driver?;
     let percent = (100.0 * share).round();
     (share >= 0.2).then(|| format!("<em>{}</em> makes {percent} % of its variance.", escaped(name)))
@@ -408,7 +408,7 @@ struct Gauge {
 impl Gauge {
     const WIDTH: f64 = 150.0;
 
-    fn of(all: &[Found<'_>]) -> Self {
+    fn of(all: &[JudgedCharacteristic<'_>]) -> Self {
         let targets = all.iter().filter_map(|one| one.target);
         let least = targets.map(|target| (1.0 - target).log10().floor() - 1.0).fold(-5.0, f64::min);
         Self { least: least.max(-9.0) }
@@ -508,7 +508,7 @@ impl Table {
         )
     }
 
-    fn row(&self, one: &Found<'_>) -> String {
+    fn row(&self, one: &JudgedCharacteristic<'_>) -> String {
         let unit = one.unit.map(|unit| format!(" <small>{}</small>", escaped(unit))).unwrap_or_default();
         let name = escaped(one.name);
         let name = one.place.map_or(name.clone(), |place| format!("<a href=\"#kc-{place}\">{name}</a>"));
