@@ -10,7 +10,7 @@ use crate::elementary::{Elementary, Exp, Ln, Work, on_this_processor};
 /// Layers: the density is cut into as many pieces of one area.
 const LAYERS: usize = 1024;
 /// Where the tail begins, which with its rectangle is the first piece.
-const TAIL: f64 = 4.038_849_846_109_504_5;
+const TAIL: f64 = 4.038_849_846_109_504;
 /// Fewer values than this are not worth a block.
 const FEW: usize = 8;
 /// Values that are looked over at once for doubtful ones.

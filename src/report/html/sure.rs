@@ -74,7 +74,8 @@ pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&Simulate
         ("kurtosis", one.kurtosis(), estimate.and_then(|of| of.kurtosis)),
         ("yield", one.yield_(), estimate.and_then(|of| of.yield_)),
     ];
-    let row = |((name, value, error), model): ((&'static str, Option<f64>, Option<f64>), Option<(f64, f64)>)| {
+    let row = |(of, model): (Figure, Option<(f64, f64)>)| {
+        let (name, value, error) = of;
         let value = value?;
         let scale = one.sigma().filter(|_| ["mean", "sigma"].contains(&name)).unwrap_or(1.0);
         let shown = |value: f64, error: Option<f64>| match error {
@@ -94,6 +95,9 @@ pub(super) fn analysed(one: &CharacteristicAnalysis, simulated: Option<&Simulate
     };
     all.into_iter().zip(model).filter_map(row).collect()
 }
+
+/// The name of a figure, its value and its error.
+type Figure = (&'static str, Option<f64>, Option<f64>);
 
 /// Of a simulation.
 pub(super) fn simulated(one: &SimulatedCharacteristic) -> Vec<Row> {
