@@ -223,16 +223,13 @@ fn correlated_inputs_are_controlled_too() {
         // Two independent estimates agree within four standard errors.
         assert!((with.value - without.value).abs() <= 4.0 * error, "{with:?} {without:?}");
     }
-    // The sample of the surrogate does not shrink with that of the model: its standard error stays, where it is most of the error.
-    let uniform = ["a", "b"].map(|name| Dimension::uniform(name, 0.0, 1.0).unwrap());
-    let nearly = Problem::new(uniform, Closure::scalar("y", |x| (0.01 * x[0]).exp() + x[1] * x[0])).unwrap();
-    let nearly = nearly.correlated(&pair("a", "b")).unwrap();
-    let error = |points: u64| {
-        let found = controlled(&nearly, points, Sampler::Random, 3).characteristics.remove(0);
-        found.kurtosis.unwrap().standard_error.unwrap()
-    };
-    let [less, more] = [20_000, 2_000_000].map(error);
-    assert!(more > 0.5 * less, "{less} {more}");
+    // The surrogate's own sample does not grow with that of the model: where it is the less certain of the two, the plain sample is taken,
+    // and no error is greater than without a surrogate. Errors of 2,000,000 points are known to some percent.
+    let more = controlled(&problem, 2_000_000, Sampler::Random, 3).characteristics.remove(0);
+    for (with, without) in [(more.mean, without.mean), (more.sigma, without.sigma), (more.kurtosis, without.kurtosis)] {
+        let [with, without] = [with, without].map(|estimate| estimate.unwrap().standard_error.unwrap());
+        assert!(with < 1.1 * without, "{with} {without}");
+    }
 }
 
 #[test]
