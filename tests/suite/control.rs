@@ -223,12 +223,13 @@ fn correlated_inputs_are_controlled_too() {
         // Two independent estimates agree within four standard errors.
         assert!((with.value - without.value).abs() <= 4.0 * error, "{with:?} {without:?}");
     }
-    // The surrogate's own sample does not grow with that of the model: where it is the less certain of the two, the plain sample is taken,
-    // and no error is greater than without a surrogate. Errors of 2,000,000 points are known to some percent.
+    // The surrogate's own sample does not grow with that of the model: where it is the less certain of the two, the plain sample is
+    // taken, with the tenth that the choice is worth. Of the same points, so that only rounding is between them.
     let more = controlled(&problem, 2_000_000, Sampler::Random, 3).characteristics.remove(0);
-    for (with, without) in [(more.mean, without.mean), (more.sigma, without.sigma), (more.kurtosis, without.kurtosis)] {
+    let same = plain(&problem, 2_000_000, 3).characteristics.remove(0);
+    for (with, without) in [(more.mean, same.mean), (more.sigma, same.sigma), (more.kurtosis, same.kurtosis)] {
         let [with, without] = [with, without].map(|estimate| estimate.unwrap().standard_error.unwrap());
-        assert!(with < 1.1 * without, "{with} {without}");
+        assert!(with <= 1.1 * without * (1.0 + 1e-9), "{with} {without}");
     }
 }
 
