@@ -36,7 +36,7 @@ impl KnownAnswers {
             Some(row) => row,
             None => {
                 let row = u32::try_from(self.points.len()).expect("fewer than four billion points");
-                self.rows.insert_unique(hash(point), row, |&row| hash(&self.points[row as usize]));
+                self.rows.insert_unique(point.mixed(), row, |&row| self.points[row as usize].mixed());
                 self.points.push(point.clone());
                 self.values.iter_mut().for_each(|column| column.push(f64::NAN));
                 row
@@ -51,7 +51,7 @@ impl KnownAnswers {
     }
 
     fn row(&self, point: &Point) -> Option<u32> {
-        self.rows.find(hash(point), |&row| self.points[row as usize] == *point).copied()
+        self.rows.find(point.mixed(), |&row| self.points[row as usize] == *point).copied()
     }
 
     /// Whether the point was evaluated, with whatever success.
@@ -98,13 +98,4 @@ impl KnownAnswers {
             .iter()
             .map(|(&(row, characteristic), error)| (&self.points[row as usize], characteristic as usize, error))
     }
-}
-
-/// Both halves of a product of 128 bits for every dimension that is elsewhere: no pattern of places is left in any bit.
-fn hash(point: &Point) -> u64 {
-    const ODD: u128 = 0x9e37_79b9_7f4a_7c15;
-    point.at().iter().fold(1 << 63, |hash, at| {
-        let product = u128::from(hash ^ u64::from(at.dimension) << 32 ^ u64::from(at.node)) * ODD;
-        product as u64 ^ (product >> 64) as u64
-    })
 }
