@@ -79,7 +79,10 @@ def cluster_of(asked):
             raise Fault(f"sensitol-dask: --cluster {where}: at least one worker is needed")
         return {"kind": "local", "workers": counts[0], "threads": counts[1]}
     if where == "slurm":
-        return {"kind": "slurm", "options": slurm_options(asked.options)}
+        options = slurm_options(asked.options)
+        # A cluster that grows gets work for as many threads as it may have: it grows by what waits at the scheduler.
+        adapt = options.get("adapt")
+        return {"kind": "slurm", "options": options, "capacity": adapt.get("maximum", 1) * options.get("cores", 1) if adapt else 1}
     raise Fault(f"sensitol-dask: --cluster {where}: local:4, local:4x2, slurm or tcp://HOST:PORT is expected")
 
 
@@ -105,7 +108,19 @@ def slurm_options(path):
     for key in found:
         if key not in SLURM_KEYS:
             raise Fault(f"sensitol-dask: {path}: there is no option `{key}`; there are {', '.join(SLURM_KEYS)}")
+    jobs, adapt = found.get("jobs", 1), found.get("adapt", {})
+    if not counts(jobs) or jobs < 1:
+        raise Fault(f"sensitol-dask: {path}: `jobs` is a number of jobs, 1 or more; got {jobs!r}")
+    if not isinstance(adapt, dict) or not set(adapt) <= {"minimum", "maximum"} or not all(map(counts, adapt.values())):
+        raise Fault(f"sensitol-dask: {path}: `adapt` is a range of jobs, as {{ minimum: 0, maximum: 8 }}; got {adapt!r}")
+    least, most = adapt.get("minimum", 0), adapt.get("maximum", 1)
+    if not 0 <= least <= most or most < 1:
+        raise Fault(f"sensitol-dask: {path}: `adapt` needs a maximum of 1 or more, and no greater minimum; got minimum {least}, maximum {most}")
     return found
+
+
+def counts(value):
+    return isinstance(value, int) and not isinstance(value, bool)
 
 
 class Kept:
@@ -387,11 +402,11 @@ class Bridge:
         return self.names[address]
 
     def send(self):
-        """Submits as many tasks as keep every thread at work."""
+        """Submits as many tasks as keep every thread at work, those too that a growing cluster can have."""
         import sensitol_dask_worker as worker
 
-        threads = sum(self.threads.values())
-        while self.waiting and threads and len(self.tasks) < AHEAD * threads:
+        threads = max(sum(self.threads.values()), self.what.get("capacity", 1))
+        while self.waiting and len(self.tasks) < AHEAD * threads:
             room = 1
             if self.cost is not None:
                 room = int(TASK_S / max(self.cost, 1e-6))

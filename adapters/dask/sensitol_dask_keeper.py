@@ -75,7 +75,8 @@ def opened(asked, folder):
         local_directory=options.pop("local_directory", None), log_directory=options.pop("log_directory", str(folder)), **options,
     )  # fmt: skip
     if adapt:
-        cluster.adapt(minimum_jobs=adapt.get("minimum", 0), maximum_jobs=adapt.get("maximum", 1))
+        # The adapter keeps no more than two tasks a thread at the scheduler, whose own idea of enough work is 5 s a thread.
+        cluster.adapt(minimum_jobs=adapt.get("minimum", 0), maximum_jobs=adapt.get("maximum", 1), target_duration="100ms")
     else:
         cluster.scale(jobs=jobs or 1)
     return cluster

@@ -354,6 +354,9 @@ def what_is_wrong_is_one_error():
         broken.write_text("jobs: [1\n")
         unknown = pathlib.Path(folder) / "unknown.yaml"
         unknown.write_text("jbos: 1\n")
+        wrong = {"all.yaml": "adapt: all\n", "more.yaml": "adapt: { minimum: 3, maximum: 2 }\n", "least.yaml": "adapt: { least: 1 }\n", "none.yaml": "jobs: 0\n"}
+        for name, text in wrong.items():
+            (pathlib.Path(folder) / name).write_text(text)
         cases = [
             (command("cloud"), ["--cluster cloud", "local:4"]),
             (command("local:many"), ["local:many"]),
@@ -368,6 +371,10 @@ def what_is_wrong_is_one_error():
             cases += [
                 (command("slurm", options=["--options", broken]), ["broken.yaml"]),
                 (command("slurm", options=["--options", unknown]), ["`jbos`", "jobs"]),
+                (command("slurm", options=["--options", "all.yaml"]), ["`adapt`", "{ minimum: 0, maximum: 8 }"]),
+                (command("slurm", options=["--options", "more.yaml"]), ["`adapt`", "minimum 3", "maximum 2"]),
+                (command("slurm", options=["--options", "least.yaml"]), ["`adapt`", "{ minimum: 0, maximum: 8 }"]),
+                (command("slurm", options=["--options", "none.yaml"]), ["`jobs`", "1 or more", "0"]),
             ]
         for argv, words in cases:
             with client(argv, folder, **hello()) as model:
@@ -425,6 +432,31 @@ def jobs_of_slurm_have_the_same_bits():
             until(lambda: not queued(), lambda: f"{queued()} are left in the queue", GONE_S)
 
 
+def jobs_come_and_go_with_the_work():
+    """With `adapt`: as many jobs as are allowed while points wait, the least again once all are answered, and new ones for new points."""
+    with slurm.running() as environment:
+        for least in (1, 0):
+            with on_slurm(environment) as path, tempfile.TemporaryDirectory() as folder:
+                os.environ["MODEL_SLEEP"] = "0.5"
+                pathlib.Path(folder, "model.py").write_text(MODEL)
+                options = SLURM_OPTIONS.replace("jobs: 2\n", f"adapt: {{ minimum: {least}, maximum: 2 }}\n")
+                pathlib.Path(folder, "slurm.yaml").write_text(options)
+                argv = command("slurm", options=["--options", "slurm.yaml", "--batch", "1", "--linger", "1"])
+                running = lambda: [job[2] for job in slurm.jobs(environment)]
+
+                def become(count):
+                    until(lambda: running() == count * ["R"], lambda: f"{count} jobs are expected, not {running()}", 60)
+
+                with client(argv, folder, **hello()) as model:
+                    for _ in range(2):
+                        send(model, spread(100))
+                        become(2)
+                        assert len(final(model, 100)) == 100
+                        # Dask looks three times, a second each, before it ends a worker without work.
+                        become(least)
+                until(lambda: not slurm.jobs(environment), lambda: f"{slurm.jobs(environment)} are left in the queue", GONE_S)
+
+
 def no_job_stays_behind():
     with slurm.running() as environment:
         for how in ("kill", "interrupt", "time"):
@@ -458,7 +490,7 @@ if __name__ == "__main__":
         nothing_stays_behind,
         the_readme_shows_it,
     ]
-    with_slurm = [jobs_of_slurm_have_the_same_bits, no_job_stays_behind]
+    with_slurm = [jobs_of_slurm_have_the_same_bits, jobs_come_and_go_with_the_work, no_job_stays_behind]
     if sys.argv[1:]:
         tests = [test for test in [*tests, *with_slurm] if test.__name__ in sys.argv[1:]]
     elif slurm.installed():
