@@ -332,15 +332,16 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
         let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre})\"");
         let _ = writeln!(svg, "<text x=\"18\" y=\"{centre}\" {turned}>{label}</text>");
     }
-    let (mut inside, mut texts) = (Vec::new(), String::new());
+    let (mut held, mut texts) = (Vec::new(), String::new());
     for (at, name, ink) in names {
         let (ink, name, wide) = (sheet.ink(ink), escaped(name), LETTER * name.len() as f64);
         // Alone the margin is wide enough.
         if !sheet.page || wide <= right - 6.0 {
+            held.push([far + 6.0, far + 6.0 + wide, at - 7.0, at + 7.0]);
             let _ = writeln!(texts, "<text x=\"{}\" y=\"{:.1}\" {ink}>{name}</text>", far + 6.0, at + 4.0);
             continue;
         }
-        inside.push([far - wide - 4.0, far, at - 16.0, at - 2.0]);
+        held.push([far - wide - 4.0, far, at - 16.0, at - 2.0]);
         let (x, y) = (far - 4.0, at - 5.0);
         let _ = writeln!(texts, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"end\" {ink}>{name}</text>");
     }
@@ -360,7 +361,7 @@ fn plot(svg: &mut String, plot: &Plot, mut sheet: Sheet) {
                     let _ = writeln!(svg, "<path d=\"{}\" {ink}/>", path(&x, &y, part.into_iter()));
                 }
             }
-            Layer::Points(points) => circles(svg, &x, &y, points, &sheet, &inside),
+            Layer::Points(points) => circles(svg, &x, &y, points, &sheet, &held),
             Layer::Mark(value, _) => {
                 let _ = writeln!(svg, "<path d=\"M{left} {:.1}H{far}\" {}/>", y.at(*value), sheet.ink(Ink::Mark));
             }
