@@ -1465,6 +1465,8 @@ class SimulatedCharacteristic(Record):
     """The feature of the part, or its number on the drawing."""
     histogram: Optional[Histogram]
     """The sample, counted in some tens of intervals."""
+    inspection: Optional[InspectionRisks]
+    """The risks of its inspection, among the points of the sample; None without a gauge."""
     kurtosis: Optional[float]
     """Fourth standardised moment, 3 for a normal; None where nothing varies."""
     lower: Optional[float]
@@ -1859,7 +1861,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "SampledFactor": {"first_order": IndexEstimate, "total": IndexEstimate},
     "SampledModel": {"histogram": Histogram},
     "Sensitivity": {"first_order": EstimatedShare, "total": EstimatedShare},
-    "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "requirements": Judged, "sobol": SampledFactor, "standard_error": StandardErrors},
+    "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "inspection": InspectionRisks, "requirements": Judged, "sobol": SampledFactor, "standard_error": StandardErrors},
     "SimulationResult": {"characteristic_correlation": OutputCorrelation, "characteristics": SimulatedCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": YieldEstimate, "warnings": ReportedWarning},
     "SobolIndices": {"factors": FactorIndices},
     "SweepResult": {"characteristics": SweptCharacteristic, "evaluator": EvaluatorSummary, "parameter": Parameter, "warnings": ReportedWarning},

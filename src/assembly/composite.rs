@@ -513,7 +513,7 @@ impl AssemblyFunction for Composite {
     }
 
     fn driven(&self) -> Option<&Composite> {
-        (self.signature.costly && !self.driving().is_empty()).then_some(self)
+        (!self.driving().is_empty()).then_some(self)
     }
 
     fn switches(&self, output: usize) -> Option<Switches> {

@@ -15,6 +15,7 @@ mod figures;
 mod head;
 #[cfg(feature = "html")]
 pub mod html;
+mod inspection;
 mod labels;
 mod output_correlation;
 mod rare;

@@ -4,9 +4,11 @@ use serde::Serialize;
 
 use super::figures::{Figures, Named, QUANTILES};
 use super::head::{self, findings, seed};
+use super::inspection::inspected;
 use super::output_correlation::{all_limits_within, together};
 use super::requirement::{judged, lines};
 use super::{About, DimensionReport, Head, WarningReport, correlation};
+use crate::analysis::{EstimatedShare, InspectionRisks};
 use crate::capability::Law;
 use crate::correlation::Pair;
 use crate::document::number::{estimated, index, known, limits, percent, plain, significant, uncertainty, yielded};
@@ -101,6 +103,9 @@ impl SimulatedCharacteristic {
             self.kept(&mut section, yield_);
         }
         lines(self.requirements()).for_each(|line| section.note(line));
+        if let Some(of) = &self.inspection {
+            inspected(&mut section, of);
+        }
         self.picture(&mut section);
         section
     }
@@ -139,6 +144,16 @@ impl SimulatedCharacteristic {
         let quantiles = QUANTILES.into_iter().zip(self.quantiles).map(|(name, estimate)| (name, estimate, None));
         let seen = if self.samples == 0 { 0 } else { moments.len() + QUANTILES.len() };
         let plain = |value: Option<f64>| value.map(|value| Estimate { value, standard_error: None });
+        let risk = |name: &'static str, share: fn(&InspectionRisks) -> Option<EstimatedShare>| {
+            let of = self.inspection.as_ref()?;
+            Some((name, share(of).map(|of| Estimate { value: of.value, standard_error: of.error }), None))
+        };
+        let risks: [Option<Row>; 4] = [
+            risk("false_accept", |of| of.false_accept),
+            risk("false_reject", |of| of.false_reject),
+            risk("accepted", |of| of.accepted),
+            risk("bad_among_accepted", |of| of.bad_among_accepted),
+        ];
         let rest: [Row; 3] = [
             ("yield", plain(self.yield_()), self.yield_.map(|share| share.interval)),
             ("ppm_below", plain(self.ppm_below()), None),
@@ -155,7 +170,7 @@ impl SimulatedCharacteristic {
             .column("standard_error", "standard error", move |row| Cell::number(error(row), uncertainty))
             .data("interval_low", |row| Cell::data(row.2.map(|[low, _]| low)))
             .data("interval_high", |row| Cell::data(row.2.map(|[_, high]| high)))
-            .table("estimates", moments.into_iter().chain(quantiles).chain(rest))
+            .table("estimates", moments.into_iter().chain(quantiles).chain(rest).chain(risks.into_iter().flatten()))
             .seen((0..seen).collect())
     }
 
