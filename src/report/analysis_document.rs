@@ -277,7 +277,7 @@ impl CharacteristicAnalysis {
         ];
         let fit = if kind == "normal" { "normal".to_owned() } else { format!("Pearson type {kind}") };
         let words = match &self.density {
-            Some(table) => format!("Law of the surface{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
+            Some(table) => format!("Surface distribution{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
             None => format!("{fit}{bars}."),
         };
         places.extend(self.mean().map(|mean| (mean, "mean", "mean")));
