@@ -10,7 +10,7 @@ use crate::allocation::{
     Allocated, Attainable, Bound, CostBasis, FrontRequirement, Goal, JointYield, Kept, Moved, ShadowPrice, Status,
 };
 use crate::analysis::CharacteristicAnalysis;
-use crate::document::number::{beside, index, known, plain, share, short, significant, yielded};
+use crate::document::number::{beside, index, known, plain, plural, share, short, significant, yielded};
 use crate::document::{
     Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
     PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
@@ -133,8 +133,13 @@ impl AllocationReport {
             ));
         }
         let sampled = self.confirmation.as_ref().map_or(0, |confirmation| confirmation.samples);
+        // A round of the allocation may ask a program more than once.
+        let batches = self
+            .run
+            .evaluator
+            .map_or(String::new(), |_| format!(", sent in {}", plural(self.run.stages as usize, "batch", "batches")));
         page.line(format!(
-            "{} evaluations in {} rounds{}{}{}",
+            "{} evaluations in {} rounds{batches}{}{}{}",
             self.run.evaluations.saturating_sub(sampled),
             self.rounds,
             head::beside(&self.run),

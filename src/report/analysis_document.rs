@@ -49,7 +49,7 @@ impl Report {
 
     fn with_pairs(&self, pairs: usize) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
-        let evaluations = plural(self.analysis.run.evaluations as usize, "evaluation", "evaluations");
+        let evaluations = head::evaluations(&self.analysis.run);
         let varying = plural(self.analysis.varying, "varying dimension", "varying dimensions");
         document.line(format!(
             "{}: {evaluations}, {varying}{}",

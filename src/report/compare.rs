@@ -119,8 +119,10 @@ impl CompareReport {
     /// error over evaluations.
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
-        let stopped = head::beside(&self.run);
-        document.line(format!("reference: {} with {} points{stopped}", self.reference_method, self.reference_samples));
+        let (reference, samples, beside) = (self.reference_method, self.reference_samples, head::beside(&self.run));
+        // All methods of a program ask together: how often, and for how much, is what a cluster is sized by.
+        let all = self.run.evaluator.map_or(String::new(), |_| format!("; all: {}", head::evaluations(&self.run)));
+        document.line(format!("reference: {reference} with {samples} points{all}{beside}"));
         document.sections = self.characteristics.iter().map(ComparedReport::section).collect();
         if !self.not_run.is_empty() {
             let mut section = Section::default();
