@@ -22,7 +22,7 @@ class Account(Record):
     possible_interactions: int
     """Interactions that there can be."""
     probes: int
-    """Probes of two points that move all dimensions, by which interactions were sought."""
+    """Probes that move all dimensions, of one point each or two, by which interactions were sought."""
     refined: List[str]
     """Those that are more than a parabola: four points each."""
     rest: Literal['reached', 'budget', 'exhausted', 'stopped']
