@@ -58,7 +58,7 @@ fn terms(graph: &Graph, id: NodeId) -> Option<Vec<(NodeId, f64)>> {
     }
 }
 
-/// What is left of a sum, the factor of every term; None where nothing cancels, and where a factor would be rounded.
+/// The terms that are left of a sum, with their factors; None where nothing cancels, and where a factor would be rounded.
 fn collected(graph: &Graph, sum: NodeId, total: &[bool]) -> Option<Vec<(NodeId, f64)>> {
     // Of the greatest index first: all uses of a node come before it.
     let mut open = BTreeMap::from([(sum, 1.0)]);

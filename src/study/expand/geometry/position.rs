@@ -122,7 +122,7 @@ fn form(line: &Line<'_>, frame: &Part<'_>) -> Result<Option<Form>, Fault> {
     Ok(Some(Form { text: form.text, name }))
 }
 
-/// What lessens a bonus.
+/// The form that lessens a bonus.
 struct Form {
     /// As it stands in a formula.
     text: String,
