@@ -37,7 +37,7 @@ pub(crate) fn in_ranges(
         (first, answers)
     };
     if rows <= BLOCK {
-        // What nobody has answered is as good as new.
+        // Rows without an answer are as good as new.
         if !out.is_untouched() || (out.rows(), out.outputs()) != (rows, outputs) {
             *out = Responses::open(rows, outputs);
         }
