@@ -74,7 +74,7 @@ pub trait AssemblyFunction: Send + Sync {
     /// error.
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses);
 
-    /// [`evaluate`](Self::evaluate) of points whose columns stand apart, `rows` values in each, so that nobody has to copy them; `false`,
+    /// [`evaluate`](Self::evaluate) of points whose columns stand apart, `rows` values in each, so that no copy is needed; `false`,
     /// and nothing done, where it takes no such points, as by default.
     #[doc(hidden)]
     fn evaluate_columns(

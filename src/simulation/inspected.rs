@@ -91,7 +91,7 @@ fn pieces(fine: &Fine, limits: SpecLimits, outside: [u64; 2]) -> Vec<Piece> {
     for (ends, count) in fine.filled() {
         let [below, above] = beyond(ends);
         let mut add = |[from, to]: [f64; 2], points: u64, good: bool| {
-            pieces.extend((points > 0).then(|| Piece { at: 0.5 * (from + to), points: points as f64, good }));
+            pieces.extend((points > 0).then_some(Piece { at: 0.5 * (from + to), points: points as f64, good }));
         };
         if below || above {
             add(ends, count, false);
