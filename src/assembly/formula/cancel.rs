@@ -12,7 +12,7 @@ use super::graph::{Graph, GraphNode, NodeId};
 pub(super) fn cancelled(graph: &Graph, root: NodeId) -> Option<(Graph, NodeId)> {
     let (needed, total) = (graph.needed([root]), total(graph));
     let nodes = || (0..graph.nodes().len()).filter(|&id| needed[id]).map(|id| (id as NodeId, graph.nodes()[id]));
-    // Whether a sum is no term of another one.
+    // The sums that are not terms of another one.
     let mut whole = vec![false; graph.nodes().len()];
     whole[root as usize] = true;
     for (id, node) in nodes().filter(|&(id, _)| terms(graph, id).is_none()) {
