@@ -47,7 +47,7 @@ fn the_verdict_comes_first_and_a_characteristic_fits_a_screen() {
         for part in parts {
             assert!(part.len() <= MOST, "{arguments:?}: {} lines\n{report}", part.len());
         }
-        assert!(all.lines().count() > report.lines().count() || all == report, "{arguments:?}");
+        assert!(all.len() >= report.len(), "{arguments:?}");
         for line in report.lines().chain(all.lines()) {
             assert!(line.chars().count() <= 80, "{arguments:?}: {line}");
         }
