@@ -456,7 +456,7 @@ impl CharacteristicAnalysis {
 
     /// The interactions examined: how many, what they make, and the strongest.
     fn pairs(&self, section: &mut Section, pairs: usize) {
-        let (possible, examined) = (self.possible_interactions, self.interactions.len());
+        let (possible, examined) = (self.possible_interactions, self.examined());
         self.together(section);
         if let Some(of_model) = self.indices.as_ref().filter(|_| self.is_of_model()) {
             section.note(self.of_model(of_model));

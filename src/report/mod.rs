@@ -12,6 +12,7 @@ mod complete;
 pub(crate) mod csv;
 mod difference;
 mod figures;
+mod glance;
 mod head;
 #[cfg(feature = "html")]
 pub mod html;

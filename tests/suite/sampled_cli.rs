@@ -51,7 +51,7 @@ fn quantiles_beyond_a_small_sample_are_unknown() {
     let one = &report["characteristics"][0];
     assert!(one["distribution"]["quantiles"]["0.05"].is_f64() && one["standard_error"]["quantiles"]["0.05"].is_null());
     assert_eq!(one["histogram"]["counts"].as_array().unwrap().iter().filter_map(Value::as_u64).sum::<u64>(), 20);
-    let text = run(&["simulate", BLOCKS, "--samples", "13"]);
+    let text = run(&["simulate", BLOCKS, "--samples", "13", "-v"]);
     let line = text.lines().find(|line| line.contains("quantile 0.00135")).unwrap();
     assert_eq!(line.split_whitespace().collect::<Vec<_>>(), ["quantile", "0.00135", "-", "-"]);
 }
