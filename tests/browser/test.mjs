@@ -123,7 +123,7 @@ test("the verdict says what the report's data say", async () => {
     // A worst case that the text calls proven is that of the verdict and of the density.
     const [, ...proven] = spawnSync(sensitol, ["analyze", study, "-q"], { cwd: root, encoding: "utf8" }).stdout.match(/proven worst case +(\S+) \.\. (\S+)/) ?? [];
     if (proven.length > 0) {
-      assert.ok(rows.some((row) => row.includes(proven.join(" – "))), `${study}: ${proven}`);
+      assert.ok(rows.some((row) => row.includes(proven.join(" –"))), `${study}: ${proven}`);
       assert.ok(await page.evaluate("document.querySelector('svg.density').getAttribute('aria-label')").then((label) => label.includes(`worst case, proven ${proven.join(" to ")}`)), study);
     }
     // Every number of a density is in what is read aloud.
