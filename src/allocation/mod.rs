@@ -32,7 +32,6 @@ mod choose_made;
 mod closed_form;
 mod conclude;
 mod constraint;
-mod corners;
 mod correction;
 mod cost;
 mod cost_error;
@@ -83,8 +82,7 @@ pub(crate) use made::Made;
 pub(crate) use result::ProofShape;
 
 pub use result::{
-    Allocated, Allocation, AllocationSolver, Attainable, Bound, FrontPoint, JointKept, Kept, Moved, Proof, ShadowPrice,
-    Status,
+    Allocated, Allocation, Attainable, Bound, FrontPoint, JointKept, Kept, Moved, Proof, ShadowPrice, Status,
 };
 pub use run::{allocate, allocate_with};
 pub use setup::SetUp;

@@ -96,8 +96,7 @@ impl Page {
             Element::Table(table) => self.table(table),
             Element::Chart(Chart::Spread(spread)) => {
                 if let Some(bins) = spread.bins.as_ref().filter(|_| spread.sampled) {
-                    let together = if self.style.detail == Detail::Full { 2 } else { 4 };
-                    self.table(&bars(bins, spread.sigma, together));
+                    self.table(&bars(bins, spread.sigma));
                 } else if let Some(law) = &spread.law {
                     let picture = sketch(law, spread.limits, self.style.width, self.style.unicode);
                     picture.into_iter().for_each(|line| self.folded(&line.into()));

@@ -5,7 +5,6 @@ mod control;
 mod count;
 mod difference;
 mod indices;
-mod inspected;
 mod replicate;
 mod shape;
 mod surrogates;

@@ -13,7 +13,6 @@ mod auto;
 mod auto_cost;
 mod blocks;
 mod book;
-mod brief;
 mod capability;
 mod circles;
 mod claims;

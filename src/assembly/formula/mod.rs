@@ -15,7 +15,6 @@
 //! exact derivatives, on an [`Interval`] bounds that no rounding breaks.
 
 mod batch;
-mod cancel;
 mod error;
 mod functions;
 mod graph;
