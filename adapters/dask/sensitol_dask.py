@@ -24,7 +24,10 @@ AHEAD = 3
 TASK_S, LONGEST = 0.1, 64
 # A task of several points that runs longer than this is taken apart: one of its points may hang.
 STUCK_S, STUCK_TIMES = 10.0, 30.0
-TICK_S, ALIVE_S, LOOK_S = 0.1, 2.0, 1.0
+# A sign of life comes at least four times in the shortest timeout that makes sense here, 2 s.
+TICK_S, ALIVE_S, LOOK_S = 0.1, 0.5, 1.0
+# How often, and how many times after a connection, it looks for programs that another adapter left behind: its end takes a moment to be seen.
+SWEEP_S, SWEEPS = 2.0, 5
 SLURM_KEYS = ("jobs", "adapt", "queue", "account", "cores", "memory", "processes", "walltime", "interface", "python", "job_cpu", "job_mem",
               "job_extra_directives", "job_directives_skip", "job_script_prologue", "worker_extra_args", "scheduler_options",
               "local_directory", "log_directory", "shebang", "nanny", "worker_command")  # fmt: skip
@@ -204,7 +207,8 @@ class Bridge:
         self.waiting, self.tasks = collections.deque(), {}
         self.client, self.address, self.kept = None, None, None
         self.cost, self.threads, self.names, self.last = None, {}, {}, None
-        self.said_alive = self.looked = time.monotonic()
+        self.said_alive = self.looked = self.swept = time.monotonic()
+        self.sweeps = 0
         self.finished = self.told = False
 
     # The cluster
@@ -219,12 +223,14 @@ class Bridge:
             self.kept = self.kept or Kept(self.what, self.asked.linger)
             self.address = self.kept.address(self.beat)
         try:
-            self.client = Client(self.address, timeout=5, set_as_default=False, name="sensitol")
+            self.client = Client(self.address, timeout=5, set_as_default=False, name=f"sensitol-{self.session}")
         except ValueError as error:
             raise Fault(f"sensitol-dask: --cluster {self.asked.cluster}: {error}") from None
         if self.what["kind"] == "address":
             self._bring()
         self.client.subscribe_topic(f"sensitol-{self.session}", lambda event: self.events.put(("started", event[1])))
+        self.sweeps = SWEEPS
+        self.sweep()
         self.look()
 
     def _bring(self):
@@ -233,6 +239,30 @@ class Bridge:
         known = [*self.client.run(eval, probe).values(), self.client.run_on_scheduler(eval, probe)]
         if not all(known) or len(known) == 1:
             self.client.upload_file(str(HERE / f"{WORKER}.py"))
+
+    def sweep(self):
+        """Ends programs whose adapter is gone. One that hangs would keep its worker from every later point."""
+        import sensitol_dask_worker as worker
+
+        self.swept = time.monotonic()
+        if self.sweeps <= 0 or not self.client.nthreads():
+            return
+        self.sweeps -= 1
+        try:
+            found = self.client.run(worker.sessions, on_error="ignore")
+            seen = {session for sessions in found.values() if sessions for session in sessions} - {self.session}
+            # In this order: a session with a program had a client before, so that it is gone where it has none now.
+            present = self.client.run_on_scheduler(worker.clients) if seen else []
+            for session in seen:
+                if not any(session in client for client in present):
+                    self.client.run(worker.end, session, on_error="ignore")
+        except Exception:
+            # It is lost, which `watch` sees, or its workers have another version of the module.
+            return
+
+    def sweep_again(self):
+        if self.sweeps > 0 and time.monotonic() - self.swept > SWEEP_S:
+            self.sweep()
 
     def look(self):
         """Which workers there are, and how many threads they have."""
@@ -255,6 +285,8 @@ class Bridge:
         for task in self.tasks.values():
             self.waiting.extendleft(reversed(task.points))
         self.tasks, self.threads, self.names, self.last = {}, {}, {}, None
+        # The next connection ends the programs of the lost one.
+        self.session = uuid.uuid4().hex[:12]
         until = time.monotonic() + self.asked.reconnect
         while True:
             try:
@@ -295,6 +327,7 @@ class Bridge:
                     break
                 self.read(wait=False)
                 self.wait_for_workers()
+                self.sweep_again()
             if future.status == "finished":
                 break
             if future.status == "error":
@@ -465,6 +498,7 @@ class Bridge:
             except Exception:
                 # A scheduler that does not answer is lost, whatever the client thinks.
                 return self.reconnect()
+        self.sweep_again()
         for task in self.tasks.values():
             expected = STUCK_S + STUCK_TIMES * (self.cost or 0.0) * len(task.points)
             if len(task.points) > 1 and task.started and not task.stuck and now - task.started > expected:

@@ -267,6 +267,17 @@ def end(session):
         program.close()
 
 
+def sessions():
+    """The sessions that have programs here."""
+    with _LOCK:
+        return sorted({*_IDLE, *(program.session for program in _BUSY.values())})
+
+
+def clients(dask_scheduler):
+    """The names of all clients of the scheduler, each with the session that it serves."""
+    return list(dask_scheduler.clients)
+
+
 def serve(name):
     """A function `module:function` as a program, in the study's folder."""
     try:
