@@ -5,6 +5,7 @@ import collections
 import fcntl
 import hashlib
 import json
+import math
 import os
 import pathlib
 import queue
@@ -195,6 +196,23 @@ class Task:
         self.future, self.started, self.worker, self.stuck = None, None, None, False
 
 
+def end_left(client, own):
+    """Ends the programs of sessions that have no client any more."""
+    import sensitol_dask_worker as worker
+
+    try:
+        found = client.run(worker.sessions, on_error="ignore")
+        seen = {session for sessions in found.values() if sessions for session in sessions} - {own}
+        # In this order: a session with a program had a client before, so that it is gone where it has none now.
+        present = client.run_on_scheduler(worker.clients) if seen else []
+        for session in seen:
+            if not any(session in name for name in present):
+                client.run(worker.end, session, on_error="ignore")
+    except Exception:
+        # It is lost, which `watch` sees, or its workers have another version of the module.
+        return
+
+
 class Bridge:
     """The engine on one side, Dask on the other. All of its state belongs to the thread that runs `run`."""
 
@@ -207,8 +225,8 @@ class Bridge:
         self.waiting, self.tasks = collections.deque(), {}
         self.client, self.address, self.kept = None, None, None
         self.cost, self.threads, self.names, self.last = None, {}, {}, None
-        self.said_alive = self.looked = self.swept = time.monotonic()
-        self.sweeps = 0
+        self.said_alive = self.looked = time.monotonic()
+        self.sweeps, self.swept = 0, -math.inf
         self.finished = self.told = False
 
     # The cluster
@@ -229,9 +247,9 @@ class Bridge:
         if self.what["kind"] == "address":
             self._bring()
         self.client.subscribe_topic(f"sensitol-{self.session}", lambda event: self.events.put(("started", event[1])))
-        self.sweeps = SWEEPS
-        self.sweep()
+        self.sweeps, self.swept = SWEEPS, -math.inf
         self.look()
+        self.sweep()
 
     def _bring(self):
         """Workers of a cluster that was there before may not have the module that tasks name."""
@@ -241,28 +259,11 @@ class Bridge:
             self.client.upload_file(str(HERE / f"{WORKER}.py"))
 
     def sweep(self):
-        """Ends programs whose adapter is gone. One that hangs would keep its worker from every later point."""
-        import sensitol_dask_worker as worker
-
-        self.swept = time.monotonic()
-        if self.sweeps <= 0 or not self.client.nthreads():
-            return
-        self.sweeps -= 1
-        try:
-            found = self.client.run(worker.sessions, on_error="ignore")
-            seen = {session for sessions in found.values() if sessions for session in sessions} - {self.session}
-            # In this order: a session with a program had a client before, so that it is gone where it has none now.
-            present = self.client.run_on_scheduler(worker.clients) if seen else []
-            for session in seen:
-                if not any(session in client for client in present):
-                    self.client.run(worker.end, session, on_error="ignore")
-        except Exception:
-            # It is lost, which `watch` sees, or its workers have another version of the module.
-            return
-
-    def sweep_again(self):
-        if self.sweeps > 0 and time.monotonic() - self.swept > SWEEP_S:
-            self.sweep()
+        """Ends programs whose adapter is gone, some times after a connection. One that hangs would keep its worker from every later point."""
+        if self.sweeps > 0 and time.monotonic() - self.swept > SWEEP_S and self.threads:
+            self.sweeps, self.swept = self.sweeps - 1, time.monotonic()
+            # A worker that does not answer must not hold up the others.
+            threading.Thread(target=end_left, args=(self.client, self.session), daemon=True).start()
 
     def look(self):
         """Which workers there are, and how many threads they have."""
@@ -327,7 +328,7 @@ class Bridge:
                     break
                 self.read(wait=False)
                 self.wait_for_workers()
-                self.sweep_again()
+                self.sweep()
             if future.status == "finished":
                 break
             if future.status == "error":
@@ -498,7 +499,7 @@ class Bridge:
             except Exception:
                 # A scheduler that does not answer is lost, whatever the client thinks.
                 return self.reconnect()
-        self.sweep_again()
+        self.sweep()
         for task in self.tasks.values():
             expected = STUCK_S + STUCK_TIMES * (self.cost or 0.0) * len(task.points)
             if len(task.points) > 1 and task.started and not task.stuck and now - task.started > expected:
