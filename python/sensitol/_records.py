@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import keyword
+import re
 from typing import TYPE_CHECKING, Any, Iterator, Mapping
 
 if TYPE_CHECKING:
@@ -66,6 +67,22 @@ class Record:
 
     def __reduce__(self) -> Any:
         return (type(self), (self._data,))
+
+    def __format__(self, spec: str) -> str:
+        """``format(result["gap"], "u")``: mean ± sigma with two digits of sigma and the unit, ``".3u"`` with three."""
+        asked = re.fullmatch(r"(?:\.([1-9]\d?))?u", spec)
+        if asked is None:
+            return format(str(self), spec)
+        mean, sigma = self._data.get("mean"), self._data.get("sigma")
+        unit = self._data.get("unit")
+        after = f" {unit}" if unit else ""
+        if mean is None or sigma is None:
+            return "unknown" + after
+        digits = int(asked[1] or 2)
+        # Rounded first: 0.0996 with two digits is 0.10, of one decimal less.
+        places = digits - 1 - int(f"{sigma:.{digits - 1}e}".partition("e")[2])
+        mean, sigma = round(mean, places), round(sigma, places)
+        return f"{mean:.{max(places, 0)}f} ± {sigma:.{max(places, 0)}f}{after}"
 
     def to_dict(self) -> dict[str, Any]:
         """Its JSON: what is unknown is None."""

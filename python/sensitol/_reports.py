@@ -22,7 +22,7 @@ class Account(Record):
     possible_interactions: int
     """Interactions that there can be."""
     probes: int
-    """Probes of two points that move all dimensions, by which interactions were sought."""
+    """Probes that move all dimensions, of one point each or two, by which interactions were sought."""
     refined: List[str]
     """Those that are more than a parabola: four points each."""
     rest: Literal['reached', 'budget', 'exhausted', 'stopped']
@@ -1108,6 +1108,8 @@ class Proof(Record):
     """The cost of the next cheapest optimum that one of them ended at; None where there was no other."""
     reached: Optional[int]
     """How many of them ended at the tolerances found."""
+    solver: Optional[Literal['dual-newton', 'separable', 'augmented-lagrangian', 'branch-and-bound', 'root']]
+    """The solver that found the tolerances; None where none were found."""
     starts: Optional[int]
     """Searches from different tolerances, where there may be several optima; None where one search is enough."""
 
@@ -1465,6 +1467,8 @@ class SimulatedCharacteristic(Record):
     """The feature of the part, or its number on the drawing."""
     histogram: Optional[Histogram]
     """The sample, counted in some tens of intervals."""
+    inspection: Optional[InspectionRisks]
+    """The risks of its inspection, among the points of the sample; None without a gauge."""
     kurtosis: Optional[float]
     """Fourth standardised moment, 3 for a normal; None where nothing varies."""
     lower: Optional[float]
@@ -1859,7 +1863,7 @@ _INNER: Dict[str, Dict[str, type]] = {
     "SampledFactor": {"first_order": IndexEstimate, "total": IndexEstimate},
     "SampledModel": {"histogram": Histogram},
     "Sensitivity": {"first_order": EstimatedShare, "total": EstimatedShare},
-    "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "requirements": Judged, "sobol": SampledFactor, "standard_error": StandardErrors},
+    "SimulatedCharacteristic": {"control": Control, "distribution": Empirical, "histogram": Histogram, "inspection": InspectionRisks, "requirements": Judged, "sobol": SampledFactor, "standard_error": StandardErrors},
     "SimulationResult": {"characteristic_correlation": OutputCorrelation, "characteristics": SimulatedCharacteristic, "correlation": Pair, "dimensions": DimensionResult, "evaluator": EvaluatorSummary, "joint_requirement": Judged, "joint_yield": YieldEstimate, "warnings": ReportedWarning},
     "SobolIndices": {"factors": FactorIndices},
     "SweepResult": {"characteristics": SweptCharacteristic, "evaluator": EvaluatorSummary, "parameter": Parameter, "warnings": ReportedWarning},

@@ -2,7 +2,10 @@
 
 import concurrent.futures
 import multiprocessing
+import os
+import signal
 import threading
+import time
 
 import pytest
 from conftest import shaft_and_bore
@@ -124,3 +127,25 @@ def test_dask_has_the_same_digits():
     with cluster, distributed.Client(cluster) as client:
         study = shaft_and_bore(lambda bore, shaft, tilt: bore - shaft + 0 * tilt)
         assert digits(study.analyze("full", executor=client)) == digits(study.analyze("full"))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="skipped: signals of Unix")
+def test_a_killed_worker_of_dask_loses_nothing():
+    distributed = pytest.importorskip(
+        "distributed", reason="skipped: Dask is not installed; install with: pip install distributed"
+    )
+
+    def slow(bore, shaft, tilt):
+        time.sleep(0.05)
+        return bore - shaft + 0 * tilt
+
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+    with cluster, distributed.Client(cluster) as client:
+        workers = list(client.run(os.getpid).values())
+        killed = threading.Timer(1.0, os.kill, (workers[0], signal.SIGKILL))
+        killed.start()
+        # 5 s on one worker, 2.5 s on two.
+        found = shaft_and_bore(slow).simulate(100, executor=client, chunksize=1, seed=1)
+        killed.join()
+        assert workers[0] not in client.run(os.getpid).values()
+    assert found["clearance"].mean == shaft_and_bore(lambda bore, shaft, tilt: bore - shaft + 0 * tilt).simulate(100, seed=1)["clearance"].mean

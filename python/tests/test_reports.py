@@ -12,6 +12,7 @@ import pytest
 from conftest import REPOSITORY, shaft_and_bore
 
 import sensitol as st
+from sensitol._records import Record
 
 COMMAND = [sys.executable, "-m", "sensitol._cli"]
 EXAMPLES = os.path.join(REPOSITORY, "examples")
@@ -136,6 +137,22 @@ def test_a_table_has_the_numbers_of_the_report(study):
     pandas = pytest.importorskip("pandas", reason="skipped: pandas is not installed; install with: pip install pandas")
     assert list(found.to_frame("sensitivities")["dimension"]) == table["dimension"]
     assert isinstance(found.to_frame("dimensions"), pandas.DataFrame)
+
+
+def test_mean_and_sigma_are_written_with_digits_of_sigma():
+    def written(spec, **data):
+        return format(Record(data), spec)
+
+    assert written("u", mean=0.0436467, sigma=0.0047242, unit="mm") == "0.0436 ± 0.0047 mm"
+    assert written(".3u", mean=0.0436467, sigma=0.0047242, unit=None) == "0.04365 ± 0.00472"
+    # Rounded, they have a digit more before the point, or none behind it.
+    assert written("u", mean=3.14159, sigma=0.0996) == "3.14 ± 0.10"
+    assert written("u", mean=123456.0, sigma=789.0, unit="N") == "123460 ± 790 N"
+    assert written(".1u", mean=-2.0, sigma=0.96) == "-2 ± 1"
+    assert written("u", mean=5.0, sigma=0.0) == "5.0 ± 0.0"
+    assert written("u", mean=None, sigma=0.1, unit="mm") == "unknown mm"
+    with pytest.raises(ValueError, match="Invalid format specifier|Unknown format code"):
+        written("x", mean=1.0, sigma=0.1)
 
 
 def test_names_that_are_none(study):

@@ -12,6 +12,8 @@ use crate::verdict::Judged;
 
 /// Half of the points are corners.
 const POINTS: usize = 1 << 13;
+/// The rounding of a value as a part of its greatest input: some additions.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// For every characteristic what the points say of its worst case: the greatest part of a limit's room that one takes, from there on. None where
 /// none has a value, of positions, whose zones are no boxes, and of a characteristic without room.
@@ -44,12 +46,15 @@ pub(super) fn worst_in_box(
     let of = |(c, nominal): (usize, &Option<f64>)| {
         let nominal = (*nominal)?;
         let limits = problem.characteristics()[c].limits();
-        let part = |value: f64| {
-            let above = limits.upper().map(|upper| (value - nominal) / (upper - nominal));
-            let below = limits.lower().map(|lower| (value - nominal) / (lower - nominal));
+        let part = |(row, value): (usize, f64)| {
+            // A value that is a sum of inputs is rounded as the greatest of them is: a corner that lies on a limit is not beyond it.
+            let size = (0..dimensions.len()).fold(value.abs(), |size, d| size.max(points.column(d)[row].abs()));
+            let rise = (value - nominal).signum() * ((value - nominal).abs() - ROUNDING * size).max(0.0);
+            let above = limits.upper().map(|upper| rise / (upper - nominal));
+            let below = limits.lower().map(|lower| rise / (lower - nominal));
             above.into_iter().chain(below).fold(0.0, f64::max)
         };
-        let values = (0..POINTS).filter_map(|row| answers.value(row, c));
+        let values = (0..POINTS).filter_map(|row| Some((row, answers.value(row, c)?)));
         let most = values.map(part).reduce(f64::max).filter(|most| most.is_finite())?;
         let inside =
             limits.lower().is_none_or(|lower| lower < nominal) && limits.upper().is_none_or(|upper| upper > nominal);

@@ -5,7 +5,7 @@ pub(super) use super::choice::Choice;
 use super::choose_made::{any, choose_made};
 use super::constraint::{Constraint, kept};
 use super::cost::Priced;
-use super::result::{Attainable, Proof};
+use super::result::{AllocationSolver, Attainable, Proof};
 use super::solve::{Setting, Solved, Starts};
 
 /// The cheapest tolerances at fixed derivatives, without set-ups.
@@ -33,7 +33,9 @@ pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
             let residual = if solved.converged { solved.residual } else { solved.residual.max(f64::MIN_POSITIVE) };
             let Starts { begun, reached, other } = solved.starts;
             let several = (begun > 1).then_some((begun, reached));
+            let exact = setting.is_exact();
             let proof = Proof {
+                solver: Some(if exact { AllocationSolver::DualNewton } else { AllocationSolver::Separable }),
                 residual: (!fixed).then_some(residual),
                 closed_form: solved.closed,
                 starts: several.map(|(begun, _)| begun),
@@ -48,8 +50,9 @@ pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
             let curved =
                 setting.priced.iter().zip(&offers).any(|(group, &o)| group.offers[o].min < group.offers[o].max);
             let residual = curved.then_some(solved.residual);
-            let proof =
-                Proof { residual, bound: bound.is_finite().then_some(bound), rigorous, nodes, ..Proof::default() };
+            let bound = bound.is_finite().then_some(bound);
+            let solver = Some(AllocationSolver::BranchAndBound);
+            let proof = Proof { solver, residual, bound, rigorous, nodes, ..Proof::default() };
             (solved, offers, proof)
         })
     };

@@ -11,7 +11,7 @@ use super::knapsack::cheapest;
 use super::lists::ListOption;
 use super::rejects::of_scores;
 use super::response::Responses;
-use super::result::{Attainable, Proof};
+use super::result::{AllocationSolver, Attainable, Proof};
 use super::solve::{Setting, Solved, Starts};
 use crate::dimension::Dimension;
 use crate::law::rejected;
@@ -250,7 +250,17 @@ impl<'s, 'a> Judge<'s, 'a> {
             at,
             cost,
         };
-        Choice::Found { solved, offers, proof: Proof { bound: Some(bound), rigorous, nodes, ..Proof::default() } }
+        Choice::Found {
+            solved,
+            offers,
+            proof: Proof {
+                solver: Some(AllocationSolver::BranchAndBound),
+                bound: Some(bound),
+                rigorous,
+                nodes,
+                ..Proof::default()
+            },
+        }
     }
 
     /// Every choice from the cheapest on; None where none keeps everything, or it was stopped.

@@ -8,7 +8,7 @@ use super::driver::{Chosen, Driver, Ended, cost, kept_within, unit, with_choice}
 use super::front::front;
 use super::joint::joint;
 use super::machines::choose;
-use super::result::{Allocated, Allocation, Attainable, Bound, Kept, Moved, Proof, Status};
+use super::result::{Allocated, Allocation, AllocationSolver, Attainable, Bound, Kept, Moved, Proof, Status};
 use super::scaling::loosest;
 use super::setup::needed;
 use super::solve::{Setting, Solved};
@@ -58,7 +58,9 @@ impl Driver<'_> {
                 + loss.unwrap_or(f64::NAN)
                 + self.set_up(allocation, offers);
             let gap = |bound: f64| ((cost - bound) / cost.abs().max(f64::MIN_POSITIVE)).max(0.0);
-            allocation.proof = Proof { gap: proof.bound.map(gap), ..proof.clone() };
+            let together = ended.at_rest.map(|_| AllocationSolver::AugmentedLagrangian);
+            let solver = together.or(proof.solver);
+            allocation.proof = Proof { solver, gap: proof.bound.map(gap), ..proof.clone() };
             allocation.cost_after = Some(cost).filter(|cost| cost.is_finite());
             allocation.loss[1] = loss.filter(|_| !self.task.losses.is_empty());
             allocation.tolerances = self.allocated(original, &solved.at, offers);

@@ -1,7 +1,10 @@
 //! The common part of all searches of tolerances: the model asked at some tolerances, within budget and time.
 
+use std::collections::BTreeMap;
+
 use super::choose_made::remade;
 use super::constraint::{Constraint, kept};
+use super::corners::Places;
 use super::cost::Priced;
 use super::response::Responses;
 use super::result::Proof;
@@ -31,6 +34,8 @@ pub(super) struct Spent {
     /// The greatest uncertainties since rounds have [settled](SETTLED), of every characteristic and of the joint yield.
     unknown: Vec<Unknown>,
     joint_unknown: f64,
+    /// Where formulas were found to reach farthest, by characteristic.
+    places: BTreeMap<usize, [Places; 2]>,
 }
 
 /// Rounds after which uncertainties only grow. Those of a sample jump as an assembly passes a limit, and stations next to each other would
@@ -121,6 +126,9 @@ impl Driver<'_> {
             responses.joint_unknown = self.spent.joint_unknown;
         }
         self.correct(&problem, &analysis, &mut responses);
+        if !problem.function().signature().costly {
+            responses.follow_corners(&problem, &mut self.spent.places);
+        }
         Ok(Station { problem, analysis, responses })
     }
 

@@ -1,13 +1,23 @@
-//! Smooth unconstrained minimisation: L-BFGS with the line search of Moré and Thuente, of the crate argmin.
+//! Minimisation by the crate argmin: L-BFGS with the line search of Moré and Thuente for smooth functions, and a particle swarm over a box.
 //!
-//! The best point seen is kept here: a line search that gives up loses nothing. A value that is not a number, or cannot be
+//! The best point that a descent has seen is kept here: a line search that gives up loses nothing. A value that is not a number, or cannot be
 //! computed, is infinite before argmin sees it.
+//!
+//! ```text
+//! v <- w v + c1 r1 (best of the particle - x) + c2 r2 (best of all - x),   x <- x + v      w = 1/(2 ln 2), c1 = c2 = 1/2 + ln 2
+//! ```
+//!
+//! with new random numbers `r1`, `r2` for every coordinate; a particle that leaves the box stops at its face. argmin's own swarm draws from the operating
+//! system's random numbers, by five further crates; this one has a seed. Sources of the swarm: M. Clerc, "Standard particle swarm optimisation" (2012), for the
+//! coefficients; J. Kennedy, R. C. Eberhart, "Particle swarm optimization", ICNN (1995).
 
 use std::cell::RefCell;
 
-use argmin::core::{CostFunction, Error, Executor, Gradient, State};
+use argmin::core::{CostFunction, Error, Executor, Gradient, KV, PopulationState, Problem, Solver, State};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::vector::Vector;
 
@@ -84,4 +94,135 @@ pub(super) fn minimised(function: &Function<'_>, start: &[f64], tolerance: f64, 
             .map(|end| end.state.get_iter());
     }
     watched.best.into_inner().1
+}
+
+/// Particles, and the moves of each.
+const PARTICLES: usize = 40;
+const MOVES: u64 = 60;
+/// Its own seed: what is found depends on nothing else.
+const SEED: u64 = 0x5eed_5a4a;
+
+/// The value of a place; less is better, and it is infinite where there is none.
+type PlaceValue<'a> = dyn Fn(&[f64]) -> f64 + 'a;
+
+#[derive(Clone)]
+struct Particle {
+    at: Vec<f64>,
+    velocity: Vec<f64>,
+    best: Vec<f64>,
+    least: f64,
+}
+
+struct OfPlaces<'a>(&'a PlaceValue<'a>);
+
+impl CostFunction for OfPlaces<'_> {
+    type Param = Vector;
+    type Output = f64;
+
+    fn cost(&self, x: &Self::Param) -> Result<f64, Error> {
+        let value = (self.0)(&x.0);
+        Ok(if value.is_nan() { f64::INFINITY } else { value })
+    }
+}
+
+struct Swarm<'a> {
+    bounds: &'a [[f64; 2]],
+    rng: Xoshiro256PlusPlus,
+}
+
+impl Swarm<'_> {
+    fn anywhere(&mut self) -> Vec<f64> {
+        let rng = &mut self.rng;
+        self.bounds.iter().map(|&[low, high]| low + rng.random::<f64>() * (high - low)).collect()
+    }
+}
+
+type SwarmStep = (PopulationState<Particle, f64>, Option<KV>);
+
+impl<'a> Solver<OfPlaces<'a>, PopulationState<Particle, f64>> for Swarm<'_> {
+    fn name(&self) -> &'static str {
+        "particle swarm"
+    }
+
+    fn init(
+        &mut self,
+        problem: &mut Problem<OfPlaces<'a>>,
+        state: PopulationState<Particle, f64>,
+    ) -> Result<SwarmStep, Error> {
+        let mut particles = Vec::with_capacity(PARTICLES);
+        for _ in 0..PARTICLES {
+            let (at, to) = (self.anywhere(), self.anywhere());
+            // Half the way to another place.
+            let velocity = at.iter().zip(&to).map(|(at, to)| 0.5 * (to - at)).collect();
+            let least = problem.cost(&Vector(at.clone()))?;
+            particles.push(Particle { best: at.clone(), at, velocity, least });
+        }
+        Ok((with_best(state, particles), None))
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<OfPlaces<'a>>,
+        mut state: PopulationState<Particle, f64>,
+    ) -> Result<SwarmStep, Error> {
+        let mut particles = state.take_population().unwrap_or_default();
+        let best = least_of(&particles).map(|particle| particle.best.clone()).unwrap_or_default();
+        let (inertia, pull) = (0.5 / std::f64::consts::LN_2, 0.5 + std::f64::consts::LN_2);
+        for particle in &mut particles {
+            for (j, &[low, high]) in self.bounds.iter().enumerate() {
+                let x = particle.at[j];
+                let own = pull * self.rng.random::<f64>() * (particle.best[j] - x);
+                let all = pull * self.rng.random::<f64>() * (best[j] - x);
+                let to = x + inertia * particle.velocity[j] + own + all;
+                particle.at[j] = to.clamp(low, high);
+                particle.velocity[j] = if to == particle.at[j] { to - x } else { 0.0 };
+            }
+            let value = problem.cost(&Vector(particle.at.clone()))?;
+            if value < particle.least {
+                (particle.least, particle.best) = (value, particle.at.clone());
+            }
+        }
+        Ok((with_best(state, particles), None))
+    }
+}
+
+fn least_of(particles: &[Particle]) -> Option<&Particle> {
+    particles.iter().min_by(|a, b| a.least.total_cmp(&b.least))
+}
+
+fn with_best(state: PopulationState<Particle, f64>, particles: Vec<Particle>) -> PopulationState<Particle, f64> {
+    match least_of(&particles).cloned() {
+        Some(best) => state.cost(best.least).individual(best).population(particles),
+        None => state,
+    }
+}
+
+/// The best place of a swarm within these bounds; None where no particle came upon a value.
+pub(super) fn swarmed(function: &PlaceValue<'_>, bounds: &[[f64; 2]]) -> Option<Vec<f64>> {
+    let swarm = Swarm { bounds, rng: Xoshiro256PlusPlus::seed_from_u64(SEED) };
+    let flight = Executor::new(OfPlaces(function), swarm).ctrlc(false).configure(|state| state.max_iters(MOVES));
+    let best = flight.run().ok()?.state.best_individual?;
+    best.least.is_finite().then_some(best.best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rastrigin's function has 11 minima along every coordinate: a descent ends at the nearest, the swarm in the valley of the least.
+    #[test]
+    fn a_swarm_leaves_valleys_that_a_descent_ends_in() {
+        let turn = std::f64::consts::TAU;
+        let rastrigin = |x: &[f64]| -> f64 {
+            x.iter().map(|x| (x - 1.0) * (x - 1.0) + 10.0 - 10.0 * (turn * (x - 1.0)).cos()).sum()
+        };
+        let found = swarmed(&rastrigin, &[[-5.0, 5.0]; 2]).unwrap();
+        assert!(found.iter().all(|x| (x - 1.0).abs() < 0.5), "{found:?}");
+        // It is reproducible, keeps its bounds, and does without values in most of the box.
+        assert_eq!(found, swarmed(&rastrigin, &[[-5.0, 5.0]; 2]).unwrap());
+        let partly = |x: &[f64]| if x[0] > 3.0 { f64::NAN } else { -x[0] };
+        let found = swarmed(&partly, &[[0.0, 8.0]]).unwrap();
+        assert!(found[0] <= 3.0 && found[0] > 2.9, "{found:?}");
+        assert!(swarmed(&|_| f64::NAN, &[[0.0, 1.0]]).is_none());
+    }
 }

@@ -32,6 +32,7 @@ mod choose_made;
 mod closed_form;
 mod conclude;
 mod constraint;
+mod corners;
 mod correction;
 mod cost;
 mod cost_error;
@@ -82,7 +83,8 @@ pub(crate) use made::Made;
 pub(crate) use result::ProofShape;
 
 pub use result::{
-    Allocated, Allocation, Attainable, Bound, FrontPoint, JointKept, Kept, Moved, Proof, ShadowPrice, Status,
+    Allocated, Allocation, AllocationSolver, Attainable, Bound, FrontPoint, JointKept, Kept, Moved, Proof, ShadowPrice,
+    Status,
 };
 pub use run::{allocate, allocate_with};
 pub use setup::SetUp;

@@ -3,7 +3,7 @@
 use super::basis::{CostBasis, unit};
 use super::constraint::{Constraint, kept};
 use super::driver::{Driver, Ended, Near, ROUNDS, cost, with_tolerances};
-use super::result::{Allocation, Proof, Status};
+use super::result::{Allocation, AllocationSolver, Proof, Status};
 use super::scaling::loosest_of;
 use super::solve::{Solved, Starts};
 use super::station::Station;
@@ -65,7 +65,8 @@ impl Driver<'_> {
             starts: Starts::default(),
             at,
         };
-        self.conclude(allocation, &original, station, Some((solved, offers, Proof::default())), constraints, ended)
+        let proof = Proof { solver: Some(AllocationSolver::Root), ..Proof::default() };
+        self.conclude(allocation, &original, station, Some((solved, offers, proof)), constraints, ended)
     }
 
     /// Half bands in the proportions of the basis, of the same geometric mean as the present ones.

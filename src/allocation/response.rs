@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::bands::{Reach, Scaling};
+use super::corners::{Band, Corners, Places};
 use super::correction::{About, Correction, Follows};
 use super::cost::Priced;
 use super::reject_fit::RejectFit;
@@ -551,6 +552,28 @@ pub(super) fn is_straight(surrogate: &Surrogate) -> bool {
 
 pub(super) fn shapes_of(dimension: &Dimension) -> Option<InputShape> {
     shapes(dimension.distribution()).pop()
+}
+
+impl Responses {
+    /// Follows the formula itself in the worst cases that its surface does not tell, from the places that earlier stations know, which it
+    /// adds to.
+    pub(super) fn follow_corners(&mut self, problem: &Problem, known: &mut BTreeMap<usize, [Places; 2]>) {
+        let band = |d: usize| {
+            let Reach { middle, half, lean } = self.reach[d];
+            Band { dimension: d, middle, half, lean, sigma: self.dimensions[d].sigma() }
+        };
+        let bands: Vec<Band> = self.varying.iter().map(|&d| band(d)).collect();
+        for (c, of) in self.of.iter_mut().enumerate() {
+            let Some((worst, nominal)) = of.worst.as_mut().filter(|worst| worst.is_off()).zip(of.nominal) else {
+                continue;
+            };
+            let places = known.remove(&c).unwrap_or_default();
+            if let Some(corners) = Corners::of(problem, c, nominal, bands.clone(), worst.places(), places) {
+                known.insert(c, corners.places());
+                worst.follow(corners);
+            }
+        }
+    }
 }
 
 impl Responses {

@@ -205,12 +205,32 @@ pub struct Attainable {
     pub because: Vec<String>,
 }
 
+/// The solver that an answer comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum AllocationSolver {
+    /// Newton's method on the multipliers, where costs and requirements are sums over the tolerances.
+    DualNewton,
+    /// The same for sums that have the values and slopes of the requirements, again and again until they agree.
+    Separable,
+    /// L-BFGS in an augmented Lagrangian for nominal values and tolerances at once, and the tolerances polished by the others.
+    AugmentedLagrangian,
+    /// Branch and bound over lists of processes.
+    BranchAndBound,
+    /// The root of one unknown, by which tolerances in fixed proportions are multiplied.
+    Root,
+}
+
 /// The evidence that nothing is cheaper.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(remote = "Self")]
 #[non_exhaustive]
 pub struct Proof {
+    /// The solver that found the tolerances; None where none were found.
+    pub solver: Option<AllocationSolver>,
     /// The largest violation of the conditions of Karush, Kuhn and Tucker; None where everything is chosen from lists.
     #[serde(rename = "kkt_residual")]
     pub residual: Option<f64>,

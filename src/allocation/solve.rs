@@ -14,6 +14,7 @@ use super::closed_form::closed_form;
 use super::constraint::{Constraint, Linearised, kept};
 use super::cost::Priced;
 use super::loss::{QualityLoss, losses_at};
+use super::minimise::swarmed;
 use super::response::Responses;
 use super::separable::{Row, Separable};
 use super::setup::SetUp;
@@ -74,6 +75,8 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const MOST_WORK: usize = 100_000;
 /// Ends whose costs differ by a smaller part are one.
 const SAME_END: f64 = 1e-6;
+/// Different ends beyond which a swarm is asked where to begin.
+const MOST_ENDS: usize = 2;
 /// The difference that other orders of the same sums may make.
 const RESERVE: f64 = 1e-13;
 /// A tolerance so near its bound is at it.
@@ -171,16 +174,19 @@ impl Setting<'_> {
             begun += 1;
             let found = self.usable(&start, &tight).and_then(|start| self.descend(&start));
             ends.extend(found.iter().filter(|end| end.converged && kept(end.value)).map(|end| end.cost));
-            let better = |best: &Solved| {
-                (!kept(best.value) && found.as_ref().is_some_and(|found| found.value < best.value))
-                    || found.as_ref().is_some_and(|found| kept(found.value) && found.cost < best.cost * (1.0 - 1e-9))
-            };
-            if best.as_ref().is_none_or(better) {
-                best = found.or(best);
-            }
+            best = found.filter(|found| cheaper(found, best.as_ref())).or(best);
             if (self.stopped)() {
                 break;
             }
+        }
+        // Starts that disagree, or find nothing, leave it to a swarm to say where to begin.
+        let feasible = best.as_ref().is_some_and(|best| kept(best.value));
+        let confused = !one_start && (!feasible || several(&ends) > MOST_ENDS);
+        if let Some(start) = confused.then(|| self.swarmed(&bounds)).flatten() {
+            begun += 1;
+            let found = self.usable(&start, &tight).and_then(|start| self.descend(&start));
+            ends.extend(found.iter().filter(|end| end.converged && kept(end.value)).map(|end| end.cost));
+            best = found.filter(|found| cheaper(found, best.as_ref())).or(best);
         }
         let best = best.filter(|best| kept(best.value)).map(|best| {
             let reached = ends.iter().filter(|&&cost| cost <= best.cost * (1.0 + SAME_END)).count();
@@ -208,6 +214,25 @@ impl Setting<'_> {
             .collect()
         };
         [loose.to_vec(), tight.to_vec()].into_iter().chain((0..BETWEEN).map(between)).collect()
+    }
+
+    /// The best place of a swarm: what keeps all constraints by its cost, and before that what breaks the worst of them least. None where the
+    /// search is not one from everywhere, or would take long.
+    fn swarmed(&self, bounds: &[[f64; 2]]) -> Option<Vec<f64>> {
+        let n = self.responses.varying().len();
+        let work = self.priced.len() * n * n * self.constraints.len();
+        if !self.anywhere || work > MOST_WORK || (self.stopped)() {
+            return None;
+        }
+        let tolerances = |x: &[f64]| x.iter().map(|x| x.exp()).collect::<Vec<f64>>();
+        let dearest = self.cost(&bounds.iter().map(|&[low, _]| low).collect::<Vec<f64>>()).abs();
+        let function = |x: &[f64]| {
+            let at = tolerances(x);
+            let value = self.value(&at);
+            if kept(value) { self.cost(&at) } else { dearest.max(1.0) * value }
+        };
+        let logarithms: Vec<[f64; 2]> = bounds.iter().map(|bounds| bounds.map(f64::ln)).collect();
+        swarmed(&function, &logarithms).map(|x| self.within(&tolerances(&x)))
     }
 
     /// Where the search found nothing that keeps all constraints and the tightest tolerances do: as far from these towards the start as they
@@ -427,6 +452,21 @@ impl Setting<'_> {
         }
         (least, at)
     }
+}
+
+/// Whether an end is better than the best so far: nearer to what is required, or cheaper.
+fn cheaper(found: &Solved, best: Option<&Solved>) -> bool {
+    best.is_none_or(|best| {
+        (!kept(best.value) && found.value < best.value) || (kept(found.value) && found.cost < best.cost * (1.0 - 1e-9))
+    })
+}
+
+/// How many different costs there are.
+fn several(ends: &[f64]) -> usize {
+    let mut ends = ends.to_vec();
+    ends.sort_by(f64::total_cmp);
+    ends.dedup_by(|high, low| *high <= *low * (1.0 + SAME_END));
+    ends.len()
 }
 
 /// The use of the constraints, by their multipliers, by one more of a group's tolerance in `ln T`.

@@ -7,9 +7,11 @@
 //!
 //! The place is that of the descents with which a search of the extremes begins; the slope is that of the envelope theorem. At the
 //! station itself the true worst case is known where interval arithmetic encloses the formula: `W` is multiplied by what the true one is
-//! of it there, so that a search that comes to rest keeps the true one. Source of the correction: N. M. Alexandrov, R. M. Lewis,
+//! of it there, so that a search that comes to rest keeps the true one. Where the two differ and the model is cheap, `W` is that of the
+//! formula itself at [its corners](super::corners). Source of the correction: N. M. Alexandrov, R. M. Lewis,
 //! Optimization and Engineering 2 (2001).
 
+use super::corners::Corners;
 use crate::extremes::{Model, Region};
 use crate::surrogate::Surrogate;
 
@@ -28,7 +30,14 @@ pub(super) struct WorstCase {
     rise: f64,
     /// The corrections from the surface's reach below and above to the true one: a factor, and what is added.
     corrections: [(f64, f64); 2],
+    /// The true worst case below and above the nominal value at the station.
+    reached: Option<[f64; 2]>,
+    /// The formula itself, where the surface is not it.
+    corners: Option<Corners>,
 }
+
+/// A correction by less than this part is what the bounds of the true worst case leave open.
+const SURE: f64 = 1e-9;
 
 impl WorstCase {
     /// Of a surface with the bands of its dimensions, where the true worst case reaches so far below and above the nominal value; None where a
@@ -50,18 +59,46 @@ impl WorstCase {
         let surface = Model { base: vec![0.0; n], scale: vec![1.0; n], parts, products };
         let sides = [surface.clone(), surface.negated()];
         let (varying, rise) = (varying.to_vec(), surrogate.centre - nominal);
-        let mut worst = Self { sides, bands, varying, rise, corrections: [(1.0, 0.0); 2] };
-        if let Some(reached) = reached {
-            let ones = vec![1.0; worst.varying.iter().max().map_or(0, |&last| last + 1)];
-            let of = |above: bool| {
-                let (found, truth) = (worst.reach(&ones, above).0, reached[usize::from(above)]);
-                let factor = truth / found;
-                let near = found > 0.0 && (1.0 / NEAR..=NEAR).contains(&factor);
-                if near { (factor, 0.0) } else { (1.0, truth - found) }
-            };
-            worst.corrections = [of(false), of(true)];
-        }
+        let mut worst = Self { sides, bands, varying, rise, corrections: [(1.0, 0.0); 2], reached, corners: None };
+        worst.correct();
         Some(worst)
+    }
+
+    /// Corrects what is found at the station to the true worst case there.
+    fn correct(&mut self) {
+        let Some(reached) = self.reached else { return };
+        self.corrections = [(1.0, 0.0); 2];
+        let ones = vec![1.0; self.varying.iter().max().map_or(0, |&last| last + 1)];
+        let of = |above: bool| {
+            let (found, truth) = (self.reach(&ones, above).0, reached[usize::from(above)]);
+            let factor = truth / found;
+            let near = found > 0.0 && (1.0 / NEAR..=NEAR).contains(&factor);
+            if near { (factor, 0.0) } else { (1.0, truth - found) }
+        };
+        self.corrections = [of(false), of(true)];
+    }
+
+    /// Whether the true worst case is known, and the surface is off.
+    pub(super) fn is_off(&self) -> bool {
+        let off = |&(factor, more): &(f64, f64)| (factor - 1.0).abs() > SURE || more != 0.0;
+        self.reached.is_some() && self.corrections.iter().any(off)
+    }
+
+    /// The places of the surface's extremes below and above, by coordinates of the bands in `[-1, 1]`.
+    pub(super) fn places(&self) -> [Vec<f64>; 2] {
+        let end = |sign: f64| self.bands.iter().map(|[middle, half, _]| middle + sign * half).collect();
+        let region = Region { lower: end(-1.0), upper: end(1.0) };
+        let place = |side: &Model| {
+            let at = side.least_in(&region).into_iter().zip(&self.bands);
+            at.map(|(u, [middle, half, _])| ((u - middle) / half).clamp(-1.0, 1.0)).collect()
+        };
+        self.sides.each_ref().map(place)
+    }
+
+    /// Follows the formula itself from here.
+    pub(super) fn follow(&mut self, corners: Corners) {
+        self.corners = Some(corners);
+        self.correct();
     }
 
     /// How far it reaches beyond the nominal value, above or below, at these factors of all tolerances; and how that grows with the
@@ -72,6 +109,10 @@ impl WorstCase {
 
     /// The same with all nominal values moved by `shifts` sigmas, beyond the nominal value as it was.
     pub(super) fn reach_moved(&self, factors: &[f64], shifts: &[f64], above: bool) -> (f64, Vec<(usize, f64)>) {
+        let (factor, more) = self.corrections[usize::from(above)];
+        if let Some((reach, slopes)) = self.corners.as_ref().and_then(|of| of.reach(factors, shifts, above)) {
+            return (factor * reach + more, slopes.into_iter().map(|(d, slope)| (d, factor * slope)).collect());
+        }
         let (side, sign) = (&self.sides[usize::from(above)], if above { 1.0 } else { -1.0 });
         let end = |sign: f64| {
             let at = |(&[middle, half, lean], &d): (&[f64; 3], &usize)| {
@@ -81,7 +122,6 @@ impl WorstCase {
         };
         let region = Region { lower: end(-1.0), upper: end(1.0) };
         let at = side.least_in(&region);
-        let (factor, more) = self.corrections[usize::from(above)];
         let slope = |j: usize| {
             let held = at[j] == region.lower[j] || at[j] == region.upper[j];
             let [middle, half, lean] = self.bands[j];

@@ -30,7 +30,7 @@ pub struct Account {
     pub possible_interactions: usize,
     /// Interactions that were examined one by one.
     pub examined: usize,
-    /// Probes of two points that move all dimensions, by which interactions were sought.
+    /// Probes that move all dimensions, of one point each or two, by which interactions were sought.
     pub probes: usize,
     /// Points that check the surrogate.
     pub checks: usize,
@@ -114,7 +114,7 @@ impl fmt::Display for Account {
             (0, 0) if self.rest != ClimbEnd::Reached => format!("no interaction of {possible} examined"),
             (0, 0) => format!("no interactions of {possible} needed"),
             (0, direct) => format!("{direct} of {possible} interactions examined one by one"),
-            (probes, 0) => format!("interactions sought by {probes} probes of 2 points that move all dimensions"),
+            (probes, 0) => format!("interactions sought by {probes} probes that move all dimensions"),
             (probes, direct) => format!("{probes} probes, {direct} of {possible} interactions examined one by one"),
         });
         parts.push(format!("{} points check", self.checks));

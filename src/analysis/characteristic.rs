@@ -6,13 +6,12 @@ use serde::{Serialize, Serializer};
 
 use super::coverage_intervals::CoverageIntervals;
 use super::errors::of_yield;
-use super::inspection_risks::InspectionRisks;
 use super::linear::Linear;
 use super::remainder::Remainder;
 use super::shares::Shares;
-use super::sobol::{EstimatedShare, SobolIndices};
+use super::sobol::SobolIndices;
 use super::{SampledModel, SamplingInterval, SurfaceShares, Verification, VerificationKind, YieldSource};
-use crate::capability::{Capability, CapabilityShape, Law};
+use crate::capability::{Capability, CapabilityShape, EstimatedShare, InspectionRisks, Law};
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};

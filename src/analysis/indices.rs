@@ -12,9 +12,10 @@
 use std::collections::HashMap;
 
 use super::CharacteristicAnalysis;
-use super::sobol::{EstimatedShare, FactorIndices, IndexSource, SobolIndices};
+use super::sobol::{FactorIndices, IndexSource, SobolIndices};
 use super::verified::VerificationKind;
 use crate::assembly::Run;
+use crate::capability::EstimatedShare;
 use crate::correlation::factors;
 use crate::method::{Options, Order, Outcome};
 use crate::problem::Problem;

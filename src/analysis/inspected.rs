@@ -1,11 +1,8 @@
 //! The risks of an inspection: from the law that the yield comes from, beside the sample of the model where there is one.
 
-use super::inspection_risks::InspectionRisks;
-use super::sobol::EstimatedShare;
 use super::{CharacteristicAnalysis, YieldSource};
-use crate::capability::{Law, Risks, Tails, guard_for};
+use crate::capability::{EstimatedShare, InspectionRisks, Law, Risks, Tails, acceptance, guard_for};
 use crate::characteristic::SpecLimits;
-use crate::distribution::standard_normal;
 use crate::inspection::{Guard, Inspection};
 use crate::law::SurfaceLaw;
 use crate::verification::WeightedSample;
@@ -101,20 +98,6 @@ fn of_point(x: f64, limits: SpecLimits, gauge: f64, guard: f64) -> Risks {
         false_reject: if good { 1.0 - accepted } else { 0.0 },
         error: 0.0,
     }
-}
-
-/// The probability that a part with this true value is accepted.
-fn acceptance(x: f64, limits: SpecLimits, gauge: f64, guard: f64) -> f64 {
-    let below = |end: f64| match gauge > 0.0 {
-        true => standard_normal::cdf((end - x) / gauge),
-        false => f64::from(u8::from(x <= end)),
-    };
-    let strictly_below = |end: f64| match gauge > 0.0 {
-        true => standard_normal::cdf((end - x) / gauge),
-        false => f64::from(u8::from(x < end)),
-    };
-    let [low, high] = [limits.lower().map(|lower| lower + guard), limits.upper().map(|upper| upper - guard)];
-    (high.map_or(1.0, below) - low.map_or(0.0, strictly_below)).max(0.0)
 }
 
 fn told(

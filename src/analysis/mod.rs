@@ -10,7 +10,6 @@ mod errors;
 mod fallback;
 mod indices;
 mod inspected;
-mod inspection_risks;
 mod interval;
 mod jumps;
 pub(crate) mod law_at;
@@ -39,6 +38,7 @@ mod warnings;
 mod written;
 mod yield_source;
 
+pub use crate::capability::{EstimatedShare, InspectionRisks};
 pub use crate::extremes::{Coordinate, Extreme, Extremes, ExtremesProof, Place};
 pub use crate::law::{Branch, LawError, LawFigure};
 pub use crate::moments::{Contributions, Sampled};
@@ -47,11 +47,10 @@ pub use crate::verification::{Crossing, FoundSwitch, OutputCorrelation, Share, V
 pub use account::Account;
 pub use characteristic::{CharacteristicAnalysis, Interaction, Missing, Sensitivity};
 pub use coverage_intervals::CoverageIntervals;
-pub use inspection_risks::InspectionRisks;
 pub use remainder::Remainder;
 pub use sampled_model::SampledModel;
 pub use sampling_interval::SamplingInterval;
-pub use sobol::{EstimatedShare, FactorIndices, IndexSource, SobolIndices};
+pub use sobol::{FactorIndices, IndexSource, SobolIndices};
 pub use surface::{Fit, NoFit, Surface};
 pub use surface_law::SurfaceShares;
 pub(crate) use surface_law::{law_over, surface_law};

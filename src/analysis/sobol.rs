@@ -2,18 +2,8 @@
 
 use serde::{Serialize, Serializer};
 
+use crate::capability::EstimatedShare;
 use crate::verification::Share;
-
-/// A share that is estimated: of the variance, or of all parts.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub struct EstimatedShare {
-    /// Its value; an estimate from a sample may be below 0 by its error.
-    pub value: f64,
-    /// Three of these reach the truth; None where nothing is known of it.
-    pub error: Option<f64>,
-}
 
 /// The source of Sobol' indices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -86,6 +86,9 @@ enum Basis {
     Products,
     /// With powers of the known surface.
     Powers,
+    /// The exponential of a regression on products, for values of one sign: products and powers of the inputs are sums there (Box and Cox
+    /// 1964).
+    Logarithm,
 }
 
 /// The regressions of one characteristic, one for every part, and its known surface with mean and sigma.
@@ -95,7 +98,10 @@ pub(super) struct Beside<'p> {
     surface: Option<(&'p Surrogate, Moments)>,
     /// Whether the moments of the surface are exact.
     exact: bool,
+    /// None where the values are not of one sign and a logarithm is wanted of them.
     parts: Vec<Sparse>,
+    /// The sign of values that are fitted by their logarithm.
+    sign: f64,
     rows: usize,
     /// By how many sigmas the regressions are off three sigma out, at points that they have not seen.
     far: f64,
@@ -184,10 +190,12 @@ impl<'p> Strides<'p> {
         whole
     }
 
-    /// Nothing yet, of one characteristic: its surface as it is, a regression on products, and one with powers of the surface too.
+    /// Nothing yet, of one characteristic: its surface as it is, a regression on products, one with powers of the surface too, and one of
+    /// the logarithm.
     pub(super) fn beside(&self, c: usize) -> Vec<Beside<'p>> {
-        let kinds = [Basis::Surface, Basis::Products, Basis::Powers].map(|kind| self.kind(c, kind));
-        kinds.into_iter().filter(|beside| beside.kind == Basis::Products || beside.surface.is_some()).collect()
+        let kinds = [Basis::Surface, Basis::Products, Basis::Powers, Basis::Logarithm].map(|kind| self.kind(c, kind));
+        let alone = |kind: Basis| matches!(kind, Basis::Products | Basis::Logarithm);
+        kinds.into_iter().filter(|beside| alone(beside.kind) || beside.surface.is_some()).collect()
     }
 
     fn kind(&self, c: usize, kind: Basis) -> Beside<'p> {
@@ -202,8 +210,9 @@ impl<'p> Strides<'p> {
         order.sort_by(|&a, &b| share(b).total_cmp(&share(a)).then(a.cmp(&b)));
         let exact = surface.as_ref().is_some_and(|(_, found)| found.sampled.is_none());
         let surface = surface.map(|(surrogate, found)| (surrogate, found.moments));
-        let chaos = Chaos::new(plan.inputs().shapes(), &order, surface.as_ref().map(|_| kind == Basis::Powers));
-        Beside { kind, chaos, surface, exact, parts: Vec::new(), rows: 0, far: 0.0 }
+        let known = surface.as_ref().filter(|_| kind != Basis::Logarithm);
+        let chaos = Chaos::new(plan.inputs().shapes(), &order, known.map(|_| kind == Basis::Powers));
+        Beside { kind, chaos, surface, exact, parts: Vec::new(), sign: 1.0, rows: 0, far: 0.0 }
     }
 
     /// The estimates by the points, the regressions fitted anew while they are few.
@@ -285,6 +294,16 @@ impl<'p> Strides<'p> {
             .filter_map(|point| Some((place(point), known.value(point, c)?)))
             .take(FITTED)
             .collect();
+        beside.rows = self.rows();
+        if beside.kind == Basis::Logarithm {
+            let strided = || self.strides.iter().flat_map(|stride| &stride.y[c]).filter(|y| y.is_finite());
+            let all = |sign: f64| paid.iter().map(|(_, y)| y).chain(strided()).all(|y| y * sign > 0.0);
+            let Some(sign) = [1.0, -1.0].into_iter().find(|&sign| all(sign)) else {
+                beside.parts.clear();
+                return;
+            };
+            beside.sign = sign;
+        }
         beside.parts = (0..PARTS)
             .map(|part| {
                 if let Some((_, moments)) = beside.surface.as_ref().filter(|_| beside.kind == Basis::Surface) {
@@ -299,18 +318,20 @@ impl<'p> Strides<'p> {
                         y.push(stride.y[c][row]);
                     }
                 }
+                if beside.kind == Basis::Logarithm {
+                    y.iter_mut().for_each(|y| *y = y.abs().ln());
+                }
                 let surface = beside.surface(&u, y.len());
                 beside.chaos.fit(Places { u: &u, surface: &surface }, &y)
             })
             .collect();
-        beside.rows = self.rows();
         let seen: Vec<(Vec<f64>, f64)> =
             far.iter().filter_map(|point| Some((place(point), known.value(point, c)?))).collect();
         let columns: Vec<Vec<f64>> = (0..n).map(|j| seen.iter().map(|(u, _)| u[j]).collect()).collect();
         let surface = beside.surface(&columns, seen.len());
         let places = Places { u: &columns, surface: &surface };
         let off = |sparse: &Sparse| {
-            let values = beside.chaos.values(sparse, places, seen.len());
+            let values = beside.of(sparse, places, seen.len());
             values.iter().zip(&seen).map(|(s, (_, y))| (y - s).abs()).fold(0.0, f64::max)
         };
         let off = beside.parts.iter().map(off).sum::<f64>() / PARTS as f64;
@@ -320,6 +341,9 @@ impl<'p> Strides<'p> {
 
     /// The figures, in a unit of origin and scale; None where none is known.
     fn figures(&self, c: usize, beside: Option<&Beside<'_>>, [origin, scale]: [f64; 2]) -> Option<Figures> {
+        if beside.is_some_and(|beside| beside.parts.is_empty()) {
+            return None;
+        }
         let limits = self.problem.characteristics()[c].limits();
         let sides = |y: f64| {
             [limits.lower().is_some_and(|lower| y < lower), limits.upper().is_some_and(|upper| y > upper)]
@@ -442,12 +466,12 @@ impl<'p> Strides<'p> {
             (mean, (square / (REPLICATES * (REPLICATES - 1)) as f64).sqrt())
         };
         let squares: Option<Vec<[f64; 2]>> = match self.problem.correlation() {
-            None => {
+            None if beside.kind != Basis::Logarithm => {
                 let surface = beside.surface.as_ref().map(|(surrogate, moments)| (*surrogate, moments.sigma()));
                 let shapes = self.outcome.plan.inputs().shapes();
                 beside.parts.iter().map(|sparse| beside.chaos.squares(sparse, shapes, surface)).collect()
             }
-            Some(_) => None,
+            _ => None,
         };
         for index in 0..TERMS {
             let exact = squares.as_ref().filter(|_| index < 2).map(|squares| {
@@ -480,12 +504,21 @@ impl Beside<'_> {
         rises.into_iter().map(|rise| (surrogate.centre + rise - moments.mean()) / moments.sigma()).collect()
     }
 
+    /// The values of one of its regressions.
+    fn of(&self, sparse: &Sparse, places: Places<'_>, rows: usize) -> Vec<f64> {
+        let mut values = self.chaos.values(sparse, places, rows);
+        if self.kind == Basis::Logarithm {
+            values.iter_mut().for_each(|value| *value = self.sign * value.exp());
+        }
+        values
+    }
+
     /// At every point the regression that has not seen it.
     fn values(&self, stride: &Stride) -> Vec<f64> {
         let rows = REPLICATES * stride.rows;
         let surface = self.surface(&stride.u, rows);
         let places = Places { u: &stride.u, surface: &surface };
-        let each: Vec<Vec<f64>> = self.parts.iter().map(|sparse| self.chaos.values(sparse, places, rows)).collect();
+        let each: Vec<Vec<f64>> = self.parts.iter().map(|sparse| self.of(sparse, places, rows)).collect();
         (0..rows).map(|row| each[(row / stride.rows) % PARTS][row]).collect()
     }
 }

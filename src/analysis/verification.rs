@@ -12,10 +12,11 @@ use super::indices::UNTRUSTED;
 use super::verified::{TRUSTED, VarianceShare, Verification, VerificationKind};
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::capability::{Capability, Law};
-use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome};
+use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome, interpolated};
 use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::summary::RunSummary;
+use crate::surrogate::Surrogate;
 use crate::time::Instant;
 use crate::verification::{
     CORE, Checked, CheckedFigures, Crossing, SampledFigures, Target, Verified, most_points, most_points_of_shares,
@@ -39,6 +40,9 @@ const AGREES: f64 = 2.0;
 const UNKNOWN: f64 = 0.1;
 /// A switch is worth a warning from one assembly in ten million on.
 const SELDOM: f64 = 1e-7;
+/// The share of the variance of a correlated dimension of which a method that integrates knows none: it is neither idle nor does it get
+/// check points of its own.
+const ORDINARY: f64 = 0.01;
 /// The largest error of a difference, in roundings of the value at the means.
 const ROUNDINGS: f64 = 8.0;
 
@@ -252,13 +256,15 @@ fn check(
 ) -> (RunSummary, Vec<NonRepeatable>) {
     let varying = outcome.plan.varying();
     let begun = Instant::now();
-    let shares: Vec<Vec<f64>> =
-        characteristics.iter().map(|one| varying.iter().map(|&d| one.share(d).unwrap_or(0.0)).collect()).collect();
-    let targets: Vec<Target<'_>> = (outcome.fitted.iter().zip(&shares).enumerate())
-        .map(|(c, (fitted, shares))| {
-            let surrogate = fitted.surrogate.as_ref().filter(|_| open.contains(&c));
-            Target { surrogate, shares }
-        })
+    let integrated: Vec<Option<Surrogate>> = (0..characteristics.len()).map(|c| interpolated(outcome, c)).collect();
+    let surface = |c: usize| outcome.fitted[c].surrogate.as_ref().or(integrated[c].as_ref());
+    let shares = |(one, integrated): (&CharacteristicAnalysis, &Option<Surrogate>)| -> Vec<f64> {
+        let unknown = if integrated.is_some() { ORDINARY } else { 0.0 };
+        varying.iter().map(|&d| one.share(d).unwrap_or(unknown)).collect()
+    };
+    let shares: Vec<Vec<f64>> = characteristics.iter().zip(&integrated).map(shares).collect();
+    let targets: Vec<Target<'_>> = (shares.iter().enumerate())
+        .map(|(c, shares)| Target { surrogate: surface(c).filter(|_| open.contains(&c)), shares })
         .collect();
     let seed = options.seed.unwrap_or(Options::SEED);
     let Some(checked) = verify_by_checks(problem, varying, &targets, seed, budget, run) else {
@@ -272,8 +278,7 @@ fn check(
     for &c in open {
         // Points without an answer say nothing.
         if !not_given(c) {
-            let surrogate = outcome.fitted[c].surrogate.as_ref();
-            let exact = surrogate.and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
+            let exact = surface(c).and_then(|of| Some(of.contributions(outcome.plan.inputs())?.moments));
             judge(&mut characteristics[c], &checked, &checked.characteristics[c], exact);
         }
     }

@@ -17,17 +17,33 @@ pub fn in_blocks(
     out: &mut Responses,
     block: impl Fn(&Points, std::ops::Range<usize>, &mut Responses) + Sync,
 ) {
-    let rows = request.points.rows();
+    in_ranges(request.points.rows(), request.outputs.len(), run, out, |range, out| block(request.points, range, out));
+}
+
+/// The same of `rows` points and `outputs` outputs, wherever the points stand.
+pub(crate) fn in_ranges(
+    rows: usize,
+    outputs: usize,
+    run: &Run<'_>,
+    out: &mut Responses,
+    block: impl Fn(std::ops::Range<usize>, &mut Responses) + Sync,
+) {
     let evaluate = |first: usize| {
         let range = first..(first + BLOCK).min(rows);
-        let mut answers = Responses::open(range.len(), request.outputs.len());
+        let mut answers = Responses::open(range.len(), outputs);
         if !run.stopped() {
-            block(request.points, range, &mut answers);
+            block(range, &mut answers);
         }
         (first, answers)
     };
     if rows <= BLOCK {
-        *out = evaluate(0).1;
+        // Rows without an answer are as good as new.
+        if !out.is_untouched() || (out.rows(), out.outputs()) != (rows, outputs) {
+            *out = Responses::open(rows, outputs);
+        }
+        if !run.stopped() {
+            block(0..rows, out);
+        }
     } else {
         let starts: Vec<usize> = (0..rows).step_by(BLOCK).collect();
         let answered: Vec<_> = starts.into_par_iter().map(evaluate).collect();
@@ -38,7 +54,6 @@ pub fn in_blocks(
     if !run.tells() {
         return;
     }
-    let finished: Vec<usize> =
-        (0..rows).filter(|&row| (0..request.outputs.len()).all(|output| !out.is_open(row, output))).collect();
+    let finished: Vec<usize> = (0..rows).filter(|&row| (0..outputs).all(|output| !out.is_open(row, output))).collect();
     run.finished(&finished, out);
 }

@@ -27,7 +27,7 @@ mod states;
 mod switch;
 
 pub use account::{ModelInfo, NonRepeatable};
-pub(crate) use blocks::in_blocks;
+pub(crate) use blocks::{in_blocks, in_ranges};
 pub use bounds::Bounds;
 pub use closure::Closure;
 pub use composite::{Composite, CompositeError, Parts, Source};
@@ -73,6 +73,21 @@ pub trait AssemblyFunction: Send + Sync {
     /// [`Run::finished`]; between rows [`Run::stopped`] says when to return with the rest unanswered, which is no
     /// error.
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses);
+
+    /// [`evaluate`](Self::evaluate) of points whose columns stand apart, `rows` values in each, so that no copy is needed; `false`,
+    /// and nothing done, where it takes no such points, as by default.
+    #[doc(hidden)]
+    fn evaluate_columns(
+        &self,
+        rows: usize,
+        columns: &[&[f64]],
+        outputs: &[usize],
+        run: &Run<'_>,
+        out: &mut Responses,
+    ) -> bool {
+        let _ = (rows, columns, outputs, run, out);
+        false
+    }
 
     /// Exact derivatives of `outputs` at a point, in the order asked; None for an output of which the function does not
     /// know them at any point.

@@ -59,6 +59,16 @@ impl Responses {
         }
     }
 
+    /// Whether nothing is answered or noted yet. Answers from the first row on are seen at once.
+    pub(crate) fn is_untouched(&self) -> bool {
+        self.errors.is_empty()
+            && (self.extra, self.reused, self.retried) == (0, 0, 0)
+            && self.non_repeatable.is_empty()
+            && self.revoked.is_empty()
+            && self.gradients.is_empty()
+            && self.values.iter().all(|value| value.is_nan())
+    }
+
     /// Number of points.
     pub fn rows(&self) -> usize {
         self.rows
@@ -90,6 +100,11 @@ impl Responses {
     /// The derivatives of one entry by every input, where the model sent them.
     pub fn gradient(&self, row: usize, output: usize) -> Option<&[f64]> {
         self.gradients.get(&(row, output)).map(Vec::as_slice)
+    }
+
+    /// Whether the model sent derivatives.
+    pub(crate) fn has_gradients(&self) -> bool {
+        !self.gradients.is_empty()
     }
 
     /// Answers the entries from a row on, as [`set`](Self::set) does one by one.

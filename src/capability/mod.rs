@@ -1,12 +1,14 @@
 //! Yield and capability: how a characteristic's distribution lies between its limits.
 
+mod inspection_risks;
 mod law;
 mod quantiles;
 mod risks;
 
+pub use inspection_risks::{EstimatedShare, InspectionRisks};
 pub use law::Law;
 pub use quantiles::{PROBABILITIES, Quantiles};
-pub(crate) use risks::{Risks, Tails, guard_for};
+pub(crate) use risks::{Risks, Tails, acceptance, guard_for, guard_reaching};
 
 use std::sync::LazyLock;
 

@@ -12,6 +12,7 @@
 //! that any law will do, one of measured values too. Source: Deaver (1995), NCSLI RP-19; by integrals over the part in place of the error.
 
 use crate::characteristic::SpecLimits;
+use crate::distribution::standard_normal;
 use crate::pearson::LEGENDRE;
 
 /// Errors of the gauge beyond so many of its sigmas do not occur: 1e-19 of all.
@@ -58,6 +59,11 @@ impl Risks {
 pub(crate) fn guard_for(tails: &Tails<'_>, limits: SpecLimits, gauge: f64, rate: f64) -> Option<f64> {
     let accepted =
         |guard: f64| sides(tails, limits, gauge, guard).iter().map(|side| side.false_accept().0).sum::<f64>();
+    guard_reaching(&accepted, limits, gauge, rate)
+}
+
+/// The same of any share of bad parts that are accepted, which falls with the guard.
+pub(crate) fn guard_reaching(accepted: &dyn Fn(f64) -> f64, limits: SpecLimits, gauge: f64, rate: f64) -> Option<f64> {
     if accepted(0.0) <= rate {
         return Some(0.0);
     }
@@ -78,6 +84,20 @@ pub(crate) fn guard_for(tails: &Tails<'_>, limits: SpecLimits, gauge: f64, rate:
         }
     }
     Some(high)
+}
+
+/// The probability that a part with this true value is accepted.
+pub(crate) fn acceptance(x: f64, limits: SpecLimits, gauge: f64, guard: f64) -> f64 {
+    let below = |end: f64| match gauge > 0.0 {
+        true => standard_normal::cdf((end - x) / gauge),
+        false => f64::from(u8::from(x <= end)),
+    };
+    let strictly_below = |end: f64| match gauge > 0.0 {
+        true => standard_normal::cdf((end - x) / gauge),
+        false => f64::from(u8::from(x < end)),
+    };
+    let [low, high] = [limits.lower().map(|lower| lower + guard), limits.upper().map(|upper| upper - guard)];
+    (high.map_or(1.0, below) - low.map_or(0.0, strictly_below)).max(0.0)
 }
 
 /// One limit: the lower one, or the upper one as the lower one of the mirrored axis.

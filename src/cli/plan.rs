@@ -85,7 +85,9 @@ const NAMED: usize = 8;
 const EXACT: &str = "exact derivatives: the means, and the nominal values where they differ";
 
 pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
-    let study = study::read(&asked.study, Externals::default())?;
+    // Points that are written are answered elsewhere, and need no model.
+    let externals = Externals::default().with_unanswered(asked.write_points.is_some());
+    let study = study::read(&asked.study, externals)?;
     let mut files = Files::of(&asked.study.study, &study, None);
     let destination = files.output(&asked.output)?;
     let written = files.file(asked.write_points.as_deref())?;

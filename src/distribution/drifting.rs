@@ -177,7 +177,7 @@ impl Probability for Drifting {
     }
 
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
-        ziggurat::normals(rng, out);
+        ziggurat::normals(rng, ziggurat::STANDARD, out);
         for value in out {
             let lot: f64 = rng.random();
             *value = self.mean + self.within * *value + self.drift * (2.0 * lot - 1.0);

@@ -182,7 +182,7 @@ impl Probability for Lognormal {
     }
 
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
-        ziggurat::normals(rng, out);
+        ziggurat::normals(rng, ziggurat::STANDARD, out);
         out.iter_mut().for_each(|value| *value = self.x(*value));
     }
 }

@@ -101,7 +101,6 @@ impl Probability for Normal {
     }
 
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
-        ziggurat::normals(rng, out);
-        ziggurat::place(self.mean, self.sigma, out);
+        ziggurat::normals(rng, (self.mean, self.sigma), out);
     }
 }

@@ -106,7 +106,6 @@ impl Probability for Uniform {
     }
 
     fn fill(&self, rng: &mut dyn Rng, out: &mut [f64]) {
-        ziggurat::uniforms(rng, out);
-        ziggurat::place(self.mean, self.half, out);
+        ziggurat::uniforms(rng, (self.mean, self.half), out);
     }
 }

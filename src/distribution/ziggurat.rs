@@ -18,6 +18,9 @@ const LOOK: usize = 32;
 /// Random words that are drawn at once.
 const WORDS: usize = 256;
 
+/// Mean and sigma of the standard normal distribution.
+pub(crate) const STANDARD: (f64, f64) = (0.0, 1.0);
+
 /// Widths of the layers and the density at their ends.
 struct Layers {
     width: [f64; LAYERS + 1],
@@ -37,38 +40,57 @@ static NORMAL: LazyLock<Layers> = LazyLock::new(|| {
     Layers { width, height: width.map(density) }
 });
 
-/// Fills `out` with independent values of the standard normal distribution, by the ziggurat (Marsaglia and Tsang 2000) in the
+/// Fills `out` with independent values of the normal distribution of a mean and sigma, by the ziggurat (Marsaglia and Tsang 2000) in the
 /// form of Doornik (2005): a layer by ten bits of a word, a place in it by 52 others.
 ///
 /// `rand_distr` has the same, one value after the other; most of the time is the call. Here one in 300 wants more than a table
 /// and a comparison, and comes after the block.
-pub(crate) fn normals(rng: &mut dyn Rng, out: &mut [f64]) {
+pub(crate) fn normals(rng: &mut dyn Rng, (mean, sigma): (f64, f64), out: &mut [f64]) {
     let layers = &*NORMAL;
+    let placed = |z: f64| mean + sigma * z;
     if out.len() < FEW {
-        return out.iter_mut().for_each(|value| *value = layers.draw(rng));
+        return out.iter_mut().for_each(|value| *value = placed(layers.draw(rng)));
     }
-    let (mut words, mut doubtful) = ([[0; 8]; WORDS], [false; WORDS]);
+    let (mut words, mut widths) = ([[0; 8]; WORDS], [[0.0; WORDS]; 2]);
+    let mut doubtful = [false; WORDS / LOOK];
     for out in out.chunks_mut(WORDS) {
-        let (words, doubtful) = (&mut words[..out.len()], &mut doubtful[..out.len()]);
-        rng.fill_bytes(words.as_flattened_mut());
-        on_this_processor(Inner { layers, words: &*words, out: &mut *out, doubtful: &mut *doubtful });
-        for (chunk, doubtful) in doubtful.chunks(LOOK).enumerate() {
-            if doubtful.iter().fold(false, |any, one| any | one) {
-                for place in (LOOK * chunk..).take(doubtful.len()).filter(|place| doubtful[place - LOOK * chunk]) {
-                    let settled = layers.settled(u64::from_le_bytes(words[place]), rng);
-                    out[place] = settled.unwrap_or_else(|| layers.draw(rng));
+        // All of them, so that the loops have a length that is known; what is not drawn is not read.
+        let drawn = out.len();
+        rng.fill_bytes(words[..drawn].as_flattened_mut());
+        let mut rest = [0.0; WORDS];
+        let whole = if drawn == WORDS { out.as_mut_array() } else { None };
+        let values = whole.unwrap_or(&mut rest);
+        on_this_processor(Inner {
+            layers,
+            words: &words,
+            widths: &mut widths,
+            place: (mean, sigma),
+            out: &mut *values,
+            doubtful: &mut doubtful,
+        });
+        for (chunk, _) in doubtful.iter().enumerate().filter(|(_, doubtful)| **doubtful) {
+            for place in (LOOK * chunk..LOOK * (chunk + 1)).take_while(|&place| place < drawn) {
+                let word = u64::from_le_bytes(words[place]);
+                if !layers.holds(word) {
+                    values[place] = placed(layers.settled(word, rng).unwrap_or_else(|| layers.draw(rng)));
                 }
             }
+        }
+        if drawn < WORDS {
+            out.copy_from_slice(&rest[..drawn]);
         }
     }
 }
 
-/// The values of words that lie in the inner part of their layer, and which do not.
+/// The values of words that lie in the inner part of their layer, and where some do not.
 struct Inner<'a> {
     layers: &'a Layers,
-    words: &'a [[u8; 8]],
-    out: &'a mut [f64],
-    doubtful: &'a mut [bool],
+    words: &'a [[u8; 8]; WORDS],
+    /// Room for the outer and the inner width of every word's layer.
+    widths: &'a mut [[f64; WORDS]; 2],
+    place: (f64, f64),
+    out: &'a mut [f64; WORDS],
+    doubtful: &'a mut [bool; WORDS / LOOK],
 }
 
 impl Work for Inner<'_> {
@@ -77,17 +99,22 @@ impl Work for Inner<'_> {
     /// Tables first, one by one; then what goes side by side.
     #[inline(always)]
     fn work(self) {
-        let Self { layers, words, out, doubtful } = self;
-        let (mut outer, mut inner) = ([0.0; WORDS], [0.0; WORDS]);
-        for ((outer, inner), word) in outer.iter_mut().zip(&mut inner).zip(words) {
-            let layer = usize::from(u16::from_le_bytes([word[0], word[1]])) % LAYERS;
+        let Self { layers, words, widths: [outer, inner], place: (mean, sigma), out, doubtful } = self;
+        for ((outer, inner), word) in outer.iter_mut().zip(inner.iter_mut()).zip(words) {
+            let layer = (u64::from_le_bytes(*word) & (LAYERS as u64 - 1)) as usize;
             (*outer, *inner) = (layers.width[layer], layers.width[layer + 1]);
         }
-        for ((out, word), outer) in out.iter_mut().zip(words).zip(&outer) {
-            *out = symmetric(u64::from_le_bytes(*word)) * outer;
-        }
-        for ((doubtful, x), inner) in doubtful.iter_mut().zip(&*out).zip(&inner) {
-            *doubtful = x.abs() >= *inner;
+        let looks = (words.as_chunks::<LOOK>().0.iter())
+            .zip(outer.as_chunks::<LOOK>().0.iter().zip(inner.as_chunks::<LOOK>().0))
+            .zip(out.as_chunks_mut::<LOOK>().0.iter_mut().zip(doubtful));
+        for ((words, (outer, inner)), (out, doubtful)) in looks {
+            let mut any = 0;
+            for lane in 0..LOOK {
+                let x = symmetric(u64::from_le_bytes(words[lane])) * outer[lane];
+                any |= u64::from(x.abs() >= inner[lane]);
+                out[lane] = mean + sigma * x;
+            }
+            *doubtful = any != 0;
         }
     }
 }
@@ -97,6 +124,13 @@ impl Layers {
     fn place(&self, word: u64) -> (usize, f64) {
         let layer = (word & (LAYERS as u64 - 1)) as usize;
         (layer, symmetric(word) * self.width[layer])
+    }
+
+    /// Whether a word lies in the inner part of its layer.
+    #[inline(always)]
+    fn holds(&self, word: u64) -> bool {
+        let (layer, x) = self.place(word);
+        x.abs() < self.width[layer + 1]
     }
 
     fn draw(&self, rng: &mut dyn Rng) -> f64 {
@@ -137,18 +171,19 @@ fn symmetric(word: u64) -> f64 {
     f64::from_bits(word >> 12 | 0x4000_0000_0000_0000) - 3.0
 }
 
-/// Fills `out` with independent numbers evenly spread between -1 and 1.
-pub(crate) fn uniforms(rng: &mut dyn Rng, out: &mut [f64]) {
+/// Fills `out` with independent numbers evenly spread about a mean.
+pub(crate) fn uniforms(rng: &mut dyn Rng, (mean, half): (f64, f64), out: &mut [f64]) {
     let mut words = [[0; 8]; WORDS];
     for out in out.chunks_mut(WORDS) {
         let words = &mut words[..out.len()];
         rng.fill_bytes(words.as_flattened_mut());
-        on_this_processor(Even { words, out });
+        on_this_processor(Even { words, place: (mean, half), out });
     }
 }
 
 struct Even<'a> {
     words: &'a [[u8; 8]],
+    place: (f64, f64),
     out: &'a mut [f64],
 }
 
@@ -159,8 +194,9 @@ impl Work for Even<'_> {
     fn work(self) {
         /// Half a step, so that -1 is as far as 1.
         const MIDDLE: f64 = 1.0 / (1u64 << 52) as f64;
+        let (mean, half) = self.place;
         for (value, word) in self.out.iter_mut().zip(self.words) {
-            *value = symmetric(u64::from_le_bytes(*word)) + MIDDLE;
+            *value = mean + half * (symmetric(u64::from_le_bytes(*word)) + MIDDLE);
         }
     }
 }

@@ -62,9 +62,9 @@ pub(super) fn sketch(law: &Pearson, limits: [Option<f64>; 2], width: usize, unic
     lines
 }
 
-/// Bars of a sample, turned by a right angle, two intervals a line.
-pub(super) fn bars(bins: &Histogram, sigma: f64) -> DataTable {
-    let groups: Vec<(f64, f64)> = (bins.counts.chunks(2).zip(bins.edges.chunks(2)))
+/// Bars of a sample, turned by a right angle, some intervals a line.
+pub(super) fn bars(bins: &Histogram, sigma: f64, together: usize) -> DataTable {
+    let groups: Vec<(f64, f64)> = (bins.counts.chunks(together).zip(bins.edges.chunks(together)))
         .map(|(counts, edges)| (edges[0], counts.iter().sum::<u64>() as f64))
         .collect();
     let most = groups.iter().map(|&(_, count)| count).fold(1.0, f64::max);

@@ -133,6 +133,7 @@ struct Label {
     text: String,
     left: f64,
     row: usize,
+    side: Side,
 }
 
 /// Rows of labels in which none lies over another, each as near to its place as the width allows.
@@ -148,6 +149,7 @@ impl Labels {
             Side::After => x + APART,
         };
         let left = left.min(width - wide).max(0.0);
+        // The room is for the widest font; in it the text stands where its place is.
         let free = |row: usize| {
             self.0.iter().filter(|one| one.row == row).all(|one| {
                 let end = one.left + LETTER * one.text.chars().count() as f64;
@@ -155,7 +157,7 @@ impl Labels {
             })
         };
         let row = (0..=self.0.len()).find(|&row| free(row)).unwrap_or(0);
-        self.0.push(Label { class, text, left, row });
+        self.0.push(Label { class, text, left, row, side });
     }
 
     fn rows(&self) -> usize {
@@ -164,8 +166,14 @@ impl Labels {
 
     fn svg(&self) -> String {
         let text = |one: &Label| {
-            let (y, text) = (ROW * (one.row + 1) as f64 - 3.0, escaped(&one.text));
-            format!("<text class=\"{}\" x=\"{:.1}\" y=\"{y}\">{text}</text>\n", one.class, one.left)
+            let (y, wide) = (ROW * (one.row + 1) as f64 - 3.0, LETTER * one.text.chars().count() as f64);
+            let (part, anchor) = match one.side {
+                Side::Before => (1.0, " text-anchor=\"end\""),
+                Side::Over => (0.5, " text-anchor=\"middle\""),
+                Side::After => (0.0, ""),
+            };
+            let (class, x, text) = (one.class, one.left + part * wide, escaped(&one.text));
+            format!("<text class=\"{class}\" x=\"{x:.1}\" y=\"{y}\"{anchor}>{text}</text>\n")
         };
         self.0.iter().map(text).collect()
     }
@@ -239,7 +247,14 @@ fn drawing(of: &SpreadChart, frame: &Frame) -> Option<String> {
         let x = scale.at(limit);
         labels.put("name", format!("{name} {}", plain(limit)), (x, inside), width);
         if let Some(rejected) = rejected {
-            labels.put("rejected", rejected.clone(), (x, side), width);
+            // Where there is no room beyond the limit the text stands inside, and says on which side they are.
+            let wide = LETTER * rejected.chars().count() as f64 + APART;
+            let (text, side) = match (name, x) {
+                ("lower", x) if x < wide => (format!("{rejected} below"), inside),
+                ("upper", x) if x + wide > width => (format!("{rejected} above"), inside),
+                _ => (rejected.clone(), side),
+            };
+            labels.put("rejected", text, (x, side), width);
         }
     }
     let mean = of.places.iter().find(|place| place.1 == "mean").filter(|place| marked(place.0));
@@ -354,10 +369,10 @@ fn range(scale: &Extent, limits: [Option<f64>; 2], (name, [from, to]): (&str, [f
     let (text, line) = if b - a > wide + 24.0 {
         let middle = 0.5 * (a + b);
         let (before, after) = (middle - 0.5 * wide, middle + 0.5 * wide);
-        (middle - 0.5 * wide + 0.5 * APART, format!("M{a:.1} {y}H{before:.1}M{after:.1} {y}H{b:.1}"))
+        ((middle, " text-anchor=\"middle\""), format!("M{a:.1} {y}H{before:.1}M{after:.1} {y}H{b:.1}"))
     } else {
         let text = if b + wide < scale.width { b + APART } else { (a - wide).max(0.0) };
-        (text, format!("M{a:.1} {y}H{b:.1}"))
+        ((text, ""), format!("M{a:.1} {y}H{b:.1}"))
     };
     let _ = writeln!(svg, "<path class=\"range\" d=\"{line}M{a:.1} {}v8M{b:.1} {}v8\"/>", y - 4.0, y - 4.0);
     let [lower, upper] = limits.map(|limit| limit.map(|limit| scale.at(limit)));
@@ -369,6 +384,7 @@ fn range(scale: &Extent, limits: [Option<f64>; 2], (name, [from, to]): (&str, [f
             let _ = writeln!(svg, "<path class=\"over\" d=\"M{from:.1} {y}H{to:.1}\"/>");
         }
     }
-    let _ = writeln!(svg, "<text x=\"{text:.1}\" y=\"{:.1}\">{}</text>", y + 4.0, escaped(name));
+    let (x, anchor) = text;
+    let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{:.1}\"{anchor}>{}</text>", y + 4.0, escaped(name));
     svg
 }

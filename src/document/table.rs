@@ -106,6 +106,11 @@ impl<'a, T> Columns<'a, T> {
         self.with(["", title, title], [true, true], cell)
     }
 
+    /// A column for a terminal, where there is something to show.
+    pub fn terminal(self, shows: bool, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
+        self.with(["", title, title], [shows, false], cell)
+    }
+
     /// A column for people, where there is something to show.
     pub fn shown_if(self, shows: bool, title: &'static str, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.with(["", title, title], [shows; 2], cell)
@@ -151,6 +156,15 @@ impl DataTable {
     /// says what the rest is.
     pub fn at_most(mut self, most: [usize; 2], rest: String) -> Self {
         (self.most, self.rest) = (most, rest);
+        self
+    }
+
+    /// The table for a terminal that has no room for the columns of these titles, and no file of its own.
+    pub fn without(mut self, titles: &[&str]) -> Self {
+        self.name = "";
+        for column in &mut self.columns {
+            column.terminal &= !titles.contains(&column.title);
+        }
         self
     }
 

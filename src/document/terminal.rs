@@ -96,7 +96,8 @@ impl Page {
             Element::Table(table) => self.table(table),
             Element::Chart(Chart::Spread(spread)) => {
                 if let Some(bins) = spread.bins.as_ref().filter(|_| spread.sampled) {
-                    self.table(&bars(bins, spread.sigma));
+                    let together = if self.style.detail == Detail::Full { 2 } else { 4 };
+                    self.table(&bars(bins, spread.sigma, together));
                 } else if let Some(law) = &spread.law {
                     let picture = sketch(law, spread.limits, self.style.width, self.style.unicode);
                     picture.into_iter().for_each(|line| self.folded(&line.into()));

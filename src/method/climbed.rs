@@ -34,7 +34,7 @@ pub struct Climbed {
     pub refined: Vec<usize>,
     /// Pairs bought for themselves.
     pub direct: usize,
-    /// Probes that moved all dimensions, of two evaluations each.
+    /// Probes that moved all dimensions, of one evaluation each or two.
     pub probes: usize,
     /// Points that checked.
     pub checks: usize,
@@ -47,6 +47,8 @@ pub struct Climbed {
     /// How many sigmas model and surrogate differ by three sigma out along the steepest line, infinite where the model has no
     /// value there; None where the tails were not examined.
     pub tails: Vec<Option<f64>>,
+    /// The same without what a parabola explains that the points that check have seen.
+    pub(crate) beyond: Vec<Option<f64>>,
     /// The share of the variance that interactions have which the screening did not find, where it was needed.
     pub unscreened: Vec<Option<f64>>,
     /// The points that were looked at there, by characteristic.

@@ -251,8 +251,10 @@ impl Estimate<'_> {
                 kurtosis.min(6.0 * root) + check.effect(3) + 6.0 * left,
             ],
         );
-        let far = climbed.tails[self.c].map_or(0.0, SurrogateCheck::far_out);
-        add(&mut self.errors, [far * sigma, far * sigma, 6.0 * far, 20.0 * far]);
+        let [far, beyond] =
+            [&climbed.tails, &climbed.beyond].map(|tails| tails[self.c].map_or(0.0, SurrogateCheck::far_out));
+        // Sigma has a parabola in what is left at the checks; the others depend on how it lies to the slopes.
+        add(&mut self.errors, [far * sigma, beyond * sigma, 6.0 * far, 20.0 * far]);
         self.sources.push(ErrorSource::Checked { points: check.points });
         self.powers();
         let scatter = climbed.noise[self.c].unwrap_or(0.0);

@@ -1,4 +1,4 @@
-//! Fitting on the narrower side: where many dimensions drive few inputs of a costly model, the surface is fitted over these inputs.
+//! Fitting on the narrower side: where many dimensions drive few inputs of a model, the surface is fitted over these inputs.
 //!
 //! With formulas `z(x)` a characteristic is `y(x) = F(z(x))`. Where N dimensions drive m < N inputs, the method runs over `z`, whose moments
 //! follow from the formulas, and its surface `q(z)` stands for the model: `q(z(x))` is made of formulas, and the same method over `x` then
@@ -49,11 +49,14 @@ pub(crate) enum Narrowed {
 }
 
 impl<'p> Narrow<'p> {
-    /// None where no costly model is driven, its inputs are no fewer than the dimensions, or the options want something of the
+    /// None where no model is driven, its inputs are no fewer than the dimensions, or the options want something of the
     /// dimensions themselves.
     pub(crate) fn of(problem: &'p Problem, options: &Options) -> Option<Self> {
         let composite = problem.function().driven()?;
-        let suits = matches!(options.method, Method::SecondOrder | Method::SixN | Method::Full | Method::Auto);
+        // Of a model that costs nothing `auto` samples what it does not find in few points.
+        let samples = options.method == Method::Auto && !problem.function().signature().costly;
+        let suits =
+            !samples && matches!(options.method, Method::SecondOrder | Method::SixN | Method::Full | Method::Auto);
         let plain = options.step.is_none() && options.pairs.is_none() && options.stencil.is_none();
         let plain = plain && options.derivatives != Some(DerivativeSource::Exact) && !options.all_sensitivities;
         if !suits || !plain {

@@ -70,13 +70,13 @@ const LANES: usize = 256;
 
 fn evaluate(block: &Block<'_>, out: &mut Responses) {
     let (force, moment) = (block.column(0), block.column(1));
-    let mut sums = [[0.0; LANES]; 2];
+    let (mut sums, mut room) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
     for first in (0..block.rows()).step_by(LANES) {
         let rows = first..(first + LANES).min(block.rows());
         let inputs = std::array::from_fn(|input| &block.input(input)[rows.clone()]);
         let [forces, moments] = &mut sums;
         let (forces, moments) = (&mut forces[..rows.len()], &mut moments[..rows.len()]);
-        on_this_processor(Balance { inputs, forces: &mut *forces, moments: &mut *moments });
+        on_this_processor(Balance { inputs, forces: &mut *forces, moments: &mut *moments, room: &mut room });
         for (column, values) in [(force, forces), (moment, moments)] {
             if let Some(column) = column {
                 out.set_rows(first, column, values);
@@ -89,6 +89,8 @@ struct Balance<'a> {
     inputs: [&'a [f64]; 13],
     forces: &'a mut [f64],
     moments: &'a mut [f64],
+    /// For an angle and its cosine.
+    room: &'a mut [[f64; LANES]; 2],
 }
 
 impl Work for Balance<'_> {
@@ -96,9 +98,8 @@ impl Work for Balance<'_> {
 
     #[inline(always)]
     fn work(self) {
-        let Self { inputs, forces, moments } = self;
+        let Self { inputs, forces, moments, room: [angles, shares] } = self;
         let rows = forces.len();
-        let (mut angles, mut shares) = ([0.0; LANES], [0.0; LANES]);
         let (angles, shares) = (&mut angles[..rows], &mut shares[..rows]);
         let (r, l) = (&inputs[input::R][..rows], &inputs[input::L][..rows]);
         forces.fill(0.0);

@@ -18,7 +18,7 @@ use std::ops::Range;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::assembly::{AssemblyFunction, Input, Output, Points, Request, Responses, Run, Signature, in_blocks};
+use crate::assembly::{AssemblyFunction, Input, Output, Request, Responses, Run, Signature, in_ranges};
 use crate::names::UnknownName;
 use crate::warning::Warning;
 
@@ -95,7 +95,7 @@ pub struct ModelOutput {
 /// A request to a model: some rows of points, and some of its outputs.
 #[derive(Debug)]
 pub(crate) struct Block<'a> {
-    points: &'a Points,
+    columns: &'a [&'a [f64]],
     rows: Range<usize>,
     outputs: &'a [usize],
 }
@@ -103,7 +103,7 @@ pub(crate) struct Block<'a> {
 impl Block<'_> {
     /// The values of one input.
     pub(crate) fn input(&self, index: usize) -> &[f64] {
-        &self.points.column(index)[self.rows.clone()]
+        &self.columns[index][self.rows.clone()]
     }
 
     /// Number of rows.
@@ -159,8 +159,21 @@ impl AssemblyFunction for BuiltIn {
     }
 
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
-        in_blocks(request, run, out, |points, rows, out| {
-            let block = Block { points, rows, outputs: request.outputs };
+        let points = request.points;
+        let columns: Vec<&[f64]> = (0..points.dimensions()).map(|dimension| points.column(dimension)).collect();
+        self.evaluate_columns(points.rows(), &columns, request.outputs, run, out);
+    }
+
+    fn evaluate_columns(
+        &self,
+        rows: usize,
+        columns: &[&[f64]],
+        outputs: &[usize],
+        run: &Run<'_>,
+        out: &mut Responses,
+    ) -> bool {
+        in_ranges(rows, outputs.len(), run, out, |rows, out| {
+            let block = Block { columns, rows, outputs };
             (self.model.evaluate)(&block, out);
             for (bound, passed) in self.model.bounds.iter().zip(&self.passed) {
                 let Some(column) = block.column(bound.output) else { continue };
@@ -170,6 +183,7 @@ impl AssemblyFunction for BuiltIn {
                 }
             }
         });
+        true
     }
 
     fn warnings(&self, outputs: &[usize]) -> Vec<Warning> {

@@ -4,13 +4,14 @@ use super::allocation::{
     AllocatedCharacteristic, AllocatedReport, AllocationReport, BeforeAfter, OfCharacteristic, OfDimension,
 };
 use super::figures::{Figures, Named};
+use super::glance::verdict;
 use super::head;
 use super::requirement::loud;
 use crate::allocation::{
     Allocated, Attainable, Bound, CostBasis, FrontRequirement, Goal, JointYield, Kept, Moved, ShadowPrice, Status,
 };
 use crate::analysis::CharacteristicAnalysis;
-use crate::document::number::{beside, index, known, plain, share, short, significant, yielded};
+use crate::document::number::{beside, index, known, plain, plural, share, short, significant, yielded};
 use crate::document::{
     Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
     PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
@@ -40,6 +41,9 @@ impl AllocationReport {
         if self.cost_after.is_none() {
             tolerances.view.clear();
         }
+        let mut section = Section::default();
+        section.table(self.before_after());
+        document.sections.push(section);
         let groups = [vec![tolerances], vec![self.recentred()], vec![self.requirements()]];
         for (group, tables) in groups.into_iter().enumerate() {
             let shown = tables.iter().any(|table| !table.view.is_empty());
@@ -59,7 +63,6 @@ impl AllocationReport {
             }
         }
         let mut section = Section::default();
-        section.table(self.before_after());
         self.loosest(&mut section);
         self.joint(&mut section);
         self.confirmed_by_samples(&mut section);
@@ -133,17 +136,22 @@ impl AllocationReport {
             ));
         }
         let sampled = self.confirmation.as_ref().map_or(0, |confirmation| confirmation.samples);
+        // A round of the allocation may ask a program more than once.
+        let batches = self
+            .run
+            .evaluator
+            .map_or(String::new(), |_| format!(", sent in {}", plural(self.run.stages as usize, "batch", "batches")));
         page.line(format!(
-            "{} evaluations in {} rounds{}{}{}",
+            "{} evaluations in {} rounds{batches}{}{}{}",
             self.run.evaluations.saturating_sub(sampled),
             self.rounds,
             head::beside(&self.run),
             match self.status {
                 Status::NoFeasiblePointFound => ", which end at tolerances that miss a requirement",
-                _ if self.confirmed && self.cost_after.is_some() => ", confirmed by the model",
+                _ if self.confirmed && self.cost_after.is_some() => "; moments re-evaluated at the optimum: agree",
                 _ => "",
             },
-            if sampled > 0 { format!("; {sampled} more to confirm") } else { String::new() }
+            if sampled > 0 { format!("; {sampled} more evaluations to confirm") } else { String::new() }
         ));
         let proof = &self.proof;
         if let Some(gap) = proof.gap {
@@ -162,10 +170,10 @@ impl AllocationReport {
                 let closed = if proof.closed_form { ", Lagrange's solution in closed form" } else { "" };
                 // The next power of ten, and no more than doubles tell.
                 let within = 10f64.powi(residual.max(LEAST).log10().ceil() as i32);
-                page.line(format!("conditions of Karush, Kuhn and Tucker kept within {within:.0e}{closed}"));
+                page.line(format!("KKT residual below {within:.0e}{closed}"));
             }
             Some(_) if self.cost_after.is_none() => {}
-            Some(_) => page.line("conditions of Karush, Kuhn and Tucker unknown: no cheaper tolerances were found"),
+            Some(_) => page.line("KKT residual unknown: no cheaper tolerances were found"),
             None => {}
         }
         if let (Some(starts), Some(reached)) = (proof.starts, proof.reached) {
@@ -173,7 +181,7 @@ impl AllocationReport {
                 Some(cost) => format!("; the next cheapest optimum costs {}", money(cost)),
                 None => String::new(),
             };
-            page.line(format!("the best of {starts} starts, of which {reached} ended here{other}"));
+            page.line(format!("{reached} of {starts} starts end at this optimum, the cheapest found{other}"));
         }
     }
 
@@ -225,7 +233,7 @@ impl AllocationReport {
         let named: Vec<String> = named.collect();
         if !named.is_empty() {
             let more = if priced.len() > MOST { ", ..." } else { "" };
-            section.note(format!("a bound that gives way by 1 % saves: {}{more}", named.join(", ")));
+            section.note(format!("shadow price of a bound, per 1 % of it: {}{more}", named.join(", ")));
         }
     }
 
@@ -322,32 +330,31 @@ impl AllocationReport {
             _ => 10f64.powf(sigma.filter(|sigma| *sigma > 0.0).map_or(0.0, f64::log10).floor() - 1.0),
         };
         let by = format!("{}{}", plain(step), unit.map(|unit| format!(" {unit}")).unwrap_or_default());
-        let part = |what: &str, price: Option<f64>| {
-            price.map(|price| format!("{what} by {by} saves {}", significant(price * step, 3)))
-        };
+        let part =
+            |what: &str, price: Option<f64>| price.map(|price| format!("{what} {}", significant(price * step, 3)));
         if price.of.both.is_none() && price.of.sigma.is_none() && price.of.widen != price.of.narrow {
             let saved = match price.of.widen {
                 Some(0.0) => {
-                    "wider by itself saves nothing, for another requirement holds the cost up as well".to_owned()
+                    "nothing for wider limits alone, because another requirement holds the cost too".to_owned()
                 }
-                Some(widen) => format!("wider by {by} saves {}", significant(widen * step, 3)),
-                None => "what it saves to widen it alone is not known".to_owned(),
+                Some(widen) => format!("{} for wider limits", significant(widen * step, 3)),
+                None => "unknown for wider limits alone".to_owned(),
             };
-            let lost =
-                price.of.narrow.map(|narrow| format!("; narrower by {by} costs {}", significant(narrow * step, 3)));
-            section.note(format!("{}: {saved}{}", short(&price.characteristic), lost.unwrap_or_default()));
+            let lost = price.of.narrow.map(|narrow| format!("; {} for narrower ones", significant(narrow * step, 3)));
+            let name = short(&price.characteristic);
+            section.note(format!("shadow price of {name} per {by}: {saved}{}", lost.unwrap_or_default()));
             return;
         }
         let two = one.is_some_and(|one| one.before.lower().is_some() && one.before.upper().is_some());
         let all = [
-            part("both limits wider", price.of.both.filter(|_| two)),
-            part("the lower limit lower", price.of.lower),
-            part("the upper limit higher", price.of.upper),
-            part("a larger sigma", price.of.sigma),
+            part("both limits", price.of.both.filter(|_| two)),
+            part("lower limit", price.of.lower),
+            part("upper limit", price.of.upper),
+            part("sigma", price.of.sigma),
         ];
         let all: Vec<String> = all.into_iter().flatten().collect();
         if !all.is_empty() {
-            section.note(format!("{}: {}", short(&price.characteristic), all.join(", ")));
+            section.note(format!("shadow price of {} per {by}: {}", short(&price.characteristic), all.join(", ")));
         }
     }
 
@@ -371,6 +378,12 @@ impl AllocationReport {
             .shown("sigma", move |row| scaled(row.2, row.2.sigma()))
             .shown("Cpk", |row| Cell::known(row.2.capability.and_then(|of| of.cpk), index))
             .shown("yield", |row| Cell::known(row.2.yield_(), |_| row.2.rejects().yield_text().unwrap_or_default()))
+            .terminal(!self.requirements.is_empty(), "verdict", |row| {
+                let kept = self.requirements.iter().filter(|kept| kept.characteristic == row.2.name());
+                let judged =
+                    kept.filter_map(|kept| if row.1 == "before" { Some(kept.of.before) } else { kept.of.after });
+                Cell { line: verdict(&judged.collect::<Vec<_>>()), ..Cell::empty() }
+            })
             .table("", rows)
     }
 
@@ -379,14 +392,11 @@ impl AllocationReport {
             return;
         }
         let of = |factor: Option<f64>| factor.map_or("no one factor".to_owned(), |factor| format!("{factor:.4}"));
-        let after = match self.loosest_scaling.after {
-            None => String::new(),
-            after => format!(", after by {}", of(after)),
-        };
-        section.line(format!(
-            "all tolerances together may be multiplied, before by {}{after}, until a requirement is just kept",
-            of(self.loosest_scaling.before)
-        ));
+        let before = of(self.loosest_scaling.before);
+        section.line(match self.loosest_scaling.after {
+            None => format!("margin: tolerances can be scaled by {before} before a requirement fails"),
+            after => format!("margin: tolerances can be scaled by {}; those before by {before}", of(after)),
+        });
     }
 
     fn joint(&self, section: &mut Section) {

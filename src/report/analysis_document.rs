@@ -2,6 +2,7 @@
 
 use super::figures::{Figures, Named};
 use super::head::{self, findings};
+use super::inspection::inspected;
 use super::output_correlation::{all_limits, together, together_table};
 use super::requirement::{judged, lines};
 use super::source::source;
@@ -48,7 +49,7 @@ impl Report {
 
     fn with_pairs(&self, pairs: usize) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
-        let evaluations = plural(self.analysis.run.evaluations as usize, "evaluation", "evaluations");
+        let evaluations = head::evaluations(&self.analysis.run);
         let varying = plural(self.analysis.varying, "varying dimension", "varying dimensions");
         document.line(format!(
             "{}: {evaluations}, {varying}{}",
@@ -276,7 +277,7 @@ impl CharacteristicAnalysis {
         ];
         let fit = if kind == "normal" { "normal".to_owned() } else { format!("Pearson type {kind}") };
         let words = match &self.density {
-            Some(table) => format!("Law of the surface{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
+            Some(table) => format!("Surface distribution{}{bars}; dashed: the Pearson fit ({fit}).", accuracy(table)),
             None => format!("{fit}{bars}."),
         };
         places.extend(self.mean().map(|mean| (mean, "mean", "mean")));
@@ -320,7 +321,9 @@ impl CharacteristicAnalysis {
             section.note(indices);
         }
         lines(self.requirements()).for_each(|line| section.note(line));
-        self.inspected(section);
+        if let Some(of) = &self.inspection {
+            inspected(section, of);
+        }
         let mut detail = Vec::new();
         // Of measured values they are performance indices, not those of a process in control.
         let names = if self.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
@@ -333,30 +336,6 @@ impl CharacteristicAnalysis {
             detail.note(format!("a normal fit would say: {}", shown(Rejects::new(normal.below, normal.above, None))));
         }
         section.detail(detail);
-    }
-
-    /// The parts that an inspection accepts and rejects wrongly.
-    fn inspected(&self, section: &mut Section) {
-        let Some(of) = &self.inspection else { return };
-        let gauge = format!("inspection with gauge sigma {}", plain(of.gauge));
-        let Some(guard) = of.guard else {
-            return section.note(format!("{gauge}: no guard band reaches the wanted share of bad parts accepted"));
-        };
-        let share = |of: Option<EstimatedShare>| known(of.map(|of| of.value), risk);
-        let accepted = limits(of.acceptance[0], of.acceptance[1]);
-        let guarded = if guard > 0.0 {
-            format!(", guard {}: accepted {accepted}", plain(significant(guard, 4).parse().unwrap_or(guard)))
-        } else {
-            String::new()
-        };
-        section.note(format!("{gauge}{guarded}"));
-        section.note(format!(
-            "  bad and accepted {}, good and rejected {}; {} accepted, of which {} are bad",
-            share(of.false_accept),
-            share(of.false_reject),
-            share(of.accepted),
-            share(of.bad_among_accepted)
-        ));
     }
 
     /// The rejects, with their error.
@@ -477,7 +456,7 @@ impl CharacteristicAnalysis {
 
     /// The interactions examined: how many, what they make, and the strongest.
     fn pairs(&self, section: &mut Section, pairs: usize) {
-        let (possible, examined) = (self.possible_interactions, self.interactions.len());
+        let (possible, examined) = (self.possible_interactions, self.examined());
         self.together(section);
         if let Some(of_model) = self.indices.as_ref().filter(|_| self.is_of_model()) {
             section.note(self.of_model(of_model));
@@ -621,16 +600,6 @@ fn quantile_table(law: &str, quantiles: &Quantiles, sigma: f64) -> DataTable {
         row(law.to_owned(), &probability),
         row("quantiles".to_owned(), &|(_, value)| Cell::number(*value, |value| beside(value, sigma))),
     ])
-}
-
-/// A share of parts: in percent, or per million where few.
-fn risk(share: f64) -> String {
-    /// From here on percent are read more easily.
-    const FEW: f64 = 1e-3;
-    match share {
-        share if share > 0.0 && share < FEW => format!("{} ppm", significant(1e6 * share, 3)),
-        share => format!("{} %", significant(100.0 * share, 4)),
-    }
 }
 
 /// Beside sigma, where nothing but zeros is 0.

@@ -1,14 +1,13 @@
 //! The tables of an analysis over all characteristics, dimensions and warnings.
 
 use super::figures::{Figures, Named};
-use super::requirement::loud;
+use super::glance::verdict;
 use super::{DimensionReport, Report, WarningReport};
 use crate::analysis::{CharacteristicAnalysis, EstimatedShare, InspectionRisks};
 use crate::capability::{Capability, Law};
 use crate::document::number::{UNKNOWN, carried, index, limits};
-use crate::document::{Blocks, Cell, Column, Columns, DataTable, Document, Line, Value};
+use crate::document::{Blocks, Cell, Column, Columns, DataTable, Document, Value};
 use crate::method::ErrorEstimate;
-use crate::verdict::Verdict;
 
 impl Report {
     /// A row for every characteristic: where it lies, its limits, and how it keeps them.
@@ -26,16 +25,7 @@ impl Report {
             }
             Cell::both(Value::Empty, one.rejects().with_error().unwrap_or_else(|| "unknown".to_owned()))
         };
-        // The worst of all requirements; where there is one target yield only, that one.
-        let verdict = |one: &Of<'_>| {
-            let worst =
-                one.requirements().into_iter().map(|judged| judged.verdict).max_by_key(|verdict| match verdict {
-                    Verdict::Met => 0,
-                    Verdict::Inconclusive => 1,
-                    Verdict::Missed => 2,
-                });
-            Cell::both(Value::Empty, worst.map_or(Line::default(), loud))
-        };
+        let verdict = |one: &Of<'_>| Cell::both(Value::Empty, verdict(&one.requirements()));
         let family = |one: &Of<'_>| match one.fitted() {
             None => [None, None],
             Some(Law::Point { .. }) => [Some("point"), None],

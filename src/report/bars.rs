@@ -37,8 +37,10 @@ pub(super) fn pareto(one: &CharacteristicAnalysis) -> (Bars, Option<String>) {
     // Bars are as long as the longest is wide; a negative share, of correlated dimensions, has none.
     let longest = all.first().map_or(1.0, size).max(f64::MIN_POSITIVE);
     let length = |share: f64| (1e4 * (share / longest).max(0.0)).round() / 1e2;
-    let row = |share: &Share| {
+    let mut sum = 0.0;
+    let mut row = |share: &Share| {
         let [linear, curvature, interaction] = share.1.map(length);
+        sum += size(share);
         Bar {
             name: share.0.clone(),
             parts: vec![
@@ -47,18 +49,14 @@ pub(super) fn pareto(one: &CharacteristicAnalysis) -> (Bars, Option<String>) {
                 (Fill::Interaction, [0.0, interaction]),
             ],
             text: format!("{} %", percent(size(share))),
-            remark: Line::default(),
+            remark: Line::from(format!("{} %", percent(sum))),
         }
     };
     let bars = Bars {
         caption: format!("Contributions to the variance of {}, strongest first", one.name()),
-        rows: all.iter().map(row).collect(),
+        rows: all.iter().map(&mut row).collect(),
         marks: Vec::new(),
-        legend: vec![
-            (Fill::Linear, "straight line"),
-            (Fill::Curvature, "curvature"),
-            (Fill::Interaction, "interaction"),
-        ],
+        legend: vec![(Fill::Linear, "linear"), (Fill::Curvature, "curvature"), (Fill::Interaction, "interaction")],
     };
     (bars, (!words.is_empty()).then(|| words.join("; ")))
 }
@@ -95,13 +93,7 @@ fn pareto_of_model(one: &CharacteristicAnalysis) -> Bars {
 /// The ranges below a density: mean \u{b1} 3 sigma, RSS, and the worst case as well as it is known.
 pub(super) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2])> {
     let around = |middle: Option<f64>, reach: Option<f64>| Some([middle? - reach?, middle? + reach?]);
-    let searched = one.extremes.as_ref().map(|found| [found.least.value, found.greatest.value]);
-    let proven = one.extremes.as_ref().is_some_and(Extremes::proven);
-    let worst = match searched {
-        Some(found) if proven => ("worst case, proven", Some(found)),
-        Some(found) => ("worst case found", Some(found)),
-        None => ("worst case, linear", one.worst_case),
-    };
+    let worst = worst_case(one).map_or(("worst case", None), |(name, ends)| (name, Some(ends)));
     [
         ("mean \u{b1} 3\u{3c3}", around(one.mean(), one.sigma().map(|sigma| 3.0 * sigma))),
         ("RSS", around(one.middle, one.rss)),
@@ -110,6 +102,17 @@ pub(super) fn ranges(one: &CharacteristicAnalysis) -> Vec<(String, [f64; 2])> {
     .into_iter()
     .filter_map(|(name, ends)| Some((name.to_owned(), ends.filter(|ends| ends[0] < ends[1])?)))
     .collect()
+}
+
+/// The worst case as well as it is known, and how it is known: proven, found by a search, or linear.
+pub(super) fn worst_case(one: &CharacteristicAnalysis) -> Option<(&'static str, [f64; 2])> {
+    let searched = one.extremes.as_ref().map(|found| [found.least.value, found.greatest.value]);
+    match (searched, one.proof().filter(|proof| proof.proven)) {
+        (Some(ends), Some(_)) => Some(("worst case, proven", ends)),
+        (None, Some(proof)) => Some(("worst case, proven", proof.bounds)),
+        (Some(ends), None) => Some(("worst case found", ends)),
+        (None, None) => Some(("worst case, linear", one.worst_case?)),
+    }
 }
 
 /// Worst case, RSS and three sigma on one scale with the limits; None where there is no extent.
@@ -123,7 +126,7 @@ pub(super) fn spans(one: &CharacteristicAnalysis) -> Option<Bars> {
     let intervals: Vec<(&str, [f64; 2])> = [
         ("worst case, linear", one.worst_case),
         (proven, found.map(|found| [found.least.value, found.greatest.value])),
-        ("no assembly lies beyond", one.proof().map(|proof| proof.bounds)),
+        ("worst case, proven bounds", one.proof().map(|proof| proof.bounds)),
         ("RSS", around(one.middle, one.rss)),
         (inflated, around(one.middle, one.inflated_rss)),
         ("RSS with shifted means", around(one.middle, one.mean_shift_rss)),

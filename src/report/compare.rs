@@ -3,12 +3,13 @@
 use serde::Serialize;
 
 use super::figures::{Figures as _, Named};
+use super::glance::{self, Glance};
 use super::{About, Head, head};
 use crate::compare::{Comparison, Errors, Figures, NotRun, RESOLVED, Ran};
 use crate::document::number::{known, significant, yielded};
 use crate::document::{
-    Blocks, Cell, Chart, Columns, DataTable, Document, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Section, Stroke,
-    Tone, Value,
+    Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Section,
+    Stroke, Tone, Value,
 };
 use crate::simulation::SimulatedCharacteristic;
 use crate::summary::RunSummary;
@@ -119,8 +120,12 @@ impl CompareReport {
     /// error over evaluations.
     pub(crate) fn document(&self) -> Document {
         let mut document = Document::titled(self.head.title.as_deref());
-        let stopped = head::beside(&self.run);
-        document.line(format!("reference: {} with {} points{stopped}", self.reference_method, self.reference_samples));
+        let (reference, samples, beside) = (self.reference_method, self.reference_samples, head::beside(&self.run));
+        // All methods of a program ask together: how often, and for how much, is what a cluster is sized by.
+        let all = self.run.evaluator.map_or(String::new(), |_| format!("; all: {}", head::evaluations(&self.run)));
+        document.line(format!("reference: {reference} with {samples} points{all}{beside}"));
+        document.gap();
+        document.table(glance::table(self.characteristics.iter().map(|one| Glance::sampled(&one.reference))));
         document.sections = self.characteristics.iter().map(ComparedReport::section).collect();
         if !self.not_run.is_empty() {
             let mut section = Section::default();
@@ -138,7 +143,7 @@ impl CompareReport {
 impl ComparedReport {
     fn section(&self) -> Section {
         let mut section = Section::of(&self.name, self.reference.unit());
-        section.words = ": how far off the reference, and which no other beats".to_owned();
+        section.words = ": errors against the reference; ● no other method beats it".to_owned();
         let of = &self.reference;
         section.remark(format!(
             "Reference: mean {}, sigma {}, skewness {}, kurtosis {}, yield {}.",
@@ -149,9 +154,10 @@ impl ComparedReport {
             known(of.yield_(), yielded),
         ));
         section.chart(Chart::Plot(self.plot()));
-        section.table(self.table());
+        section.detail(vec![Element::Table(self.table())]);
+        section.brief(vec![Element::Table(self.table().without(&["model s", "engine s"]))]);
         if self.methods.iter().any(|method| !method.error_vs_reference.resolved()) {
-            section.note("<: the reference is itself no surer than this, and does not tell the difference");
+            section.note("<: below two standard errors of the reference");
         }
         section
     }

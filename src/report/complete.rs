@@ -77,7 +77,7 @@ fn simulated(json: &Value, one: &SimulatedCharacteristic) {
         characteristic: "/name", samples: "/samples", failed: "/failed", error: "/error", mean: "/mean", sigma: "/sigma",
         skewness: "/skewness", kurtosis: "/kurtosis", quantiles: "/distribution/quantiles", yield_: "/yield",
         below: "/ppm_below", above: "/ppm_above", cp: "/cp", cpk: "/cpk", unfinished: "/unfinished", range: "/range",
-        histogram: "/histogram", control: "/control", indices: "/sobol",
+        histogram: "/histogram", control: "/control", indices: "/sobol", inspection: "/inspection",
     });
 }
 

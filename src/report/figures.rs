@@ -1,6 +1,6 @@
 //! The figures that documents ask of every result of a characteristic.
 
-use crate::analysis::CharacteristicAnalysis;
+use crate::analysis::{CharacteristicAnalysis, Missing};
 use crate::capability::{Capability, Law, Quantiles};
 use crate::characteristic::Characteristic;
 use crate::moments::Moments;
@@ -144,6 +144,11 @@ impl CharacteristicAnalysis {
     /// The distribution that has its moments; None where there is none.
     pub(super) fn fitted(&self) -> Option<&Law> {
         self.law.as_ref()?.as_ref().ok()
+    }
+
+    /// How many interactions were examined: not those whose points a stopped run left open.
+    pub(super) fn examined(&self) -> usize {
+        self.interactions.iter().filter(|pair| pair.missing != Some(Missing::NotEvaluated)).count()
     }
 
     /// Its quantiles: by the law of its surface, where there is one, by the Pearson fit elsewhere.

@@ -45,6 +45,21 @@ pub(super) fn beside(run: &RunSummary) -> String {
         + &stopped
 }
 
+/// Evaluations of an external program, and in how many rounds: every round waits for the answers of the one before, so that workers
+/// beyond the points of a round stay idle. Models of this process are left without: nothing there waits.
+pub(super) fn evaluations(run: &RunSummary) -> String {
+    let evaluations = plural(run.evaluations as usize, "evaluation", "evaluations");
+    match run.evaluator {
+        Some(_) if run.evaluations > 0 => format!("{evaluations} in {}", rounds(run)),
+        _ => evaluations,
+    }
+}
+
+/// In how many rounds points were sent.
+pub(super) fn rounds(run: &RunSummary) -> String {
+    plural(run.stages as usize, "round", "rounds")
+}
+
 /// The seed of a run, where there is one, as a part of a line.
 pub(super) fn seed(run: &RunSummary) -> String {
     run.seed.map_or(String::new(), |seed| format!(", seed {seed}"))

@@ -12,9 +12,11 @@ mod complete;
 pub(crate) mod csv;
 mod difference;
 mod figures;
+mod glance;
 mod head;
 #[cfg(feature = "html")]
 pub mod html;
+mod inspection;
 mod labels;
 mod output_correlation;
 mod rare;

@@ -3,13 +3,14 @@
 use serde::Serialize;
 
 use super::figures::Named;
+use super::glance::{self, Glance};
 use super::head::{self, seed};
 use super::output_correlation::all_limits;
 use super::requirement::{judged, lines};
 use super::{About, DimensionReport, Head, WarningReport, correlation};
 use crate::correlation::Pair;
 use crate::document::number::{known, plain, short, significant, yielded};
-use crate::document::{Blocks, Cell, Columns, DataTable, Document, Line, Section, Value};
+use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Line, Section, Value};
 use crate::problem::Problem;
 use crate::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
 use crate::sampling::Estimate;
@@ -66,6 +67,8 @@ impl RareReport {
             seed(&found.run),
             head::beside(&found.run)
         ));
+        document.gap();
+        document.table(glance::table(found.characteristics.iter().map(Glance::sought)));
         if let Some([low, high]) = found.joint_interval {
             let interval = format!("95 % interval {} to {}", yielded(low), yielded(high));
             document.note(all_limits(&known(found.joint, yielded), &interval, found.joint_requirement.as_ref()));
@@ -83,7 +86,8 @@ impl RareCharacteristic {
         let mut section = Section::of(self.name(), self.unit());
         let sides = [("below", &self.below), ("above", &self.above)];
         let sides: Vec<Side<'_>> = sides.into_iter().filter_map(|(side, of)| Some((side, of.as_ref()?))).collect();
-        section.table(self.table(&sides));
+        section.detail(vec![Element::Table(self.table(&sides))]);
+        section.brief(vec![Element::Table(self.table(&sides).without(&["plain sampling"]))]);
         if sides.is_empty() {
             section.note(if self.limited() { "its surrogate does not vary" } else { "no limit" });
             return section;

@@ -3,15 +3,18 @@
 use serde::Serialize;
 
 use super::figures::{Figures, Named, QUANTILES};
+use super::glance::{self, Glance};
 use super::head::{self, findings, seed};
+use super::inspection::inspected;
 use super::output_correlation::{all_limits_within, together};
 use super::requirement::{judged, lines};
 use super::{About, DimensionReport, Head, WarningReport, correlation};
+use crate::analysis::{EstimatedShare, InspectionRisks};
 use crate::capability::Law;
 use crate::correlation::Pair;
 use crate::document::number::{estimated, index, known, limits, percent, plain, significant, uncertainty, yielded};
 use crate::document::rejects::Rejects;
-use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Line, Section, SpreadChart};
+use crate::document::{Blocks, Cell, Chart, Columns, DataTable, Document, Element, Line, Section, SpreadChart};
 use crate::moments::Moments;
 use crate::pearson::Pearson;
 use crate::problem::Problem;
@@ -50,7 +53,9 @@ impl SimulationReport {
     }
 }
 
-/// Fewer intervals are no picture.
+/// Inputs whose Sobol' indices a terminal shows.
+const FACTORS: usize = 8;
+/// Fewer intervals make no picture.
 const INTERVALS: usize = 5;
 
 impl SimulationReport {
@@ -60,7 +65,9 @@ impl SimulationReport {
         let mut document = Document::titled(self.head.title.as_deref());
         let Simulation { sampler, run, samples, characteristics, .. } = &self.simulation;
         let (seed, rest) = (seed(run), head::beside(run));
-        document.line(format!("{}: {samples} points{seed}{rest}", sampler.method()));
+        document.line(format!("{}: {samples} points{seed}{rest}; ± is one standard error", sampler.method()));
+        document.gap();
+        document.table(glance::table(characteristics.iter().map(Glance::sampled)));
         if let Some(joint) = &self.simulation.joint {
             document.note(all_limits_within(joint, self.simulation.joint_requirement.as_ref()));
         }
@@ -78,8 +85,12 @@ type Row = (&'static str, Option<Estimate>, Option<[f64; 2]>);
 impl SimulatedCharacteristic {
     fn section(&self, warnings: &[WarningReport]) -> Section {
         let mut section = Section::of(self.name(), self.unit());
+        if self.limited() {
+            section.words = format!(", limits {}", limits(self.lower(), self.upper()));
+        }
         section.blocks = findings(warnings, |name| name == Some(self.name()));
-        section.table(self.estimates());
+        section.detail(vec![Element::Table(self.estimates())]);
+        section.brief(vec![Element::Table(self.brief_estimates())]);
         section.table(self.histogram_table());
         self.sobol(&mut section);
         if self.samples == 0 {
@@ -101,7 +112,16 @@ impl SimulatedCharacteristic {
             self.kept(&mut section, yield_);
         }
         lines(self.requirements()).for_each(|line| section.note(line));
-        self.picture(&mut section);
+        if let Some(of) = &self.inspection {
+            inspected(&mut section, of);
+        }
+        let mut picture = Vec::new();
+        self.picture(&mut picture);
+        match self.indices {
+            None => section.blocks.extend(picture),
+            // The indices that were asked for need the room.
+            Some(_) => section.detail(picture),
+        }
         section
     }
 
@@ -129,6 +149,28 @@ impl SimulatedCharacteristic {
         ));
     }
 
+    /// Moments on the left, quantiles on the right.
+    fn brief_estimates(&self) -> DataTable {
+        if self.samples == 0 {
+            return DataTable::untitled::<6>([]);
+        }
+        let moments =
+            [("mean", self.mean), ("sigma", self.sigma), ("skewness", self.skewness), ("kurtosis", self.kurtosis)];
+        let quantiles = ["0.135 %", "1 %", "5 %", "median", "95 %", "99 %", "99.865 %"].into_iter().zip(self.quantiles);
+        let cells = |(name, of): (&str, Option<Estimate>)| {
+            let error = of.and_then(|of| of.standard_error);
+            let value = Cell::number(of.map(|of| of.value), |value| estimated(value, error));
+            let error = error.map_or(String::new(), |error| format!("± {}", uncertainty(error)));
+            [Cell::text(name), value, Cell::text(error)]
+        };
+        let mut left = moments.into_iter().map(cells);
+        let rows = quantiles.map(cells).map(|[name, value, error]| {
+            let [of, moment, moment_error] = left.next().unwrap_or_else(|| std::array::from_fn(|_| Cell::empty()));
+            [of, moment, moment_error, name, value, error]
+        });
+        DataTable::untitled(rows)
+    }
+
     fn estimates(&self) -> DataTable {
         let moments: [Row; 4] = [
             ("mean", self.mean, None),
@@ -139,6 +181,16 @@ impl SimulatedCharacteristic {
         let quantiles = QUANTILES.into_iter().zip(self.quantiles).map(|(name, estimate)| (name, estimate, None));
         let seen = if self.samples == 0 { 0 } else { moments.len() + QUANTILES.len() };
         let plain = |value: Option<f64>| value.map(|value| Estimate { value, standard_error: None });
+        let risk = |name: &'static str, share: fn(&InspectionRisks) -> Option<EstimatedShare>| {
+            let of = self.inspection.as_ref()?;
+            Some((name, share(of).map(|of| Estimate { value: of.value, standard_error: of.error }), None))
+        };
+        let risks: [Option<Row>; 4] = [
+            risk("false_accept", |of| of.false_accept),
+            risk("false_reject", |of| of.false_reject),
+            risk("accepted", |of| of.accepted),
+            risk("bad_among_accepted", |of| of.bad_among_accepted),
+        ];
         let rest: [Row; 3] = [
             ("yield", plain(self.yield_()), self.yield_.map(|share| share.interval)),
             ("ppm_below", plain(self.ppm_below()), None),
@@ -155,7 +207,7 @@ impl SimulatedCharacteristic {
             .column("standard_error", "standard error", move |row| Cell::number(error(row), uncertainty))
             .data("interval_low", |row| Cell::data(row.2.map(|[low, _]| low)))
             .data("interval_high", |row| Cell::data(row.2.map(|[_, high]| high)))
-            .table("estimates", moments.into_iter().chain(quantiles).chain(rest))
+            .table("estimates", moments.into_iter().chain(quantiles).chain(rest).chain(risks.into_iter().flatten()))
             .seen((0..seen).collect())
     }
 
@@ -185,7 +237,11 @@ impl SimulatedCharacteristic {
                 .data("total_low", |factor| Cell::data(factor.total.interval[0]))
                 .data("total_high", |factor| Cell::data(factor.total.interval[1]))
                 .table("sobol", of)
-                .seen(order),
+                .seen(order)
+                .at_most(
+                    [FACTORS, usize::MAX],
+                    format!("and {} weaker; -v shows all", of.len().saturating_sub(FACTORS)),
+                ),
         );
         let rest = 1.0 - of.iter().map(|factor| factor.first_order.value).sum::<f64>();
         section.note(format!("Sobol' indices, parts of the variance: interactions have {} %", percent(rest)));
@@ -202,7 +258,7 @@ impl SimulatedCharacteristic {
     }
 
     /// The sample, and the Pearson curve of its own moments.
-    fn picture(&self, section: &mut Section) {
+    fn picture(&self, section: &mut Vec<Element>) {
         let Some(of) = self.histogram.as_ref().filter(|of| of.counts.len() >= INTERVALS) else { return };
         let law = self.own_law();
         let curve = law.as_ref().map_or(String::new(), |law| {

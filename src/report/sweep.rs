@@ -5,14 +5,16 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::figures::{Figures, QUANTILES};
+use super::glance::verdict;
 use super::head::{self, findings};
 use super::{About, Head, WarningReport};
 use crate::analysis::{CharacteristicAnalysis, YieldSource};
 use crate::capability::{Law, Quantiles};
-use crate::document::number::{beside, known, limits, plain, plural, shape, short, significant};
+use crate::document::number::{UNKNOWN, beside, known, limits, plain, plural, shape, short, significant};
 use crate::document::rejects::Rejects;
 use crate::document::{
-    Blocks, Cell, Chart, Columns, DataTable, Document, Layer, Plot, PlotAxis, PlotScale, Section, Stroke, Value,
+    Blocks, Cell, Chart, Columns, DataTable, Document, Element, Layer, Paragraph, Plot, PlotAxis, PlotScale, Section,
+    Stroke, Value,
 };
 use crate::method::ErrorEstimate;
 use crate::problem::Problem;
@@ -153,8 +155,41 @@ impl SweepReport {
             short(&self.parameter.name),
             head::beside(&self.run),
         ));
+        document.gap();
+        document.table(self.glance());
         document.sections = self.characteristics.iter().map(|one| self.section(one)).collect();
         document
+    }
+
+    /// Every characteristic in one line: where its mean goes, and its worst value.
+    fn glance(&self) -> DataTable {
+        let all = &self.characteristics;
+        let limited = all.iter().any(|one| one.points.iter().any(|point| point.yield_.is_some()));
+        let judged = all.iter().any(|one| one.points.iter().any(|point| !point.requirements.is_empty()));
+        let greatest = |one: &SweptReport| one.points.iter().filter_map(|point| point.sigma).reduce(f64::max);
+        let means = move |one: &&SweptReport| {
+            let ends = one.points.iter().filter_map(|point| point.mean).map(|mean| [mean, mean]);
+            let ends = ends.reduce(|[low, high], [mean, _]| [low.min(mean), high.max(mean)]);
+            let sigma = greatest(one).unwrap_or(0.0);
+            Cell::text(ends.map_or(UNKNOWN.to_owned(), |ends| ends.map(|end| beside(end, sigma)).join(" .. ")))
+        };
+        let worst = |one: &SweptReport| one.worst().map(|place| one.points[place].clone());
+        Columns::default()
+            .terminal(true, "", |one: &&SweptReport| Cell::name(&one.name))
+            .terminal(true, "mean", means)
+            .terminal(true, "sigma up to", move |one| Cell::number(greatest(one), |sigma| significant(sigma, 5)))
+            .terminal(true, "", |one| Cell::optional(one.unit.as_deref()))
+            .terminal(limited, "least yield", move |one| {
+                Cell::text(worst(one).and_then(|point| point.rejects().yield_text()).unwrap_or_default())
+            })
+            .terminal(limited, "at", move |one| {
+                worst(one).map_or_else(Cell::empty, |point| Cell::number(point.at, plain))
+            })
+            .terminal(judged, "verdict", |one| {
+                let judged: Vec<Judged> = one.points.iter().flat_map(|point| point.requirements.clone()).collect();
+                Cell { line: verdict(&judged), ..Cell::empty() }
+            })
+            .table("", all)
     }
 
     fn section(&self, one: &SweptReport) -> Section {
@@ -166,7 +201,8 @@ impl SweepReport {
         }
         section.blocks.extend(findings(&self.warnings, |name| name == Some(&one.name)));
         section.chart(Chart::Plot(one.plot(with_unit(&of.name, of.unit.as_deref()))));
-        section.table(one.table(&of.name));
+        section.detail(vec![Element::Table(one.table(&of.name))]);
+        section.brief(one.brief(&of.name));
         if let Some(source) = one.source() {
             section.note(source);
         }
@@ -178,7 +214,31 @@ fn with_unit(name: &str, unit: Option<&str>) -> String {
     unit.map_or(name.to_owned(), |unit| format!("{name} [{unit}]"))
 }
 
+/// Values of the parameter that a terminal shows.
+const ROWS: usize = 19;
+
 impl SweptReport {
+    /// The place of the value with the least yield; None without limits.
+    fn worst(&self) -> Option<usize> {
+        let known = self.points.iter().enumerate().filter_map(|(place, point)| Some((place, point.yield_?)));
+        known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
+    }
+
+    /// The table for a terminal: mean, sigma and band at evenly spaced values, and at the worst one.
+    fn brief(&self, parameter: &str) -> Vec<Element> {
+        let table = self.table(parameter).without(&["nominal", "50 %"]);
+        let count = table.rows.len();
+        if count <= ROWS {
+            return vec![Element::Table(table)];
+        }
+        let even = (0..count).step_by((count - 1).div_ceil(ROWS - 1));
+        let mut view: Vec<usize> = even.chain([count - 1]).chain(self.worst()).collect();
+        view.sort_unstable();
+        view.dedup();
+        let rest = Paragraph::note(format!("{} of {count} values; -v shows all", view.len()));
+        vec![Element::Table(table.seen(view)), Element::Paragraph(rest)]
+    }
+
     fn table(&self, parameter: &str) -> DataTable {
         let rounded = |value: Option<f64>, point: &SweptPointReport| {
             Cell::number(value, |value| match point.sigma.filter(|sigma| *sigma > 0.0) {

@@ -194,7 +194,7 @@ impl<'a> Draws<'a> {
             .map(|&place| match &self.sobol {
                 None => {
                     let mut normals = vec![0.0; portion.rows];
-                    ziggurat::normals(&mut self.generator(portion, place), &mut normals);
+                    ziggurat::normals(&mut self.generator(portion, place), ziggurat::STANDARD, &mut normals);
                     normals
                 }
                 Some(sobol) => {

@@ -102,6 +102,12 @@ impl Fine {
         self.total
     }
 
+    /// Every bin with values: its ends, and how many.
+    pub(crate) fn filled(&self) -> impl Iterator<Item = ([f64; 2], u64)> + '_ {
+        let ends = |bin: usize| [self.scale.edge(bin as f64), self.scale.edge(bin as f64 + 1.0)];
+        self.counts.iter().enumerate().filter(|(_, count)| **count > 0).map(move |(bin, &count)| (ends(bin), count))
+    }
+
     /// The value below which `rank` of the values lie, interpolated within its bin; None where there are not as many.
     pub fn at_rank(&self, rank: f64) -> Option<f64> {
         let (bin, below) = self.bin_of_rank(rank)?;

@@ -36,7 +36,7 @@ impl Normals {
                         tails(&digits, key, &mut column);
                         standard_normal::quantiles(&mut column);
                     }
-                    None => ziggurat::normals(&mut Stream::new(key), &mut column),
+                    None => ziggurat::normals(&mut Stream::new(key), ziggurat::STANDARD, &mut column),
                 }
                 column
             })

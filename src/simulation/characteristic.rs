@@ -6,10 +6,11 @@ use super::control::Twin;
 use super::count::{Count, Replicate};
 use super::difference::{Controlled, Difference, Shares, carried, moments as controlled, shares};
 use super::indices::SampledFactor;
+use super::inspected::inspected;
 use super::replicate::of_replicates;
 use super::shape::value;
 use crate::assembly::EvaluationError;
-use crate::capability::{self, TAIL};
+use crate::capability::{self, InspectionRisks, TAIL};
 use crate::characteristic::{Characteristic, SpecLimits};
 use crate::method::Method;
 use crate::requirement::Requirement;
@@ -83,6 +84,8 @@ pub struct SimulatedCharacteristic {
     /// Its Sobol' indices, of every input; None where none were asked for, or the sample does not tell.
     #[serde(rename = "sobol")]
     pub indices: Option<Vec<SampledFactor>>,
+    /// The risks of its inspection, among the points of the sample; None without a gauge.
+    pub inspection: Option<InspectionRisks>,
 }
 
 /// The effect of a surrogate as control variate.
@@ -176,6 +179,7 @@ impl SimulatedCharacteristic {
         let value = |estimate: Option<Estimate>| estimate.map(|estimate| estimate.value);
         let spread = value(sigma).filter(|&sigma| sigma > 0.0);
         let width = limits.lower().zip(limits.upper()).map(|(lower, upper)| upper - lower);
+        let inspection = inspected(characteristic, count, fine.as_ref());
         Self {
             cp: width.zip(spread).map(|(width, sigma)| width / (6.0 * sigma)),
             cpk: value(mean).zip(spread).and_then(|(mean, sigma)| capability::cpk(mean, sigma, limits)),
@@ -205,6 +209,7 @@ impl SimulatedCharacteristic {
                 carried: fewer(carried(differences)),
             }),
             indices: None,
+            inspection,
         }
     }
 }

@@ -5,6 +5,7 @@ mod control;
 mod count;
 mod difference;
 mod indices;
+mod inspected;
 mod replicate;
 mod shape;
 mod surrogates;

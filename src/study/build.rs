@@ -57,7 +57,11 @@ pub(super) fn build(
     mut data: Data<'_>,
     elements: &Elements,
 ) -> Result<Built, Faults> {
-    let evaluated = model(file.model.as_ref(), source)?;
+    let written = |entry: &CharacteristicEntry| entry.formula.is_some();
+    let unknown = |name: &str| file.unknowns.0.iter().any(|(known, _)| known.get_ref() == name);
+    let all = file.characteristics.0.iter();
+    let open = all.clone().any(|(name, of)| !written(of.get_ref()) && !unknown(name.get_ref()));
+    let evaluated = model(file.model.as_ref(), open, source)?;
     let program = evaluated.as_ref().is_some_and(ModelOf::is_external);
     let model = evaluated.as_ref().and_then(ModelOf::built_in);
     let mut faults = Faults::default();

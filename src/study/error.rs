@@ -436,7 +436,9 @@ pub enum StudyFault {
     #[error(transparent)]
     MissingColumn(#[from] NoColumn),
     /// Answers evaluated elsewhere, for a study that runs no model.
-    #[error("points that were evaluated elsewhere are the answers of a [model] command, and the study has none")]
+    #[error(
+        "points that were evaluated elsewhere answer a [model] command, or characteristics without a formula: the study has neither"
+    )]
     NothingExternal,
     /// This build of the library runs no external programs.
     #[error("`{program}` cannot be run: external programs are not part of this build")]

@@ -38,6 +38,8 @@ pub struct Externals {
     pub sentinels: bool,
     /// Which of the study's configurations is meant; the study as written where it is None.
     pub configuration: Option<String>,
+    /// Whether only the points are wanted that something else is to answer: nothing is started then either.
+    pub(crate) unanswered: bool,
     /// Who answers in place of a program.
     pub(crate) host: Option<Host>,
 }
@@ -50,6 +52,7 @@ impl Default for Externals {
             points: None,
             sentinels: true,
             configuration: None,
+            unanswered: false,
             host: None,
         }
     }
@@ -115,6 +118,18 @@ impl Externals {
     ) -> Self {
         self.host = Some(Host(Arc::new(host)));
         self
+    }
+
+    /// To say which points something else is to answer.
+    #[must_use]
+    pub(crate) fn with_unanswered(mut self, unanswered: bool) -> Self {
+        self.unanswered = unanswered;
+        self
+    }
+
+    /// Whether nothing that this program starts answers.
+    pub(super) fn elsewhere(&self) -> bool {
+        self.points.is_some() || self.unanswered
     }
 
     /// With evaluations of the nominal point again and again, or without.

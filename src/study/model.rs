@@ -49,7 +49,12 @@ impl ModelOf {
 }
 
 /// The model of a study: the calling program's where there is one, and otherwise what `[model]` says.
-pub(super) fn model(entry: Option<&Spanned<ModelEntry>>, source: &Source) -> Result<Option<ModelOf>, Fault> {
+/// Where answers come from elsewhere, `open` characteristics, those without a formula, need no `[model]`.
+pub(super) fn model(
+    entry: Option<&Spanned<ModelEntry>>,
+    open: bool,
+    source: &Source,
+) -> Result<Option<ModelOf>, Fault> {
     let host = source.externals.host.clone().map(ModelOf::Host);
     match entry {
         Some(entry) if host.is_some() && entry.get_ref().builtin.is_some() => {
@@ -59,6 +64,11 @@ pub(super) fn model(entry: Option<&Spanned<ModelEntry>>, source: &Source) -> Res
             Err(fault(entry.span(), "model.builtin", does_not))
         }
         _ if host.is_some() => Ok(host),
+        None if open && source.externals.elsewhere() => {
+            // It has a name as every program, and is never started.
+            let settings = Settings::new(["elsewhere"]);
+            Ok(Some(ModelOf::Program(Program { settings, files: Vec::new() })))
+        }
         entry => entry.map(|entry| written(entry, source)).transpose(),
     }
 }

@@ -118,6 +118,7 @@ pub(super) fn position(_: &mut SchemaGenerator) -> Schema {
             "hole": name("A hole whose size gives the bonus."),
             "pin": name("A pin whose size gives the bonus."),
             "at": { "description": "Regardless of size, at maximum or at least material.", "enum": ["RFS", "MMC", "LMC"], "default": "RFS" },
+            "form": diameter("Form or orientation of the feature, by which its mating envelope differs from its size: it lessens the bonus."),
             "most": size("The most that the bonus adds."),
         }),
         &["zone"],

@@ -108,9 +108,9 @@ def failed(answer, *words):
 def shown(example):
     """The README of an example shows what the program prints: each console block is run again.
 
-    Lines may change places (rows of equal shares do), the last digits of a kernel's numbers are its own, an error that
-    is estimated from them is alike within a factor of two, and how many sentinels there are depends on which process
-    was free. With SENSITOL_UPDATE_DOCS=1 a block that differs is renewed.
+    Lines may change places (rows of equal shares do), the last digits of a kernel's numbers are its own, an error or a
+    bound that is estimated from them is alike within a factor of two, and how many sentinels there are depends on which
+    process was free. With SENSITOL_UPDATE_DOCS=1 a block that differs is renewed.
     """
     readme = EXAMPLES / example / "README.md"
     text = readme.read_text(encoding="utf-8")
@@ -146,7 +146,7 @@ def _alike(kept, found, before, line):
         kept, found = float(kept), float(found)
     except ValueError:
         return False
-    if before == "±":
+    if before in ("±", "<"):
         return kept / 2 <= found <= 2 * kept
     counted = any(word.startswith("evaluation") for word in line)
     return abs(kept - found) <= (4 if counted else 1e-7 + 1e-5 * abs(kept))

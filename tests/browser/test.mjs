@@ -43,7 +43,16 @@ const OVERLAPS = `(() => {
 })()`;
 const drawn = "[...document.querySelectorAll('svg.density')].filter((svg) => svg.getBoundingClientRect().width > 0).length";
 
-test("every page of every example opens without a complaint or a request", async () => {
+/// On this sheet no page but the last is nearly empty, nothing is cut off, and no text of a chart is tiny.
+const prints = async (page, sheet, what) => {
+  const full = filled(await page.pdf(SHEETS[sheet]));
+  assert.ok(full.length > 0 && full.at(-1) > 0, `${what} on ${sheet}`);
+  full.slice(0, -1).forEach((part, i) => assert.ok(part > 1 / 3, `${what} on ${sheet}: page ${i + 1} of ${full.length} is ${(100 * part).toFixed(0)} % full`));
+  await page.asPaper(96 * SHEETS[sheet][0] - 2 * MARGINS[1] * 96 / 72);
+  assert.deepEqual(await page.evaluate(FAULTS), [], `${what} on ${sheet}`);
+};
+
+test("every page of every example opens without a complaint or a request, and every analysis prints", async () => {
   for (const study of examples()) {
     const name = study.replaceAll(/[/.]/g, "-"), text = readFileSync(join(root, study), "utf8");
     // What an adapter wants to know of its document is no study, and what it evaluates may not be installed.
@@ -65,6 +74,7 @@ test("every page of every example opens without a complaint or a request", async
         assert.deepEqual(await page.evaluate(OVERLAPS), [], file);
         // Each chart is there twice, and one of the two is seen.
         assert.equal(2 * await page.evaluate(drawn), await page.evaluate("document.querySelectorAll('svg.density').length"), file);
+        if (Object.keys(options).length === 0 && file === pages[0]) await prints(page, "A4", file);
         await page.close();
       }
     }
@@ -103,13 +113,19 @@ test("sliders and boxes change the numbers, and the study comes back", async () 
 });
 
 test("the verdict says what the report's data say", async () => {
-  const WORDS = { met: "Met", missed: "Missed", inconclusive: "Not known" };
+  const WORDS = { met: "Met", missed: "Missed", inconclusive: "Inconclusive" };
   for (const study of ["examples/first-study/study.toml", "examples/shaft-and-bore/study.toml", "examples/stacked-blocks/study.toml", "examples/two-suppliers/study.toml"]) {
     const page = await browser.open(report("analyze", study, `verdict-${study.replaceAll("/", "-")}`));
     const { stdout } = spawnSync(sensitol, ["analyze", study, "--json", "-q"], { cwd: root, encoding: "utf8" });
     const limited = JSON.parse(stdout).characteristics.filter((one) => one.lower !== null || one.upper !== null);
     const rows = await page.evaluate("[...document.querySelectorAll('.gauges tbody tr:not(.all)')].map((row) => [...row.cells].map((cell) => cell.textContent))");
     assert.deepEqual(rows.map((row) => row[1]), limited.map((one) => WORDS[one.verdict] ?? "no target"), study);
+    // A worst case that the text calls proven is that of the verdict and of the density.
+    const [, ...proven] = spawnSync(sensitol, ["analyze", study, "-q"], { cwd: root, encoding: "utf8" }).stdout.match(/proven worst case +(\S+) \.\. (\S+)/) ?? [];
+    if (proven.length > 0) {
+      assert.ok(rows.some((row) => row.includes(proven.join(" –"))), `${study}: ${proven}`);
+      assert.ok(await page.evaluate("document.querySelector('svg.density').getAttribute('aria-label')").then((label) => label.includes(`worst case, proven ${proven.join(" to ")}`)), study);
+    }
     // Every number of a density is in what is read aloud.
     const labels = await page.evaluate("[...document.querySelectorAll('svg.density.wide')].map((svg) => [svg.getAttribute('aria-label'), [...svg.querySelectorAll('text.name, text.rejected')].map((text) => text.textContent.split(' ').at(text.classList.contains('name') ? -1 : 0))])");
     for (const [label, numbers] of labels) numbers.forEach((number) => assert.ok(label.includes(number), `${number} is not in: ${label}`));
@@ -222,15 +238,7 @@ const PRINTED = [
 test("pages print on A4 and Letter: no page nearly empty, nothing cut off, no tiny text", async () => {
   for (const [command, name, more = []] of PRINTED) {
     const page = await browser.open(report(command, `examples/${name}/study.toml`, `paper-${name}${more.length}`, more));
-    for (const [sheet, size] of Object.entries(SHEETS)) {
-      const full = filled(await page.pdf(size)), what = `${command} ${name} on ${sheet}`;
-      assert.ok(full.length > 0 && full.at(-1) > 0, what);
-      full.slice(0, -1).forEach((part, i) => assert.ok(part > 1 / 3, `${what}: page ${i + 1} of ${full.length} is ${(100 * part).toFixed(0)} % full`));
-    }
-    for (const [sheet, [width]] of Object.entries(SHEETS)) {
-      await page.asPaper(96 * width - 2 * MARGINS[1] * 96 / 72);
-      assert.deepEqual(await page.evaluate(FAULTS), [], `${command} ${name} on ${sheet}`);
-    }
+    for (const sheet of Object.keys(SHEETS)) await prints(page, sheet, `${command} ${name}`);
     quiet(page);
     await page.close();
   }

@@ -315,7 +315,7 @@ fn figures(text: &mut String) {
               points. It tells how\nmany errors are within three estimates, and in brackets how many times the error its estimate is, in the \
               median of those that can be told\nfrom the reference's own error. The estimates are some times as large as the errors: that is \
               the price of 15 points, of which an estimate\nhas to hold for the unlucky draw too. A cheap model is sampled instead; there the \
-              estimate is the distance from the sample and its standard\nerror, and next to the error. Methods that integrate have no surface\nto check: their errors are unknown for a costly model.\n\n| method | mean | sigma | skewness | \
+              estimate is the distance from the sample and its standard\nerror, and next to the error. Of methods that integrate the surface\nthrough their points is judged.\n\n| method | mean | sigma | skewness | \
               kurtosis | yield |\n|---|--:|--:|--:|--:|--:|\n";
     for method in Method::ALL {
         write!(text, "| `{}` |", method.name()).unwrap();

@@ -1,6 +1,6 @@
 //! Allocation against optima that were found without the engine: `tests/data/allocation.json`, with how beside each.
 
-use sensitol::allocation::{Allocation, AllocationOptions, CostBasis, Goal, Status, allocate};
+use sensitol::allocation::{Allocation, AllocationOptions, AllocationSolver, CostBasis, Goal, Status, allocate};
 use sensitol::{Study, Verdict};
 use serde_json::Value;
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
@@ -61,6 +61,34 @@ fn what_is_called_optimal_is() {
     assert_eq!(allocated(&problem("too-tight")).status, Status::Infeasible);
 }
 
+/// A corner that lies on a limit to the last digit is not beyond it: 0.023 + 0.026 + 0.011 is all of the 0.06 that are there, and in doubles
+/// 60.023 - 24.974 - 7.989 is more than 27.06.
+#[test]
+fn a_corner_on_the_limit_refutes_nothing() {
+    let of = problem("grades-of-size");
+    let study = Study::from_toml(of["study"].as_str().unwrap(), "study.toml").unwrap();
+    let options = AllocationOptions::default().with_analysis(study.options.clone()).with_confirm(1000);
+    let found = allocate(&study.problem, &study.allocation_task(), &options).unwrap();
+    let sampled = found.requirements[0].sampled.unwrap();
+    assert_ne!(sampled.verdict, Verdict::Missed, "{sampled:?}");
+    assert!((sampled.value.unwrap() - 1.0).abs() < 1e-11, "{sampled:?}");
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+}
+
+/// The solver of each answer is named: nominal values and tolerances at once are argmin's.
+#[test]
+fn the_solver_is_named() {
+    use AllocationSolver::{AugmentedLagrangian, BranchAndBound, DualNewton, Separable};
+    for (name, solver) in [
+        ("twins", DualNewton),
+        ("two-uniforms", Separable),
+        ("move-the-shoulder", AugmentedLagrangian),
+        ("list-12x4", BranchAndBound),
+    ] {
+        assert_eq!(allocated(&problem(name)).proof.solver, Some(solver), "{name}");
+    }
+}
+
 /// A tilt about 0 has no slope there and moves the play by its curvature alone: at both of its ends, where `1 - cos` is greatest, and in its
 /// middle. The extremes are those of the closed form.
 #[test]
@@ -72,8 +100,8 @@ fn a_tilt_without_a_slope_keeps_the_worst_case() {
     assert!(least >= 0.02 - 1e-6 && greatest <= 0.3 + 1e-6, "{least} {greatest}");
 }
 
-/// At the means of two offsets the distance is a kink, which no parabola describes: the true worst case is kept all the same, and what is found
-/// is no optimum and not called one.
+/// At the means of two offsets the distance is a kink, which no parabola describes: the corners of the formula itself lead to the optimum, which
+/// is that of the closed form to 1e-6, and keep the true worst case. It is not proven to be one: corners may change with the tolerances.
 #[test]
 fn a_kink_at_the_means_keeps_the_worst_case() {
     let of = problem("pin-about-centre");
@@ -81,8 +109,9 @@ fn a_kink_at_the_means_keeps_the_worst_case() {
     let [hole, pin, x, y] = ["hole", "pin", "px", "py"].map(|name| band(&found, name));
     let used = hole + pin + 2.0 * x.hypot(y);
     assert!(used <= 0.2 * (1.0 + 1e-6), "{used}");
-    assert!(found.cost_after.unwrap() >= of["optimum"]["cost"].as_f64().unwrap() * (1.0 - 1e-6));
-    assert_ne!(found.status, Status::Optimal);
+    let (cost, expected) = (found.cost_after.unwrap(), of["optimum"]["cost"].as_f64().unwrap());
+    assert!((cost / expected - 1.0).abs() < 1e-6, "{cost} for {expected}");
+    assert_eq!(found.status, Status::LocalOptimum, "{:?}", found.proof);
     assert!(all_met(&found), "{:?}", found.requirements);
 }
 

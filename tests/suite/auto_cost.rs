@@ -43,6 +43,31 @@ fn cases() -> Vec<(String, Problem)> {
     cases
 }
 
+/// Evaluations that 1 % of sigma may take, and 0.1 % three times as many. No case takes fewer for the finer of the two.
+const GOALS: [(&str, u64); 5] = [
+    ("engine-balance F", 60),
+    ("engine-balance M", 60),
+    ("stacked-blocks gap", 35),
+    ("cantilever", 60),
+    ("20 interactions among 100", 400),
+];
+
+#[test]
+fn costs_keep_their_goals_and_grow_with_the_accuracy() {
+    let wrong = |(name, problem): &(String, Problem)| {
+        let at = |accuracy: f64| {
+            let options = Options::from(Method::Auto).with_accuracy(accuracy).with_verify(0);
+            analyze(problem, &options).unwrap().run.evaluations
+        };
+        let counts = [at(0.05), at(0.01), at(0.001)];
+        let goal = GOALS.iter().find(|(of, _)| of == name).map_or(u64::MAX / 3, |(_, goal)| *goal);
+        let keeps = counts.is_sorted() && counts[1] <= goal && counts[2] <= 3 * goal;
+        (!keeps).then(|| format!("{name}: {counts:?}"))
+    };
+    let wrong: Vec<String> = cases().par_iter().filter_map(wrong).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
 #[test]
 #[ignore = "prints a table; 131 072 points of every function are its truth"]
 fn what_auto_takes() {

@@ -395,6 +395,51 @@ fn points_can_be_written() {
     assert!((moved - (0.05 - 2.856_970_013_872_806 * 0.0001 / 3.0)).abs() < 1e-16);
 }
 
+/// A study whose answers come from elsewhere names no model: its points are written, and their answers read.
+#[test]
+fn points_need_no_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let study = |formula: &str| {
+        format!(
+            "[dimensions]\na = {{ nominal = 1.0, tolerance = 0.3 }}\nb = {{ nominal = 2.0, tolerance = 0.3 }}\n\
+             [characteristics]\ny = {{ {formula}lower = 1.5, upper = 2.5 }}\nz = {{ formula = \"2*a\" }}\n"
+        )
+    };
+    std::fs::write(path("open.toml"), study("")).unwrap();
+    std::fs::write(path("written.toml"), study("formula = \"a*b\", ")).unwrap();
+    let ok = |arguments: &[&str]| {
+        let output = sensitol(arguments).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    ok(&["plan", &path("open.toml"), "--method", "full", "--write-points", &path("points.csv")]);
+    let points = std::fs::read_to_string(path("points.csv")).unwrap();
+    let mut rows = points.lines();
+    assert_eq!(rows.next(), Some("a,b"));
+    let answers = rows.map(|row| {
+        let x: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        format!("{row},{}\n", x[0] * x[1])
+    });
+    std::fs::write(path("answers.csv"), format!("a,b,y\n{}", answers.collect::<String>())).unwrap();
+    let result = |arguments: &[&str]| -> Vec<[f64; 2]> {
+        let report: serde_json::Value = serde_json::from_str(&ok(arguments)).unwrap();
+        let figures = |one: &serde_json::Value| ["mean", "sigma"].map(|figure| one[figure].as_f64().unwrap());
+        report["characteristics"].as_array().unwrap().iter().map(figures).collect()
+    };
+    let full = ["--method", "full", "--json", "--verify", "0"];
+    let answered = result(&[&["analyze", &path("open.toml"), "--points", &path("answers.csv")][..], &full].concat());
+    // Of a product of independent inputs: a² s² + b² s² + s⁴.
+    let sigma = (0.1_f64.powi(2) * (1.0 + 4.0) + 0.1_f64.powi(4)).sqrt();
+    assert!((answered[0][0] - 2.0).abs() < 1e-12 && (answered[0][1] - sigma).abs() < 1e-9, "{answered:?}");
+    assert_eq!(answered[1], result(&[&["analyze", &path("written.toml")][..], &full].concat())[1]);
+    // Without answers the formula is missing, and without an open characteristic the answers answer nothing.
+    let error = |arguments: &[&str]| String::from_utf8(sensitol(arguments).output().unwrap().stderr).unwrap();
+    assert!(error(&["analyze", &path("open.toml")]).contains("`formula` is missing"));
+    let nothing = error(&["analyze", &path("written.toml"), "--points", &path("answers.csv")]);
+    assert!(nothing.contains("the study has neither"), "{nothing}");
+}
+
 #[test]
 fn a_closed_pipe_is_no_error() {
     for arguments in [&["analyze", ENGINE, "--json"][..], &["models"], &["plan", ENGINE], &["analyze", "--help"]] {

@@ -281,6 +281,43 @@ fn a_file_of_processes_at_fault() {
     }
 }
 
+/// Second and fourth moments in closed form of the arc sine, the u-shaped law and the curvilinear trapezoid over -1 .. 1, and of Student's,
+/// which has no sigma with 2 degrees and no kurtosis with 4.
+#[test]
+fn moments_of_the_laws_of_measurement() {
+    let found = |line: &str| {
+        let text =
+            format!("[dimensions]\nx = {{ nominal = 0, {line} }}\n[characteristics]\ny = {{ formula = \"x\" }}\n");
+        one(&text).moments.unwrap()
+    };
+    for (name, law) in [
+        ("moments arcsine", "\"arcsine\""),
+        ("moments u-shaped", "\"u-shaped\""),
+        ("moments curvilinear-trapezoid w 1 d 0.2", "{ kind = \"curvilinear-trapezoid\", inexactness = 0.2 }"),
+    ] {
+        let case = case(name);
+        let exact = |key: &str| case["exact"][key].as_f64().unwrap();
+        let moments = found(&format!("tolerance = 1, distribution = {law}"));
+        relative(moments.sigma().powi(2), exact("m2"), 1e-12);
+        relative(moments.kurtosis().unwrap(), exact("m4") / exact("m2").powi(2), 1e-12);
+    }
+    let case = case("moments student");
+    let student =
+        |degrees: u32| found(&format!("distribution = {{ kind = \"student\", degrees = {degrees}, scale = 1 }}"));
+    relative(student(3).sigma(), case["exact"]["sigma, 3 degrees"].as_f64().unwrap(), 1e-12);
+    relative(student(10).kurtosis().unwrap(), case["exact"]["kurtosis, 10 degrees"].as_f64().unwrap(), 1e-12);
+    assert_eq!(student(4).kurtosis(), None);
+}
+
+/// Measured values have their drift in them.
+#[test]
+fn measured_values_drift_already() {
+    let text = "[dimensions]\na = { nominal = 1, measured = \"lot.csv\", drift = 0.1 }\n[characteristics]\ny = { formula = \"a\", lower = 0 }\n";
+    let study = StudyText::toml("study.toml", text).with_file("lot.csv", "a\n1\n1.1\n1.2\n1.3\n1.4\n");
+    let message = Study::from_text(study).unwrap_err().to_string();
+    assert!(message.contains("`drift` means nothing for measured values"), "{message}");
+}
+
 /// A target of Cpk is a requirement: 0.3 within a limit 0.5 away is 1.67 of it.
 #[test]
 fn a_target_of_cpk_is_judged() {

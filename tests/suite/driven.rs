@@ -275,6 +275,41 @@ fn points_without_a_value_are_said_whatever_the_side() {
     assert_eq!(codes(&analysis), ["domain-edge-within"]);
 }
 
+/// A built-in model too: twelve dimensions drive its two inputs, and the speed is sqrt(k/J1 + k/J2) but for a factor, whose variance by the
+/// slopes of the two is that by the slopes of the twelve. `auto` samples such a model as ever.
+#[test]
+fn few_inputs_of_a_built_in_model_are_the_narrower_side() {
+    let name = |side: &str, i: usize| format!("{side}{i}");
+    let parts = |side: &str| (0..6).map(|i| name(side, i)).collect::<Vec<_>>().join(" + ");
+    let lines = |side: &str, nominal: f64| -> String {
+        (0..6).map(|i| format!("{} = {{ nominal = {nominal}, tolerance = 0.0003 }}\n", name(side, i))).collect()
+    };
+    let study = |formulas: &str, lines: &str| {
+        format!(
+            "[model]\nbuiltin = \"dual-mass-flywheel\"\n[dimensions]\n{lines}[constants]\nk = 327.844\n{formulas}[characteristics]\nn_crit_DMF = {{}}\n"
+        )
+    };
+    let driven = study(
+        &format!("[formulas]\nJ1 = \"{}\"\nJ2 = \"{}\"\n", parts("p"), parts("q")),
+        &(lines("p", 0.05) + &lines("q", 0.007)),
+    );
+    let problem = parse(&driven).unwrap().problem;
+    let full = Options::from(Method::Full).with_verify(0);
+    assert_eq!(full.cost(&problem).unwrap().evaluations, 7);
+    let found = analyze(&problem, &full).unwrap();
+    assert_eq!((found.run.evaluations, found.varying), (7, 12));
+    // The same by hand: each of the two is normal with sqrt(6) times the sigma of a part.
+    let sigma = 6f64.sqrt() * 0.0001;
+    let two =
+        study("", &format!("J1 = {{ nominal = 0.3, sigma = {sigma} }}\nJ2 = {{ nominal = 0.042, sigma = {sigma} }}\n"));
+    let plain = analyze(&parse(&two).unwrap().problem, &full).unwrap();
+    let moments = |analysis: &Analysis| analysis.characteristics[0].moments.unwrap();
+    // The moments of the inputs are those of 8192 Sobol' points.
+    relative(moments(&found).mean(), moments(&plain).mean(), 1e-6);
+    relative(moments(&found).sigma(), moments(&plain).sigma(), 1e-3);
+    assert!(Options::from(Method::Auto).cost(&problem).unwrap().evaluations > 12);
+}
+
 /// Inputs that vary nearly alike, and exactly alike, are fitted along their principal axes: 7 evaluations for two axes, 3 for one, where
 /// 157 were. By hand: of a normal p of mean 6 and variance v, p^2 has the variance 144 v + 2 v^2, p r with another such r 72 v + v^2, and
 /// the covariance of both is 72 v.

@@ -147,6 +147,52 @@ fn the_zone_that_a_size_leaves() {
     }
 }
 
+/// A hole measured .502, of .499 at maximum material, leaves a bonus of .003, and .001 where it is out of perpendicularity by .002: a
+/// zone of .016, as printed. Form never makes the zone smaller than it is.
+#[test]
+fn form_lessens_a_bonus() {
+    let case = case("bonus-envelope");
+    let printed = |key: &str| case["printed"][key]["value"].as_f64().unwrap();
+    let lines = |form: &str| {
+        format!(
+            "D = {{ nominal = 0.502, limits = [0.499, 0.505] }}\nt = {{ nominal = 0.002, limits = [0, 0.004] }}\n\
+             h = {{ nominal = [0, 0], position = {{ zone = 0.015, hole = \"D\", at = \"MMC\"{form} }} }}"
+        )
+    };
+    let zone = |form: &str| {
+        let analysis = analysed(&study(&lines(form), "`h.zone` + 0*h_x"), Method::SecondOrder);
+        analysis.characteristics[0].nominal.unwrap()
+    };
+    close(zone("") - 0.015, printed("bonus without the tilt"), 1e-12, 1.0);
+    for form in [", form = \"t\"", ", form = 0.002", ", form = \"t/2 + 0.001\""] {
+        close(zone(form) - 0.015, printed("bonus"), 1e-12, 1.0);
+        close(zone(form), printed("zone"), 1e-12, 1.0);
+    }
+    close(zone(", form = 0.004"), 0.015, 1e-12, 1.0);
+    // The greatest hole with the best form: half of .015 and .006.
+    close(worst(&study(&lines(", form = \"t\""), "h_x"))[1], 0.0105, 1e-9, 1.0);
+    same_as_expanded(&study(&lines(", form = \"t\""), "h_x"), Method::SecondOrder);
+    // A pin out of form is thicker: 11.8 less 11.5 less 0.1.
+    let pin = "P = { nominal = 11.5, limits = [11.2, 11.8] }\nh = { nominal = [0, 0], position = { zone = 0.5, pin = \"P\", at = \"MMC\", form = 0.1 } }";
+    let found = analysed(&study(pin, "`h.zone` + 0*h_x"), Method::SecondOrder);
+    close(found.characteristics[0].nominal.unwrap(), 0.7, 1e-12, 1.0);
+}
+
+/// A pitch between two holes that share a datum shift: the shift cancels, and what is left is twice half of 0.2 + 0.1 on either side.
+#[test]
+fn the_worst_case_of_a_pitch_is_proven() {
+    let lines = "bore = { limits = [40.0, 40.025] }\nspigot = { limits = [39.95, 39.975] }\n\
+                 A = { float = { hole = \"bore\", pin = \"spigot\", law = \"disc\" } }\nhole = { limits = [8.4, 8.5] }\n\
+                 l = { nominal = [-35, 0], position = { zone = 0.2, hole = \"hole\", at = \"MMC\" }, from = \"A\" }\n\
+                 r = { nominal = [35, 0], position = { zone = 0.2, hole = \"hole\", at = \"MMC\" }, from = \"A\" }";
+    let [lower, upper] = worst(&study(lines, "r_x - l_x"));
+    close(lower, 69.7, 1e-9, 1.0);
+    close(upper, 70.3, 1e-9, 1.0);
+    // Beside another factor the shift does not cancel: half of it is left, at most (40.025 - 39.95)/4 with the least shift of the zones.
+    let [lower, upper] = worst(&study(lines, "2*r_x - l_x - r_x/2 - 0.5*r_x + A_x/2"));
+    close(upper - lower, 0.6 + 0.0375, 1e-9, 1.0);
+}
+
 /// A bonus that is capped widens no further.
 #[test]
 fn a_bonus_is_capped() {
@@ -425,6 +471,9 @@ fn what_is_wrong_is_said_at_its_place() {
         position("zone = 0.2, hole = \"S\", at = \"LMC\""),
         position("zone = 0.2, hole = 10, at = \"MMC\""),
         position("zone = 0.2, most = 0.1"),
+        position("zone = 0.2, hole = \"D\", at = \"MMC\", form = -0.1"),
+        position("zone = 0.2, hole = \"D\", at = \"MMC\", form = \"E\""),
+        position("zone = 0.2, hole = \"D\", at = \"MMC\", form = \"D - 10\""),
         position("zone = 0.2, hole = \"D\", form = 0.1"),
         element("{ position = { zone = 0.2, hole = \"D\", at = \"MMC\" } }"),
         element("{ nominal = 3, position = { zone = 0.2, hole = \"D\", at = \"MMC\" } }"),

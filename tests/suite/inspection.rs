@@ -6,6 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sensitol::analysis::{EstimatedShare, InspectionRisks};
+use sensitol::simulation::{Sampler, SimulationOptions, simulate};
 use sensitol::{Method, Options, analyze};
 use serde_json::Value;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -130,6 +131,57 @@ fn risks_are_those_of_parts_and_readings() {
     }
 }
 
+/// Of a normal part by evenly spread and by random points, beside the integrals of its law: within three errors, which are small.
+#[test]
+fn samples_have_the_risks() {
+    for (sampler, useful) in [(Sampler::Sobol, 0.02), (Sampler::Random, 0.1)] {
+        // Limits at one sigma of the process, and at two.
+        for (limit, gauge, process) in [(0.02, 0.005, 0.02), (8.0, 1.0, 4.0)] {
+            let text = format!(
+                "[dimensions]\nx = {{ nominal = 0, sigma = {process} }}\n[characteristics]\ny = {{ formula = \"x\", lower = -{limit}, upper = {limit}, gauge = {gauge}, guard = {} }}\n",
+                0.1 * gauge
+            );
+            let exact = inspected(&text, &Method::Full.into());
+            let options = SimulationOptions::default().with_samples(100_000).with_sampler(sampler);
+            let found = simulate(&parse(&text).unwrap().problem, &options).unwrap().characteristics.remove(0);
+            let found = found.inspection.unwrap();
+            let shares = |of: &InspectionRisks| [of.false_accept, of.false_reject, of.accepted, of.bad_among_accepted];
+            for (found, exact) in shares(&found).into_iter().zip(shares(&exact)) {
+                let (found, exact) = (found.unwrap(), exact.unwrap().value);
+                let error = found.error.unwrap();
+                assert!((found.value - exact).abs() <= 3.0 * error && error < useful * exact, "{found:?} for {exact}");
+            }
+        }
+    }
+}
+
+/// A guard that is solved for keeps the wanted share among the points of the sample; points on a limit keep it; a perfect gauge accepts
+/// nothing bad.
+#[test]
+fn samples_solve_for_a_guard() {
+    let simulated = |text: &str| {
+        let options = SimulationOptions::default().with_samples(20_000);
+        simulate(&parse(text).unwrap().problem, &options).unwrap().characteristics.remove(0).inspection.unwrap()
+    };
+    let wanted = study(0.02, "lower = -0.03, upper = 0.03, gauge = 0.005, guard = { false_accept = 0.001 }");
+    let (found, exact) = (simulated(&wanted), inspected(&wanted, &Method::Full.into()));
+    assert!(value(found.false_accept) <= 0.001, "{found:?}");
+    // Some hundred points of 20,000 are bad and near the limits.
+    assert!((found.guard.unwrap() / exact.guard.unwrap() - 1.0).abs() < 0.05, "{found:?} {exact:?}");
+    assert_eq!(
+        simulated(&study(0.02, "lower = -1e-6, upper = 1e-6, gauge = 0.005, guard = { false_accept = 1e-9 }")).guard,
+        None
+    );
+    let perfect = simulated(&study(0.02, "lower = -0.03, upper = 0.03, gauge = 0"));
+    assert_eq!((value(perfect.false_accept), value(perfect.false_reject)), (0.0, 0.0));
+    // Half of the values lie on the upper limit, where half of the readings pass.
+    let two = "[dimensions]\nx = { nominal = 0, tolerance = 1, distribution = \"two-point\" }\n[characteristics]\ny = { formula = \"x\", upper = 1, gauge = 0.1 }\n";
+    let found = simulated(two);
+    assert_eq!(value(found.false_accept), 0.0);
+    // The bin of the values is 1/1000 wide: 1/100 of the gauge's sigma.
+    assert!((value(found.false_reject) - 0.25).abs() < 0.005, "{found:?}");
+}
+
 #[test]
 fn an_inspection_stands_in_every_report() {
     let folder = tempfile::tempdir().unwrap();
@@ -139,6 +191,8 @@ fn an_inspection_stands_in_every_report() {
     let text = run(&["analyze", path, "--csv", csv.to_str().unwrap()]);
     assert!(text.contains("inspection with gauge sigma 0.005, guard 0.01: accepted -0.04 .. 0.04"), "{text}");
     assert!(text.contains("bad and accepted"), "{text}");
+    let sampled = run(&["simulate", path, "--samples", "4096"]);
+    assert!(sampled.contains("inspection with gauge sigma 0.005, guard 0.01: accepted -0.04 .. 0.04"), "{sampled}");
     let table = std::fs::read_to_string(csv.join("characteristics.csv")).unwrap();
     assert!(table.lines().next().unwrap().contains(",guard,false_accept,false_reject,"), "{table}");
     let output = sensitol(&["analyze", path, "--json"]).output().unwrap();

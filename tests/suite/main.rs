@@ -13,6 +13,7 @@ mod auto;
 mod auto_cost;
 mod blocks;
 mod book;
+mod brief;
 mod capability;
 mod circles;
 mod claims;

@@ -51,7 +51,7 @@ fn quantiles_beyond_a_small_sample_are_unknown() {
     let one = &report["characteristics"][0];
     assert!(one["distribution"]["quantiles"]["0.05"].is_f64() && one["standard_error"]["quantiles"]["0.05"].is_null());
     assert_eq!(one["histogram"]["counts"].as_array().unwrap().iter().filter_map(Value::as_u64).sum::<u64>(), 20);
-    let text = run(&["simulate", BLOCKS, "--samples", "13"]);
+    let text = run(&["simulate", BLOCKS, "--samples", "13", "-v"]);
     let line = text.lines().find(|line| line.contains("quantile 0.00135")).unwrap();
     assert_eq!(line.split_whitespace().collect::<Vec<_>>(), ["quantile", "0.00135", "-", "-"]);
 }
@@ -176,4 +176,32 @@ fn wrong_wishes() {
         all += &format!("$ {}\n{text}\n", hide(arguments.join(" ")));
     }
     insta::assert_snapshot!("wrong-wishes", all);
+}
+
+/// In how many rounds a program was asked is what a cluster is sized by: `analyze`, `compare` and `allocate` print what their JSON has.
+#[test]
+fn the_rounds_of_a_program_are_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = "import json, sys\nfor line in sys.stdin:\n    said = json.loads(line)\n    if 'sensitol' in said:\n        \
+                   print(json.dumps({'ready': True, 'window': 64}), flush=True)\n    elif 'x' in said:\n        a, b = said['x']\n        \
+                   print(json.dumps({'id': said['id'], 'y': [a * b]}), flush=True)\n";
+    std::fs::write(folder.path().join("product.py"), program).unwrap();
+    let study = folder.path().join("study.toml");
+    let text = "[model]\ncommand = [\"python3\", \"product.py\"]\n[dimensions]\na = { nominal = 3, tolerance = 0.1 }\n\
+                b = { nominal = 5, tolerance = 0.1 }\n[characteristics]\narea = { lower = 14, upper = 16, target_yield = 0.99 }\n";
+    std::fs::write(&study, text).unwrap();
+    let study = study.to_str().unwrap();
+    let cases: [(&[&str], &str); 3] = [
+        (&["analyze", study, "-m", "auto"], "evaluations in {} rounds"),
+        (&["compare", study, "--samples", "100"], "evaluations in {} rounds"),
+        (&["allocate", study], "sent in {} batches"),
+    ];
+    for (arguments, words) in cases {
+        let arguments = [arguments, &["--journal", "none"]].concat();
+        let report = json(&[&arguments[..], &["--json"]].concat());
+        let rounds = report["stages"].as_u64().unwrap();
+        assert!(rounds > 1, "{arguments:?}: {rounds}");
+        let text = run(&arguments).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains(&words.replace("{}", &rounds.to_string())), "{rounds}: {text}");
+    }
 }

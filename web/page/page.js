@@ -347,7 +347,7 @@ const page = (() => {
     missed: "<svg viewBox=\"0 0 16 16\" aria-hidden=\"true\"><path d=\"M8 1.8L15 14H1ZM8 6V10M8 11.5V12.6\"/></svg>",
     inconclusive: "<svg viewBox=\"0 0 16 16\" aria-hidden=\"true\"><circle cx=\"8\" cy=\"8\" r=\"6.5\" stroke-dasharray=\"3 2\"/></svg>",
   };
-  const WORD = { met: "Met", missed: "Missed", inconclusive: "Not known" };
+  const WORD = { met: "Met", missed: "Missed", inconclusive: "Inconclusive" };
   const percent = (share) => (share === null || share === undefined ? "?" : `${(100 * share).toFixed(1)} %`);
   const part = (one, dim) => {
     const row = one?.sensitivities.find((row) => row.dimension === dim);

@@ -15,6 +15,7 @@
 //! exact derivatives, on an [`Interval`] bounds that no rounding breaks.
 
 mod batch;
+mod cancel;
 mod error;
 mod functions;
 mod graph;

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use super::batch::{LANES, Machine};
+use super::cancel::cancelled;
 use super::error::{FailureReason, FormulaError, FormulaFailure, FormulaFault};
 use super::functions::{Binary, select};
 use super::graph::{Graph, NodeId};
@@ -65,6 +66,8 @@ pub struct FormulaSet {
     pub(super) margins: Mutex<Option<(Vec<usize>, Arc<Margins>)>>,
     /// The last program, since the same outputs are asked again and again.
     program: Mutex<Option<(Vec<usize>, Arc<Program>)>>,
+    /// The last program of bounds, whose sums are without what cancels.
+    bounding: Mutex<Option<(usize, Arc<Program>)>>,
 }
 
 /// Formulas that are run on one point at a time.
@@ -126,8 +129,8 @@ impl FormulaSet {
             places[index] = entries[index].add_to(&mut graph, &roots);
             roots[index] = *places[index].last().expect("a formula is never empty");
         }
-        let (margins, program) = (Mutex::new(None), Mutex::new(None));
-        Ok(Self { formulas: entries, order, graph, roots, places, margins, program })
+        let (margins, program, bounding) = (Mutex::new(None), Mutex::new(None), Mutex::new(None));
+        Ok(Self { formulas: entries, order, graph, roots, places, margins, program, bounding })
     }
 
     /// Number of formulas.
@@ -203,7 +206,8 @@ impl FormulaSet {
         self.evaluate_scalar(formulas, variable)
     }
 
-    /// Encloses a formula over a box, an interval for every variable, in interval arithmetic.
+    /// Encloses a formula over a box, an interval for every variable, in interval arithmetic. Terms that a sum adds and subtracts again are
+    /// left out.
     ///
     /// Cost: about as many operations on intervals as the formula has, times one more than there are variables that vary.
     ///
@@ -225,7 +229,8 @@ impl FormulaSet {
             let value = Interval::between(region[d][0], region[d][1]);
             place.get(&d).map_or(Sloped::still(value), |&index| Sloped::variable(value, index, moving.len()))
         };
-        let Sloped { value, slopes: of_moving } = self.evaluate_scalar(&[formula], variable).swap_remove(0);
+        let Sloped { value, slopes: of_moving } =
+            self.bounding(formula).evaluate(&variable, &mut Vec::new()).swap_remove(0);
         let mut slopes = vec![Interval::between(0.0, 0.0); region.len()];
         moving.iter().zip(of_moving).for_each(|(&d, slope)| slopes[d] = slope);
         Bounds { value, slopes }
@@ -252,6 +257,24 @@ impl FormulaSet {
         let roots: Vec<NodeId> = formulas.iter().map(|&formula| self.roots[formula]).collect();
         let program = Arc::new(Program::of(&self.graph, &roots));
         *last = Some((formulas.to_vec(), Arc::clone(&program)));
+        program
+    }
+
+    /// The program of one formula for bounds.
+    fn bounding(&self, formula: usize) -> Arc<Program> {
+        let mut last = self.bounding.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some((of, program)) = &*last
+            && *of == formula
+        {
+            return Arc::clone(program);
+        }
+        let root = self.roots[formula];
+        let program = match cancelled(&self.graph, root) {
+            Some((graph, root)) => Program::of(&graph, &[root]),
+            None => Program::of(&self.graph, &[root]),
+        };
+        let program = Arc::new(program);
+        *last = Some((formula, Arc::clone(&program)));
         program
     }
 

@@ -2,11 +2,11 @@
 
 use crate::plan::{Mixed, Point};
 
-/// Every dimension up or down, and all turned round.
+/// Every dimension up or down, and all turned round where odd powers may be left.
 #[derive(Debug, Clone)]
 pub(super) struct Probe {
     pub(super) signs: Vec<f64>,
-    pub(super) points: [Point; 2],
+    pub(super) points: Vec<Point>,
 }
 
 /// Points evaluated beside the axes.

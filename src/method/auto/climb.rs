@@ -35,6 +35,8 @@ const DIRECT: usize = 12;
 /// Probes that judge, and the first that are fitted.
 const JUDGING: usize = 12;
 const FITTED: usize = 6;
+/// Odd powers below this part of what is wanted let a probe stand alone, without its mirror image.
+const ALONE: f64 = 0.1;
 /// By how much the probes that are fitted grow.
 const GROWTH: f64 = 1.25;
 /// The finest error of sigma that is asked for where that of another result is wanted.
@@ -87,6 +89,8 @@ pub(super) struct Climb<'p> {
     looked_out: bool,
     /// Pairs are bought with all four corners.
     squares: bool,
+    /// Probes are single points.
+    alone: bool,
     /// Every interaction is bought one by one.
     pub(super) dense: bool,
     short_of_budget: bool,
@@ -109,6 +113,7 @@ impl<'p> Climb<'p> {
             sets: 0,
             looked_out: false,
             squares: false,
+            alone: false,
             dense: false,
             short_of_budget: false,
             rest: None,
@@ -458,8 +463,10 @@ impl<'p> Climb<'p> {
     /// Probes: the first, more, or every pair instead where that is nearly as cheap.
     fn screen(&mut self, lacking: &[&View], known: &KnownAnswers) -> bool {
         if self.bought.judging.is_empty() {
-            let judging = self.afford(JUDGING, 2);
-            let fitted = if judging < JUDGING { 0 } else { self.afford(FITTED, 2) };
+            // The axes show all that one dimension does: a single point has interactions of two beside it, and of three.
+            self.alone = lacking.iter().all(|view| self.left(view)[1] <= ALONE * self.wanted);
+            let judging = self.afford(JUDGING, self.points_of_probe());
+            let fitted = if judging < JUDGING { 0 } else { self.afford(FITTED, self.points_of_probe()) };
             self.bought.judging = self.probes(known, 1, 0, judging);
             self.bought.fitted = self.probes(known, 2, 0, fitted);
             return fitted > 0;
@@ -473,10 +480,11 @@ impl<'p> Climb<'p> {
         let most = most(n);
         let more = (m as f64 * GROWTH).ceil() as usize + 1 - m;
         let pairs = n * (n - 1);
-        let within = self.spent + 2 * more + pairs <= most;
+        let each = self.points_of_probe();
+        let within = self.spent + each * more + pairs <= most;
         let hopeless = m >= (2 * n).max((6 * n).min(pairs / 6)) && lacking.iter().any(|view| self.hopeless(view));
         if within && !hopeless {
-            let more = self.afford(more, 2);
+            let more = self.afford(more, each);
             let probes = self.probes(known, 2, m, more);
             self.bought.fitted.extend(probes);
             return more > 0;
@@ -491,6 +499,10 @@ impl<'p> Climb<'p> {
         self.examine_strongest(lacking, usize::MAX)
     }
 
+    fn points_of_probe(&self) -> usize {
+        if self.alone { 1 } else { 2 }
+    }
+
     /// Whether the fit leaves more than a tenth of what interactions there are.
     fn hopeless(&self, view: &View) -> bool {
         let found: f64 = view.products.values().map(|mixed| mixed.value.powi(2)).sum();
@@ -502,12 +514,13 @@ impl<'p> Climb<'p> {
         let corners = self.plan.corners(known);
         let probe = |index: usize| {
             let signs = self.signs(kind, index);
-            let points = [1.0, -1.0].map(|side| {
+            let point = |side: &f64| {
                 let end = |(ends, sign): (&[Option<(crate::plan::AtNode, f64)>; 2], &f64)| {
                     ends[usize::from(sign * side > 0.0)].map(|(at, _)| at)
                 };
                 Point::of(&corners.iter().zip(&signs).filter_map(end).collect::<Vec<_>>())
-            });
+            };
+            let points = [1.0, -1.0].iter().take(self.points_of_probe()).map(point).collect();
             Probe { signs, points }
         };
         (first..first + count).map(probe).collect()

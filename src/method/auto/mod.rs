@@ -181,6 +181,7 @@ fn outcome(problem: &Problem, options: &Options, climb: &Climb<'_>, evaluated: &
         all_pairs: (0..problem.characteristics().len()).all(|c| climb.bought.known(c).len() == plan.possible_pairs()),
         noise: of(|view| view.noise),
         tails: of(|view| view.tail),
+        beyond: of(|view| view.beyond),
         far: climb.bought.tails.clone(),
         unscreened: of(|view| view.unscreened),
         checked: views.iter().map(|view| view.as_ref()?.check.clone()).collect(),

@@ -7,6 +7,9 @@
 //! G_j  = [f(+_j) + f(-_j)]/2 - f0
 //! ```
 //!
+//! Where next to nothing odd is left, `e` stands alone: `y(e) = f(e) - f0 - sum_j [f(e_j) - f0]` has products of three beside it, which the
+//! probes that judge count as left.
+//!
 //! A constant, the one product `((b'e)^2 - b'b)/2` that a function of a sum has, and single pairs are fitted by orthogonal
 //! matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993); the scores of all pairs are the matrix `E' diag(residual) E`, so that
 //! their N(N-1)/2 columns never exist. The fit without any interaction always competes. Probes that no fit has seen judge.

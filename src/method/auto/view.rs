@@ -32,8 +32,10 @@ pub(super) struct View {
     pub(super) unscreened: Option<f64>,
     /// The scatter of the answers.
     pub(super) noise: Option<f64>,
-    /// The largest difference of model and surrogate along the steepest line, in sigmas; infinite where the model fails.
+    /// The largest difference of model and surrogate along the steepest line, in sigmas; infinite where the model fails. And what of it
+    /// the points that check do not explain.
     pub(super) tail: Option<f64>,
+    pub(super) beyond: Option<f64>,
     pub(super) bends: Bends,
 }
 
@@ -127,7 +129,8 @@ impl View {
         };
         let (hidden, shares) = (0..n).map(part).unzip();
         let check = SurrogateCheck::of(plan, known, c, &bought.checks, (&surrogate, &moments));
-        let tail = tail(plan, known, c, bought, (&surrogate, moments.sigma()));
+        let even = check.as_ref().map_or(0.0, |check| share(check.even));
+        let [tail, beyond] = [0.0, even].map(|even| tail(plan, known, c, bought, (&surrogate, moments.sigma()), even));
         let noise = bought.noise.as_ref().and_then(|points| scatter(plan, known, c, points, &surrogate));
         let unscreened = unscreened.map(share);
         Some(Self {
@@ -141,6 +144,7 @@ impl View {
             unscreened,
             noise,
             tail,
+            beyond,
             bends,
         })
     }
@@ -175,7 +179,7 @@ impl View {
     pub(super) fn error(&self) -> f64 {
         let sigma = self.moments.sigma().max(f64::MIN_POSITIVE);
         let unseen = |check: &SurrogateCheck| check.unseen(self.variance()) + check.shown(1) / sigma;
-        let tail = self.tail.map_or(0.0, SurrogateCheck::far_out);
+        let tail = self.beyond.map_or(0.0, SurrogateCheck::far_out);
         self.truncation() + self.left().unwrap_or(0.0) + self.check.as_ref().map_or(0.0, unseen) + tail
     }
 }
@@ -225,24 +229,39 @@ fn scatter(
     Some((rise(0)? + rise(1)?).abs() / 6f64.sqrt())
 }
 
-/// The difference between model and surrogate far out along the lines on which it was looked.
+/// The difference between model and surrogate far out along the lines on which it was looked, in sigmas. Of what both ends of a line
+/// have in common, that is explained which a parabola along it has that leaves the share `even` of the variance at the points that
+/// check: `c s^2` with the variance `2 c^2`, and 9 c at its ends.
 fn tail(
     plan: &DifferencePlan,
     known: &KnownAnswers,
     c: usize,
     bought: &ChosenPoints,
     (surrogate, sigma): (&Surrogate, f64),
+    even: f64,
 ) -> Option<f64> {
     let off = |point: &Point| {
         let place = plan.standardised(point);
         let rise = surrogate.rises(&place.iter().map(std::slice::from_ref).collect::<Vec<_>>())?[0];
         match known.value(point, c) {
-            Some(value) => Some(((value - surrogate.centre) - rise).abs() / sigma),
+            Some(value) => Some(((value - surrogate.centre) - rise) / sigma),
             None => failed(known, point, c).then_some(f64::INFINITY),
         }
     };
-    let points = bought.tails.iter().filter(|(of, _)| *of == c).flat_map(|(_, points)| points);
-    points.filter_map(off).filter(|_| sigma > 0.0).reduce(f64::max)
+    let explained = 9.0 * (0.5 * even).sqrt();
+    let largest = |points: &[Point; 2]| {
+        let ends: Vec<f64> = points.iter().filter_map(off).collect();
+        let alike = match *ends {
+            [a, b] if a * b > 0.0 => a.abs().min(b.abs()),
+            _ => 0.0,
+        };
+        let beyond = |end: &f64| if end.is_finite() { end.abs() - alike.min(explained) } else { f64::INFINITY };
+        ends.iter().map(beyond).reduce(f64::max)
+    };
+    if sigma <= 0.0 {
+        return None;
+    }
+    bought.tails.iter().filter(|(of, _)| *of == c).filter_map(|(_, points)| largest(points)).reduce(f64::max)
 }
 
 /// The probes as one characteristic has answered them.
@@ -280,11 +299,19 @@ impl<'a> Screened<'a> {
             .sum();
         let seen = |probe: &Probe| {
             let rise = |point: &Point| Some(known.value(point, c)? - centre);
+            let axis = |(j, sign): (usize, &f64)| match corners[j][usize::from(*sign > 0.0)] {
+                Some((at, _)) => rise(&Point::of(&[at])),
+                None => Some(0.0),
+            };
             let direct: f64 = products
                 .iter()
                 .map(|(&(j, k), mixed)| mixed.value * half[j] * half[k] * probe.signs[j] * probe.signs[k])
                 .sum();
-            Some(0.5 * (rise(&probe.points[0])? + rise(&probe.points[1])?) - bends - direct)
+            let beside = match probe.points.as_slice() {
+                [one, other] => 0.5 * (rise(one)? + rise(other)?) - bends,
+                points => rise(&points[0])? - probe.signs.iter().enumerate().map(axis).sum::<Option<f64>>()?,
+            };
+            Some(beside - direct)
         };
         let probed = |probes: &'a [Probe]| {
             let (signs, seen) = probes.iter().filter_map(|probe| Some((probe.signs.as_slice(), seen(probe)?))).unzip();

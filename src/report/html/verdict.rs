@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::super::WarningReport;
+use super::super::bars::worst_case;
 use super::super::figures::{Figures, Named};
 use super::super::statistics::part;
 use super::super::sweep::{SweptPointReport, SweptReport};
@@ -133,7 +134,7 @@ impl<'r> JudgedCharacteristic<'r> {
             interval: one.yield_interval(),
             ppm: [one.ppm_below(), one.ppm_above()],
             cpk: one.capability.as_ref().and_then(|of: &Capability| of.cpk),
-            worst: one.extremes.as_ref().map(|found| [found.least.value, found.greatest.value]).or(one.worst_case),
+            worst: worst_case(one).map(|(_, ends)| ends),
             scale: one.scale(),
             driver: all.max_by(|a, b| a.1.total_cmp(&b.1)),
             ..Self::of(one, place).rejecting(one.rejects())
@@ -461,7 +462,7 @@ fn badge(verdict: Option<Verdict>) -> String {
         }
         Some(Verdict::Missed) => ("missed", "<path d=\"M8 1.8L15 14H1ZM8 6V10M8 11.5V12.6\"/>", "Missed"),
         Some(Verdict::Inconclusive) => {
-            ("unknown", "<circle cx=\"8\" cy=\"8\" r=\"6.5\" stroke-dasharray=\"3 2\"/>", "Not known")
+            ("unknown", "<circle cx=\"8\" cy=\"8\" r=\"6.5\" stroke-dasharray=\"3 2\"/>", "Inconclusive")
         }
     };
     format!("<span class=\"st {class}\"><svg viewBox=\"0 0 16 16\" aria-hidden=\"true\">{shape}</svg>{word}</span>")

@@ -12,17 +12,16 @@ pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
     if !matches!(line.value("position").value, Value::Table(_)) {
         return Ok(None);
     }
-    let frame = line.table("position", &["zone", "hole", "pin", "at", "most"], "")?;
+    let frame = line.table("position", &["zone", "hole", "pin", "at", "form", "most"], "")?;
     let missing = "write the diameter in the feature control frame, such as zone = 0.2";
     frame.needed("zone", missing)?;
     let zone = frame.size("zone")?.unwrap_or(0.0);
     let at = frame.word("at", "modifier", &["RFS", "MMC", "LMC"])?.unwrap_or("RFS");
     let feature = feature(line, &frame)?;
     if at == "RFS" {
-        if frame.get("most").is_some() {
-            let (key, to, instead) =
-                ("most", "a zone without a bonus".to_owned(), "write at = \"MMC\" or leave it out");
-            return Err(frame.at("most", StudyFault::DoesNotApply { key, to, instead }));
+        if let Some(key) = ["most", "form"].into_iter().find(|key| frame.get(key).is_some()) {
+            let (to, instead) = ("a zone without a bonus".to_owned(), "write at = \"MMC\" or leave it out");
+            return Err(frame.at(key, StudyFault::DoesNotApply { key, to, instead }));
         }
         let mut made = Plain::default();
         let mut keys = others(line, &["position", "unit"]);
@@ -51,8 +50,14 @@ pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
         _ => (least, true),
     };
     let (name, from) = (quoted(size), literal(from, unit));
-    let bonus = if rises { format!("{name} - {from}") } else { format!("{from} - {name}") };
+    let departure = if rises { format!("{name} - {from}") } else { format!("{from} - {name}") };
     let own = line.unit().filter(|_| line.converted());
+    let form = form(line, &frame)?;
+    // The mating envelope is smaller than a hole and larger than a pin by form and orientation, and never gives less than nothing.
+    let bonus = match &form {
+        Some(form) => format!("max(0, {departure} - {})", form.text),
+        None => departure,
+    };
     let bonus = match frame.size("most")? {
         Some(most) => format!("min({bonus}, {})", literal(most, own)),
         None => format!("({bonus})"),
@@ -73,7 +78,8 @@ pub(super) fn plain(line: &Line<'_>) -> Result<Option<Plain>, Fault> {
         };
         made.formula(line, format!("{}{axis}", line.name()), Of::Line, formula);
     }
-    made.product(line, &[size.to_owned()], &["_x", "_y"].map(|axis| format!("{unit_zone}{axis}")));
+    let sizes: Vec<String> = std::iter::once(size.to_owned()).chain(form.map(|form| form.name)).collect();
+    made.product(line, &sizes, &["_x", "_y"].map(|axis| format!("{unit_zone}{axis}")));
     Ok(Some(made))
 }
 
@@ -100,6 +106,28 @@ fn feature<'t>(line: &Line<'t>, frame: &Part<'t>) -> Result<Option<(&'static str
         return Err(frame.at(key, unknown));
     }
     Ok(Some((key, name)))
+}
+
+/// How far form or orientation of the feature takes its mating envelope from its size; None where it is not said.
+fn form(line: &Line<'_>, frame: &Part<'_>) -> Result<Option<Form>, Fault> {
+    let Some(tree) = frame.get("form") else { return Ok(None) };
+    let form = frame.diameter(line.study, "form", "")?;
+    if let Some([value, _]) = size::range(line, &form.formula).filter(|[least, _]| *least < 0.0) {
+        return Err(frame.at("form", StudyFault::OutOfRange { value, range: "0 or above" }));
+    }
+    let name = match &tree.value {
+        Value::Text(name) => name.clone(),
+        _ => String::new(),
+    };
+    Ok(Some(Form { text: form.text, name }))
+}
+
+/// The form that lessens a bonus.
+struct Form {
+    /// As it stands in a formula.
+    text: String,
+    /// The name of the dimension, if it is one.
+    name: String,
 }
 
 /// The nominal place, which must be there.

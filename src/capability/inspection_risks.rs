@@ -2,7 +2,16 @@
 
 use serde::Serialize;
 
-use super::sobol::EstimatedShare;
+/// A share that is estimated: of the variance, or of all parts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct EstimatedShare {
+    /// Its value; an estimate from a sample may be below 0 by its error.
+    pub value: f64,
+    /// Three of these reach the truth; None where nothing is known of it.
+    pub error: Option<f64>,
+}
 
 /// The risks of an inspection with a gauge that errs. Shares are of all parts unless something else is said.
 #[derive(Debug, Clone, PartialEq, Serialize)]

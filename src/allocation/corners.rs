@@ -1,0 +1,217 @@
+//! The worst case by the formula itself, at the places of the box where it is extreme.
+//!
+//! ```text
+//! W(T) = max over k of y(m + h T v_k) - nominal         v_k: places in the box, each coordinate in [-1, 1]
+//! dW/d ln T_j = dy/dx_j h_j T_j v_kj                      at the place of the maximum, which keeps its v
+//! ```
+//!
+//! A second-order surface does not follow a kink, nor a corner far from the mean. The places are found at every station by a search of the
+//! box; those of earlier stations stay, so that a place which was left is not left again and again. Sources: J. W. Blankenship, J. E. Falk,
+//! "Infinitely constrained optimization problems", J. Optimization Theory and Applications 19 (1976); J. M. Danskin, "The theory of max-min"
+//! (1967), for the slope.
+//!
+//! Cost: some hundred values of the formula for every side, which are not counted as evaluations.
+
+use crate::assembly::{Directions, Points, Request, Responses, Run};
+use crate::problem::Problem;
+
+/// Dimensions beyond which a search of the box takes too long.
+const MOST: usize = 40;
+/// Dimensions up to which the search begins at the best of all combinations of both ends and the middle.
+const ALL: usize = 6;
+/// Places that are kept for every side.
+const KEPT: usize = 24;
+/// The last step of the search, as a part of half a band: the value there is off by its square.
+const LAST_STEP: f64 = 1e-6;
+/// Places nearer to each other are one.
+const SAME: f64 = 1e-4;
+
+/// Places in the box, by their coordinates in `[-1, 1]`.
+pub(super) type Places = Vec<Vec<f64>>;
+
+/// The band of a dimension that varies, in its own unit: its middle, its half, and by how many halves the middle moves where it grows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Band {
+    pub(super) dimension: usize,
+    pub(super) middle: f64,
+    pub(super) half: f64,
+    pub(super) lean: f64,
+    /// A standard deviation.
+    pub(super) sigma: f64,
+}
+
+/// A characteristic of which the formula is known, about a station.
+pub(super) struct Corners {
+    problem: Problem,
+    characteristic: usize,
+    nominal: f64,
+    bands: Vec<Band>,
+    /// Where it reaches farthest below and above.
+    places: [Places; 2],
+}
+
+impl Corners {
+    /// With the places that were known before, and those of this station; None where the formula has no derivatives, or too many dimensions.
+    pub(super) fn of(
+        problem: &Problem,
+        characteristic: usize,
+        nominal: f64,
+        bands: Vec<Band>,
+        starts: [Vec<f64>; 2],
+        known: [Places; 2],
+    ) -> Option<Self> {
+        if bands.len() > MOST {
+            return None;
+        }
+        let mut corners = Self { problem: problem.clone(), characteristic, nominal, bands, places: known };
+        let point = corners.point(&vec![0.0; corners.bands.len()], &[], &[]);
+        corners.slopes(&point)?;
+        for (side, start) in starts.into_iter().enumerate() {
+            let found = corners.searched(side == 1, start)?;
+            let near = |place: &Vec<f64>| place.iter().zip(&found).all(|(a, b)| (a - b).abs() < SAME);
+            let places = &mut corners.places[side];
+            places.retain(|place| !near(place));
+            places.push(found);
+            let over = places.len().saturating_sub(KEPT);
+            places.drain(..over);
+        }
+        Some(corners)
+    }
+
+    /// The places, for the next station.
+    pub(super) fn places(&self) -> [Places; 2] {
+        self.places.clone()
+    }
+
+    /// How far it reaches beyond the nominal value, above or below, and how that grows with the logarithm of every tolerance. None where the
+    /// formula has no value.
+    pub(super) fn reach(&self, factors: &[f64], shifts: &[f64], above: bool) -> Option<(f64, Vec<(usize, f64)>)> {
+        let sign = if above { 1.0 } else { -1.0 };
+        let places = &self.places[usize::from(above)];
+        let points: Vec<Vec<f64>> = places.iter().map(|place| self.point(place, factors, shifts)).collect();
+        let values = self.values(&points);
+        let reaches = values.iter().enumerate().filter_map(|(k, value)| Some((k, sign * ((*value)? - self.nominal))));
+        let (k, most) = reaches.reduce(|best, other| if other.1 > best.1 { other } else { best })?;
+        let slopes = self.slopes(&points[k])?;
+        let of = |((band, slope), v): ((&Band, &Option<f64>), &f64)| {
+            let way = (v + band.lean) * band.half * factor(factors, band.dimension);
+            // A coordinate at the middle has no slope by its tolerance, even at a kink.
+            let slope = if way == 0.0 { 0.0 } else { (*slope)? };
+            Some((band.dimension, sign * slope * way))
+        };
+        let by: Option<Vec<(usize, f64)>> = self.bands.iter().zip(&slopes).zip(&places[k]).map(of).collect();
+        Some((most, by?))
+    }
+
+    /// Where the characteristic reaches farthest, as far as a search along the coordinates tells.
+    fn searched(&self, above: bool, start: Vec<f64>) -> Option<Vec<f64>> {
+        let sign = if above { 1.0 } else { -1.0 };
+        let n = self.bands.len();
+        let best_of = |places: Places| {
+            let points: Vec<Vec<f64>> = places.iter().map(|place| self.point(place, &[], &[])).collect();
+            let values = self.values(&points);
+            let known = places.into_iter().zip(values).filter_map(|(place, value)| Some((place, sign * value?)));
+            known.reduce(|best, other| if other.1 > best.1 { other } else { best })
+        };
+        let levels =
+            |index: usize| -> Vec<f64> { (0..n as u32).map(|j| [-1.0, 1.0, 0.0][index / 3usize.pow(j) % 3]).collect() };
+        let all = if n <= ALL { (0..3usize.pow(n as u32)).map(levels).collect() } else { Vec::new() };
+        let known = self.places[usize::from(above)].iter().cloned();
+        let begun: Places = known.chain([start, vec![-1.0; n], vec![1.0; n]]).chain(all).collect();
+        let (mut at, mut value) = best_of(begun)?;
+        let mut step = 2.0;
+        while step > LAST_STEP {
+            let mut moved = false;
+            for j in 0..n {
+                let aside = |by: f64| {
+                    let mut place = at.clone();
+                    place[j] = (place[j] + by).clamp(-1.0, 1.0);
+                    place
+                };
+                let found = best_of([-step, step].into_iter().map(aside).filter(|place| *place != at).collect());
+                // A gain must exceed the rounding.
+                if let Some((place, more)) = found.filter(|(_, more)| more - value > 8.0 * f64::EPSILON * more.abs()) {
+                    (at, value, moved) = (place, more, true);
+                }
+            }
+            if !moved {
+                step *= 0.5;
+            }
+        }
+        Some(at)
+    }
+
+    /// The values of all dimensions at a place of the box.
+    fn point(&self, place: &[f64], factors: &[f64], shifts: &[f64]) -> Vec<f64> {
+        let dimensions = self.problem.dimensions();
+        let mut x: Vec<f64> = dimensions.iter().map(crate::dimension::Dimension::nominal).collect();
+        for (band, v) in self.bands.iter().zip(place) {
+            let (d, factor) = (band.dimension, factor(factors, band.dimension));
+            let shift = shifts.get(d).copied().unwrap_or(0.0) * band.sigma;
+            x[d] += band.middle + shift + band.half * (v * factor + band.lean * (factor - 1.0));
+        }
+        x
+    }
+
+    fn values(&self, points: &[Vec<f64>]) -> Vec<Option<f64>> {
+        let outputs = [self.problem.outputs()[self.characteristic]];
+        let mut answers = Responses::open(points.len(), 1);
+        let request = Points::from_rows(points);
+        self.problem.function().evaluate(&Request::values(&request, &outputs), &Run::to_the_end(), &mut answers);
+        (0..points.len()).map(|row| answers.value(row, 0).filter(|value| value.is_finite())).collect()
+    }
+
+    /// The derivatives by every dimension with a band.
+    fn slopes(&self, point: &[f64]) -> Option<Vec<Option<f64>>> {
+        let outputs = [self.problem.outputs()[self.characteristic]];
+        let inputs: Vec<usize> = self.bands.iter().map(|band| band.dimension).collect();
+        let directions = Directions { point, inputs: &inputs, pairs: &[] };
+        Some(self.problem.function().derivatives(&outputs, &directions).into_iter().next()??.first)
+    }
+}
+
+fn factor(factors: &[f64], d: usize) -> f64 {
+    factors.get(d).copied().unwrap_or(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::formula::Formula;
+    use crate::assembly::{Composite, Input, Parts};
+    use crate::characteristic::Characteristic;
+    use crate::dimension::Dimension;
+
+    /// `hypot` about its kink and a parabola within its band: the places are the corners and the middle, the slopes those of the closed form.
+    #[test]
+    fn corners_of_a_kink_have_its_reach_and_slopes() {
+        let formula = Formula::parse("hypot(x, y) - (t - 0.25)^2").unwrap();
+        let names = ["x", "y", "t"];
+        let function = Composite::new(Parts {
+            inputs: names.map(|name| Input { name: name.to_owned(), unit: None }).to_vec(),
+            formulas: vec![("z".to_owned(), formula)],
+            outputs: vec![("z".to_owned(), None)],
+            ..Parts::default()
+        });
+        let halves = [0.3, 0.4, 1.0];
+        let dimensions = names.into_iter().zip(halves).map(|(name, half)| Dimension::normal(name, 0.0, half).unwrap());
+        let problem = Problem::new(dimensions, function.unwrap()).unwrap();
+        let problem = problem.asking([Characteristic::new("z")]).unwrap();
+        let band = |dimension: usize, half: f64| Band { dimension, middle: 0.0, half, lean: 0.0, sigma: half / 3.0 };
+        let bands = vec![band(0, 0.3), band(1, 0.4), band(2, 1.0)];
+        let nothing = [Vec::new(), Vec::new()];
+        let starts = [vec![0.0; 3], vec![0.0; 3]];
+        let corners = Corners::of(&problem, 0, -0.0625, bands, starts, nothing).unwrap();
+        let (above, slopes) = corners.reach(&[1.0; 3], &[0.0; 3], true).unwrap();
+        assert!((above - 0.5625).abs() < 1e-11, "{above}");
+        // d hypot/d ln T = T^2/hypot; the parabola is greatest within its band, where its slope is that of the last step.
+        for ((_, slope), expected) in slopes.iter().zip([0.18, 0.32, 0.0]) {
+            assert!((slope - expected).abs() < 1e-5, "{slopes:?}");
+        }
+        let (below, slopes) = corners.reach(&[1.0; 3], &[0.0; 3], false).unwrap();
+        assert!((below - 1.5).abs() < 1e-12, "{below}");
+        assert!((slopes[2].1 - 2.5).abs() < 1e-12, "{slopes:?}");
+        // Twice as far out the offsets reach 1, and the parabola stands at 0.5, where its coordinate is kept.
+        assert!((corners.reach(&[2.0; 3], &[0.0; 3], true).unwrap().0 - (1.0 - 0.0625 + 0.0625)).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,131 @@
+//! The risks of an inspection among the points of a sample.
+
+use super::count::{Count, Replicate};
+use super::replicate::of_replicates;
+use crate::capability::{EstimatedShare, InspectionRisks, acceptance, guard_reaching};
+use crate::characteristic::{Characteristic, SpecLimits};
+use crate::inspection::Guard;
+use crate::sampling::Fine;
+
+/// A piece of the sample between two values that no limit parts.
+struct Piece {
+    /// The middle of it.
+    at: f64,
+    /// How many points.
+    points: f64,
+    good: bool,
+}
+
+/// Means over all points.
+#[derive(Clone, Copy)]
+struct Means {
+    /// Bad and accepted, good and rejected, accepted.
+    shares: [f64; 3],
+    /// Means of the squares of what every point adds to them.
+    squares: [f64; 3],
+}
+
+/// Of a characteristic with a gauge; None where no point has a value.
+pub(super) fn inspected(characteristic: &Characteristic, count: &Count, all: Option<&Fine>) -> Option<InspectionRisks> {
+    let (inspection, limits) = (characteristic.inspection()?, characteristic.limits());
+    let (all, gauge) = (all?, inspection.gauge());
+    let outside = [0, 1].map(|side| count.replicates.iter().map(|replicate| replicate.outside[side]).sum());
+    let whole = pieces(all, limits, outside);
+    let guard = match inspection.guard() {
+        Guard::Width(width) => Some(width),
+        Guard::FalseAccept(rate) => {
+            let accepted = |guard: f64| means(&whole, limits, gauge, guard).map_or(0.0, |of| of.shares[0]);
+            guard_reaching(&accepted, limits, gauge, rate)
+        }
+    };
+    let found = guard.and_then(|guard| Some((means(&whole, limits, gauge, guard)?, guard)));
+    let shares = found.map(|(of, guard)| {
+        let each = |replicate: &Replicate| {
+            let fine = replicate.fine.as_ref()?;
+            means(&pieces(fine, limits, replicate.outside), limits, gauge, guard)
+        };
+        let replicates: Vec<Option<Means>> = match count.replicates.len() {
+            1 => Vec::new(),
+            _ => count.replicates.iter().map(each).collect(),
+        };
+        let n = all.total() as f64;
+        let share = |index: usize| {
+            let value = of.shares[index];
+            let scatter = match replicates.is_empty() {
+                true => Some(((of.squares[index] - value * value).max(0.0) / n).sqrt()),
+                false => of_replicates(replicates.iter().map(|of| of.map(|of| of.shares[index]))),
+            };
+            // Where no point was seen, up to three are not ruled out.
+            EstimatedShare { value, error: scatter.map(|error| error.max(1.0 / n)) }
+        };
+        [0, 1, 2].map(share)
+    });
+    let tightened = |limit: Option<f64>, sign: f64| Some(limit? + sign * guard?);
+    Some(InspectionRisks {
+        gauge,
+        guard,
+        acceptance: [tightened(limits.lower(), 1.0), tightened(limits.upper(), -1.0)],
+        false_accept: shares.map(|of| of[0]),
+        false_reject: shares.map(|of| of[1]),
+        accepted: shares.map(|of| of[2]),
+        bad_among_accepted: shares.filter(|of| of[2].value > 0.0).map(|[bad, _, accepted]| EstimatedShare {
+            value: bad.value / accepted.value,
+            error: bad.error.map(|error| error / accepted.value),
+        }),
+    })
+}
+
+/// The bins of a sample, parted where the limits are: by the points counted outside, which are exact.
+fn pieces(fine: &Fine, limits: SpecLimits, outside: [u64; 2]) -> Vec<Piece> {
+    let (lower, upper) = (limits.lower(), limits.upper());
+    let beyond =
+        |[from, to]: [f64; 2]| [lower.is_some_and(|lower| to <= lower), upper.is_some_and(|upper| from > upper)];
+    // Those of the bins that a limit parts.
+    let mut left = outside;
+    for (ends, count) in fine.filled() {
+        for (left, beyond) in left.iter_mut().zip(beyond(ends)) {
+            *left = left.saturating_sub(if beyond { count } else { 0 });
+        }
+    }
+    let mut pieces = Vec::new();
+    for (ends, count) in fine.filled() {
+        let [below, above] = beyond(ends);
+        let mut add = |[from, to]: [f64; 2], points: u64, good: bool| {
+            pieces.extend((points > 0).then_some(Piece { at: 0.5 * (from + to), points: points as f64, good }));
+        };
+        if below || above {
+            add(ends, count, false);
+            continue;
+        }
+        let ([from, to], mut inside) = (ends, count);
+        let low = lower.filter(|lower| from < *lower);
+        let high = upper.filter(|upper| to > *upper);
+        if let Some(low) = low {
+            let points = left[0].min(inside);
+            (left[0], inside) = (left[0] - points, inside - points);
+            add([from, low], points, false);
+        }
+        if let Some(high) = high {
+            let points = left[1].min(inside);
+            (left[1], inside) = (left[1] - points, inside - points);
+            add([high, to], points, false);
+        }
+        add([low.unwrap_or(from), high.unwrap_or(to)], inside, true);
+    }
+    pieces
+}
+
+/// None of no points.
+fn means(pieces: &[Piece], limits: SpecLimits, gauge: f64, guard: f64) -> Option<Means> {
+    let total: f64 = pieces.iter().map(|piece| piece.points).sum();
+    let (mut shares, mut squares) = ([0.0; 3], [0.0; 3]);
+    for piece in pieces {
+        let accepted = acceptance(piece.at, limits, gauge, guard);
+        let (bad, good) = if piece.good { (0.0, 1.0 - accepted) } else { (accepted, 0.0) };
+        for (index, part) in [bad, good, accepted].into_iter().enumerate() {
+            shares[index] += piece.points * part / total;
+            squares[index] += piece.points * part * part / total;
+        }
+    }
+    (total > 0.0).then_some(Means { shares, squares })
+}
