@@ -140,8 +140,21 @@ pub(crate) fn index(value: f64) -> String {
     unsigned_zero(format!("{value:.3}"))
 }
 
-/// A yield in percent, by itself.
+/// Fewer rejects than this share are not told apart: no law of a dimension is known so far out.
+const FEWEST: f64 = 1e-9;
+
+/// A yield that was found, in percent, by itself.
 pub(crate) fn yielded(yield_: f64) -> String {
+    unrejected(1.0 - yield_)
+}
+
+/// The yield where so many are rejected.
+pub(crate) fn unrejected(rejected: f64) -> String {
+    if rejected > 0.0 && rejected < FEWEST { "> 99.9999999 %".to_owned() } else { share(rejected) }
+}
+
+/// A yield that was asked for, in percent.
+pub(crate) fn target_yield(yield_: f64) -> String {
     share(1.0 - yield_)
 }
 

@@ -1,6 +1,6 @@
 //! Yields and rejects, with the digits that their error carries and no more.
 
-use super::number::{share, significant};
+use super::number::{significant, unrejected};
 
 /// Significant digits of parts per million, at most.
 const DIGITS: i32 = 4;
@@ -54,20 +54,20 @@ impl Rejects {
         if let Some(most) = self.bound(rejected) {
             return Some(at_least(most));
         }
-        let exact = share(rejected);
+        let exact = unrejected(rejected);
         let Some(error) = self.error else { return Some(exact) };
         let decimals = decimals(100.0 * error);
         let shorter = format!("{:.decimals$} %", 100.0 * (1.0 - rejected));
         // Rejects have three digits at most, however small their error.
-        Some(if shorter.len() < exact.len() { shorter } else { exact })
+        Some(if shorter.len() < exact.len() && !exact.starts_with('>') { shorter } else { exact })
     }
 
     /// The yield with its error, or as a bound. An error that the printed digits do not show is left out.
     pub(crate) fn with_error(self) -> Option<String> {
-        let (rejected, text) = (self.total()?, self.yield_text()?);
+        let text = self.yield_text()?;
         let decimals = text.trim_end_matches(" %").split_once('.').map_or(0, |(_, decimals)| decimals.len());
         let seen = |error: &f64| 1e3 * error >= 10_f64.powi(-(decimals as i32));
-        let error = self.error.filter(|_| self.bound(rejected).is_none()).filter(seen);
+        let error = self.error.filter(|_| !text.starts_with('>')).filter(seen);
         Some(error.map_or(text.clone(), |error| format!("{text} ± {}", significant(100.0 * error, 1))))
     }
 

@@ -11,7 +11,7 @@ use crate::allocation::{
     Allocated, Attainable, Bound, CostBasis, FrontRequirement, Goal, JointYield, Kept, Moved, ShadowPrice, Status,
 };
 use crate::analysis::CharacteristicAnalysis;
-use crate::document::number::{beside, index, known, plain, plural, share, short, significant, yielded};
+use crate::document::number::{beside, index, known, plain, plural, share, short, significant, target_yield, yielded};
 use crate::document::{
     Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
     PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
@@ -242,7 +242,7 @@ impl AllocationReport {
         let Some(one) = &self.joint_requirement else { return };
         let of = |judged: &Judged| judged.value.and_then(finite).map_or("unknown".to_owned(), yielded);
         let said =
-            Line::from(format!("joint yield {}: {} before, ", yielded(one.requirement.amount()), of(&one.before)));
+            Line::from(format!("joint yield {}: {} before, ", target_yield(one.requirement.amount()), of(&one.before)));
         let said = match &one.after {
             Some(after) => said.and(format!("{} after, ", of(after))).and(loud(after.verdict)),
             None => said.and(loud(one.before.verdict)),
@@ -431,7 +431,7 @@ impl AllocationReport {
         Columns::default()
             .shown("required", |(first, _): &Row<'_>| {
                 Cell::text(match first.requirement {
-                    Requirement::Yield(least) => yielded(least),
+                    Requirement::Yield(least) => target_yield(least),
                     Requirement::Cpk(least) => format!("Cpk {}", significant(least, 4)),
                     Requirement::Sigma(most) => format!("sigma {}", significant(most, 4)),
                     Requirement::Rss | Requirement::WorstCase => {
@@ -544,7 +544,7 @@ fn unattainable(
 
 fn required(requirement: Requirement) -> String {
     match requirement {
-        Requirement::Yield(least) => format!("a yield of {}", yielded(least)),
+        Requirement::Yield(least) => format!("a yield of {}", target_yield(least)),
         Requirement::Cpk(least) => format!("a Cpk of {}", plain(least)),
         Requirement::Sigma(most) => format!("a sigma of {}", plain(most)),
         Requirement::Rss => "its limits by rss".to_owned(),
@@ -569,7 +569,7 @@ fn measured(kept: &Kept, judged: Option<Judged>) -> Cell {
 
 fn wanted(requirement: Requirement) -> String {
     match requirement {
-        Requirement::Yield(least) => format!("yield {}", yielded(least)),
+        Requirement::Yield(least) => format!("yield {}", target_yield(least)),
         Requirement::Cpk(number) | Requirement::Sigma(number) => format!("{} {}", requirement.name(), plain(number)),
         Requirement::Rss | Requirement::WorstCase => requirement.name().to_owned(),
     }

@@ -1,6 +1,6 @@
 //! The requirement in the words of every document.
 
-use crate::document::number::{known, significant, yielded};
+use crate::document::number::{known, significant, target_yield};
 use crate::document::{Line, Tone};
 use crate::requirement::Requirement;
 use crate::shape::finite;
@@ -33,5 +33,5 @@ pub(super) fn loud(verdict: Verdict) -> Line {
 /// The target yield and whether it is met, after the yield; empty without a target.
 pub(super) fn judged(target: Option<f64>, verdict: Option<Verdict>) -> Line {
     let Some((target, verdict)) = target.zip(verdict) else { return Line::default() };
-    Line::from(format!(", target {}: ", yielded(target))).and(loud(verdict))
+    Line::from(format!(", target {}: ", target_yield(target))).and(loud(verdict))
 }

@@ -3,7 +3,7 @@
 use super::figures::Figures;
 use crate::analysis::{CharacteristicAnalysis, YieldSource};
 use crate::capability::Capability;
-use crate::document::number::{share, significant};
+use crate::document::number::{significant, unrejected};
 
 /// The Pearson fit is named beside the yield where it has more than this part of what is rejected wrong.
 const DIFFERENT: f64 = 0.01;
@@ -21,6 +21,6 @@ pub(super) fn source(one: &CharacteristicAnalysis) -> Option<String> {
     let own = rejected(one.ppm_below(), one.ppm_above());
     let fit = one.pearson.as_ref().map(|fit: &Capability| rejected(fit.ppm_below(), fit.ppm_above()));
     let fit = fit.filter(|fit| source != YieldSource::Pearson && (fit - own).abs() > DIFFERENT * fit.max(own));
-    let fit = fit.map_or(String::new(), |fit| format!("; Pearson fit {}", share(fit)));
+    let fit = fit.map_or(String::new(), |fit| format!("; Pearson fit {}", unrejected(fit)));
     Some(format!("by {}{error}{fit}", source.words()))
 }

@@ -181,7 +181,7 @@ pub enum StudyFault {
         text: String,
     },
     /// A number outside its range.
-    #[error("{value} is not {range}")]
+    #[error("{} is not {range}", said(*.value))]
     OutOfRange {
         /// The number.
         value: f64,
@@ -589,6 +589,11 @@ impl From<Fault> for Faults {
     fn from(fault: Fault) -> Self {
         Self(vec![fault])
     }
+}
+
+/// A number of a message, without what rounding leaves of sums of decimals.
+pub(super) fn said(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
 }
 
 pub(super) fn fault(span: Range<usize>, key: impl Into<String>, fault: impl Into<StudyFault>) -> Fault {

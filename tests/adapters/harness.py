@@ -109,8 +109,8 @@ def shown(example):
     """The README of an example shows what the program prints: each console block is run again.
 
     Lines may change places (rows of equal shares do), the last digits of a kernel's numbers are its own, an error or a
-    bound that is estimated from them is alike within a factor of two, and how many sentinels there are depends on which
-    process was free. With SENSITOL_UPDATE_DOCS=1 a block that differs is renewed.
+    bound that is estimated from them is alike within a factor of two, a figure is alike in the decimals that both have,
+    and how many sentinels there are depends on which process was free. With SENSITOL_UPDATE_DOCS=1 a block that differs is renewed.
     """
     readme = EXAMPLES / example / "README.md"
     text = readme.read_text(encoding="utf-8")
@@ -140,14 +140,19 @@ def _difference(expected, printed):
 
 
 def _alike(kept, found, before, line):
+    kept, found = kept.strip("(),;:"), found.strip("(),;:")
     if kept == found:
         return True
+    decimals = [len(text.partition(".")[2]) if text.replace(".", "", 1).isdigit() else None for text in (kept, found)]
     try:
         kept, found = float(kept), float(found)
     except ValueError:
         return False
     if before in ("±", "<"):
         return kept / 2 <= found <= 2 * kept
+    if decimals[0] != decimals[1] and None not in decimals:
+        # The error says how many are printed.
+        return abs(kept - found) < 10 ** -min(decimals)
     counted = any(word.startswith("evaluation") for word in line)
     return abs(kept - found) <= (4 if counted else 1e-7 + 1e-5 * abs(kept))
 

@@ -1,12 +1,13 @@
 // Pages in a real browser: nothing complains, nothing is requested, sliders move numbers, and the numbers are the engine's.
 // `node test.mjs SENSITOL CASES`, where CASES is what the suite left of pages, settings and the engine's answers.
 import assert from "node:assert/strict";
-import { execFileSync, spawnSync } from "node:child_process";
+import { execFile, execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { promisify } from "node:util";
 import { Browser } from "./chromium.mjs";
 import { FAULTS, MARGINS, SHEETS, filled } from "./paper.mjs";
 
@@ -53,33 +54,40 @@ const prints = async (page, sheet, what) => {
 };
 
 test("every page of every example opens without a complaint or a request, and every analysis prints", async () => {
-  for (const study of examples()) {
-    const name = study.replaceAll(/[/.]/g, "-"), text = readFileSync(join(root, study), "utf8");
-    // What an adapter wants to know of its document is no study, and what it evaluates may not be installed.
-    if (/^(document|servers) =/m.test(text) || (text.includes("command = ") && !study.includes("external-python"))) continue;
-    const pages = [report("analyze", study, name, ["--journal", "none"])];
-    pages.push(report("simulate", study, name, ["--samples", "500", "--journal", "none"]));
-    if (!study.includes("external")) pages.push(report("compare", study, name, ["--samples", "2048", "--budget", "300"]));
-    if (study.includes("stacked-blocks/")) pages.push(report("sweep", study, name, ["--over", "th=15:19:5"]));
-    // A front is one of yield or Cpk.
-    const front = text.includes("require = \"") ? [] : ["--pareto", "4"];
-    if (text.includes("[costs")) pages.push(report("allocate", study, name, front));
-    for (const file of pages) {
-      for (const options of [{}, { dark: true }, { width: 360, height: 740 }]) {
-        const page = await browser.open(file, options);
-        quiet(page);
-        assert.ok(await page.evaluate("document.querySelectorAll('section h2').length") > 1, file);
-        const wider = await page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth");
-        assert.ok(wider <= 0, `${file} is ${wider} pixels wider than a window of ${options.width ?? 1280}`);
-        assert.deepEqual(await page.evaluate(OVERLAPS), [], file);
-        // Each chart is there twice, and one of the two is seen.
-        assert.equal(2 * await page.evaluate(drawn), await page.evaluate("document.querySelectorAll('svg.density').length"), file);
-        if (Object.keys(options).length === 0 && file === pages[0]) await prints(page, "A4", file);
-        await page.close();
-      }
+  // Two at once: one is computed while the browser draws the other.
+  const left = examples();
+  const next = async () => {
+    for (let study = left.shift(); study !== undefined; study = left.shift()) await opens(study);
+  };
+  await Promise.all([next(), next()]);
+});
+
+const opens = async (study) => {
+  const name = study.replaceAll(/[/.]/g, "-"), text = readFileSync(join(root, study), "utf8");
+  // What an adapter wants to know of its document is no study, and what it evaluates may not be installed.
+  if (/^(document|servers) =/m.test(text) || (text.includes("command = ") && !study.includes("external-python"))) return;
+  const pages = [["analyze", ["--journal", "none"]], ["simulate", ["--samples", "500", "--journal", "none"]]];
+  if (!study.includes("external")) pages.push(["compare", ["--samples", "2048", "--budget", "300"]]);
+  if (study.includes("stacked-blocks/")) pages.push(["sweep", ["--over", "th=15:19:5"]]);
+  // A front is one of yield or Cpk.
+  if (text.includes("[costs")) pages.push(["allocate", text.includes("require = \"") ? [] : ["--pareto", "4"]]);
+  for (const [command, more] of pages) {
+    const file = join(folder, `${name}-${command}.html`);
+    await promisify(execFile)(sensitol, [command, study, "--html", file, "-q", ...more], { cwd: root });
+    for (const options of [{}, { dark: true }, { width: 360, height: 740 }]) {
+      const page = await browser.open(file, options);
+      quiet(page);
+      assert.ok(await page.evaluate("document.querySelectorAll('section h2').length") > 1, file);
+      const wider = await page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth");
+      assert.ok(wider <= 0, `${file} is ${wider} pixels wider than a window of ${options.width ?? 1280}`);
+      assert.deepEqual(await page.evaluate(OVERLAPS), [], file);
+      // Each chart is there twice, and one of the two is seen.
+      assert.equal(2 * await page.evaluate(drawn), await page.evaluate("document.querySelectorAll('svg.density').length"), file);
+      if (Object.keys(options).length === 0 && command === "analyze") await prints(page, "A4", file);
+      await page.close();
     }
   }
-});
+};
 
 const TEXTS = "JSON.stringify([...document.querySelectorAll('[data-kc] [data-figure]')].map((cell) => cell.textContent))";
 const SET = `(i, what, value, kind = "number") => {

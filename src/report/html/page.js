@@ -28,6 +28,7 @@
   const share = (rejected) => {
     const percent = 100 * rejected;
     if (percent <= 0) return "100 %";
+    if (percent < 1e-7) return "> 99.9999999 %";
     const text = (100 - percent).toFixed(Math.min(12, Math.max(2, 2 - Math.floor(Math.log10(percent)))));
     return `${/^100\.0*$/.test(text) ? "100" : /^0\.0*$/.test(text) ? "0" : text} %`;
   };
