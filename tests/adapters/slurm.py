@@ -39,6 +39,10 @@ PartitionName=all Nodes=n[1-2] Default=YES MaxTime=INFINITE State=UP
 """
 
 
+class DoesNotStart(AssertionError):
+    """Slurm is installed, and its daemons do not come up on this machine."""
+
+
 def installed():
     """Whether this machine can run it: the programs, and root."""
     return os.geteuid() == 0 and all(shutil.which(name) for name in ("slurmctld", "slurmd", "munged", "sbatch"))
@@ -108,7 +112,7 @@ def wait(ready, what, folder=None, seconds=60):
             return
         time.sleep(0.1)
     logs = "\n".join(path.read_text()[-800:] for path in folder.glob("*.log")) if folder else ""
-    raise AssertionError(f"{what} did not come in {seconds} s\n{logs}")
+    raise DoesNotStart(f"{what} did not come in {seconds} s\n{logs}")
 
 
 def jobs(environment):
