@@ -1,11 +1,17 @@
 import os
 from typing import Any, Callable, final
 
-__all__ = ["Outcome", "Study", "__version__", "run_cli"]
+__all__ = ["Law", "Outcome", "Study", "__version__", "run_cli"]
 
 __version__: str
 
 def run_cli(arguments: list[str]) -> int: ...
+
+@final
+class Law:
+    @staticmethod
+    def pearson(mean: float, sigma: float, skewness: float, kurtosis: float) -> Law: ...
+    def values(self, what: str, at: bytes) -> bytes: ...
 
 @final
 class Outcome:
@@ -39,6 +45,7 @@ class Study:
     @property
     def text(self) -> str: ...
     def as_json(self) -> str: ...
+    def law(self, dimension: str) -> Law | None: ...
     def run(
         self,
         asked: str,

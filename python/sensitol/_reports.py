@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Literal, Optional, Tuple, Union
 
-from ._records import Record, Result
+from ._records import Fitted, Record, Result
 
 class Account(Record):
     """The shapes that `auto` found for the dimensions, and the use of its points. As text it is a sentence."""
@@ -448,7 +448,7 @@ class Capability(Record):
     """The share of assemblies within the limits."""
 
 
-class CharacteristicResult(Record):
+class CharacteristicResult(Fitted):
     """A characteristic with its verdicts and intervals, as it is written."""
 
     constant: bool

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence, Ty
 
 from . import _core, _toml
 from ._dimension import Characteristic, Dimension, Number, plain, rows
+from ._distribution import Distribution
 from ._errors import SensitolWarning, StudyError
 from ._model import Model
 from ._progress import Progress, Shown
@@ -231,8 +232,15 @@ class Study:
 
     @property
     def dimensions(self) -> dict[str, Record]:
-        """What the engine made of each dimension: nominal, tolerance, mean, sigma, distribution, unit."""
-        return {one["name"]: Record(one) for one in self._about["dimensions"]}
+        """What the engine made of each dimension: nominal, tolerance, mean, sigma, distribution, unit.
+
+        The distribution is its name, and has the functions of scipy's frozen distributions: `pdf`, `cdf`, `sf`, `ppf`, `isf`, `rvs`.
+        """
+
+        def law(one: Mapping[str, Any]) -> Distribution | None:
+            return Distribution(one["distribution"], (self, one["name"])) if one["distribution"] else None
+
+        return {one["name"]: Record({**one, "distribution": law(one)}) for one in self._about["dimensions"]}
 
     def _about_dimensions(self) -> list[str]:
         return [str(one["name"]) for one in self._about["dimensions"]]

@@ -5,6 +5,7 @@
 
 mod errors;
 mod host;
+mod law;
 mod outcome;
 mod pools;
 mod running;
@@ -26,5 +27,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(run_cli, module)?)?;
     module.add_class::<study::Study>()?;
+    module.add_class::<law::Law>()?;
     module.add_class::<outcome::Outcome>()
 }

@@ -16,6 +16,7 @@ use serde_json::json;
 
 use crate::errors::{of_engine, of_study};
 use crate::host::{Event, Host};
+use crate::law::Law;
 use crate::outcome::Outcome;
 use crate::running::{Caller, Ended, run};
 
@@ -171,6 +172,14 @@ impl Study {
             .parsed(None, JournalPlace::Nowhere, None, true)
             .map_err(|error| of_study(py, &error, self.made_in_python))?;
         Ok(parsed.as_json())
+    }
+
+    /// The law of a dimension; None where it does not vary.
+    fn law(&self, py: Python<'_>, dimension: &str) -> PyResult<Option<Law>> {
+        let (parsed, _) = self
+            .parsed(None, JournalPlace::Nowhere, None, true)
+            .map_err(|error| of_study(py, &error, self.made_in_python))?;
+        Ok(parsed.problem.dimensions().iter().find(|one| one.name() == dimension).and_then(Law::of))
     }
 
     /// Does what `asked` says. `make_model` gets the names of inputs and outputs as JSON, and makes what evaluates blocks of points.

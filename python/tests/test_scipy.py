@@ -1,6 +1,7 @@
 """Frozen distributions of scipy: the engine's own kinds have their moments."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -82,6 +83,60 @@ def test_draws_are_scipy_s(name):
             continue
         # 65 536 points of Sobol' leave an error of shares of some 1e-4.
         assert float(law.cdf(value)) == pytest.approx(float(share), abs=1e-3)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_functions_are_scipy_s(name):
+    law = LAWS[name]()
+    study = st.Study(dimensions={"x": st.Dimension(distribution=law)}, characteristics={"y": st.Characteristic("x")})
+    mine = study.dimensions["x"].distribution
+    shares = np.array([[1e-6, 1e-3, 0.1], [0.5, 0.9, 0.999]])
+    values = law.ppf(shares)
+    # scipy's own functions are good to some 1e-10; near an end of a law the digits of the distance to it are lost.
+    assert mine.ppf(shares) == pytest.approx(values, rel=1e-9)
+    assert mine.isf(shares) == pytest.approx(law.isf(shares), rel=1e-9)
+    for what in ("pdf", "cdf", "sf"):
+        found = getattr(mine, what)(values[:, 1:])
+        assert found.shape == (2, 2)
+        assert found == pytest.approx(getattr(law, what)(values[:, 1:]), rel=1e-7), what
+    assert mine.sf(float(values[1, 1])) == pytest.approx(0.1, rel=1e-9)
+    draws = mine.rvs(20_000, random_state=1)
+    # The largest distance from the law is above 2.23/sqrt(n) once in ten thousand times (Kolmogorov).
+    assert ss.kstest(draws, law.cdf).statistic < 2.23 / math.sqrt(20_000)
+
+
+def test_a_fit_is_the_member_of_pearson_s_system():
+    # A gamma law is of type III: the fit of its four moments is the law itself.
+    law = ss.gamma(3.5, loc=1, scale=0.2)
+    study = st.Study(
+        dimensions={"x": st.Dimension(distribution=law), "fixed": st.Dimension(1.0)},
+        characteristics={"y": st.Characteristic("x"), "one": st.Characteristic("fixed")},
+    )
+    found = study.analyze("full")
+    fit = found["y"].law
+    values = law.ppf([1e-6, 0.01, 0.5, 0.99, 1 - 1e-6])
+    for what in ("pdf", "cdf", "sf"):
+        assert getattr(fit, what)(values) == pytest.approx(getattr(law, what)(values), rel=1e-9), what
+    assert fit.isf(1e-9) == pytest.approx(law.isf(1e-9), rel=1e-9)
+    assert found["y"].cdf(1.5) == pytest.approx(law.cdf(1.5), rel=1e-9)
+    assert fit == "pearson" and math.isnan(fit.ppf(2))
+    assert found["one"].law is None and study.dimensions["fixed"].distribution is None
+    with pytest.raises(ValueError, match="no Pearson distribution has the moments of `one`"):
+        found["one"].cdf(1)
+
+
+def test_what_a_law_cannot_say():
+    study = st.Study(
+        dimensions={"x": st.Dimension(distribution=np.linspace(1, 2, 7))}, characteristics={"y": st.Characteristic("x")}
+    )
+    law = study.dimensions["x"].distribution
+    assert law.cdf(1.5) == pytest.approx(4 / 7, rel=1e-12) and law.ppf(0.5) == 1.5
+    with pytest.raises(ValueError, match="`x` has values with probabilities of their own, and no density"):
+        law.pdf(1.5)
+    with pytest.raises((TypeError, ValueError)):
+        law.cdf("wide")
+    again = pickle.loads(pickle.dumps(law))
+    assert again == law and again.cdf(1.5) == law.cdf(1.5)
 
 
 @pytest.mark.parametrize("name", TABLES)

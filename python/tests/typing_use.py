@@ -35,6 +35,8 @@ assert_type(result, st.AnalysisResult)
 assert_type(result["gap"], st.CharacteristicResult)
 assert_type(result["gap"].sigma, Optional[float])
 assert_type(result["gap"].yield_, Optional[float])
+law = result["gap"].law
+assert law is None or isinstance(law, str)
 assert_type(result.evaluations, int)
 assert_type(result.met, Optional[bool])
 assert_type(result["gap"].sensitivities[0].dimension, str)

@@ -41,7 +41,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Literal, Optional, Tuple, Union
 
-from ._records import Record, Result
+from ._records import Fitted, Record, Result
 
 '''
 
@@ -137,7 +137,7 @@ class Writer:
         self.properties[name] = list(schema["properties"])
         self.classes[name] = ""
         self.inner[name] = {}
-        base = "Result" if name in ROOTS.values() else "Record"
+        base = "Result" if name in ROOTS.values() else "Fitted" if name == "CharacteristicResult" else "Record"
         lines = [f"class {name}({base}):", '    """' + said(schema.get("description", name)) + '"""', ""]
         sometimes = set(schema.get("sometimes", ()))
         required = schema.get("required")
