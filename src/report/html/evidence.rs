@@ -268,7 +268,14 @@ fn chain(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Option
 
 fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], class: &str, width: f64) -> String {
     const ROW: f64 = 26.0;
-    let (left, right) = (if width > 500.0 { 110.0 } else { 84.0 }, if width > 500.0 { 110.0 } else { 74.0 });
+    const LETTER: f64 = 7.0;
+    let longest = |texts: &mut dyn Iterator<Item = String>| texts.map(|text| text.chars().count()).max().unwrap_or(0);
+    let band = |of: &DimensionReport| of.tolerance.map(band).unwrap_or_default();
+    let notes = longest(&mut links.iter().map(|(of, _)| band(of)));
+    let values = longest(&mut links.iter().map(|(of, _)| plain(of.nominal)));
+    // A value in the middle of a short link at the end of the scale does not reach into the column of bands.
+    let room = LETTER * (notes as f64 + 0.5 * values as f64 + 1.0);
+    let (left, right) = if width > 500.0 { (110.0, room.max(110.0)) } else { (84.0, room.max(74.0)) };
     let mut at = 0.0;
     let ends: Vec<[f64; 2]> = (links.iter())
         .map(|(of, sign)| {
@@ -314,8 +321,7 @@ fn drawing(one: &CharacteristicAnalysis, links: &[(&DimensionReport, f64)], clas
         let _ = writeln!(svg, "<text x=\"{width}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>", y + 4.0, escaped(&note));
     };
     for (row, ((of, _), ends)) in links.iter().zip(&ends).enumerate() {
-        let note = of.tolerance.map(band).unwrap_or_default();
-        arrow(row, *ends, (&of.name, plain(of.nominal), note, "link"));
+        arrow(row, *ends, (&of.name, plain(of.nominal), band(of), "link"));
     }
     arrow(links.len(), [0.0, at], (one.name(), nominal, String::new(), "link gap"));
     svg + "</svg>\n"
