@@ -91,5 +91,6 @@ class Distribution(str):
         import numpy as np
 
         random = np.random.default_rng(random_state)
-        half, upper = 0.5 * random.random(size), random.random(size) < 0.5
+        # Never 0, whose quantile may be infinite.
+        half, upper = 0.5 * (1.0 - random.random(size)), random.random(size) < 0.5
         return np.where(upper, self.isf(half), self.ppf(half))[()]

@@ -38,6 +38,8 @@ pub(crate) struct Study {
     /// Which of its configurations is meant.
     configuration: Option<String>,
     described: String,
+    /// As they were found, with their laws.
+    dimensions: Vec<sensitol::Dimension>,
 }
 
 impl Study {
@@ -129,12 +131,22 @@ impl Study {
         hosted: Option<bool>,
         configuration: Option<String>,
     ) -> PyResult<Self> {
-        let study =
-            Self { text, toml, name, folder, files, made_in_python, hosted, configuration, described: String::new() };
+        let study = Self {
+            text,
+            toml,
+            name,
+            folder,
+            files,
+            made_in_python,
+            hosted,
+            configuration,
+            described: String::new(),
+            dimensions: Vec::new(),
+        };
         let (parsed, hello) = study
             .parsed(None, JournalPlace::Nowhere, None, true)
             .map_err(|error| of_study(py, &error, made_in_python))?;
-        Ok(Self { described: described(&parsed, &hello), ..study })
+        Ok(Self { described: described(&parsed, &hello), dimensions: parsed.problem.dimensions().to_vec(), ..study })
     }
 
     /// From a file.
@@ -175,11 +187,8 @@ impl Study {
     }
 
     /// The law of a dimension; None where it does not vary.
-    fn law(&self, py: Python<'_>, dimension: &str) -> PyResult<Option<Law>> {
-        let (parsed, _) = self
-            .parsed(None, JournalPlace::Nowhere, None, true)
-            .map_err(|error| of_study(py, &error, self.made_in_python))?;
-        Ok(parsed.problem.dimensions().iter().find(|one| one.name() == dimension).and_then(Law::of))
+    fn law(&self, dimension: &str) -> Option<Law> {
+        self.dimensions.iter().find(|one| one.name() == dimension).and_then(Law::of)
     }
 
     /// Does what `asked` says. `make_model` gets the names of inputs and outputs as JSON, and makes what evaluates blocks of points.
