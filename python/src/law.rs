@@ -8,8 +8,8 @@ use sensitol::distribution::Probability;
 use sensitol::pearson::Pearson;
 
 enum Of {
-    Dimension(Dimension),
-    Fit(Pearson),
+    Dimension(Box<Dimension>),
+    Fit(Box<Pearson>),
 }
 
 /// A law of values.
@@ -19,7 +19,7 @@ pub(crate) struct Law(Of);
 impl Law {
     /// Of a dimension that varies.
     pub(crate) fn of(dimension: &Dimension) -> Option<Self> {
-        dimension.distribution().map(|_| Self(Of::Dimension(dimension.clone())))
+        dimension.distribution().map(|_| Self(Of::Dimension(Box::new(dimension.clone()))))
     }
 }
 
@@ -53,7 +53,7 @@ impl Law {
     #[staticmethod]
     fn pearson(mean: f64, sigma: f64, skewness: f64, kurtosis: f64) -> PyResult<Self> {
         let law = Pearson::new(mean, sigma, skewness, kurtosis);
-        law.map(|law| Self(Of::Fit(law))).map_err(|error| PyValueError::new_err(error.to_string()))
+        law.map(|law| Self(Of::Fit(Box::new(law)))).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
     /// `pdf`, `cdf`, `sf`, `ppf` or `isf` at these numbers, eight bytes each; as many numbers.

@@ -25,7 +25,8 @@ use super::knapsack::cheapest;
 use super::lists::ListOption;
 use super::loss::losses_at;
 use super::separable::{Best, Row, Separable};
-use super::solve::{Setting, Solved, Starts};
+use super::solve::Setting;
+use super::solved::{Solved, Starts};
 
 /// The cheapest choice found.
 #[derive(Debug, Clone, PartialEq)]

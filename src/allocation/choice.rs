@@ -1,7 +1,7 @@
 //! The outcome of one search of tolerances.
 
 use super::result::{Attainable, Proof};
-use super::solve::Solved;
+use super::solved::Solved;
 
 /// Outcome of one search at fixed derivatives.
 pub(super) enum Choice {

@@ -6,7 +6,8 @@ use super::choose_made::{any, choose_made};
 use super::constraint::{Constraint, kept};
 use super::cost::Priced;
 use super::result::{AllocationSolver, Attainable, Proof};
-use super::solve::{Setting, Solved, Starts};
+use super::solve::Setting;
+use super::solved::{Solved, Starts};
 
 /// The cheapest tolerances at fixed derivatives, without set-ups.
 pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {

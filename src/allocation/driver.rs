@@ -9,7 +9,7 @@ use super::cost::Priced;
 use super::response::Responses;
 use super::result::Proof;
 use super::sampled::SampledCorrection;
-use super::solve::Solved;
+use super::solved::Solved;
 use super::station::Station;
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
 use super::unknown::Unknown;

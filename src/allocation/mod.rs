@@ -62,6 +62,7 @@ mod setup;
 mod several_rows;
 mod shape;
 mod solve;
+mod solved;
 mod station;
 mod steps;
 mod task;

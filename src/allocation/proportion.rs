@@ -5,7 +5,7 @@ use super::constraint::{Constraint, kept};
 use super::driver::{Driver, Ended, Near, ROUNDS, cost, with_tolerances};
 use super::result::{Allocation, AllocationSolver, Proof, Status};
 use super::scaling::loosest_of;
-use super::solve::{Solved, Starts};
+use super::solved::{Solved, Starts};
 use super::station::Station;
 use super::task::AllocateError;
 

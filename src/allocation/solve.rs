@@ -18,6 +18,7 @@ use super::minimise::swarmed;
 use super::response::Responses;
 use super::separable::{Row, Separable};
 use super::setup::SetUp;
+use super::solved::{Ends, Solved, Starts};
 use crate::requirement::Requirement;
 
 /// The constraints, and the tolerances that they are on.
@@ -35,36 +36,6 @@ pub(super) struct Setting<'a> {
     pub(super) anywhere: bool,
 }
 
-/// Tolerances with what proves them.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Solved {
-    /// Half bands of the groups.
-    pub(super) at: Vec<f64>,
-    pub(super) cost: f64,
-    /// One for every constraint: what it would save to have `1 + d` in place of 1, per d.
-    pub(super) multipliers: Vec<f64>,
-    /// The largest violation of the conditions of Karush, Kuhn and Tucker; stationarity relative to the largest slope of the cost.
-    pub(super) residual: f64,
-    /// The largest value of a constraint.
-    pub(super) value: f64,
-    /// Whether Lagrange's condition had this solution in closed form.
-    pub(super) closed: bool,
-    /// Whether it ended by itself.
-    pub(super) converged: bool,
-    pub(super) starts: Starts,
-}
-
-/// From where a search for the cheapest tolerances began.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Starts {
-    /// How many searches.
-    pub(super) begun: usize,
-    /// How many ended at the cheapest.
-    pub(super) reached: usize,
-    /// The cost of the next cheapest end.
-    pub(super) other: Option<f64>,
-}
-
 /// Steps at most.
 const STEPS: usize = 60;
 /// Starts between the tightest tolerances and the loosest,
@@ -73,8 +44,6 @@ const BETWEEN: usize = 4;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Groups times requirements times the square of the dimensions up to which more starts are tried: some tenths of a second.
 const MOST_WORK: usize = 100_000;
-/// Ends whose costs differ by a smaller part are one.
-const SAME_END: f64 = 1e-6;
 /// Different ends beyond which a swarm is asked where to begin.
 const MOST_ENDS: usize = 2;
 /// The difference that other orders of the same sums may make.
@@ -163,38 +132,25 @@ impl Setting<'_> {
             starts.push(self.reached(&tight, &loose, 0.5));
             starts.extend(self.elsewhere(&tight, &loose));
         }
-        let mut best: Option<Solved> = None;
-        let (mut ends, mut begun) = (Vec::new(), 0);
+        let descend = |start: &[f64]| self.descend(&self.usable(start, &tight)?);
+        let mut ends = Ends::default();
         for start in starts {
             // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
-            let done = best.as_ref().is_some_and(|best| best.converged && kept(best.value));
+            let done = ends.has_ended();
             if done && (!self.anywhere || one_start) {
                 break;
             }
-            begun += 1;
-            let found = self.usable(&start, &tight).and_then(|start| self.descend(&start));
-            ends.extend(found.iter().filter(|end| end.converged && kept(end.value)).map(|end| end.cost));
-            best = found.filter(|found| cheaper(found, best.as_ref())).or(best);
+            ends.take(descend(&start));
             if (self.stopped)() {
                 break;
             }
         }
         // Starts that disagree, or find nothing, leave it to a swarm to say where to begin.
-        let feasible = best.as_ref().is_some_and(|best| kept(best.value));
-        let confused = !one_start && (!feasible || several(&ends) > MOST_ENDS);
+        let confused = !one_start && (!ends.is_feasible() || ends.different() > MOST_ENDS);
         if let Some(start) = confused.then(|| self.swarmed(&bounds)).flatten() {
-            begun += 1;
-            let found = self.usable(&start, &tight).and_then(|start| self.descend(&start));
-            ends.extend(found.iter().filter(|end| end.converged && kept(end.value)).map(|end| end.cost));
-            best = found.filter(|found| cheaper(found, best.as_ref())).or(best);
+            ends.take(descend(&start));
         }
-        let best = best.filter(|best| kept(best.value)).map(|best| {
-            let reached = ends.iter().filter(|&&cost| cost <= best.cost * (1.0 + SAME_END)).count();
-            let others =
-                ends.iter().copied().filter(|&cost| cost > best.cost * (1.0 + SAME_END)).fold(f64::NAN, f64::min);
-            Solved { starts: Starts { begun, reached, other: others.is_finite().then_some(others) }, ..best }
-        });
-        best.or_else(|| self.kept_at_least(start, &tight))
+        ends.found().or_else(|| self.kept_at_least(start, &tight))
     }
 
     /// Other starts, where there may be several optima and a search is short: the loosest and the tightest tolerances, and points between them
@@ -452,21 +408,6 @@ impl Setting<'_> {
         }
         (least, at)
     }
-}
-
-/// Whether an end is better than the best so far: nearer to what is required, or cheaper.
-fn cheaper(found: &Solved, best: Option<&Solved>) -> bool {
-    best.is_none_or(|best| {
-        (!kept(best.value) && found.value < best.value) || (kept(found.value) && found.cost < best.cost * (1.0 - 1e-9))
-    })
-}
-
-/// How many different costs there are.
-fn several(ends: &[f64]) -> usize {
-    let mut ends = ends.to_vec();
-    ends.sort_by(f64::total_cmp);
-    ends.dedup_by(|high, low| *high <= *low * (1.0 + SAME_END));
-    ends.len()
 }
 
 /// The use of the constraints, by their multipliers, by one more of a group's tolerance in `ln T`.

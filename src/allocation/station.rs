@@ -3,7 +3,8 @@
 use super::constraint::Constraint;
 use super::response::Responses;
 use super::result::{Kept, ShadowPrice};
-use super::solve::{Setting, Solved};
+use super::solve::Setting;
+use super::solved::Solved;
 use crate::analysis::Analysis;
 use crate::problem::Problem;
 use crate::requirement::Requirement;

@@ -141,7 +141,7 @@ pub(crate) fn index(value: f64) -> String {
 }
 
 /// Fewer rejects than this share are not told apart: no law of a dimension is known so far out.
-const FEWEST: f64 = 1e-9;
+pub(super) const FEWEST: f64 = 1e-9;
 
 /// A yield that was found, in percent, by itself.
 pub(crate) fn yielded(yield_: f64) -> String {

@@ -1,6 +1,6 @@
 //! Yields and rejects, with the digits that their error carries and no more.
 
-use super::number::{significant, unrejected};
+use super::number::{FEWEST, share, significant};
 
 /// Significant digits of parts per million, at most.
 const DIGITS: i32 = 4;
@@ -10,7 +10,8 @@ const REACH: f64 = 2.0;
 /// The shares of assemblies beyond the limits, and the error of all of it.
 ///
 /// The first digit of the error is the last one printed. Rejects below half of what the interval of two errors allows are not told
-/// apart from none: then the interval's end is printed as a bound, the yield rounded down and the rejects rounded up.
+/// apart from none: then the interval's end is printed as a bound, the yield rounded down and the rejects rounded up. So are rejects
+/// fewer than any law tells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rejects {
     /// Share below the lower limit.
@@ -39,8 +40,9 @@ impl Rejects {
 
     /// Where the rejects are not told apart from none: the most that the interval allows.
     fn bound(self, rejected: f64) -> Option<f64> {
-        let error = self.error?;
-        (rejected < REACH * error).then_some((rejected + REACH * error).min(1.0))
+        let reach = REACH * self.error.unwrap_or(0.0);
+        let few = rejected > 0.0 && rejected < FEWEST;
+        (few || rejected < reach).then_some((rejected + reach).clamp(FEWEST, 1.0))
     }
 
     /// Whether the rejects are told apart from none, so that figures that follow from their number mean something.
@@ -54,12 +56,12 @@ impl Rejects {
         if let Some(most) = self.bound(rejected) {
             return Some(at_least(most));
         }
-        let exact = unrejected(rejected);
+        let exact = share(rejected);
         let Some(error) = self.error else { return Some(exact) };
         let decimals = decimals(100.0 * error);
         let shorter = format!("{:.decimals$} %", 100.0 * (1.0 - rejected));
         // Rejects have three digits at most, however small their error.
-        Some(if shorter.len() < exact.len() && !exact.starts_with('>') { shorter } else { exact })
+        Some(if shorter.len() < exact.len() { shorter } else { exact })
     }
 
     /// The yield with its error, or as a bound. An error that the printed digits do not show is left out.
@@ -67,7 +69,7 @@ impl Rejects {
         let text = self.yield_text()?;
         let decimals = text.trim_end_matches(" %").split_once('.').map_or(0, |(_, decimals)| decimals.len());
         let seen = |error: &f64| 1e3 * error >= 10_f64.powi(-(decimals as i32));
-        let error = self.error.filter(|_| !text.starts_with('>')).filter(seen);
+        let error = self.error.filter(|_| self.are_resolved()).filter(seen);
         Some(error.map_or(text.clone(), |error| format!("{text} ± {}", significant(100.0 * error, 1))))
     }
 
@@ -169,6 +171,13 @@ mod tests {
     fn without_an_error_three_digits_of_the_rejects_are_shown() {
         assert_eq!(text(1234.56, 0.0, None), "99.877 % (1235 ppm below, 0 ppm above)");
         assert_eq!(text(0.0, 0.0, Some(0.0)), "100 % (0 ppm below, 0 ppm above)");
+    }
+
+    #[test]
+    fn rejects_fewer_than_any_law_tells_are_a_bound_for_all_and_for_each_side() {
+        assert_eq!(text(9.831e-5, 9.831e-5, None), "> 99.9999999 % (< 0.001 ppm)");
+        assert_eq!(text(1234.56, 1e-7, None), "99.877 % (1235 ppm below, < 0.001 ppm above)");
+        assert_eq!(Rejects::all(1e-12, Some(1e-13)).with_error().unwrap(), "> 99.9999999 %");
     }
 
     proptest::proptest! {

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::data::DataFault;
+use super::decimal::decimal;
 use super::slip::Slip;
 use crate::allocation::CostError;
 use crate::assembly::NoColumn;
@@ -181,7 +182,7 @@ pub enum StudyFault {
         text: String,
     },
     /// A number outside its range.
-    #[error("{} is not {range}", said(*.value))]
+    #[error("{} is not {range}", decimal(*.value))]
     OutOfRange {
         /// The number.
         value: f64,
@@ -589,11 +590,6 @@ impl From<Fault> for Faults {
     fn from(fault: Fault) -> Self {
         Self(vec![fault])
     }
-}
-
-/// A number of a message, without what rounding leaves of sums of decimals.
-pub(super) fn said(value: f64) -> f64 {
-    format!("{value:.12e}").parse().unwrap_or(value)
 }
 
 pub(super) fn fault(span: Range<usize>, key: impl Into<String>, fault: impl Into<StudyFault>) -> Fault {

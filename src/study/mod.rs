@@ -49,6 +49,7 @@ mod correlation;
 mod costs;
 mod data;
 mod de;
+mod decimal;
 mod dimension;
 mod distribution_entry;
 mod drive;

@@ -2,6 +2,7 @@
 
 use crate::assembly::formula::{Formula, is_plain};
 use crate::names::nearest;
+use crate::study::decimal::decimal;
 use crate::study::error::{Fault, StudyFault, fault};
 use crate::study::expand::{OWN, Tree, Value, quoted, wrong_type};
 use crate::study::tree::Key;
@@ -218,7 +219,7 @@ fn size(tree: &Tree, path: String) -> Result<f64, Fault> {
 
 /// A number as formulas write it, without what rounding leaves of sums of decimals.
 pub(super) fn number(value: f64) -> String {
-    let value: f64 = format!("{value:.14e}").parse().unwrap_or(value);
+    let value = decimal(value);
     if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
 }
 

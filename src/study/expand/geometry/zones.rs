@@ -2,6 +2,7 @@
 
 use super::line::Line;
 use super::plain::{Of, Plain, key, number, others, pair};
+use crate::study::decimal::decimal;
 use crate::study::error::{Fault, StudyFault};
 use crate::study::expand::{Value, wrong_type};
 
@@ -23,7 +24,7 @@ pub(super) fn profile(line: &Line<'_>) -> Result<Plain, Fault> {
         }
         _ => line.size("profile").map(|zone| (zone, 0.5 * zone))?,
     };
-    let band = [-rounded(zone - outward), rounded(outward)];
+    let band = [-decimal(zone - outward), decimal(outward)];
     let Some(length) = line.length()? else { return Ok(banded(line, "profile", band, Of::Line)) };
     below(line, zone, length)?;
     if let Some(found) = ["distribution", "sigma", "sigmas", "cp", "cpk", "drift", "shift", "moments", "measured"]
@@ -38,7 +39,7 @@ pub(super) fn profile(line: &Line<'_>) -> Result<Plain, Fault> {
         let tilt = format!("{}_tilt", line.name());
         let keys = vec![
             (key(line, "nominal"), number(line, 0.0)),
-            (key(line, "tolerance"), number(line, rounded(zone / length))),
+            (key(line, "tolerance"), number(line, decimal(zone / length))),
         ];
         made.dimension(line, tilt.clone(), Of::Angle, keys);
         made.block(line, [line.name().to_owned(), tilt], "diamond");
@@ -145,9 +146,4 @@ fn without_band(line: &Line<'_>, element: &'static str) -> Result<(), Fault> {
 /// A zone wider than the feature is long bounds no angle.
 fn below(line: &Line<'_>, zone: f64, length: f64) -> Result<(), Fault> {
     if zone <= length { Ok(()) } else { Err(line.at_key("length", StudyFault::LengthBelowZone { length, zone })) }
-}
-
-/// Without what rounding leaves of a difference of decimals.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.14e}").parse().unwrap_or(value)
 }
