@@ -10,7 +10,10 @@
 //! "Infinitely constrained optimization problems", J. Optimization Theory and Applications 19 (1976); J. M. Danskin, "The theory of max-min"
 //! (1967), for the slope.
 //!
-//! Cost: some hundred values of the formula for every side, which are not counted as evaluations.
+//! Cost: some hundred values of the formula for every side, counted beside the evaluations.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::assembly::{Directions, Points, Request, Responses, Run};
 use crate::problem::Problem;
@@ -48,6 +51,8 @@ pub(super) struct Corners {
     bands: Vec<Band>,
     /// Where it reaches farthest below and above.
     places: [Places; 2],
+    /// The values so far, of all characteristics and stations.
+    asked: Arc<AtomicU64>,
 }
 
 impl Corners {
@@ -59,11 +64,13 @@ impl Corners {
         bands: Vec<Band>,
         starts: [Vec<f64>; 2],
         known: [Places; 2],
+        asked: &Arc<AtomicU64>,
     ) -> Option<Self> {
         if bands.len() > MOST {
             return None;
         }
-        let mut corners = Self { problem: problem.clone(), characteristic, nominal, bands, places: known };
+        let asked = Arc::clone(asked);
+        let mut corners = Self { problem: problem.clone(), characteristic, nominal, bands, places: known, asked };
         let point = corners.point(&vec![0.0; corners.bands.len()], &[], &[]);
         corners.slopes(&point)?;
         for (side, start) in starts.into_iter().enumerate() {
@@ -155,6 +162,7 @@ impl Corners {
 
     fn values(&self, points: &[Vec<f64>]) -> Vec<Option<f64>> {
         let outputs = [self.problem.outputs()[self.characteristic]];
+        self.asked.fetch_add(points.len() as u64, Ordering::Relaxed);
         let mut answers = Responses::open(points.len(), 1);
         let request = Points::from_rows(points);
         self.problem.function().evaluate(&Request::values(&request, &outputs), &Run::to_the_end(), &mut answers);
@@ -201,7 +209,7 @@ mod tests {
         let bands = vec![band(0, 0.3), band(1, 0.4), band(2, 1.0)];
         let nothing = [Vec::new(), Vec::new()];
         let starts = [vec![0.0; 3], vec![0.0; 3]];
-        let corners = Corners::of(&problem, 0, -0.0625, bands, starts, nothing).unwrap();
+        let corners = Corners::of(&problem, 0, -0.0625, bands, starts, nothing, &Arc::default()).unwrap();
         let (above, slopes) = corners.reach(&[1.0; 3], &[0.0; 3], true).unwrap();
         assert!((above - 0.5625).abs() < 1e-11, "{above}");
         // d hypot/d ln T = T^2/hypot; the parabola is greatest within its band, where its slope is that of the last step.

@@ -1,6 +1,8 @@
 //! The common part of all searches of tolerances: the model asked at some tolerances, within budget and time.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::choose_made::remade;
 use super::constraint::{Constraint, kept};
@@ -36,6 +38,8 @@ pub(super) struct Spent {
     joint_unknown: f64,
     /// Where formulas were found to reach farthest, by characteristic.
     places: BTreeMap<usize, [Places; 2]>,
+    /// Points of a cheap model beside the evaluations.
+    pub(super) points: Arc<AtomicU64>,
 }
 
 /// Rounds after which uncertainties only grow. Those of a sample jump as an assembly passes a limit, and stations next to each other would
@@ -127,7 +131,8 @@ impl Driver<'_> {
         }
         self.correct(&problem, &analysis, &mut responses);
         if !problem.function().signature().costly {
-            responses.follow_corners(&problem, &mut self.spent.places);
+            let Spent { places, points, .. } = &mut self.spent;
+            responses.follow_corners(&problem, places, points);
         }
         Ok(Station { problem, analysis, responses })
     }
@@ -155,7 +160,8 @@ impl Driver<'_> {
             priced[g].members.iter().for_each(|&d| factors[d] = factor);
             responses.moments(c, &factors)
         };
-        let found = SampledCorrection::of(&verified, priced, &at, &surface, self.options.seed, self.run);
+        let (found, points) = SampledCorrection::of(&verified, priced, &at, &surface, self.options.seed, self.run);
+        self.spent.points.fetch_add(points, Ordering::Relaxed);
         for (c, correction) in found {
             responses.of[c].sampled = correction;
         }

@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::bands::{Reach, Scaling};
@@ -556,8 +557,13 @@ pub(super) fn shapes_of(dimension: &Dimension) -> Option<InputShape> {
 
 impl Responses {
     /// Follows the formula itself in the worst cases that its surface does not tell, from the places that earlier stations know, which it
-    /// adds to.
-    pub(super) fn follow_corners(&mut self, problem: &Problem, known: &mut BTreeMap<usize, [Places; 2]>) {
+    /// adds to; `asked` counts its values.
+    pub(super) fn follow_corners(
+        &mut self,
+        problem: &Problem,
+        known: &mut BTreeMap<usize, [Places; 2]>,
+        asked: &Arc<AtomicU64>,
+    ) {
         let band = |d: usize| {
             let Reach { middle, half, lean } = self.reach[d];
             Band { dimension: d, middle, half, lean, sigma: self.dimensions[d].sigma() }
@@ -568,7 +574,7 @@ impl Responses {
                 continue;
             };
             let places = known.remove(&c).unwrap_or_default();
-            if let Some(corners) = Corners::of(problem, c, nominal, bands.clone(), worst.places(), places) {
+            if let Some(corners) = Corners::of(problem, c, nominal, bands.clone(), worst.places(), places, asked) {
                 known.insert(c, corners.places());
                 worst.follow(corners);
             }

@@ -318,6 +318,8 @@ pub struct Allocation {
     pub run: RunSummary,
     /// How often derivatives were taken.
     pub rounds: usize,
+    /// Points of a cheap model by which moments were corrected and worst cases followed, beside the evaluations.
+    pub model_points: u64,
     /// Where what was found is in doubt: tolerances that the model was not asked at, requirements that a sample refutes.
     pub warnings: Vec<Warning>,
 }

@@ -1,5 +1,7 @@
 //! From a problem with costs to tolerances that the model confirms.
 
+use std::sync::atomic::Ordering;
+
 use super::choose::{Choice, within_bounds};
 use super::choose_made;
 use super::conclude::doubts;
@@ -122,6 +124,7 @@ impl Driver<'_> {
             confirmation: None,
             run: RunSummary::default(),
             rounds: 0,
+            model_points: 0,
             warnings: Vec::new(),
         };
         if !self.spent.stopped {
@@ -133,6 +136,7 @@ impl Driver<'_> {
         allocation.run =
             RunSummary { wall, seed, stopped: stopped.or(budget), evaluator: problem.evaluator(), ..self.spent.run };
         allocation.rounds = self.spent.rounds;
+        allocation.model_points = self.spent.points.load(Ordering::Relaxed);
         allocation.warnings = doubts(problem, &self.task.priced, &allocation);
         Ok(allocation)
     }

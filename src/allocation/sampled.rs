@@ -49,7 +49,7 @@ impl SampledCorrection {
     /// The factor up to which slopes are followed: a search that goes no farther meets no bend of its own making.
     pub(super) const REACH: f64 = 2.0;
 
-    /// For every listed characteristic, with its verified moments; None where a sample has no moments.
+    /// For every listed characteristic, with its verified moments; None where a sample has no moments. The points of all samples are counted.
     ///
     /// `at` is the problem with a group's tolerances at a factor, and `surface` the moments of a characteristic's surface there.
     pub(super) fn of(
@@ -59,14 +59,16 @@ impl SampledCorrection {
         surface: &dyn Fn(usize, usize, f64) -> Option<Moments>,
         seed: u64,
         run: &Run<'_>,
-    ) -> Vec<(usize, Option<Self>)> {
+    ) -> (Vec<(usize, Option<Self>)>, u64) {
         let options =
             SimulationOptions { samples: POINTS, sampler: Sampler::Sobol, seed, ..SimulationOptions::default() };
+        let mut points = 0;
         // Of every group the four moments of all characteristics on both sides.
         let sides: Vec<[Option<Vec<Option<Moments>>>; 2]> = (0..priced.len())
             .map(|g| {
                 [-STEP, STEP].map(|step| {
                     let found = simulate_with(&at(g, step.exp())?, &options, run, &|_| {}).ok()?;
+                    points += found.run.evaluations;
                     let moments = |of: &crate::simulation::SimulatedCharacteristic| {
                         let value = |of: Option<crate::sampling::Estimate>| of.map(|of| of.value);
                         let [mean, sigma] = [value(of.mean)?, value(of.sigma)?];
@@ -90,7 +92,7 @@ impl SampledCorrection {
             let slopes = priced.iter().enumerate().map(slope).collect::<Option<_>>()?;
             Some(Self { sigma, offset, slopes })
         };
-        verified.iter().map(|of| (of.0, one(of))).collect()
+        (verified.iter().map(|of| (of.0, one(of))).collect(), points)
     }
 
     /// The moments of the surface at factors of all tolerances, corrected.

@@ -39,6 +39,8 @@ pub struct AllocationReport {
     pub(crate) run: RunSummary,
     /// How often derivatives were taken.
     pub(crate) rounds: usize,
+    /// Points of a cheap model by which moments were corrected and worst cases followed, beside the evaluations.
+    pub(crate) model_points: u64,
     /// All costs before; null where no process holds some tolerance, and without costs.
     pub(crate) cost_before: Option<f64>,
     /// All costs after.
@@ -187,6 +189,7 @@ impl AllocationReport {
             confirmed: allocation.confirmed,
             run: allocation.run,
             rounds: allocation.rounds,
+            model_points: allocation.model_points,
             cost_before: allocation.cost_before.filter(|_| !allocation.tolerances.is_empty()),
             cost_after: allocation.cost_after,
             loss: BeforeAfter { before: allocation.loss[0], after: allocation.loss[1] },

@@ -142,10 +142,14 @@ impl AllocationReport {
             .evaluator
             .map_or(String::new(), |_| format!(", sent in {}", plural(self.run.stages as usize, "batch", "batches")));
         page.line(format!(
-            "{} evaluations in {} rounds{batches}{}{}{}",
+            "{} evaluations in {} rounds{batches}{}{}{}{}",
             self.run.evaluations.saturating_sub(sampled),
             self.rounds,
             head::beside(&self.run),
+            match self.model_points {
+                0 => String::new(),
+                points => format!(", corrected by {points} points of the model"),
+            },
             match self.status {
                 Status::NoFeasiblePointFound => ", which end at tolerances that miss a requirement",
                 _ if self.confirmed && self.cost_after.is_some() => "; moments re-evaluated at the optimum: agree",

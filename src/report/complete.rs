@@ -197,6 +197,7 @@ fn an_allocation_is_all_in_its_report() {
         goal: "/goal", cost_basis: "/cost_basis", moved: "/recentred", requirements: "/requirements/0", prices: "/shadow_prices", proof: "/proof",
         attainable: "/attainable", loosest_before: "/loosest_scaling/before", loosest_after: "/loosest_scaling/after",
         joint: "/joint_yield/after", front: "/front", confirmation: "/confirmation", run: "/evaluations", rounds: "/rounds",
+        model_points: "/model_points",
         warnings: "/warnings",
     });
     let one = json.pointer("/tolerances/0").unwrap();

@@ -62,6 +62,21 @@ test("every page of every example opens without a complaint or a request, and ev
   await Promise.all([next(), next()]);
 });
 
+const WORDS = { met: "Met", missed: "Missed", inconclusive: "Inconclusive" };
+
+/// The page, the report's data and the exit code of `--check` say the same of every characteristic that is judged.
+const judges = async (page, found, study) => {
+  const WORST = ["missed", "inconclusive", "met"];
+  const verdicts = (one) => [one?.verdict, ...(one?.requirements ?? []).map((required) => required.verdict)].filter((verdict) => verdict);
+  const worst = (all) => WORST.find((verdict) => all.includes(verdict));
+  const shown = found.characteristics.filter((one) => one.lower !== null || one.upper !== null || verdicts(one).length > 0);
+  const rows = await page.evaluate("[...document.querySelectorAll('.gauges tbody tr:not(.all)')].map((row) => row.cells[1].textContent)");
+  assert.deepEqual(rows, shown.map((one) => WORDS[worst(verdicts(one))] ?? "no target"), study);
+  const all = [...found.characteristics, found.joint_requirement].flatMap(verdicts);
+  const { status } = spawnSync(sensitol, ["analyze", study, "--check", "-q", "--journal", "none"], { cwd: root });
+  assert.equal(status, { missed: 1, inconclusive: 3, met: 0 }[worst(all)] ?? 2, `${study} --check: ${all}`);
+};
+
 const opens = async (study) => {
   const name = study.replaceAll(/[/.]/g, "-"), text = readFileSync(join(root, study), "utf8");
   // What an adapter wants to know of its document is no study, and what it evaluates may not be installed.
@@ -73,7 +88,8 @@ const opens = async (study) => {
   if (text.includes("[costs")) pages.push(["allocate", text.includes("require = \"") ? [] : ["--pareto", "4"]]);
   for (const [command, more] of pages) {
     const file = join(folder, `${name}-${command}.html`);
-    await promisify(execFile)(sensitol, [command, study, "--html", file, "-q", ...more], { cwd: root });
+    const analysis = command === "analyze";
+    const { stdout } = await promisify(execFile)(sensitol, [command, study, "--html", file, "-q", ...(analysis ? ["--json"] : []), ...more], { cwd: root, maxBuffer: 1e8 });
     for (const options of [{}, { dark: true }, { width: 360, height: 740 }]) {
       const page = await browser.open(file, options);
       quiet(page);
@@ -83,7 +99,10 @@ const opens = async (study) => {
       assert.deepEqual(await page.evaluate(OVERLAPS), [], file);
       // Each chart is there twice, and one of the two is seen.
       assert.equal(2 * await page.evaluate(drawn), await page.evaluate("document.querySelectorAll('svg.density').length"), file);
-      if (Object.keys(options).length === 0 && command === "analyze") await prints(page, "A4", file);
+      if (Object.keys(options).length === 0 && analysis) {
+        await judges(page, JSON.parse(stdout), study);
+        await prints(page, "A4", file);
+      }
       await page.close();
     }
   }
@@ -121,13 +140,9 @@ test("sliders and boxes change the numbers, and the study comes back", async () 
 });
 
 test("the verdict says what the report's data say", async () => {
-  const WORDS = { met: "Met", missed: "Missed", inconclusive: "Inconclusive" };
   for (const study of ["examples/first-study/study.toml", "examples/shaft-and-bore/study.toml", "examples/stacked-blocks/study.toml", "examples/two-suppliers/study.toml"]) {
     const page = await browser.open(report("analyze", study, `verdict-${study.replaceAll("/", "-")}`));
-    const { stdout } = spawnSync(sensitol, ["analyze", study, "--json", "-q"], { cwd: root, encoding: "utf8" });
-    const limited = JSON.parse(stdout).characteristics.filter((one) => one.lower !== null || one.upper !== null);
     const rows = await page.evaluate("[...document.querySelectorAll('.gauges tbody tr:not(.all)')].map((row) => [...row.cells].map((cell) => cell.textContent))");
-    assert.deepEqual(rows.map((row) => row[1]), limited.map((one) => WORDS[one.verdict] ?? "no target"), study);
     // A worst case that the text calls proven is that of the verdict and of the density.
     const [, ...proven] = spawnSync(sensitol, ["analyze", study, "-q"], { cwd: root, encoding: "utf8" }).stdout.match(/proven worst case +(\S+) \.\. (\S+)/) ?? [];
     if (proven.length > 0) {
