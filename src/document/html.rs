@@ -54,15 +54,7 @@ fn bars(bars: &Bars) -> String {
     let mark = |at: &f64| format!("<path class=\"limit\" d=\"M{at} 0V10\"/>");
     let marks: String = bars.marks.iter().map(mark).collect();
     let caption = escaped(&bars.caption);
-    let summed = kind == "pareto" && bars.rows.iter().any(|bar| !bar.remark.text().is_empty());
-    // A remark on a share is the sum down to it.
-    let head = if summed {
-        "<thead><tr><th scope=\"col\">dimension</th><th scope=\"col\">of the variance</th><th scope=\"col\" class=\"n\">share</th>\
-         <th scope=\"col\" class=\"n\">cumulative</th></tr></thead>"
-    } else {
-        ""
-    };
-    let mut text = format!("<table class=\"{kind}\"><caption class=\"sr\">{caption}</caption>{head}<tbody>\n");
+    let mut text = format!("<table class=\"{kind}\"><caption class=\"sr\">{caption}</caption><tbody>\n");
     for Bar { name, parts, text: amount, remark } in &bars.rows {
         let part = |&(fill, [x, width]): &(Fill, [f64; 2])| {
             format!("<rect class=\"{}\" x=\"{x}\" width=\"{width}\" {place}/>", class(fill))
@@ -73,7 +65,6 @@ fn bars(bars: &Bars) -> String {
         );
         let remark = match kind {
             "spans" => format!("<td>{}</td>", toned(remark)),
-            _ if summed => format!("<td class=\"n sum\">{}</td>", toned(remark)),
             _ => String::new(),
         };
         let (name, amount) = (escaped(name), escaped(amount));

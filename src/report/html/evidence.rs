@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
+use super::super::analysis_document::SHARES;
 use super::super::figures::{Figures, Named};
 use super::super::{DimensionReport, Report};
+use super::pareto::pareto;
 use crate::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::capability::Law;
 use crate::document::number::{band, beside, estimated, plain};
@@ -26,6 +28,13 @@ const TO: f64 = 1e-5;
 /// Puts what belongs to each characteristic into its section.
 pub(super) fn add(report: &Report, sections: &mut [Section]) {
     for (one, section) in report.analysis.characteristics.iter().zip(sections) {
+        section.blocks.retain_mut(|block| match block {
+            Element::Aside(aside) if aside.title == SHARES => {
+                aside.blocks = pareto(report, one).map(Element::Markup).into_iter().collect();
+                !aside.blocks.is_empty()
+            }
+            _ => true,
+        });
         let mut drawn = |title: &'static str, block: Option<Element>| {
             let blocks = block.into_iter().collect::<Vec<_>>();
             if !blocks.is_empty() {

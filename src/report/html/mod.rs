@@ -8,6 +8,7 @@ mod analysis;
 mod evidence;
 mod map;
 mod pages;
+mod pareto;
 mod sure;
 mod terms;
 mod verdict;
