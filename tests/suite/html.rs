@@ -596,6 +596,40 @@ y = { formula = "sin(a) + b" }
     assert_eq!(unknown.expect("slopes alone leave what is unknown")[2..5], ["-", "-", "-"]);
 }
 
+/// Dimensions stand in one table, whatever they are for; what is folded is still in the page.
+#[test]
+fn dimensions_stand_in_one_table() {
+    let section = |page: &str| {
+        page.split("<h2 id=\"dimensions\">").nth(1).unwrap().split("</section>").next().unwrap().to_owned()
+    };
+    let two = section(&page(&example("stacked-blocks")));
+    assert_eq!(two.matches("<table").count(), 1, "{two}");
+    assert!(two.contains(">slope</th>") && !two.contains("<details"), "{two}");
+    // 14 dimensions, of which two do less than the others, and 8 sums of them.
+    let mut text = "[dimensions]\n".to_owned();
+    for i in 0..14 {
+        let tolerance = if i == 3 || i == 5 { 0.01 } else { 0.1 };
+        let _ = writeln!(text, "x{i} = {{ nominal = 1, tolerance = {tolerance} }}");
+    }
+    let sum: Vec<String> = (0..14).map(|i| format!("x{i}")).collect();
+    text += "[characteristics]\n";
+    for i in 0..8 {
+        let _ = writeln!(text, "y{i} = {{ formula = \"{}\" }}", sum.join(" + "));
+    }
+    let many = section(&page(&study(&text)));
+    // 12 parts of 1 and two of 0.01.
+    assert!(many.contains("<summary>2 more dimensions, at most 0.08 % of a variance each</summary>"), "{many}");
+    assert!(
+        many.contains("<summary>Shares in 2 more characteristics</summary>") && !many.contains(">slope<"),
+        "{many}"
+    );
+    let shown = many.split("<details").next().unwrap();
+    assert!(shown.contains(">x4</th>") && !shown.contains(">x3</th>") && !shown.contains(">y6</th>"), "{shown}");
+    // Once beside six characteristics and once beside two.
+    assert_eq!(many.matches(">x3</th>").count(), 2);
+    assert_eq!(many.matches("<td class=\"n\">0.08</td>").count(), 2 * 8);
+}
+
 /// The joint effects of two dimensions stand in a map below the effects of each alone.
 #[test]
 fn interactions_are_a_map() {

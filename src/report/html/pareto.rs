@@ -239,12 +239,22 @@ fn fold(all: &mut Vec<Share>) {
 /// Slope x half tolerance, signed, to the digits that the rounding of the slope carries.
 fn reach(row: &Sensitivity, dimension: &DimensionReport) -> String {
     let (Some(first), Some([lower, upper])) = (row.first, dimension.tolerance) else { return UNKNOWN.to_owned() };
-    let (half, rounding) = (0.5 * (upper - lower), row.rounding.map(|rounding| rounding[0]));
-    if derivative(Some(first), rounding, 1) == "0" {
+    if slope(row, 1) == "0" {
         return "0".to_owned();
     }
-    let text = within(first * half, 3, rounding.map(|rounding| rounding * half));
+    let half = 0.5 * (upper - lower);
+    let text = within(first * half, 3, row.rounding.map(|rounding| rounding[0] * half));
     if first * half > 0.0 { format!("+{text}") } else { text }
+}
+
+/// A slope to so many digits, or to those that its rounding carries.
+pub(super) fn slope(row: &Sensitivity, digits: usize) -> String {
+    let rounding = row.rounding.map(|rounding| rounding[0]);
+    let text = derivative(row.first, rounding, digits);
+    match row.first {
+        Some(first) if text != "0" => within(first, digits, rounding),
+        _ => text,
+    }
 }
 
 /// The sigma that a share of the variance alone would make, with the digits that the errors of both carry; none of a negative share, as
