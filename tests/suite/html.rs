@@ -514,13 +514,18 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
     for (label, drawn) in [
         // And once in the panel of its tail.
         (">lower 3.8<", 3),
-        (">28890 ppm<", 2),
+        // And once in the facts.
+        (">28890 ppm<", 3),
         (">mean \u{b1} 3\u{3c3}<", 4),
         (">RSS</text>", 4),
         (">worst case, linear</text>", 4),
     ] {
         assert_eq!(page.matches(label).count(), drawn, "{label}");
     }
+    // The facts stand beside each density. Cpk = 0.2/(3 sigma).
+    assert_eq!(page.matches("<table class=\"figures\">").count(), 2);
+    let beside = page.split("<div class=\"beside\">").nth(1).unwrap().split("</table>").next().unwrap();
+    assert!(beside.contains("<svg class=\"density wide\"") && beside.contains("Cpk</th><td>0.632</td>"), "{beside}");
     assert!(page.find("id=\"verdict\"").unwrap() < page.find("id=\"summary\"").unwrap());
     assert!(page.contains("id=\"terms\""));
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::super::analysis_document::SHARES;
 use super::super::figures::{Figures, Named};
 use super::super::{DimensionReport, Report};
+use super::facts::facts;
 use super::pareto::pareto;
 use crate::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::capability::Law;
@@ -30,6 +31,12 @@ const TO: f64 = 1e-5;
 /// Puts what belongs to each characteristic into its section.
 pub(super) fn add(report: &Report, sections: &mut [Section]) {
     for (one, section) in report.analysis.characteristics.iter().zip(sections) {
+        // The statistics of a terminal, in place of which stand the facts; the ranges are drawn.
+        if let Some(statistics) = section.blocks.iter().position(|block| matches!(block, Element::Table(_))) {
+            section.blocks.remove(statistics);
+        }
+        let findings = section.blocks.iter().take_while(|block| matches!(block, Element::Finding(_))).count();
+        section.blocks.insert(findings, Element::Markup(facts(one)));
         section.blocks.retain_mut(|block| match block {
             Element::Aside(aside) if aside.title == SHARES => {
                 aside.blocks = pareto(report, one).map(Element::Markup).into_iter().collect();

@@ -6,6 +6,7 @@
 
 mod analysis;
 mod evidence;
+mod facts;
 mod inputs;
 mod map;
 mod pages;
