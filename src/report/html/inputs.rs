@@ -15,7 +15,7 @@ const ROWS: usize = 12;
 /// Characteristics beside one another.
 const SIDE: usize = 6;
 /// Of more characteristics the slopes do not fit on paper.
-const SLOPES: usize = 3;
+const SLOPES: usize = 2;
 /// The titles of what a dimension has by itself.
 const OWN: [(&str, bool); 7] = [
     ("dimension", false),
