@@ -58,9 +58,15 @@ pub(super) fn add(
 
 impl CharacteristicAnalysis {
     /// The share of the variance that its surface leaves, as far as the model was asked.
-    fn left(&self) -> Option<f64> {
+    pub(crate) fn left(&self) -> Option<f64> {
         let verified = self.verification.as_ref().and_then(|of| of.left);
         verified.or(self.model_sampled.as_ref().map(|of| of.left))
+    }
+
+    /// Within which a share of its surface is that of the model; None where that is not known.
+    pub(crate) fn share_error(&self, share: f64) -> Option<f64> {
+        let left = self.left().filter(|_| self.sampled.is_none())?;
+        Some((2.0 * (share.max(0.0) * left).sqrt() + left).min(1.0))
     }
 
     /// Whether a sample of the model says that the contributions of the surface are none.
@@ -109,11 +115,7 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
         let curvature = row.curvature_share.or(left.map(|_| 0.0));
         Some(row.linear_share? + curvature?)
     };
-    let error = |value: f64| match one.sampled {
-        Some(_) => None,
-        None => left.map(|left| (2.0 * (value.max(0.0) * left).sqrt() + left).min(1.0)),
-    };
-    let index = |value: f64| EstimatedShare { value, error: error(value) };
+    let index = |value: f64| EstimatedShare { value, error: one.share_error(value) };
     let complete = left.is_some() || one.interactions.len() == one.possible_interactions;
     let mut holders: HashMap<&str, usize> = HashMap::new();
     for (place, factor) in factors.iter().enumerate() {

@@ -54,15 +54,7 @@ fn bars(bars: &Bars) -> String {
     let mark = |at: &f64| format!("<path class=\"limit\" d=\"M{at} 0V10\"/>");
     let marks: String = bars.marks.iter().map(mark).collect();
     let caption = escaped(&bars.caption);
-    let summed = kind == "pareto" && bars.rows.iter().any(|bar| !bar.remark.text().is_empty());
-    // A remark on a share is the sum down to it.
-    let head = if summed {
-        "<thead><tr><th scope=\"col\">dimension</th><th scope=\"col\">of the variance</th><th scope=\"col\" class=\"n\">share</th>\
-         <th scope=\"col\" class=\"n\">cumulative</th></tr></thead>"
-    } else {
-        ""
-    };
-    let mut text = format!("<table class=\"{kind}\"><caption class=\"sr\">{caption}</caption>{head}<tbody>\n");
+    let mut text = format!("<table class=\"{kind}\"><caption class=\"sr\">{caption}</caption><tbody>\n");
     for Bar { name, parts, text: amount, remark } in &bars.rows {
         let part = |&(fill, [x, width]): &(Fill, [f64; 2])| {
             format!("<rect class=\"{}\" x=\"{x}\" width=\"{width}\" {place}/>", class(fill))
@@ -73,7 +65,6 @@ fn bars(bars: &Bars) -> String {
         );
         let remark = match kind {
             "spans" => format!("<td>{}</td>", toned(remark)),
-            _ if summed => format!("<td class=\"n sum\">{}</td>", toned(remark)),
             _ => String::new(),
         };
         let (name, amount) = (escaped(name), escaped(amount));
@@ -89,25 +80,33 @@ fn bars(bars: &Bars) -> String {
     text
 }
 
-/// Blocks with the first figure before all others, and below it the warnings that they begin with, which concern it.
+/// Blocks with the first figure before all others, below it the warnings that they begin with, which concern it, and the facts beside both.
 fn figure_first(all: &[Element], id: &str) -> String {
     let found = all.iter().take_while(|block| matches!(block, Element::Finding(_))).count();
     let (findings, rest) = all.split_at(found);
+    let (facts, rest) = match rest {
+        [Element::Markup(facts), rest @ ..] => (facts.as_str(), rest),
+        _ => ("", rest),
+    };
+    let beside = |figure: String| match facts {
+        "" => figure,
+        facts => format!("<div class=\"beside\">\n<div>{figure}</div>\n{facts}</div>\n"),
+    };
     let findings = blocks(findings).replacen("<ul", &format!("<ul id=\"{id}\""), 1);
     let drawn = |block: &Element| matches!(block, Element::Chart(Chart::Spread(_) | Chart::Plot(_)));
     for (place, block) in rest.iter().enumerate() {
         let without = |inside: &str| blocks(&rest[..place]) + inside + &blocks(&rest[place + 1..]);
         match block {
-            one if drawn(one) => return self::block(one) + &findings + &without(""),
+            one if drawn(one) => return beside(self::block(one) + &findings) + &without(""),
             Element::Detail(inner) => {
                 let Some(inside) = inner.iter().position(drawn) else { continue };
                 let others = blocks(&inner[..inside]) + &blocks(&inner[inside + 1..]);
-                return self::block(&inner[inside]) + &findings + &without(&others);
+                return beside(self::block(&inner[inside]) + &findings) + &without(&others);
             }
             _ => {}
         }
     }
-    findings + &blocks(rest)
+    facts.to_owned() + &findings + &blocks(rest)
 }
 
 /// Blocks one after the other; findings beside one another are one list.

@@ -109,6 +109,22 @@ fn trimmed(text: &str) -> String {
     }
 }
 
+/// A share in percent with no more decimals than its error carries, and how many these are.
+pub(crate) fn percent_within(share: f64, error: Option<f64>) -> (String, usize) {
+    match of_error(error.map(|error| 100.0 * error)) {
+        Some(decimals) if decimals < 2 => (unsigned_zero(format!("{:.decimals$}", 100.0 * share)), decimals),
+        _ => (percent(share), 2),
+    }
+}
+
+/// A number to so many significant digits, or to those that its error carries.
+pub(crate) fn within(value: f64, digits: usize, error: Option<f64>) -> String {
+    match (decimals(value, digits as i32), of_error(error)) {
+        (Some(own), Some(of_error)) if of_error < own => unsigned_zero(format!("{value:.of_error$}")),
+        _ => significant(value, digits),
+    }
+}
+
 /// A name on one line that does not push everything else off it.
 pub(crate) fn short(name: &str) -> String {
     shortened_to(&clean(name), NAME)

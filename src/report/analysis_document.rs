@@ -31,6 +31,8 @@ const INTERACTIONS_OF_PAGE: usize = 24;
 /// Dimensions that are named, rather than counted, in a sentence.
 const NAMED: usize = 8;
 const SAMPLES: usize = 3;
+/// The heading of the contributions.
+pub(super) const SHARES: &str = "Contributions to the variance";
 /// A rejected share that the normal fit has wrong by more than this part is worth a line.
 const DIFFERENT: f64 = 0.05;
 /// Parts per million below this are none.
@@ -107,10 +109,10 @@ impl Report {
         section.detail(all);
         self.correlations(one, &mut section);
         one.pairs(&mut section, pairs);
-        let (pareto, rest) = bars::pareto(one);
-        let mut drawn = vec![Element::Chart(Chart::Bars(pareto))];
-        rest.into_iter().for_each(|rest| drawn.note(rest));
-        section.aside("Contributions to the variance", drawn);
+        // A page draws them.
+        let mut left = Vec::new();
+        bars::left_out(one).into_iter().for_each(|words| left.note(words));
+        section.aside(SHARES, left);
         if let Some(spans) = bars::spans(one) {
             section.aside("Worst case and RSS", vec![Element::Chart(Chart::Bars(spans))]);
         }

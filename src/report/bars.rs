@@ -1,93 +1,20 @@
-//! The bars of a characteristic: contributions to the variance, and intervals beside the limits.
+//! The ranges of a characteristic beside its limits, and what its contributions leave out.
 
 use super::figures::{Figures, Named};
-use crate::analysis::{CharacteristicAnalysis, Sensitivity};
+use crate::analysis::CharacteristicAnalysis;
 use crate::document::number::{NEWS, beside, percent};
 use crate::document::{Bar, Bars, Extent, Fill, Line, Tone};
 use crate::extremes::Extremes;
 
-/// Bars of a Pareto diagram.
-const BARS: usize = 24;
 /// A part of the extent of all intervals that rounding may make.
 const ROUNDING: f64 = 1e-9;
 /// A limit farther off than this many extents would press everything together.
 const FAR: f64 = 2.0;
 
-/// The strongest contributions to the variance, and what is left in words.
-pub(super) fn pareto(one: &CharacteristicAnalysis) -> (Bars, Option<String>) {
-    type Share = (String, [f64; 3]);
-    if one.is_of_model() {
-        return (pareto_of_model(one), None);
-    }
-    let own = one
-        .sensitivities
-        .iter()
-        .filter_map(|row| Some((row.dimension.clone(), [row.linear_share?, row.curvature_share.unwrap_or(0.0), 0.0])));
-    let joint = one.interactions.iter().filter_map(|pair| {
-        Some((format!("{} \u{d7} {}", pair.dimensions[0], pair.dimensions[1]), [0.0, 0.0, pair.share?]))
-    });
-    let size = |share: &Share| share.1.iter().sum::<f64>();
-    let mut all: Vec<Share> = own.chain(joint).filter(|share| size(share).abs() > 0.5 * NEWS).collect();
-    all.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    let rest = all.split_off(all.len().min(BARS));
-    let more = format!("{} more have {} % together", rest.len(), percent(rest.iter().map(size).sum()));
-    let left_out = one.left_out_share.filter(|share| *share > 0.5 * NEWS);
-    let left_out = left_out.map(|share| format!("{} % is left out by all of these", percent(share)));
-    let words: Vec<String> = (!rest.is_empty()).then_some(more).into_iter().chain(left_out).collect();
-    // Bars are as long as the longest is wide; a negative share, of correlated dimensions, has none.
-    let longest = all.first().map_or(1.0, size).max(f64::MIN_POSITIVE);
-    let length = |share: f64| (1e4 * (share / longest).max(0.0)).round() / 1e2;
-    let mut sum = 0.0;
-    let mut row = |share: &Share| {
-        let [linear, curvature, interaction] = share.1.map(length);
-        sum += size(share);
-        Bar {
-            name: share.0.clone(),
-            parts: vec![
-                (Fill::Linear, [0.0, linear]),
-                (Fill::Curvature, [linear, curvature]),
-                (Fill::Interaction, [0.0, interaction]),
-            ],
-            text: format!("{} %", percent(size(share))),
-            remark: Line::from(format!("{} %", percent(sum))),
-        }
-    };
-    let bars = Bars {
-        caption: format!("Contributions to the variance of {}, strongest first", one.name()),
-        rows: all.iter().map(&mut row).collect(),
-        marks: Vec::new(),
-        legend: vec![(Fill::Linear, "linear"), (Fill::Curvature, "curvature"), (Fill::Interaction, "interaction")],
-    };
-    (bars, (!words.is_empty()).then(|| words.join("; ")))
-}
-
-/// The same of the model: by itself, and with interactions.
-fn pareto_of_model(one: &CharacteristicAnalysis) -> Bars {
-    let share = |row: &Sensitivity| {
-        let first = row.first_order?.value;
-        Some((row.dimension.clone(), [first, row.total.map_or(first, |total| total.value.max(first))]))
-    };
-    let mut all: Vec<(String, [f64; 2])> =
-        one.sensitivities.iter().filter_map(share).filter(|(_, [_, total])| *total > 0.5 * NEWS).collect();
-    all.sort_by(|a, b| b.1[1].total_cmp(&a.1[1]));
-    all.truncate(BARS);
-    let longest = all.first().map_or(1.0, |(_, [_, total])| *total).max(f64::MIN_POSITIVE);
-    let length = |share: f64| (1e4 * (share / longest).max(0.0)).round() / 1e2;
-    let row = |(name, [first, total]): (String, [f64; 2])| Bar {
-        name,
-        parts: vec![
-            (Fill::Linear, [0.0, length(first)]),
-            (Fill::Interaction, [length(first), length(total - first.max(0.0))]),
-        ],
-        text: format!("{} to {} %", percent(first), percent(total)),
-        remark: Line::default(),
-    };
-    Bars {
-        caption: format!("Contributions to the variance of {} by the model, strongest first", one.name()),
-        rows: all.into_iter().map(row).collect(),
-        marks: Vec::new(),
-        legend: vec![(Fill::Linear, "by itself"), (Fill::Interaction, "with others")],
-    }
+/// The part of the variance that the contributions leave, in words; None where that is nothing to speak of, or unknown.
+pub(super) fn left_out(one: &CharacteristicAnalysis) -> Option<String> {
+    let left_out = one.left_out_share.filter(|share| *share > 0.5 * NEWS)?;
+    Some(format!("{} % is left out by all of these", percent(left_out)))
 }
 
 /// The ranges below a density: mean \u{b1} 3 sigma, RSS, and the worst case as well as it is known.

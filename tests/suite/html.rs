@@ -514,15 +514,125 @@ sum = { formula = "a + b", lower = 14, upper = 18, target_yield = 0.99 }
     for (label, drawn) in [
         // And once in the panel of its tail.
         (">lower 3.8<", 3),
-        (">28890 ppm<", 2),
+        // And once in the facts.
+        (">28890 ppm<", 3),
         (">mean \u{b1} 3\u{3c3}<", 4),
         (">RSS</text>", 4),
         (">worst case, linear</text>", 4),
     ] {
         assert_eq!(page.matches(label).count(), drawn, "{label}");
     }
+    // The facts stand beside each density. Cpk = 0.2/(3 sigma).
+    assert_eq!(page.matches("<table class=\"figures\">").count(), 2);
+    let beside = page.split("<div class=\"beside\">").nth(1).unwrap().split("</table>").next().unwrap();
+    assert!(beside.contains("<svg class=\"density wide\"") && beside.contains("Cpk</th><td>0.632</td>"), "{beside}");
     assert!(page.find("id=\"verdict\"").unwrap() < page.find("id=\"summary\"").unwrap());
     assert!(page.contains("id=\"terms\""));
+}
+
+/// The cells of every row of the contributions, without markup.
+fn drivers(page: &str) -> Vec<Vec<String>> {
+    let table = page.split("<table class=\"drivers\">").nth(1).unwrap().split("</table>").next().unwrap();
+    let text = |cell: &str| {
+        let pieces = cell.split('<').map(|piece| piece.split_once('>').map_or(piece, |(_, text)| text));
+        pieces.collect::<String>()
+    };
+    let rows = table.split("<tbody>").nth(1).unwrap().split("<tr>").skip(1);
+    rows.map(|row| {
+        let cells = row.replace("</th>", "</td>");
+        let cells: Vec<String> = cells.split("</td>").map(|cell| text(cell).trim().to_owned()).collect();
+        cells[..cells.len() - 1].to_vec()
+    })
+    .collect()
+}
+
+/// A contribution has its sigma and its reach in the unit of the characteristic, with no more digits than errors carry.
+#[test]
+fn contributions_have_their_sigma_and_reach() {
+    let text = r##"
+[dimensions]
+a = { nominal = 10, tolerance = 0.3 }
+b = { nominal = 6, tolerance = [-0.2, 0.1], unit = "mm" }
+c = { nominal = 1, sigma = 0.04 }
+idle = { nominal = 1, tolerance = 0.1 }
+[characteristics]
+gap = { formula = "a - b + c + 0*idle", unit = "mm", upper = 5.5 }
+"##;
+    // Variances 0.0100, 0.0025 and 0.0016 of 0.0141; half bands 0.3 and 0.15, and none of `c`.
+    let exact = page(&study(text));
+    let rows: Vec<String> = drivers(&exact).iter().map(|row| row.join(" | ")).collect();
+    let expected = [
+        "a |  | 70.92 % | 70.92 % | 0.100 | +0.300",
+        "b |  | 17.73 % | 88.65 % | 0.0500 | -0.150",
+        "c |  | 11.35 % | 100.00 % | 0.0400 | -",
+    ];
+    assert_eq!(rows, expected);
+    // As far down as the sum has come.
+    assert!(exact.contains("d=\"M0.00 0H70.92V32\"") && exact.contains("d=\"M88.65 0H100.00V32\""));
+    assert!(exact.contains("Less than 0.005 % of the variance each: idle."), "said of which there is no row");
+    assert!(exact.contains(">sigma, mm</th>") && exact.contains(">slope × half tolerance, mm</th>"));
+}
+
+/// The variance that no contribution explains has a row: how much it is, or that this is unknown.
+#[test]
+fn what_is_not_resolved_has_a_row() {
+    // sin has a third power, which no second-order surface has.
+    let text = r##"
+[dimensions]
+a = { nominal = 0, tolerance = 1.5 }
+b = { nominal = 0, tolerance = 0.3 }
+[characteristics]
+y = { formula = "sin(a) + b" }
+"##;
+    let study = study(text);
+    let row = |options: &Options| {
+        let (analysis, page) = analysed(&study, options);
+        let rows = drivers(&page);
+        (analysis, rows.iter().find(|row| row[0] == "not resolved").cloned(), rows)
+    };
+    let (analysis, known, rows) = row(&Method::SecondOrder.into());
+    let left = analysis.characteristics[0].verification.as_ref().and_then(|of| of.left).expect("a formula is sampled");
+    let known = known.expect("a surface that misses something leaves it");
+    assert!((known[2].trim_end_matches(" %").parse::<f64>().unwrap() / 100.0 - left).abs() < 1e-4, "{known:?} {left}");
+    // Within 2 sqrt(S U) + U: the error's second digit is the last one.
+    let share = &rows[0][2];
+    assert!(share.trim_end_matches(" %").split('.').nth(1).is_none_or(|decimals| decimals.len() < 2), "{share}");
+    let (_, unknown, _) = row(&Options::from(Method::Rss).with_verify(0));
+    assert_eq!(unknown.expect("slopes alone leave what is unknown")[2..5], ["-", "-", "-"]);
+}
+
+/// Dimensions stand in one table, whatever they are for; what is folded is still in the page.
+#[test]
+fn dimensions_stand_in_one_table() {
+    let section = |page: &str| {
+        page.split("<h2 id=\"dimensions\">").nth(1).unwrap().split("</section>").next().unwrap().to_owned()
+    };
+    let two = section(&page(&example("stacked-blocks")));
+    assert_eq!(two.matches("<table").count(), 1, "{two}");
+    assert!(two.contains(">slope</th>") && !two.contains("<details"), "{two}");
+    // 14 dimensions, of which two do less than the others, and 8 sums of them.
+    let mut text = "[dimensions]\n".to_owned();
+    for i in 0..14 {
+        let tolerance = if i == 3 || i == 5 { 0.01 } else { 0.1 };
+        let _ = writeln!(text, "x{i} = {{ nominal = 1, tolerance = {tolerance} }}");
+    }
+    let sum: Vec<String> = (0..14).map(|i| format!("x{i}")).collect();
+    text += "[characteristics]\n";
+    for i in 0..8 {
+        let _ = writeln!(text, "y{i} = {{ formula = \"{}\" }}", sum.join(" + "));
+    }
+    let many = section(&page(&study(&text)));
+    // 12 parts of 1 and two of 0.01.
+    assert!(many.contains("<summary>2 more dimensions, at most 0.08 % of a variance each</summary>"), "{many}");
+    assert!(
+        many.contains("<summary>Shares in 2 more characteristics</summary>") && !many.contains(">slope<"),
+        "{many}"
+    );
+    let shown = many.split("<details").next().unwrap();
+    assert!(shown.contains(">x4</th>") && !shown.contains(">x3</th>") && !shown.contains(">y6</th>"), "{shown}");
+    // Once beside six characteristics and once beside two.
+    assert_eq!(many.matches(">x3</th>").count(), 2);
+    assert_eq!(many.matches("<td class=\"n\">0.08</td>").count(), 2 * 8);
 }
 
 /// The joint effects of two dimensions stand in a map below the effects of each alone.

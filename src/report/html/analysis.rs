@@ -7,7 +7,7 @@ use super::super::head::seed;
 use super::terms::terms;
 use super::verdict::{JudgedCharacteristic, Together, Words, verdict};
 use super::what_if::WhatIf;
-use super::{Fact, evidence, fact, json, others, provenance, render, sure};
+use super::{Fact, evidence, fact, inputs, json, others, provenance, render, sure};
 use crate::analysis::Analysis;
 use crate::document::html::{head, sections};
 use crate::document::number::{plain, plural, significant};
@@ -66,7 +66,7 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
         true => [judged, head(&document) + &sure],
         false => [judged + &head(&document), sure],
     };
-    let parts = [first, sections(&document), rest, terms("analyze", false)];
+    let parts = [first, sections(&document) + &inputs::section(report), rest, terms("analyze", false)];
     render("what_if.html", &report.head, facts(report), parts, possible.map(json), analysed)
 }
 

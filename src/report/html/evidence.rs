@@ -2,13 +2,16 @@
 
 use std::fmt::Write;
 
+use super::super::analysis_document::SHARES;
 use super::super::figures::{Figures, Named};
 use super::super::{DimensionReport, Report};
+use super::facts::facts;
+use super::pareto::pareto;
 use crate::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::capability::Law;
 use crate::document::number::{band, beside, estimated, plain};
 use crate::document::svg::escaped;
-use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section};
+use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section, html};
 use crate::pearson::Pearson;
 
 /// A shift of the mean below this part of sigma is none.
@@ -19,6 +22,8 @@ const SHIFTS: usize = 12;
 const STRAIGHT: f64 = 0.05;
 /// A chain of more links is too long for a picture.
 const LINKS: usize = 24;
+/// Columns of the table of all dimensions.
+const OF_INPUTS: [&str; 3] = ["nominal", "tolerance", "unit"];
 /// The share from which a tail is drawn, and the least to which.
 const FROM: f64 = 0.1;
 const TO: f64 = 1e-5;
@@ -26,6 +31,20 @@ const TO: f64 = 1e-5;
 /// Puts what belongs to each characteristic into its section.
 pub(super) fn add(report: &Report, sections: &mut [Section]) {
     for (one, section) in report.analysis.characteristics.iter().zip(sections) {
+        // The statistics of a terminal, in place of which stand the facts; the ranges are drawn.
+        if let Some(statistics) = section.blocks.iter().position(|block| matches!(block, Element::Table(_))) {
+            section.blocks.remove(statistics);
+        }
+        let findings = section.blocks.iter().take_while(|block| matches!(block, Element::Finding(_))).count();
+        section.blocks.insert(findings, Element::Markup(facts(one)));
+        section.blocks.retain_mut(|block| match block {
+            Element::Aside(aside) if aside.title == SHARES => {
+                aside.blocks = pareto(report, one).map(Element::Markup).into_iter().collect();
+                !aside.blocks.is_empty()
+            }
+            _ => true,
+        });
+        section.blocks.iter_mut().for_each(fold_derivatives);
         let mut drawn = |title: &'static str, block: Option<Element>| {
             let blocks = block.into_iter().collect::<Vec<_>>();
             if !blocks.is_empty() {
@@ -38,6 +57,23 @@ pub(super) fn add(report: &Report, sections: &mut [Section]) {
         drawn("From the nominal value to the mean", shifts);
         drawn("Interactions", super::map::map(one).map(Element::Markup));
     }
+}
+
+/// The derivatives of a characteristic, without what the table of all dimensions has: for those who ask, and on paper.
+fn fold_derivatives(block: &mut Element) {
+    let Element::Detail(inner) = block else { return };
+    let of_derivatives = |block: &Element| matches!(block, Element::Table(table) if table.name == "sensitivities");
+    let Some(place) = inner.iter().position(of_derivatives) else { return };
+    let rest = inner.split_off(place);
+    let mut folded = String::new();
+    for mut block in rest {
+        if let Element::Table(table) = &mut block {
+            table.columns.iter_mut().for_each(|column| column.page &= !OF_INPUTS.contains(&column.heading));
+        }
+        folded += &html::blocks(&[block]);
+    }
+    let title = "Slopes, curvatures and shifts of the mean as a table";
+    inner.push(Element::Markup(format!("<details class=\"fold\"><summary>{title}</summary>\n{folded}</details>\n")));
 }
 
 /// One limit, the share beyond it in any distance, and who says what at it.

@@ -6,8 +6,11 @@
 
 mod analysis;
 mod evidence;
+mod facts;
+mod inputs;
 mod map;
 mod pages;
+mod pareto;
 mod sure;
 mod terms;
 mod verdict;

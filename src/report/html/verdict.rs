@@ -469,7 +469,7 @@ fn badge(verdict: Option<Verdict>) -> String {
 }
 
 /// The ends of an interval with the digits that its width leaves.
-fn interval(ends: [f64; 2]) -> String {
+pub(super) fn interval(ends: [f64; 2]) -> String {
     let width = 100.0 * (ends[1] - ends[0]);
     // Narrower than this it is the yield itself.
     const NARROW: f64 = 1e-7;

@@ -1,0 +1,58 @@
+//! The facts of a characteristic, beside its density.
+
+use std::fmt::Write;
+
+use super::super::figures::{Figures, Named};
+use super::verdict::interval;
+use crate::analysis::CharacteristicAnalysis;
+use crate::capability::Capability;
+use crate::document::number::{carried, index, known, shape_with, uncertainty};
+use crate::document::svg::escaped;
+use crate::method::{ErrorEstimate, ErrorSource};
+
+/// Yield, rejects and indices where there are limits; mean to kurtosis, with their errors.
+pub(super) fn facts(one: &CharacteristicAnalysis) -> String {
+    let mut text =
+        format!("<table class=\"figures\"><caption class=\"sr\">Figures of {}</caption><tbody>\n", escaped(one.name()));
+    let mut row = |name: &str, value: String, below: String, key: bool| {
+        let class = if key { " class=\"key\"" } else { "" };
+        let below = if below.is_empty() { below } else { format!(" <small>{}</small>", escaped(&below)) };
+        let _ = writeln!(text, "<tr{class}><th scope=\"row\">{name}</th><td>{}{below}</td></tr>", escaped(&value));
+    };
+    if one.limited() && one.mean().is_some() {
+        let ends = one.yield_interval().map(interval).unwrap_or_default();
+        row("Yield", one.rejects().yield_text().unwrap_or_else(|| "unknown".to_owned()), ends, true);
+        for (name, side) in ["Rejects below", "Rejects above"].into_iter().zip(one.rejects().by_side()) {
+            side.into_iter().for_each(|ppm| row(name, ppm, String::new(), false));
+        }
+        let of = |figure: fn(&Capability) -> Option<f64>| one.capability.as_ref().and_then(figure);
+        // Of measured values they are performance indices, not those of a process in control.
+        let [cp, cpk] = if one.sampling.is_some() { ["Pp", "Ppk"] } else { ["Cp", "Cpk"] };
+        let mut index_row = |name: &str, value: Option<f64>, key| {
+            value.into_iter().for_each(|value| row(name, index(value), String::new(), key))
+        };
+        index_row(cpk, of(|of| of.cpk), true);
+        index_row(cp, of(|of| of.cp), false);
+        index_row(&format!("{cpk}, by quantiles"), of(|of| of.cpk_percentile), false);
+    }
+    let scale = one.scale();
+    let estimate = one.error_estimate.as_ref();
+    let of = |figure: fn(&ErrorEstimate) -> Option<f64>| estimate.and_then(figure);
+    let exact = estimate.is_some_and(|of| matches!(of.sources[..], [ErrorSource::Proven { .. }]));
+    let off = |error: Option<f64>| match error {
+        Some(_) if exact => "exact".to_owned(),
+        error => error.map(|error| format!("± {}", uncertainty(error))).unwrap_or_default(),
+    };
+    let number = |value: Option<f64>, error| known(value, |value| carried(value, scale, error));
+    let shaped = |value: Option<f64>, error| known(value, |value| shape_with(value, error));
+    let [mean, sigma] = [of(|of| of.mean), of(|of| of.sigma)];
+    let [skewness, kurtosis] = [of(|of| of.skewness), of(|of| of.kurtosis)];
+    row("Nominal", number(one.nominal, None), String::new(), false);
+    row("Mean", number(one.mean(), mean), off(mean), false);
+    let shift = one.mean().zip(one.nominal).map(|(mean, nominal)| mean - nominal);
+    row("Mean − nominal", number(shift, mean), String::new(), false);
+    row("Sigma", number(one.sigma(), sigma), off(sigma), false);
+    row("Skewness", shaped(one.skewness(), skewness), off(skewness), false);
+    row("Kurtosis", shaped(one.kurtosis(), kurtosis), off(kurtosis), false);
+    text + "</tbody></table>\n"
+}
