@@ -175,8 +175,8 @@ mod tests {
 
     #[test]
     fn rejects_fewer_than_any_law_tells_are_a_bound_for_all_and_for_each_side() {
-        assert_eq!(text(9.831e-5, 9.831e-5, None), "> 99.9999999 % (< 0.001 ppm)");
-        assert_eq!(text(1234.56, 1e-7, None), "99.877 % (1235 ppm below, < 0.001 ppm above)");
+        assert_eq!(text(9.831e-5, 9.831e-5, None), "> 99.9999999 % (< 0.0010 ppm)");
+        assert_eq!(text(1234.56, 1e-7, None), "99.877 % (1235 ppm below, < 0.0010 ppm above)");
         assert_eq!(Rejects::all(1e-12, Some(1e-13)).with_error().unwrap(), "> 99.9999999 %");
     }
 
