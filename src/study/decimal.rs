@@ -1,19 +1,25 @@
 //! Numbers that were computed from the decimals of a study.
 
+/// Significant digits of numbers that go on into formulas and tables.
+pub(super) const KEPT: usize = 15;
+/// Those of numbers in messages: a difference of decimals may have lost some.
+pub(super) const SAID: usize = 13;
+
 /// A number without what rounding leaves of sums of decimals.
-pub(super) fn decimal(value: f64) -> f64 {
-    format!("{value:.14e}").parse().unwrap_or(value)
+pub(super) fn decimal(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::decimal;
+    use super::{KEPT, SAID, decimal};
 
     #[test]
     fn what_rounding_leaves_of_a_sum_goes_and_a_fraction_stays() {
-        assert_eq!(decimal(0.1 + 0.2), 0.3);
-        assert_eq!(decimal(-(1.1 * 1.1)), -1.21);
-        assert!((decimal(1.0 / 3.0) - 1.0 / 3.0).abs() < 1e-15);
-        assert!(decimal(f64::NAN).is_nan() && decimal(f64::INFINITY) == f64::INFINITY);
+        assert_eq!(decimal(0.1 + 0.2, KEPT), 0.3);
+        assert_eq!(decimal(-(1.1 * 1.1), KEPT), -1.21);
+        assert_eq!(decimal(9.9 - 10.0, SAID), -0.1);
+        assert!((decimal(1.0 / 3.0, KEPT) - 1.0 / 3.0).abs() < 1e-15);
+        assert!(decimal(f64::NAN, KEPT).is_nan() && decimal(f64::INFINITY, KEPT) == f64::INFINITY);
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::data::DataFault;
-use super::decimal::decimal;
+use super::decimal::{SAID, decimal};
 use super::slip::Slip;
 use crate::allocation::CostError;
 use crate::assembly::NoColumn;
@@ -182,7 +182,7 @@ pub enum StudyFault {
         text: String,
     },
     /// A number outside its range.
-    #[error("{} is not {range}", decimal(*.value))]
+    #[error("{} is not {range}", decimal(*.value, SAID))]
     OutOfRange {
         /// The number.
         value: f64,

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::super::decimal::decimal;
+use super::super::decimal::{SAID, decimal};
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::DimensionEntry;
 use super::super::spanned::Spanned;
@@ -37,7 +37,7 @@ pub(super) fn sigma(entry: &DimensionEntry, tolerance: Option<[f64; 2]>) -> Resu
         }
         Some(from_band) => {
             if let Some((key, _, _)) = per_band.filter(|_| !agree(given, from_band)) {
-                let why = format!("disagree: {} against {}", decimal(given), decimal(from_band));
+                let why = format!("disagree: {} against {}", decimal(given, SAID), decimal(from_band, SAID));
                 return Err(fault(sigma.span(), "sigma", StudyFault::Conflict { a: key, b: "sigma", why }));
             }
         }

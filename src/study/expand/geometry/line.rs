@@ -2,7 +2,7 @@
 
 use crate::assembly::formula::{Formula, is_plain};
 use crate::names::nearest;
-use crate::study::decimal::decimal;
+use crate::study::decimal::{KEPT, decimal};
 use crate::study::error::{Fault, StudyFault, fault};
 use crate::study::expand::{OWN, Tree, Value, quoted, wrong_type};
 use crate::study::tree::Key;
@@ -219,7 +219,7 @@ fn size(tree: &Tree, path: String) -> Result<f64, Fault> {
 
 /// A number as formulas write it, without what rounding leaves of sums of decimals.
 pub(super) fn number(value: f64) -> String {
-    let value = decimal(value);
+    let value = decimal(value, KEPT);
     if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") }
 }
 

@@ -2,7 +2,7 @@
 
 use super::line::Line;
 use super::plain::{Of, Plain, key, number, others, pair};
-use crate::study::decimal::decimal;
+use crate::study::decimal::{KEPT, decimal};
 use crate::study::error::{Fault, StudyFault};
 use crate::study::expand::{Value, wrong_type};
 
@@ -24,7 +24,7 @@ pub(super) fn profile(line: &Line<'_>) -> Result<Plain, Fault> {
         }
         _ => line.size("profile").map(|zone| (zone, 0.5 * zone))?,
     };
-    let band = [-decimal(zone - outward), decimal(outward)];
+    let band = [-decimal(zone - outward, KEPT), decimal(outward, KEPT)];
     let Some(length) = line.length()? else { return Ok(banded(line, "profile", band, Of::Line)) };
     below(line, zone, length)?;
     if let Some(found) = ["distribution", "sigma", "sigmas", "cp", "cpk", "drift", "shift", "moments", "measured"]
@@ -39,7 +39,7 @@ pub(super) fn profile(line: &Line<'_>) -> Result<Plain, Fault> {
         let tilt = format!("{}_tilt", line.name());
         let keys = vec![
             (key(line, "nominal"), number(line, 0.0)),
-            (key(line, "tolerance"), number(line, decimal(zone / length))),
+            (key(line, "tolerance"), number(line, decimal(zone / length, KEPT))),
         ];
         made.dimension(line, tilt.clone(), Of::Angle, keys);
         made.block(line, [line.name().to_owned(), tilt], "diamond");
