@@ -163,6 +163,8 @@ class AllocationResult(Result):
     """The part of them that is quality loss and scrap; null without losses."""
     method: str
     """The method by which derivatives were taken."""
+    model_points: int
+    """Points of a cheap model by which moments were corrected and worst cases followed, beside the evaluations."""
     proof: Proof
     """The evidence that nothing is cheaper."""
     recentred: List[AllocationResultRecentred]
