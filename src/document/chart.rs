@@ -44,12 +44,8 @@ pub struct Bar {
 /// How a part of a bar is filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fill {
-    /// The linear part.
+    /// The amount itself.
     Linear,
-    /// The part of curvature.
-    Curvature,
-    /// The part of an interaction.
-    Interaction,
     /// An interval within the limits.
     Span,
     /// An interval that exceeds them.

@@ -40,8 +40,6 @@ fn section(index: usize, section: &Section) -> String {
 fn bars(bars: &Bars) -> String {
     let class = |fill: Fill| match fill {
         Fill::Linear => "linear",
-        Fill::Curvature => "curvature",
-        Fill::Interaction => "interaction",
         Fill::Span => "span",
         Fill::Over => "over",
         Fill::Before => "was",
