@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::super::decimal::{SAID, decimal};
 use super::super::error::{Fault, StudyFault, fault};
 use super::super::file::{DimensionEntry, DistributionEntry};
 use super::super::spanned::Spanned;
@@ -336,7 +337,7 @@ pub(super) fn agreeing(entry: &DimensionEntry, spread: &Spread, a: &'static str,
     if agree(*given.get_ref(), distribution.sigma()) {
         return Ok(());
     }
-    let why = format!("disagree: {what} has sigma {}", distribution.sigma());
+    let why = format!("disagree: {what} has sigma {}", decimal(distribution.sigma(), SAID));
     Err(fault(given.span(), "sigma", conflict(a, "sigma", &why)))
 }
 
