@@ -1734,6 +1734,28 @@ class SweptPoint(Record):
     """Its source; null without limits."""
 
 
+class TailPoint(Record):
+    """A value of the characteristic, and the share of the assemblies at or beyond it."""
+
+    at: float
+    """The value."""
+    error: float
+    """Its estimated error."""
+    share: float
+    """The share."""
+
+
+class Tails(Record):
+    """The tails of a sample, of every side that has a limit: from 10 % to the share of the last few points, in even
+    steps of its logarithm.
+    """
+
+    above: List[TailPoint]
+    """Towards the upper limit; empty without one."""
+    below: List[TailPoint]
+    """Towards the lower limit; empty without one."""
+
+
 class VarianceShare(Record):
     """The part of the variance that a dimension explains, by the model itself."""
 
@@ -1768,6 +1790,8 @@ class Verification(Record):
     """Shares of the variance from the model, where the surface is not trusted."""
     switches: Optional[List[FoundSwitch]]
     """The switches that are met; None where the model does not tell where it changes its form."""
+    tails: Optional[Tails]
+    """The tails of the sample towards the limits; None without either."""
     unseen: Optional[float]
     """The share of the assemblies that may do anything else where all points agree, at 95 %; None where points are
     many.
@@ -1871,8 +1895,9 @@ _INNER: Dict[str, Dict[str, type]] = {
     "SweepResult": {"characteristics": SweptCharacteristic, "evaluator": EvaluatorSummary, "parameter": Parameter, "warnings": ReportedWarning},
     "SweptCharacteristic": {"points": SweptPoint},
     "SweptPoint": {"error_estimate": ErrorEstimate, "requirements": Judged},
+    "Tails": {"above": TailPoint, "below": TailPoint},
     "VarianceShare": {"first": Verified, "total": Verified},
-    "Verification": {"difference": Verified, "figures": VerifiedFigures, "shares": VarianceShare, "switches": FoundSwitch, "valid_share": Verified},
+    "Verification": {"difference": Verified, "figures": VerifiedFigures, "shares": VarianceShare, "switches": FoundSwitch, "tails": Tails, "valid_share": Verified},
     "VerifiedFigures": {"above": Verified, "below": Verified, "kurtosis": Verified, "mean": Verified, "sigma": Verified, "skewness": Verified, "yield_": Verified},
     "WorstCase": {"at": ExtremesAt},
 }

@@ -51,6 +51,8 @@ const CHOICE: f64 = 1.1;
 const TELL: usize = 1 << 10;
 /// Exact moments of a regression that differ from its own points by more standard errors than that are not believed.
 const EXACT: f64 = 4.0;
+/// A scale below this part of the origin takes the fourth power of a difference below its roundings.
+const CANCELS: f64 = 1e-2;
 /// Intervals of the histogram.
 const BINS: usize = 40;
 
@@ -89,6 +91,14 @@ enum Basis {
     /// The exponential of a regression on products, for values of one sign: products and powers of the inputs are sums there (Box and Cox
     /// 1964).
     Logarithm,
+    /// The same without products: each input has a factor of its own.
+    Factors,
+}
+
+impl Basis {
+    fn is_logarithm(self) -> bool {
+        matches!(self, Self::Logarithm | Self::Factors)
+    }
 }
 
 /// The regressions of one characteristic, one for every part, and its known surface with mean and sigma.
@@ -190,11 +200,12 @@ impl<'p> Strides<'p> {
         whole
     }
 
-    /// Nothing yet, of one characteristic: its surface as it is, a regression on products, one with powers of the surface too, and one of
+    /// Nothing yet, of one characteristic: its surface as it is, a regression on products, one with powers of the surface too, and two of
     /// the logarithm.
     pub(super) fn beside(&self, c: usize) -> Vec<Beside<'p>> {
-        let kinds = [Basis::Surface, Basis::Products, Basis::Powers, Basis::Logarithm].map(|kind| self.kind(c, kind));
-        let alone = |kind: Basis| matches!(kind, Basis::Products | Basis::Logarithm);
+        let kinds = [Basis::Surface, Basis::Products, Basis::Powers, Basis::Logarithm, Basis::Factors];
+        let kinds = kinds.map(|kind| self.kind(c, kind));
+        let alone = |kind: Basis| kind == Basis::Products || kind.is_logarithm();
         kinds.into_iter().filter(|beside| alone(beside.kind) || beside.surface.is_some()).collect()
     }
 
@@ -210,8 +221,9 @@ impl<'p> Strides<'p> {
         order.sort_by(|&a, &b| share(b).total_cmp(&share(a)).then(a.cmp(&b)));
         let exact = surface.as_ref().is_some_and(|(_, found)| found.sampled.is_none());
         let surface = surface.map(|(surrogate, found)| (surrogate, found.moments));
-        let known = surface.as_ref().filter(|_| kind != Basis::Logarithm);
+        let known = surface.as_ref().filter(|_| !kind.is_logarithm());
         let chaos = Chaos::new(plan.inputs().shapes(), &order, known.map(|_| kind == Basis::Powers));
+        let chaos = if kind == Basis::Factors { chaos.apart() } else { chaos };
         Beside { kind, chaos, surface, exact, parts: Vec::new(), sign: 1.0, rows: 0, far: 0.0 }
     }
 
@@ -295,7 +307,7 @@ impl<'p> Strides<'p> {
             .take(FITTED)
             .collect();
         beside.rows = self.rows();
-        if beside.kind == Basis::Logarithm {
+        if beside.kind.is_logarithm() {
             let strided = || self.strides.iter().flat_map(|stride| &stride.y[c]).filter(|y| y.is_finite());
             let all = |sign: f64| paid.iter().map(|(_, y)| y).chain(strided()).all(|y| y * sign > 0.0);
             let Some(sign) = [1.0, -1.0].into_iter().find(|&sign| all(sign)) else {
@@ -318,7 +330,7 @@ impl<'p> Strides<'p> {
                         y.push(stride.y[c][row]);
                     }
                 }
-                if beside.kind == Basis::Logarithm {
+                if beside.kind.is_logarithm() {
                     y.iter_mut().for_each(|y| *y = y.abs().ln());
                 }
                 let surface = beside.surface(&u, y.len());
@@ -465,22 +477,10 @@ impl<'p> Strides<'p> {
             let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
             (mean, (square / (REPLICATES * (REPLICATES - 1)) as f64).sqrt())
         };
-        let squares: Option<Vec<[f64; 2]>> = match self.problem.correlation() {
-            None if beside.kind != Basis::Logarithm => {
-                let surface = beside.surface.as_ref().map(|(surrogate, moments)| (*surrogate, moments.sigma()));
-                let shapes = self.outcome.plan.inputs().shapes();
-                beside.parts.iter().map(|sparse| beside.chaos.squares(sparse, shapes, surface)).collect()
-            }
-            _ => None,
-        };
+        let exact = self.exact(beside, [origin, scale]);
         for index in 0..TERMS {
-            let exact = squares.as_ref().filter(|_| index < 2).map(|squares| {
-                let of = |&[mean, square]: &[f64; 2]| match index {
-                    0 => (mean - origin) / scale,
-                    _ => (square - 2.0 * origin * mean + origin * origin) / (scale * scale),
-                };
-                squares.iter().map(of).collect::<Vec<f64>>()
-            });
+            let exact: Option<Vec<f64>> =
+                exact.as_ref().and_then(|parts| parts.iter().map(|part| part.get(index).copied()).collect());
             let (mean, error) = spread(&plain[index]);
             let believed =
                 exact.filter(|exact| (exact.iter().sum::<f64>() / PARTS as f64 - mean).abs() <= EXACT * error + 1e-9);
@@ -496,6 +496,43 @@ impl<'p> Strides<'p> {
     }
 }
 
+impl Strides<'_> {
+    /// For every part the first means of its powers in a unit of origin and scale, as far as they are known without points: two of a
+    /// polynomial, four of a product of functions of one input each. None with correlated inputs.
+    fn exact(&self, beside: &Beside<'_>, [origin, scale]: [f64; 2]) -> Option<Vec<Vec<f64>>> {
+        if self.problem.correlation().is_some() {
+            return None;
+        }
+        let shapes = self.outcome.plan.inputs().shapes();
+        let surface = beside.surface.as_ref().map(|(surrogate, moments)| (*surrogate, moments.sigma()));
+        let known = |sparse: &Sparse| -> Option<Vec<f64>> {
+            if beside.kind.is_logarithm() {
+                let logarithms = beside.chaos.exponentials(sparse, shapes)?;
+                return Some(
+                    logarithms.iter().zip(1..).map(|(value, power)| beside.sign.powi(power) * value.exp()).collect(),
+                );
+            }
+            beside.chaos.squares(sparse, shapes, surface).map(Vec::from)
+        };
+        // About an origin that many sigmas from 0 nothing would be left of a high power.
+        let most = if scale.abs() > CANCELS * origin.abs() { MOMENTS } else { 2 };
+        let about = |raw: Vec<f64>| -> Vec<f64> {
+            let power = |p: usize| {
+                let mut binomial = 1.0;
+                let mut sum = 0.0;
+                for k in 0..=p {
+                    let moment = if k == 0 { 1.0 } else { raw[k - 1] };
+                    sum += binomial * moment * (-origin).powi((p - k) as i32);
+                    binomial *= (p - k) as f64 / (k + 1) as f64;
+                }
+                sum / scale.powi(p as i32)
+            };
+            (1..=raw.len().min(most)).map(power).collect()
+        };
+        beside.parts.iter().map(|sparse| known(sparse).map(about)).collect()
+    }
+}
+
 impl Beside<'_> {
     /// The known surface in its sigmas.
     fn surface(&self, u: &[Vec<f64>], rows: usize) -> Vec<f64> {
@@ -507,7 +544,7 @@ impl Beside<'_> {
     /// The values of one of its regressions.
     fn of(&self, sparse: &Sparse, places: Places<'_>, rows: usize) -> Vec<f64> {
         let mut values = self.chaos.values(sparse, places, rows);
-        if self.kind == Basis::Logarithm {
+        if self.kind.is_logarithm() {
             values.iter_mut().for_each(|value| *value = self.sign * value.exp());
         }
         values

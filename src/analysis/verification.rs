@@ -128,6 +128,7 @@ fn proven(problem: &Problem, outcome: &Outcome, c: usize, one: &mut Characterist
         switches: Some(Vec::new()),
         unseen: None,
         shares: None,
+        tails: None,
         replaced: false,
         sample: None,
     });
@@ -203,6 +204,7 @@ fn sample(
         }),
         unseen: None,
         shares,
+        tails: found.tails,
         replaced,
         sample: found.sample.map(Arc::new),
     });
@@ -316,6 +318,7 @@ fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFig
         switches: None,
         unseen: Some(checked.unseen()),
         shares: None,
+        tails: None,
         replaced: false,
         sample: None,
     });

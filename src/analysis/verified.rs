@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Serialize, Serializer};
 
 use crate::shape::{Four, Sides, through};
-use crate::verification::{FoundSwitch, Share, Verified, WeightedSample};
+use crate::verification::{FoundSwitch, Share, Tails, Verified, WeightedSample};
 
 /// How figures were verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,6 +62,8 @@ pub struct Verification {
     pub unseen: Option<f64>,
     /// Shares of the variance from the model, where the surface is not trusted.
     pub shares: Option<Vec<VarianceShare>>,
+    /// The tails of the sample towards the limits; None without either.
+    pub(crate) tails: Option<Tails>,
     /// Whether figures of the characteristic are the model's, in place of the surface's.
     pub replaced: bool,
     /// The sample, where an inspection asks for more of it.

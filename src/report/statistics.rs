@@ -3,7 +3,7 @@
 use super::DimensionReport;
 use super::figures::Figures;
 use crate::analysis::{CharacteristicAnalysis, IndexSource, Sensitivity};
-use crate::document::number::{UNKNOWN, carried, percent, plain, shape_with, significant};
+use crate::document::number::{UNKNOWN, carried, known, percent, plain, shape_with, significant, uncertainty};
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
 use crate::method::{ErrorEstimate, ErrorSource};
 use crate::names::element;
@@ -21,7 +21,52 @@ const TOTAL: f64 = 0.01;
 /// A second derivative or a slope within this many of its rounding errors is 0.
 const ROUNDINGS: f64 = 2.0;
 
+/// A figure as it is shown, with no more decimals than its error carries.
+pub(super) struct Shown {
+    name: &'static str,
+    value: Option<f64>,
+    pub(super) text: String,
+    /// `±` what, or `exact`; empty where that is not known.
+    pub(super) error: String,
+}
+
+impl Shown {
+    fn cells(self) -> [Cell; 3] {
+        let error = if self.error.is_empty() { Cell::empty() } else { Cell::text(self.error) };
+        [Cell::text(self.name), Cell::both(Value::Number(self.value), self.text), error]
+    }
+}
+
 impl CharacteristicAnalysis {
+    /// Nominal value, mean, the distance between the two, sigma, skewness and kurtosis.
+    pub(super) fn first_figures(&self) -> [Shown; 6] {
+        let scale = self.scale();
+        let estimate = self.error_estimate.as_ref();
+        let exact = estimate.is_some_and(|of| matches!(of.sources[..], [ErrorSource::Proven { .. }]));
+        let of = |figure: fn(&ErrorEstimate) -> Option<f64>| estimate.and_then(figure);
+        let error = |error: Option<f64>| match error {
+            Some(_) if exact => "exact".to_owned(),
+            error => error.map(|error| format!("± {}", uncertainty(error))).unwrap_or_default(),
+        };
+        let shown = |name: &'static str, value: Option<f64>, text: &dyn Fn(f64) -> String, error: String| Shown {
+            name,
+            value,
+            text: known(value, text),
+            error,
+        };
+        let [of_mean, of_sigma] = [of(|of| of.mean), of(|of| of.sigma)];
+        let [of_skewness, of_kurtosis] = [of(|of| of.skewness), of(|of| of.kurtosis)];
+        let shift = self.mean().zip(self.nominal).map(|(mean, nominal)| mean - nominal);
+        [
+            shown("nominal", self.nominal, &|value| carried(value, scale, None), String::new()),
+            shown("mean", self.mean(), &|value| carried(value, scale, of_mean), error(of_mean)),
+            shown("shift", shift, &|value| carried(value, scale, of_mean), String::new()),
+            shown("sigma", self.sigma(), &|value| carried(value, scale, of_sigma), error(of_sigma)),
+            shown("skewness", self.skewness(), &|value| shape_with(value, of_skewness), error(of_skewness)),
+            shown("kurtosis", self.kurtosis(), &|value| shape_with(value, of_kurtosis), error(of_kurtosis)),
+        ]
+    }
+
     /// The unit by which its numbers are rounded.
     pub(super) fn scale(&self) -> f64 {
         self.sigma().filter(|&sigma| sigma > 0.0).or(self.rss).unwrap_or(0.0)
@@ -32,7 +77,6 @@ impl CharacteristicAnalysis {
         let scale = self.scale();
         let estimate = self.error_estimate.as_ref();
         let [mean_error, sigma_error] = [estimate.and_then(|of| of.mean), estimate.and_then(|of| of.sigma)];
-        let number = |value: Option<f64>, error| Cell::number(value, |value| carried(value, scale, error));
         // Of an end k sigmas from the mean.
         let end_error = |k: f64| mean_error.zip(sigma_error).map(|(mean, sigma)| mean.hypot(k * sigma));
         let interval = |ends: Option<[f64; 2]>, error: Option<f64>| {
@@ -42,7 +86,6 @@ impl CharacteristicAnalysis {
         let around = |middle: Option<f64>, reach: Option<f64>, error| {
             interval(middle.zip(reach).map(|(middle, reach)| [middle - reach, middle + reach]), error)
         };
-        let shift = self.mean().zip(self.nominal).map(|(mean, nominal)| mean - nominal);
         // Found by no search, so that the bounds are all that is known of the true worst case.
         let proven =
             self.bounds.as_ref().filter(|bounds| bounds.proven && self.extremes.is_none()).map(|bounds| bounds.bounds);
@@ -58,58 +101,25 @@ impl CharacteristicAnalysis {
         let within = (self.bounds.as_ref().filter(|_| self.extremes.is_none() && proven.is_none()))
             .map(|bounds| bounds.bounds)
             .filter(|within| !self.worst_case.is_some_and(|linear| same([*within, linear])));
-        let exact = estimate.is_some_and(|of| matches!(of.sources[..], [ErrorSource::Proven { .. }]));
-        let error = |error: Option<f64>| match error {
-            Some(_) if exact => Cell::text("exact"),
-            Some(error) => Cell::text(format!("± {}", significant(error, 2))),
-            None => Cell::empty(),
-        };
-        let shaped = |value: Option<f64>, error| Cell::number(value, |value| shape_with(value, error));
-        let of = |figure: fn(&ErrorEstimate) -> Option<f64>| estimate.and_then(figure);
-        let (of_skewness, of_kurtosis) = (of(|of| of.skewness), of(|of| of.kurtosis));
-        let right = |name: &'static str, cell: Cell| [Cell::text(name), cell];
-        let row = |name: &'static str, value: Cell, error: Cell, [of, ends]: [Cell; 2]| {
-            [Cell::text(name), value, error, of, ends]
-        };
-        let three = around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma), end_error(3.0));
-        let linear_row =
-            linear.map(|(name, ends)| row("", Cell::empty(), Cell::empty(), right(name, interval(ends, None))));
-        let rows = [
-            row("nominal", number(self.nominal, None), Cell::empty(), right("± 3 sigma", three)),
-            row(
-                "mean",
-                number(self.mean(), mean_error),
-                error(mean_error),
-                right("RSS", around(self.middle, self.rss, None)),
-            ),
-            row(
-                "shift",
-                number(shift, mean_error),
-                Cell::empty(),
-                right("inflated RSS", around(self.middle, self.inflated_rss, None)),
-            ),
-            row(
-                "sigma",
-                number(self.sigma(), sigma_error),
-                error(sigma_error),
-                right("mean-shift RSS", around(self.middle, self.mean_shift_rss, None)),
-            ),
-            row(
-                "skewness",
-                shaped(self.skewness(), of_skewness),
-                error(of_skewness),
-                right(worst.0, interval(worst.1, None)),
-            ),
-            row(
-                "kurtosis",
-                shaped(self.kurtosis(), of_kurtosis),
-                error(of_kurtosis),
-                match within {
-                    Some(within) => right("worst case within", interval(Some(within), None)),
-                    None => [Cell::empty(), Cell::empty()],
-                },
-            ),
+        let beside = [
+            ("± 3 sigma", around(self.mean(), self.sigma().map(|sigma| 3.0 * sigma), end_error(3.0))),
+            ("RSS", around(self.middle, self.rss, None)),
+            ("inflated RSS", around(self.middle, self.inflated_rss, None)),
+            ("mean-shift RSS", around(self.middle, self.mean_shift_rss, None)),
+            (worst.0, interval(worst.1, None)),
+            match within {
+                Some(within) => ("worst case within", interval(Some(within), None)),
+                None => ("", Cell::empty()),
+            },
         ];
+        let row = |[name, value, error]: [Cell; 3], (of, ends): (&'static str, Cell)| {
+            let of = if of.is_empty() { Cell::empty() } else { Cell::text(of) };
+            [name, value, error, of, ends]
+        };
+        let rows = self.first_figures().map(Shown::cells).into_iter().zip(beside);
+        let rows: Vec<[Cell; 5]> = rows.map(|(cells, beside)| row(cells, beside)).collect();
+        let linear_row =
+            linear.map(|(name, ends)| row([Cell::empty(), Cell::empty(), Cell::empty()], (name, interval(ends, None))));
         section
             .table(DataTable::untitled(rows.into_iter().chain(linear_row)).at_most([ROWS, usize::MAX], String::new()));
     }

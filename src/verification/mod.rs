@@ -19,6 +19,7 @@ mod shares;
 mod sides;
 mod space;
 mod strata;
+mod tails;
 mod weighted;
 
 pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
@@ -28,6 +29,7 @@ pub(crate) use outputs::output_correlations;
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
 pub(crate) use space::{Columns, Space};
+pub(crate) use tails::{TailPoint, Tails};
 pub(crate) use weighted::WeightedSample;
 
 use serde::Serialize;
@@ -94,6 +96,8 @@ pub struct SampledFigures {
     pub switches: Option<Vec<FoundSwitch>>,
     /// Whether the model told all of its switches.
     pub switches_complete: bool,
+    /// The tails towards the limits; None without a limit.
+    pub(crate) tails: Option<Tails>,
     /// The sample itself, of a characteristic that is inspected.
     pub(crate) sample: Option<WeightedSample>,
 }
@@ -264,6 +268,7 @@ pub(crate) fn verify_characteristic(
         valid: Verified { value: figures.valid.0, error: figures.valid.1 },
         switches: sides.switches,
         switches_complete: sides.complete,
+        tails: limits.exist().then(|| sample.tails([limits.lower().is_some(), limits.upper().is_some()])),
         sample: problem.characteristics()[c].inspection().map(|_| sample.kept()),
     })
 }
@@ -290,6 +295,7 @@ fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
         valid: Verified { value: f64::from(u8::from(known)), error: 0.0 },
         switches: None,
         switches_complete: true,
+        tails: None,
         sample: None,
     }
 }

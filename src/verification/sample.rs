@@ -20,6 +20,7 @@ use super::model::Model;
 use super::sides::{Sides, sides};
 use super::space::Columns;
 use super::strata::{HalfSpace, between, unit};
+use super::tails::{Tails, Weighed, tail};
 use super::weighted::WeightedSample;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
@@ -180,6 +181,20 @@ impl Sample {
         let student = student(REPLICATES);
         // As for a share: that no point disagrees does not mean that none does.
         Some(std::array::from_fn(|i| Verified { value: values[i], error: (student * errors[i]).hypot(self.one) }))
+    }
+
+    /// The tails below and above, of the sides that are asked for.
+    pub(super) fn tails(&self, [below, above]: [bool; 2]) -> Tails {
+        let of = |part: &Part| -> Vec<Weighed> {
+            let points = part.values.iter().zip(&part.weights).filter(|(y, _)| y.is_finite());
+            points.map(|(&y, &weight)| (y, weight, part.replicate)).collect()
+        };
+        let values: Vec<Weighed> = self.parts.iter().flat_map(of).collect();
+        let towards = |asked: bool, above: bool| match asked {
+            true => tail(&values, above, (REPLICATES, self.one)),
+            false => Vec::new(),
+        };
+        Tails { below: towards(below, false), above: towards(above, true) }
     }
 
     /// All of it, for shares that are asked for later.

@@ -9,6 +9,7 @@ import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
 import { Browser } from "./chromium.mjs";
+import { asGrey, changes, contrast, luminances } from "./grey.mjs";
 import { FAULTS, MARGINS, SHEETS, filled } from "./paper.mjs";
 
 const sensitol = process.env.SENSITOL, cases = process.env.SENSITOL_CASES;
@@ -265,6 +266,60 @@ test("pages print on A4 and Letter: no page nearly empty, nothing cut off, no ti
     quiet(page);
     await page.close();
   }
+});
+
+test("without colour, on paper, verdicts, limits and what was not evaluated can be told apart", async () => {
+  const study = join(folder, "grey.toml");
+  // Of a normal law 99 % lie within 2.576 sigmas: 2000 samples do not say whether 99 % do.
+  writeFileSync(study, `[dimensions]
+a = { nominal = 10, sigma = 1 }
+[characteristics]
+wide = { formula = "a", lower = 5, upper = 15, target_yield = 0.9 }
+narrow = { formula = "a + 0", lower = 9, upper = 11, target_yield = 0.9 }
+open = { formula = "2*a", lower = 14.848, upper = 25.152, target_yield = 0.99 }
+`);
+  const page = await browser.open(report("simulate", study, "grey", ["--samples", "2000"]));
+  await asGrey(page, 700);
+  const words = await page.evaluate("[...document.querySelectorAll('.gauges tbody .st')].slice(0, 3).map((one) => one.textContent.trim())");
+  assert.equal(new Set(words).size, 3, words.join());
+  const marks = [];
+  for (const index of [0, 1, 2]) marks.push(await luminances(page, ".gauges tbody .st svg", index));
+  for (const mark of marks) assert.ok(contrast(Math.min(...mark.flat()), Math.max(...mark.flat())) >= 4.5);
+  const apart = (a, b) => {
+    const flat = a.flatMap((row, y) => row.map((value, x) => (value < 0.4) !== ((b[y]?.[x] ?? 1) < 0.4)));
+    return flat.filter(Boolean).length / flat.length;
+  };
+  // A tenth of the mark is another shape, whatever its grey.
+  for (const [a, b] of [[0, 1], [0, 2], [1, 2]]) assert.ok(apart(marks[a], marks[b]) > 0.1, `${words[a]} and ${words[b]} look alike`);
+  quiet(page);
+  await page.close();
+
+  const mapped = await browser.open(report("analyze", "examples/bearing-housing/study.toml", "grey-map"));
+  await asGrey(mapped, 700);
+  // A limit against the density and the part beyond it, three pixels to either side of it, in the middle of the picture.
+  const drawing = await luminances(mapped, "svg.density");
+  const limits = await mapped.evaluate(`(() => {
+    const svg = [...document.querySelectorAll("svg.density")].find((one) => one.getBoundingClientRect().height > 0), { left } = svg.getBoundingClientRect();
+    return [...svg.querySelectorAll("path.limit")].map((one) => { const box = one.getBoundingClientRect(); return (box.left + box.right) / 2 - left; });
+  })()`);
+  assert.ok(limits.length > 0);
+  for (const at of limits) {
+    const row = drawing[Math.round(drawing.length / 2)], x = Math.round(2 * at);
+    const line = Math.min(...row.slice(x - 2, x + 3));
+    for (const beside of [row[x - 8], row[x + 8]]) assert.ok(beside === undefined || contrast(line, beside) >= 3, `a limit at ${at} in ${beside}`);
+  }
+  // Hatching has lines where a grey has none, along the upper edge of a cell, where there is no text.
+  const upper = (cell) => cell[Math.round(cell.length / 8)];
+  const hatched = await luminances(mapped, ".map td.hatched");
+  assert.ok(changes(upper(hatched)) >= 6, `hatching changes ${changes(upper(hatched))} times`);
+  let greys = 0;
+  for (const level of ["g1", "g2", "g3", "g4"]) {
+    if (await mapped.evaluate(`document.querySelectorAll(".map td.${level}:not(.own)").length`) === 0) continue;
+    assert.ok(changes(upper(await luminances(mapped, `.map td.${level}:not(.own)`)).slice(3, -3)) <= 1, level);
+    greys += 1;
+  }
+  assert.ok(greys > 0);
+  await mapped.close();
 });
 
 test("pages of all commands have the parts of a review, and pass axe", async () => {

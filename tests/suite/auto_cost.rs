@@ -44,11 +44,12 @@ fn cases() -> Vec<(String, Problem)> {
 }
 
 /// Evaluations that 1 % of sigma may take, and 0.1 % three times as many. No case takes fewer for the finer of the two.
-const GOALS: [(&str, u64); 5] = [
+const GOALS: [(&str, u64); 6] = [
     ("engine-balance F", 60),
     ("engine-balance M", 60),
     ("stacked-blocks gap", 35),
     ("cantilever", 60),
+    ("exponential of a sum of 20", 300),
     ("20 interactions among 100", 400),
 ];
 
@@ -66,6 +67,22 @@ fn costs_keep_their_goals_and_grow_with_the_accuracy() {
     };
     let wrong: Vec<String> = cases().par_iter().filter_map(wrong).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// `exp(0.1 (x_1 + .. + x_20))` of standard normal inputs is lognormal with `s^2 = 0.2`: its variance is `(exp(s^2) - 1) exp(s^2)`, and its
+/// skewness `(exp(s^2) + 2) sqrt(exp(s^2) - 1)` (Johnson, Kotz and Balakrishnan 1994, chapter 14).
+#[test]
+fn a_product_of_twenty_has_the_moments_of_its_factors() {
+    let function = Closure::scalar("y", |x| (0.1 * x.iter().sum::<f64>()).exp());
+    let problem = Problem::new(standard(20), function).unwrap();
+    let found = analyze(&problem, &Options::from(Method::Auto).with_verify(0)).unwrap();
+    let moments = found.characteristics[0].moments.unwrap();
+    let grown = 0.2f64.exp();
+    let (sigma, skewness) = (((grown - 1.0) * grown).sqrt(), (grown + 2.0) * (grown - 1.0).sqrt());
+    // A regression of the logarithm has twenty coefficients that are known to roundings.
+    assert!((moments.sigma() - sigma).abs() < 1e-10 * sigma, "{} for {sigma}", moments.sigma());
+    assert!((moments.skewness().unwrap() - skewness).abs() < 1e-9, "{:?} for {skewness}", moments.skewness());
+    assert!(found.run.evaluations <= 300, "{}", found.run.evaluations);
 }
 
 #[test]

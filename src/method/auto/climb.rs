@@ -4,6 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::chosen::{ChosenPoints, Probe};
+use super::product::is_product;
 use super::view::{View, skewed};
 use crate::method::Options;
 use crate::method::climbed::ClimbEnd;
@@ -32,6 +33,8 @@ const PARALLEL: f64 = 0.9;
 const NEXT_TO: f64 = 1e-3;
 /// Up to so many dimensions pairs are bought one by one: 2 x 18 probes would cost as much.
 const DIRECT: usize = 12;
+/// A budget that leaves so much lets a costly model be sampled in a quarter of it.
+const SAMPLED: usize = 1024;
 /// Probes that judge, and the first that are fitted.
 const JUDGING: usize = 12;
 const FITTED: usize = 6;
@@ -218,6 +221,10 @@ impl<'p> Climb<'p> {
             self.rest = Some(ClimbEnd::Reached);
             return false;
         }
+        if self.positions() > DIRECT && self.may_be_sampled() && short.iter().all(|view| self.multiplies(view, known)) {
+            self.rest = Some(ClimbEnd::Exhausted);
+            return false;
+        }
         let curved = self.refine_hidden(&short);
         let near = short.iter().all(|view| view.error() < NEAR * self.accuracy);
         let found = self.examine(&short, known)
@@ -232,6 +239,16 @@ impl<'p> Climb<'p> {
             self.rest = Some(if self.short_of_budget { ClimbEnd::Budget } else { ClimbEnd::Exhausted });
         }
         found
+    }
+
+    /// Whether points of the model follow where the surface is not enough.
+    fn may_be_sampled(&self) -> bool {
+        let free = !self.problem.function().signature().costly;
+        free || self.budget != usize::MAX && self.budget.saturating_sub(self.spent) >= SAMPLED
+    }
+
+    fn multiplies(&self, view: &View, known: &KnownAnswers) -> bool {
+        is_product(&self.plan, known, &self.bought, view, self.wanted)
     }
 
     /// Goes on to the next of the errors on the way to what is wanted; whether there is one.

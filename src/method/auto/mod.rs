@@ -9,12 +9,16 @@
 //!   all dimensions at once and a sparse fit to them, growing, until every pair for itself is nearly as cheap;
 //! - two nodes more for the strongest of the others, where odd powers are left.
 //!
+//! Of more than twelve dimensions it buys no interactions where the model is a product, so that all of them interact, and points of the
+//! model may follow: a regression of their logarithm takes fewer.
+//!
 //! The rest that is left in the end adds to the variance as the unexplained part that it is, and is the estimate of the error.
 //! All points are those of a fixed design: the same study gives the same numbers, whatever the seed.
 
 mod atoms;
 mod chosen;
 mod climb;
+mod product;
 mod screening;
 mod start;
 mod view;

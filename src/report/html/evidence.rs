@@ -13,6 +13,7 @@ use crate::document::number::{band, beside, estimated, plain};
 use crate::document::svg::escaped;
 use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section, html};
 use crate::pearson::Pearson;
+use crate::verification::TailPoint;
 
 /// A shift of the mean below this part of sigma is none.
 const SEEN: f64 = 0.01;
@@ -85,6 +86,8 @@ struct Tail<'l> {
     /// The share beyond the limit by the surface, and by points of the model with its error.
     surface: Option<f64>,
     model: Option<(f64, f64)>,
+    /// Values with the shares at or beyond them, by points of the model.
+    seen: &'l [TailPoint],
 }
 
 /// The share rejected on a logarithmic scale near each limit: the Pearson fit as a line, the surface and the model as marks at the limit.
@@ -92,22 +95,24 @@ fn tails(one: &CharacteristicAnalysis) -> Option<String> {
     let Some(Law::Pearson(law)) = one.fitted() else { return None };
     let of_surface = one.surface_law.as_ref();
     let by_model = one.verification.as_ref().map_or([None, None], |found| found.beyond);
+    let seen = one.verification.as_ref().and_then(|found| found.tails.as_ref());
+    let seen = seen.map_or([&[][..], &[]], |tails| [&tails.below[..], &tails.above[..]]);
     let all = [
-        ("lower", one.lower(), false, of_surface.and_then(|law| law.below), by_model[0]),
-        ("upper", one.upper(), true, of_surface.and_then(|law| law.above), by_model[1]),
+        ("lower", one.lower(), false, of_surface.and_then(|law| law.below), by_model[0], seen[0]),
+        ("upper", one.upper(), true, of_surface.and_then(|law| law.above), by_model[1], seen[1]),
     ];
     let panels: Vec<String> = all
         .into_iter()
-        .filter_map(|(name, limit, upper, surface, model)| {
+        .filter_map(|(name, limit, upper, surface, model, seen)| {
             let surface = surface.map(|figure| figure.value);
             let model = model.map(|found| (found.value, found.error));
-            panel(one, &Tail { name, limit: limit?, upper, law, surface, model })
+            panel(one, &Tail { name, limit: limit?, upper, law, surface, model, seen })
         })
         .collect();
     (!panels.is_empty()).then(|| {
         format!(
-            "<div class=\"tails\">{}</div>\n<p class=\"note\">Share of the assemblies beyond a value, on a logarithmic scale. Line: the Pearson fit. At the limit: \
-             diamond, the surface; dot and bar, points of the model with two standard errors.</p>\n",
+            "<div class=\"tails\">{}</div>\n<p class=\"note\">Share of the assemblies beyond a value, on a logarithmic scale. Line: the Pearson fit; small \
+             dots: points of the model, with the band of two standard errors. At the limit: diamond, the surface; dot and bar, points of the model.</p>\n",
             panels.concat()
         )
     })
@@ -129,7 +134,9 @@ fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
     }
     let decades = -least.log10().floor();
     let least = 10f64.powf(-decades);
-    let scale = Extent::over([at(FROM), at(least), tail.limit].into_iter(), 0.04, WIDTH - LEFT)?;
+    let shown = || tail.seen.iter().filter(|point| point.share >= least);
+    let values = [at(FROM), at(least), tail.limit].into_iter().chain(shown().map(|point| point.at));
+    let scale = Extent::over(values, 0.04, WIDTH - LEFT)?;
     let x = |value: f64| LEFT + scale.at(value);
     let y = |share: f64| {
         let part = (FROM.log10() - share.max(least).log10()) / (FROM.log10() - least.log10());
@@ -142,6 +149,15 @@ fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
         if share <= FROM && share >= least {
             let _ = write!(line, "{}{:.1} {:.1}", if line.is_empty() { "M" } else { "L" }, x(value), y(share));
         }
+    }
+    // Lines without length and with round ends are dots, and shorter than circles. The band is that of two standard errors.
+    let (mut dots, mut band) = (String::new(), String::new());
+    for point in shown() {
+        let _ = write!(dots, "M{:.1} {:.1}h0", x(point.at), y(point.share));
+        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y(point.share + 2.0 * point.error));
+    }
+    for point in shown().collect::<Vec<_>>().into_iter().rev() {
+        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y((point.share - 2.0 * point.error).max(least)));
     }
     let limit = x(tail.limit);
     let (from, to) = if tail.upper { (limit, WIDTH) } else { (LEFT, limit) };
@@ -180,6 +196,13 @@ fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
     }
     let _ =
         writeln!(svg, "<path class=\"line\" d=\"{line}\"/><path class=\"limit\" d=\"M{limit:.1} 2V{}\"/>", TALL + 12.0);
+    if !dots.is_empty() {
+        let _ = writeln!(
+            svg,
+            "<polygon class=\"seen-within\" points=\"{}\"/><path class=\"seen\" d=\"{dots}\"/>",
+            band.trim_end()
+        );
+    }
     let anchor = if limit > 0.75 * WIDTH {
         "end"
     } else if limit < 0.35 * WIDTH {

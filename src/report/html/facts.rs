@@ -6,9 +6,11 @@ use super::super::figures::{Figures, Named};
 use super::verdict::interval;
 use crate::analysis::CharacteristicAnalysis;
 use crate::capability::Capability;
-use crate::document::number::{carried, index, known, shape_with, uncertainty};
+use crate::document::number::index;
 use crate::document::svg::escaped;
-use crate::method::{ErrorEstimate, ErrorSource};
+
+/// The names of the first figures.
+const FIRST: [&str; 6] = ["Nominal", "Mean", "Mean − nominal", "Sigma", "Skewness", "Kurtosis"];
 
 /// Yield, rejects and indices where there are limits; mean to kurtosis, with their errors.
 pub(super) fn facts(one: &CharacteristicAnalysis) -> String {
@@ -35,24 +37,8 @@ pub(super) fn facts(one: &CharacteristicAnalysis) -> String {
         index_row(cp, of(|of| of.cp), false);
         index_row(&format!("{cpk}, by quantiles"), of(|of| of.cpk_percentile), false);
     }
-    let scale = one.scale();
-    let estimate = one.error_estimate.as_ref();
-    let of = |figure: fn(&ErrorEstimate) -> Option<f64>| estimate.and_then(figure);
-    let exact = estimate.is_some_and(|of| matches!(of.sources[..], [ErrorSource::Proven { .. }]));
-    let off = |error: Option<f64>| match error {
-        Some(_) if exact => "exact".to_owned(),
-        error => error.map(|error| format!("± {}", uncertainty(error))).unwrap_or_default(),
-    };
-    let number = |value: Option<f64>, error| known(value, |value| carried(value, scale, error));
-    let shaped = |value: Option<f64>, error| known(value, |value| shape_with(value, error));
-    let [mean, sigma] = [of(|of| of.mean), of(|of| of.sigma)];
-    let [skewness, kurtosis] = [of(|of| of.skewness), of(|of| of.kurtosis)];
-    row("Nominal", number(one.nominal, None), String::new(), false);
-    row("Mean", number(one.mean(), mean), off(mean), false);
-    let shift = one.mean().zip(one.nominal).map(|(mean, nominal)| mean - nominal);
-    row("Mean − nominal", number(shift, mean), String::new(), false);
-    row("Sigma", number(one.sigma(), sigma), off(sigma), false);
-    row("Skewness", shaped(one.skewness(), skewness), off(skewness), false);
-    row("Kurtosis", shaped(one.kurtosis(), kurtosis), off(kurtosis), false);
+    for (name, shown) in FIRST.into_iter().zip(one.first_figures()) {
+        row(name, shown.text, shown.error, false);
+    }
     text + "</tbody></table>\n"
 }
