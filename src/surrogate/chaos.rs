@@ -18,7 +18,7 @@ use faer::linalg::solvers::SolveLstsqCore;
 use faer::{Accum, Conj, Mat, Par};
 
 use super::{InputShape, Surrogate};
-use crate::distribution::Rule;
+use crate::distribution::{Jacobi, Rule};
 
 /// The highest degree of one input, and of a product: nine nodes integrate the squares of no higher one, and of many inputs there are
 /// too many products of it.
@@ -26,6 +26,9 @@ const HIGHEST: usize = 8;
 const LOWEST: usize = 4;
 /// Products of all inputs at the most, for a degree above the lowest.
 const PRODUCTS: usize = 1000;
+/// Nodes of a rule that confirms another, and the difference of two logarithms up to which it does.
+const COARSE: usize = 7;
+const CONFIRMED: f64 = 1e-6;
 /// The powers of the known surface.
 const POWERS: i32 = 4;
 /// Factors of a product at the most.
@@ -68,6 +71,14 @@ impl Recurrence {
             root.push(norm);
         }
         Self { alpha, root }
+    }
+
+    /// The Gauss rule of fewer nodes; None where there are as few atoms.
+    fn coarse(&self) -> Option<Rule> {
+        let of = |alpha: &[f64]| {
+            Jacobi::new(alpha.to_vec(), self.root[..COARSE].iter().map(|root| root * root).collect()).gauss()
+        };
+        self.alpha.get(..COARSE).map(of)
     }
 
     /// `p_degree` at every place.
@@ -206,27 +217,34 @@ impl Chaos {
         Some([constant, constant * constant + square + factor * factor + 2.0 * factor * along])
     }
 
-    /// The logarithms of the means of `exp(p s)` with `s` the regression over independent inputs and p = 1 .. 4: for every input a mean
-    /// over its Gauss rule. None where several inputs act together, or where a mean is not finite.
-    pub(crate) fn exponentials(&self, sparse: &Sparse, shapes: &[InputShape]) -> Option<[f64; 4]> {
-        let mut parts: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    /// The logarithms of the means of `exp(p s)` with `s` the regression over independent inputs, for p = 1, 2, .. up to 4: for every
+    /// input a mean over its Gauss rule, and as many as a rule of fewer nodes confirms. None where several inputs act together.
+    pub(crate) fn exponentials(&self, sparse: &Sparse, shapes: &[InputShape]) -> Option<Vec<f64>> {
+        let mut parts: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
         for (term, factor) in &sparse.terms {
             let Term::Product(factors) = term else { return None };
             let [(j, degree)] = factors[..] else { return None };
-            let nodes = &shapes[j].rule.nodes;
-            let column = self.recurrences[j].column(nodes, degree);
-            let part = parts.entry(j).or_insert_with(|| vec![0.0; nodes.len()]);
-            part.iter_mut().zip(column).for_each(|(part, value)| *part += factor * value);
+            parts.entry(j).or_default().push((degree, *factor));
         }
-        let logarithm = |p: f64| {
-            let own = |(&j, part): (&usize, &Vec<f64>)| {
-                let terms = part.iter().zip(&shapes[j].rule.weights);
-                terms.map(|(value, weight)| weight * (p * value).exp()).sum::<f64>().ln()
-            };
-            p * sparse.constant + parts.iter().map(own).sum::<f64>()
+        let own = |j: usize, terms: &[(usize, f64)], rule: &Rule, p: f64| {
+            let mut values = vec![0.0; rule.nodes.len()];
+            for &(degree, factor) in terms {
+                let column = self.recurrences[j].column(&rule.nodes, degree);
+                values.iter_mut().zip(column).for_each(|(value, part)| *value += factor * part);
+            }
+            values.iter().zip(&rule.weights).map(|(value, weight)| weight * (p * value).exp()).sum::<f64>().ln()
         };
-        let found = [1.0, 2.0, 3.0, 4.0].map(logarithm);
-        found.iter().all(|value| value.is_finite()).then_some(found)
+        let logarithm = |p: f64| {
+            let (mut whole, mut apart) = (p * sparse.constant, 0.0);
+            for (&j, terms) in &parts {
+                let fine = own(j, terms, &shapes[j].rule, p);
+                whole += fine;
+                // Few atoms are all in the rule.
+                apart += self.recurrences[j].coarse().map_or(0.0, |coarse| (fine - own(j, terms, &coarse, p)).abs());
+            }
+            (apart <= CONFIRMED).then_some(whole).filter(|whole| whole.is_finite())
+        };
+        Some([1.0, 2.0, 3.0, 4.0].into_iter().map_while(logarithm).collect())
     }
 
     /// The regression of values at these points, all of them finite.
@@ -437,26 +455,31 @@ mod tests {
         assert!((mean - 1.5).abs() < 1e-15 && (square - expected).abs() < 1e-9, "{square} for {expected}");
     }
 
-    /// `exp(1 + 0.3 z + 0.1 (z^2 - 1)/sqrt(2) + 0.2 t)` with normal z and t. Of `exp(a z + b z^2)` the mean is
-    /// `exp(a^2/(2 (1 - 2 b)))/sqrt(1 - 2 b)`, with `b = 0.1 p/sqrt(2)`.
+    /// `exp(1 + 0.3 z + 0.2 t)` with normal z and t is lognormal. With `0.1 (z^2 - 1)/sqrt(2)` beside `0.3 z` the mean of the power p is
+    /// `exp(a^2/(2 (1 - 2 b)) - b)/sqrt(1 - 2 b)` times the rest, with `a = 0.3 p` and `b = 0.1 p/sqrt(2)`.
     #[test]
     fn means_of_exponentials_are_those_of_their_factors() {
         let shapes = shapes([&Normal::new(0.0, 1.0).unwrap() as _, &Normal::new(0.0, 1.0).unwrap() as _]);
         let chaos = Chaos::new(&shapes, &[0, 1], None);
         let alone = |j: usize, degree: usize| Term::Product(vec![(j, degree)]);
-        let mut terms = vec![(alone(0, 1), 0.3), (alone(0, 2), 0.1), (alone(1, 1), 0.2)];
-        let found = chaos.exponentials(&Sparse { constant: 1.0, terms: terms.clone() }, &shapes).unwrap();
-        for (index, found) in found.into_iter().enumerate() {
-            let p = 1.0 + index as f64;
-            let (a, b, c) = (0.3 * p, 0.1 * p / 2f64.sqrt(), 0.2 * p);
-            let of_z = a * a / (2.0 * (1.0 - 2.0 * b)) - 0.5 * (1.0 - 2.0 * b).ln() - b;
-            let expected = p + of_z + 0.5 * c * c;
-            // Nine nodes integrate exp(0.28 z^2) to some 1e-4 of its logarithm, the first two powers to 1e-7.
-            let within = [1e-7, 1e-6, 1e-4, 1e-3][index];
-            assert!((found - expected).abs() < within, "{found} for {expected}");
+        let mut terms = vec![(alone(0, 1), 0.3), (alone(1, 1), 0.2)];
+        let of = |terms: &[(Term, f64)]| chaos.exponentials(&Sparse { constant: 1.0, terms: terms.to_vec() }, &shapes);
+        let found = of(&terms).unwrap();
+        assert!(found.len() >= 3, "{found:?}");
+        for (found, p) in found.iter().zip([1.0, 2.0, 3.0, 4.0]) {
+            let expected = p + 0.5 * p * p * (0.09 + 0.04);
+            // Nine nodes leave far less of exp(1.2 z) than seven do.
+            assert!((found - expected).abs() < 1e-8, "{found} for {expected}");
         }
+        terms.push((alone(0, 2), 0.1));
+        let found = of(&terms).unwrap();
+        let b = 0.1 / 2f64.sqrt();
+        let expected = 1.0 + 0.045 / (1.0 - 2.0 * b) - b - 0.5 * (1.0 - 2.0 * b).ln() + 0.02;
+        assert!((found[0] - expected).abs() < 1e-8, "{} for {expected}", found[0]);
+        // Of the fourth power nine nodes have 4 % too little (NumPy's rule: 6.0738 for 6.1119): it is not taken.
+        assert!(found.len() < 4, "{found:?}");
         terms.push((Term::Product(vec![(0, 1), (1, 1)]), 0.1));
-        assert_eq!(chaos.exponentials(&Sparse { constant: 1.0, terms }, &shapes), None);
+        assert_eq!(of(&terms), None);
         assert!(chaos.apart().terms.iter().all(|term| matches!(term, Term::Product(of) if of.len() == 1)));
     }
 

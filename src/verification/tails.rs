@@ -43,7 +43,7 @@ pub(super) fn tail(values: &[Weighed], above: bool, (replicates, one): (usize, f
     let mut whole = vec![0.0; replicates];
     values.iter().for_each(|&(_, weight, replicate)| whole[replicate] += weight);
     let total: f64 = whole.iter().sum();
-    // What lies on the other side of the mean is no tail, and need not be put in order.
+    // Values on the other side of the mean are no tail, and need not be put in order.
     let mean = values.iter().map(|(value, weight, _)| weight * value).sum::<f64>() / total;
     let beyond = |value: f64| if above { value >= mean } else { value <= mean };
     let mut ordered: Vec<Weighed> = values.iter().copied().filter(|&(value, ..)| beyond(value)).collect();

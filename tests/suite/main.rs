@@ -94,6 +94,7 @@ mod terminals;
 mod texts;
 mod tolerances;
 mod trust;
+mod tuning;
 mod type_names;
 mod units;
 mod verdicts;

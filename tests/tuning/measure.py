@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Which constant changes what: every numeric constant of the methods, their estimates and their verification, doubled and halved.
 
-    python3 tests/tuning/measure.py        # writes docs/reference/tuning.md; an hour of CPU time
+    python3 tests/tuning/measure.py        # renews docs/reference/tuning.md: constants that are new or have another value
+    python3 tests/tuning/measure.py --all  # all of them anew; an hour of CPU time
+    python3 tests/tuning/measure.py --write # what was measured before the measurement was ended
 
 The library is copied to target/tuning with its constants as variables, compiled once, and run on the functions that constants may be
 tuned on (tests/data/accuracy). The functions by which errors are judged (tests/data/trust.jsonl) are not looked at: a constant that is
@@ -17,12 +19,15 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "reference" / "tuning.md"
 BUILD = ROOT / "target" / "tuning"
 FOLDERS = ["analysis", "method", "simulation", "surrogate", "verification"]
 DEFINITION = re.compile(
-    r"^(?P<indent>\s*)(?P<public>pub(?:\([a-z]+\))? )?const (?P<name>[A-Z][A-Z_0-9]*): (?P<type>f64|usize|u64|u32|i32) = (?P<value>[^;]+);",
+    r"^(?P<indent>\s*)(?P<public>pub(?:\([a-z]+\))? )?const (?P<name>[A-Z][A-Z_0-9]*): (?P<type>f64|usize|u64|u32|i32) =\s+(?P<value>[^;]+);",
     re.M,
 )
+# A row whose measurement was ended before its turn came: the next run measures it.
+OPEN = "not measured yet"
 # Noise below which two results are the same: sums in another order.
 SAME = 1e-9
 
@@ -31,7 +36,7 @@ def constants():
     """Every constant: file, name, type, value as written, and what its comment says."""
     for folder in FOLDERS:
         for path in sorted((ROOT / "src" / folder).rglob("*.rs")):
-            text = path.read_text()
+            text = path.read_text().split("#[cfg(test)]\nmod tests {")[0]
             if path.name == "tests.rs":
                 continue
             for found in DEFINITION.finditer(text):
@@ -52,7 +57,9 @@ def meaning(before, indent):
         lines.pop()
     while lines and lines[-1].strip().startswith("//"):
         comment.insert(0, lines.pop().strip().lstrip("/").strip())
-    return " ".join(comment)
+    # Links of the library's documentation lead nowhere on a page.
+    text = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"\1", " ".join(comment))
+    return re.sub(r"\[(`[^`]+`)\]", r"\1", text)
 
 
 def scaled_copy(fixed):
@@ -237,24 +244,39 @@ def written(rows, before):
 
 Written by [tests/tuning/measure.py](../../tests/tuning/measure.py), which doubles and halves every numeric constant of
 {", ".join(f"`src/{folder}`" for folder in FOLDERS[:-1])} and `src/{FOLDERS[-1]}` and runs the {len(names)} functions that constants may be tuned
-on ([docs/accuracy.md](../accuracy.md)) of at most 20 dimensions in five ways: `auto` as a cheap model, `auto` and `full` with check points, `auto`
-without any verification at 1 % and at 0.1 %. The functions by which errors are judged are not among them.
+on ([docs/accuracy.md](../accuracy.md)) of at most 20 dimensions in four ways: `auto` of a cheap model, `full` with check points, `auto` without any
+verification at 1 % and at 0.1 %. The functions by which errors are judged are not among them.
 
 As they are: {len(before)} runs, {total} evaluations of models that cost something, {known} figures with an estimated error, {known - covered} of
 them more than three estimates off. "3 of {len(before)}" says how many runs give another number, an error or a warning. "Nothing" is
 said of guards against what these functions do not have (poles, overflow, memory, a budget), and of constants that a doubling leaves on the
-same side of everything. "Fixed" sizes an array, or other constants are made of it.
+same side of everything. "Fixed" sizes an array, or other constants are made of it. A row was measured when its constant last changed; `--all`
+measures all rows anew. [A test](../../tests/suite/tuning.rs) holds that every constant has its row.
 
 """
     for file in dict.fromkeys(one["file"] for one, _, _ in rows):
         text += f"## `{file}`\n\n| constant | value | meaning | halved | doubled |\n|---|---|---|---|---|\n"
         for one, half, double in rows:
             if one["file"] == file:
-                said = one["meaning"].replace("|", "\\|") or "-"
-                value = one["value"].replace("|", "\\|")
-                text += f"| `{one['name']}` | `{value}` | {said} | {half} | {double} |\n"
+                text += f"| `{one['name']}` | `{cell(one['value'])}` | {cell(one['meaning']) or '-'} | {half} | {double} |\n"
         text += "\n"
-    (ROOT / "docs" / "reference" / "tuning.md").write_text(text.rstrip("\n") + "\n")
+    PAGE.write_text(text.rstrip("\n") + "\n")
+
+
+def cell(text):
+    return text.replace("|", "\\|")
+
+
+def measured():
+    """The effects on the page, by file, name and value."""
+    rows, file = {}, None
+    for line in PAGE.read_text().splitlines() if PAGE.exists() and "--all" not in sys.argv else []:
+        if line.startswith("## `"):
+            file = line.strip("# `")
+        found = re.match(r"\| `(?P<name>\w+)` \| `(?P<value>.*?)` \| .* \| (?P<half>[^|]*) \| (?P<double>[^|]*) \|$", line)
+        if found and OPEN not in line:
+            rows[file, found["name"], found["value"]] = [found["half"], found["double"]]
+    return rows
 
 
 def main():
@@ -263,13 +285,19 @@ def main():
     # A measurement that was ended goes on where it was, unless the driver is another one.
     kept = BUILD / "effects.json"
     effects = json.loads(kept.read_text()) if kept.exists() and kept.stat().st_mtime > driver.stat().st_mtime else {}
+    known = measured()
     for one in constants():
-        if key(one) in fixed or key(one) in effects:
+        row = known.get((one["file"], one["name"], cell(one["value"])))
+        if row and key(one) not in fixed:
+            effects.setdefault(key(one), row)
+    for one in constants():
+        if key(one) in fixed or key(one) in effects or "--write" in sys.argv:
             continue
         effects[key(one)] = [effect(before, run(driver, f"{key(one)}={factor}")) for factor in (0.5, 2.0)]
         print(f"{key(one)}: {' | '.join(effects[key(one)])}", file=sys.stderr, flush=True)
         kept.write_text(json.dumps(effects))
-    written([(one, *effects.get(key(one), ["fixed", "fixed"])) for one in constants()], before)
+    rest = lambda one: ["fixed", "fixed"] if key(one) in fixed else [OPEN, OPEN]
+    written([(one, *effects.get(key(one), rest(one))) for one in constants()], before)
 
 
 main()
