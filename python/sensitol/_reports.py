@@ -1746,8 +1746,8 @@ class TailPoint(Record):
 
 
 class Tails(Record):
-    """The tails of a sample, of every side that has a limit: from 10 % to the share of the last few points, in even
-    steps of its logarithm.
+    """The tails of a sample, of every side that has a limit: from 10 % to 1 ppm, or to the share of the last few
+    points, in even steps of its logarithm.
     """
 
     above: List[TailPoint]
