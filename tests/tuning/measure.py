@@ -281,23 +281,25 @@ def measured():
 
 def main():
     driver, fixed = compiled()
+    # As they were compiled: sources may change meanwhile.
+    every = list(constants())
     before = run(driver)
     # A measurement that was ended goes on where it was, unless the driver is another one.
     kept = BUILD / "effects.json"
     effects = json.loads(kept.read_text()) if kept.exists() and kept.stat().st_mtime > driver.stat().st_mtime else {}
     known = measured()
-    for one in constants():
+    for one in every:
         row = known.get((one["file"], one["name"], cell(one["value"])))
         if row and key(one) not in fixed:
             effects.setdefault(key(one), row)
-    for one in constants():
+    for one in every:
         if key(one) in fixed or key(one) in effects or "--write" in sys.argv:
             continue
         effects[key(one)] = [effect(before, run(driver, f"{key(one)}={factor}")) for factor in (0.5, 2.0)]
         print(f"{key(one)}: {' | '.join(effects[key(one)])}", file=sys.stderr, flush=True)
         kept.write_text(json.dumps(effects))
     rest = lambda one: ["fixed", "fixed"] if key(one) in fixed else [OPEN, OPEN]
-    written([(one, *effects.get(key(one), rest(one))) for one in constants()], before)
+    written([(one, *effects.get(key(one), rest(one))) for one in every], before)
 
 
 main()
