@@ -51,7 +51,7 @@ const CHOICE: f64 = 1.1;
 const TELL: usize = 1 << 10;
 /// Exact moments of a regression that differ from its own points by more standard errors than that are not believed.
 const EXACT: f64 = 4.0;
-/// A scale below this part of the origin takes the fourth power of a difference below its roundings.
+/// With a scale below this part of the origin, roundings would take more than 1e-8 of a fourth power.
 const CANCELS: f64 = 1e-2;
 /// Intervals of the histogram.
 const BINS: usize = 40;
