@@ -54,6 +54,7 @@ mod rejects;
 mod remade;
 mod response;
 mod result;
+mod root;
 mod run;
 mod sampled;
 mod scaling;
