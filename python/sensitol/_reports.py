@@ -1110,7 +1110,7 @@ class Proof(Record):
     """The cost of the next cheapest optimum that one of them ended at; None where there was no other."""
     reached: Optional[int]
     """How many of them ended at the tolerances found."""
-    solver: Optional[Literal['dual-newton', 'separable', 'augmented-lagrangian', 'branch-and-bound', 'root']]
+    solver: Optional[Literal['dual-newton', 'separable', 'sequential-quadratic', 'augmented-lagrangian', 'branch-and-bound', 'root']]
     """The solver that found the tolerances; None where none were found."""
     starts: Optional[int]
     """Searches from different tolerances, where there may be several optima; None where one search is enough."""

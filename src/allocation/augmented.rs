@@ -58,7 +58,7 @@ impl Smooth<'_> {
         let mut last = f64::INFINITY;
         for _ in 0..near.updates {
             x = minimised(&|x| self.lagrangian(x, &multipliers, weight), &x, 0.1 * near.by, DESCENT);
-            let over = self.over(&x)?;
+            let over = self.over(&(self.rows)(&x)?, &x);
             let mut error: f64 = 0.0;
             for (multiplier, over) in multipliers.iter_mut().zip(&over) {
                 error = error.max(if *multiplier > 0.0 { over.abs() } else { over.max(0.0) });
@@ -79,10 +79,9 @@ impl Smooth<'_> {
     }
 
     /// By how much every row, and the lower and the upper bound of every unknown, is exceeded.
-    fn over(&self, x: &[f64]) -> Option<Vec<f64>> {
-        let mut over: Vec<f64> = (self.rows)(x)?.into_iter().map(|(value, _)| value).collect();
-        over.extend(self.bounds.iter().zip(x).flat_map(|(&[low, high], &x)| [low - x, x - high]));
-        Some(over)
+    fn over(&self, rows: &[Slope], x: &[f64]) -> Vec<f64> {
+        let bounds = self.bounds.iter().zip(x).flat_map(|(&[low, high], &x)| [low - x, x - high]);
+        rows.iter().map(|row| row.0).chain(bounds).collect()
     }
 
     fn lagrangian(&self, x: &[f64], multipliers: &[f64], weight: f64) -> Option<Slope> {
@@ -107,22 +106,25 @@ impl Smooth<'_> {
     }
 
     fn residual(&self, x: &[f64], multipliers: &[f64]) -> Option<f64> {
-        let (_, own) = (self.objective)(x);
+        Some(self.residual_of(&(self.objective)(x).1, &(self.rows)(x)?, x, multipliers))
+    }
+
+    /// The largest violation of the conditions of Karush, Kuhn and Tucker, by the slopes of the objective and the rows at `x`.
+    pub(super) fn residual_of(&self, own: &[f64], rows: &[Slope], x: &[f64], multipliers: &[f64]) -> f64 {
         let scale = own.iter().fold(f64::MIN_POSITIVE, |scale, slope| scale.max(slope.abs()));
-        let rows = (self.rows)(x)?;
         let (of_rows, of_bounds) = multipliers.split_at(rows.len());
-        let mut slopes = own;
+        let mut slopes = own.to_vec();
         for ((_, by), multiplier) in rows.iter().zip(of_rows) {
             slopes.iter_mut().zip(by).for_each(|(slope, by)| *slope += multiplier * by);
         }
         let bounds = slopes.iter_mut().zip(of_bounds.chunks(2));
         bounds.for_each(|(slope, sides)| *slope += sides[1] - sides[0]);
         let stationary = slopes.iter().fold(0.0f64, |most, slope| most.max(slope.abs() / scale));
-        let over = self.over(x)?;
+        let over = self.over(rows, x);
         let kept = over.iter().zip(multipliers).fold(0.0f64, |most, (&over, &multiplier)| {
             most.max(over).max((multiplier / scale * over).abs().min(over.abs()))
         });
-        Some(stationary.max(kept))
+        stationary.max(kept)
     }
 }
 

@@ -299,8 +299,17 @@ impl Search<'_> {
             let cost = setting.cost(&tight);
             let multipliers = vec![0.0; setting.constraints.len()];
             let starts = Starts::default();
-            let solved =
-                Solved { at: tight, cost, multipliers, residual: 0.0, value, closed: false, converged: true, starts };
+            let solved = Solved {
+                at: tight,
+                cost,
+                multipliers,
+                residual: 0.0,
+                value,
+                closed: false,
+                converged: true,
+                sequential: false,
+                starts,
+            };
             return Some((solved, value));
         }
         match setting.solve(&tight) {

@@ -36,7 +36,11 @@ pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
             let several = (begun > 1).then_some((begun, reached));
             let exact = setting.is_exact();
             let proof = Proof {
-                solver: Some(if exact { AllocationSolver::DualNewton } else { AllocationSolver::Separable }),
+                solver: Some(match solved.sequential {
+                    true => AllocationSolver::SequentialQuadratic,
+                    false if exact => AllocationSolver::DualNewton,
+                    false => AllocationSolver::Separable,
+                }),
                 residual: (!fixed).then_some(residual),
                 closed_form: solved.closed,
                 starts: several.map(|(begun, _)| begun),
@@ -70,6 +74,7 @@ pub(super) fn choose_alone(setting: &Setting<'_>, start: &[f64]) -> Choice {
                 value: setting.value(start),
                 closed: false,
                 converged: false,
+                sequential: false,
                 starts: Starts::default(),
             },
             offers: vec![0; setting.priced.len()],

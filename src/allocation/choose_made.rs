@@ -247,6 +247,7 @@ impl<'s, 'a> Judge<'s, 'a> {
             residual: 0.0,
             closed: false,
             converged: true,
+            sequential: false,
             starts: Starts::default(),
             at,
             cost,

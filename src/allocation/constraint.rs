@@ -18,6 +18,7 @@ use super::correction::Correction;
 use super::cost::Priced;
 use super::rejects::of_scores;
 use super::response::Responses;
+use super::root::root;
 use super::separable::{Row, Term};
 use super::unknown::Unknown;
 use crate::capability::{self, Capability, Law};
@@ -456,48 +457,7 @@ fn room_for_yield(moments: &Moments, [below, above]: [Option<f64>; 2], rejected:
     }
     let half = [(below, -law.quantile(0.5 * rejected)), (above, law.upper_quantile(0.5 * rejected))];
     let least = half.iter().filter_map(|&(distance, quantile)| single(distance?, quantile)).fold(most, f64::min);
-    Some(root(miss, least.ln(), most.ln()).exp())
-}
-
-/// Where an increasing function is 0, between a place where it is at most 0 and one where it is at least 0.
-pub(super) fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    let (mut at_low, mut at_high) = (f(low), f(high));
-    if at_low >= 0.0 {
-        return low;
-    }
-    if at_high <= 0.0 {
-        return high;
-    }
-    // Regula falsi with the Illinois rule, which never leaves the bracket.
-    let mut side = 0;
-    for _ in 0..100 {
-        let mut middle = if at_low.is_finite() && at_high.is_finite() {
-            (low * at_high - high * at_low) / (at_high - at_low)
-        } else {
-            0.5 * (low + high)
-        };
-        if !(middle > low && middle < high) {
-            middle = 0.5 * (low + high);
-        }
-        let value = f(middle);
-        if value.abs() < 2e-15 || (high - low).abs() <= 2e-16 * high.abs().max(1.0) {
-            return middle;
-        }
-        if value < 0.0 {
-            (low, at_low) = (middle, value);
-            if side == -1 {
-                at_high *= 0.5;
-            }
-            side = -1;
-        } else {
-            (high, at_high) = (middle, value);
-            if side == 1 {
-                at_low *= 0.5;
-            }
-            side = 1;
-        }
-    }
-    0.5 * (low + high)
+    Some(root(miss, [least.ln(), most.ln()], 0.0).exp())
 }
 
 impl Linearised {

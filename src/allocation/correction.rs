@@ -14,6 +14,7 @@
 //! tolerance in another way from differences along held contours. Source: N. M. Alexandrov, R. M. Lewis, "An overview of first-order
 //! model management for engineering optimization", Optimization and Engineering 2 (2001).
 
+use super::root::root;
 use crate::characteristic::SpecLimits;
 use crate::law::{HeldTail, LawTail, SurfaceLaw};
 use crate::moments::Moments;
@@ -117,7 +118,7 @@ impl Correction {
             sides.iter().map(|(_, distance, held)| held.tail(law, mean + r * distance).value).sum()
         };
         let fitted = room(&moments)?;
-        let r = root(&|r| beyond(law, mean, r), rejected, sigma / fitted)?;
+        let r = level(&|r| beyond(law, mean, r), rejected, sigma / fitted)?;
         // d R/d ln r: the density at both moved limits by how they move.
         let density: f64 =
             sides.iter().map(|(_, distance, _)| -law.density(mean + r * distance).value * r * distance.abs()).sum();
@@ -189,7 +190,7 @@ impl Correction {
 }
 
 /// Where a decreasing share is `rejected`, near `start`.
-fn root(share: &dyn Fn(f64) -> f64, rejected: f64, start: f64) -> Option<f64> {
+fn level(share: &dyn Fn(f64) -> f64, rejected: f64, start: f64) -> Option<f64> {
     let gap = |ln: f64| (share(ln.exp()).max(f64::MIN_POSITIVE) / rejected).ln();
     let (mut low, mut high) = (start.ln(), start.ln());
     let (mut at_low, mut at_high) = (gap(low), gap(low));
@@ -203,27 +204,5 @@ fn root(share: &dyn Fn(f64) -> f64, rejected: f64, start: f64) -> Option<f64> {
     if !(at_low >= 0.0 && at_high <= 0.0) {
         return None;
     }
-    let mut side = 0;
-    for _ in 0..STEPS {
-        if at_low == 0.0 || high - low < NEAR {
-            break;
-        }
-        // Regula falsi with the Illinois rule.
-        let secant = low + (high - low) * at_low / (at_low - at_high);
-        let middle = if secant > low && secant < high { secant } else { 0.5 * (low + high) };
-        let at = gap(middle);
-        if at.abs() < NEAR {
-            return Some(middle.exp());
-        }
-        if at > 0.0 {
-            (low, at_low) = (middle, at);
-            at_high *= if side == 1 { 0.5 } else { 1.0 };
-            side = 1;
-        } else {
-            (high, at_high) = (middle, at);
-            at_low *= if side == -1 { 0.5 } else { 1.0 };
-            side = -1;
-        }
-    }
-    Some((0.5 * (low + high)).exp())
+    Some(root(|ln| -gap(ln), [low, high], NEAR).exp())
 }

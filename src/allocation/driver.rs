@@ -67,12 +67,16 @@ pub(super) struct Near {
     pub(super) rest: f64,
 }
 
+/// The part of the square of a change of tolerances by which a requirement that is followed along its slopes may be off: the second derivatives of
+/// the [corrections](super::correction) of a room are some tenths.
+const BENT: f64 = 0.1;
+/// What differences of moments leave of a requirement, ten times: their steps in `ln T` know them to 1e-10.
+const NOISE: f64 = 1e-9;
+
 impl Near {
     pub(super) fn of(problem: &Problem) -> Self {
-        match problem.function().signature().costly {
-            true => Self { agree: 1e-3, margin: 1e-7, rest: 1e-3 },
-            false => Self { agree: 1e-7, margin: 1e-9, rest: 1e-6 },
-        }
+        let (agree, rest) = if problem.function().signature().costly { (1e-3, 1e-3) } else { (1e-7, 1e-6) };
+        Self { agree, margin: (BENT * agree * agree).max(NOISE), rest }
     }
 }
 

@@ -8,9 +8,10 @@
 //! cannot be kept. The greatest of the least Cpk of several characteristics is that of one level for all of them.
 
 use super::choose::Choice;
-use super::constraint::{Constraint, root};
+use super::constraint::Constraint;
 use super::driver::Driver;
 use super::machines::choose;
+use super::root::root;
 use super::solve::Setting;
 use super::task::Goal;
 use crate::distribution::standard_normal;
@@ -65,6 +66,6 @@ impl Driver<'_> {
         };
         let [low, high] = LEVELS;
         // A level just below is one that was found to be kept.
-        (dearer(low) <= SAME).then(|| of_level(root(dearer, low, high) * (1.0 - SAME)))
+        (dearer(low) <= SAME).then(|| of_level(root(dearer, [low, high], 0.1 * SAME) * (1.0 - SAME)))
     }
 }

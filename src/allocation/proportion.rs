@@ -62,6 +62,7 @@ impl Driver<'_> {
             value: 1.0,
             closed: false,
             converged: ended.agreed,
+            sequential: false,
             starts: Starts::default(),
             at,
         };

@@ -215,6 +215,8 @@ pub enum AllocationSolver {
     DualNewton,
     /// The same for sums that have the values and slopes of the requirements, again and again until they agree.
     Separable,
+    /// Sequential quadratic programming, where such sums lead nowhere.
+    SequentialQuadratic,
     /// L-BFGS in an augmented Lagrangian for nominal values and tolerances at once, and the tolerances polished by the others.
     AugmentedLagrangian,
     /// Branch and bound over lists of processes.

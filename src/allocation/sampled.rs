@@ -67,6 +67,7 @@ impl SampledCorrection {
         let sides: Vec<[Option<Vec<Option<Moments>>>; 2]> = (0..priced.len())
             .map(|g| {
                 [-STEP, STEP].map(|step| {
+                    // An error comes before the first point.
                     let found = simulate_with(&at(g, step.exp())?, &options, run, &|_| {}).ok()?;
                     points += found.run.evaluations;
                     let moments = |of: &crate::simulation::SimulatedCharacteristic| {

@@ -1,7 +1,10 @@
 //! One factor for all tolerances.
 
+use std::cell::Cell;
+
 use super::constraint::{Constraint, kept};
 use super::response::Responses;
+use super::root::root;
 
 /// How near the factor is found.
 const NEAR: f64 = 1e-10;
@@ -21,11 +24,12 @@ pub(super) fn loosest(responses: &Responses, constraints: &[Constraint]) -> Opti
 
 /// The same of the tolerances of these dimensions alone.
 pub(super) fn loosest_of(responses: &Responses, constraints: &[Constraint], of: &[usize]) -> Option<f64> {
-    let keeps = |factor: f64| {
+    let greatest = |factor: f64| {
         let mut factors: Vec<f64> = vec![1.0; responses.dimensions.len()];
         of.iter().for_each(|&d| factors[d] = factor);
-        constraints.iter().all(|constraint| kept(constraint.value_at(responses, &factors)))
+        constraints.iter().map(|constraint| constraint.value_at(responses, &factors)).fold(0.0, f64::max)
     };
+    let keeps = |factor: f64| kept(greatest(factor));
     if constraints.is_empty() {
         return None;
     }
@@ -52,9 +56,15 @@ pub(super) fn loosest_of(responses: &Responses, constraints: &[Constraint], of: 
             outside = inside;
         }
     }
-    while outside / inside - 1.0 > NEAR {
-        let middle = (inside * outside).sqrt();
-        if keeps(middle) { inside = middle } else { outside = middle }
-    }
-    Some(inside)
+    // The end of the bracket that keeps everything.
+    let loosest = Cell::new(inside);
+    let excess = |ln: f64| {
+        let (factor, value) = (ln.exp(), greatest(ln.exp()));
+        if kept(value) && factor > loosest.get() {
+            loosest.set(factor);
+        }
+        value - 1.0
+    };
+    root(excess, [inside.ln(), outside.ln()], NEAR);
+    Some(loosest.get())
 }

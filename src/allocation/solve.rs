@@ -53,7 +53,7 @@ const AT_BOUND: f64 = 1e-9;
 /// It stands still: where slopes are formulas, and where they are differences, which know them to 1e-10.
 const STILL: [f64; 2] = [1e-11, 1e-9];
 /// A residual that is optimal all the same, once steps do not lower it any more.
-const SMALL: f64 = 1e-8;
+pub(super) const SMALL: f64 = 1e-8;
 /// Steps in which a residual that still falls is at least halved.
 const PATIENCE: usize = 3;
 /// Two ways to the same.
@@ -132,7 +132,22 @@ impl Setting<'_> {
             starts.push(self.reached(&tight, &loose, 0.5));
             starts.extend(self.elsewhere(&tight, &loose));
         }
-        let descend = |start: &[f64]| self.descend(&self.usable(start, &tight)?);
+        // A search that ends dearer than where it began has left its valley.
+        let left = |found: &Solved, start: &[f64]| {
+            !one_start && found.cost > self.cost(start) * (1.0 + SAME) && kept(self.value(start))
+        };
+        let descend = |start: &[f64]| {
+            let found = self.usable(start, &tight).and_then(|start| self.descend(&start));
+            let ended = |found: &Solved| found.converged && kept(found.value);
+            let from = match &found {
+                Some(found) if ended(found) && !left(found, start) => None,
+                Some(found) if kept(found.value) && !left(found, start) => Some(&found.at[..]),
+                _ => Some(start),
+            };
+            // Sums of powers lead nowhere from here, or not to the end.
+            let finished = from.and_then(|from| self.finished(from)).filter(ended);
+            finished.or(found)
+        };
         let mut ends = Ends::default();
         for start in starts {
             // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
@@ -207,12 +222,22 @@ impl Setting<'_> {
         let multipliers = vec![0.0; self.constraints.len()];
         let residual = f64::INFINITY;
         let starts = Starts::default();
-        let solved = Solved { at, cost, multipliers, residual, value, closed: false, converged: false, starts };
+        let solved = Solved {
+            at,
+            cost,
+            multipliers,
+            residual,
+            value,
+            closed: false,
+            converged: false,
+            sequential: false,
+            starts,
+        };
         kept(value).then_some(solved)
     }
 
     /// The half bands within their bounds.
-    fn within(&self, at: &[f64]) -> Vec<f64> {
+    pub(super) fn within(&self, at: &[f64]) -> Vec<f64> {
         at.iter().zip(self.bounds()).map(|(t, [low, high])| t.clamp(low, high)).collect()
     }
 
@@ -293,7 +318,7 @@ impl Setting<'_> {
     }
 
     /// Rounding may leave a constraint exceeded by a last digit: what is promised is kept, however it is summed.
-    fn tighten(&self, solved: &mut Solved) {
+    pub(super) fn tighten(&self, solved: &mut Solved) {
         if solved.value > 1.0 + 1e-6 {
             return;
         }
@@ -315,7 +340,7 @@ impl Setting<'_> {
     }
 
     /// How far these tolerances are from an optimum, with these multipliers.
-    fn judged(&self, at: &[f64], linearised: &[Linearised], multipliers: &[f64], closed: bool) -> Solved {
+    pub(super) fn judged(&self, at: &[f64], linearised: &[Linearised], multipliers: &[f64], closed: bool) -> Solved {
         let mut slopes: Vec<f64> = (self.priced.iter().zip(at))
             .map(|(group, &t)| group.parts * group.offers[0].curve.log_derivatives(t)[0])
             .collect();
@@ -353,6 +378,7 @@ impl Setting<'_> {
             value,
             closed,
             converged: false,
+            sequential: false,
             starts: Starts::default(),
         }
     }

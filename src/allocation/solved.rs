@@ -21,6 +21,8 @@ pub(super) struct Solved {
     pub(super) closed: bool,
     /// Whether it ended by itself.
     pub(super) converged: bool,
+    /// Whether sequential quadratic programming found it.
+    pub(super) sequential: bool,
     pub(super) starts: Starts,
 }
 

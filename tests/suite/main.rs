@@ -6,6 +6,7 @@ mod allocation_cli;
 mod allocation_costs;
 mod allocation_lists;
 mod allocation_made;
+mod allocation_optima;
 mod allocation_oracles;
 mod analysis;
 mod architecture;
