@@ -1,5 +1,5 @@
-//! Lists of processes under additive rows: milliseconds of every generated problem, a line each, the median of five; `benches/lists.py` sets
-//! them beside HiGHS.
+//! Lists of processes under additive rows: milliseconds of every generated problem, a line each, the median of five; `benches/run` sets them
+//! beside HiGHS.
 
 #[path = "../tests/suite/generated_lists.rs"]
 mod generated_lists;

@@ -86,6 +86,7 @@ impl Evaluated {
     /// Evaluates one stage; the points are by the nodes of this plan.
     pub(crate) fn add(&mut self, problem: &Problem, plan: &dyn Plan, stage: &Stage, run: &Run<'_>) {
         self.stages += 1;
+        self.known.reserve(stage.points.len());
         let centre = plan.centre();
         let rows = (BATCH / centre.len()).max(1);
         // All batches have one buffer, in which only a few values of each point are not those of the centre.

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use super::coverage_intervals::CoverageIntervals;
@@ -489,35 +490,40 @@ fn sensitivity(problem: &Problem, outcome: &Outcome, c: usize, d: usize, shares:
 fn interactions(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&Shares>) -> Vec<Interaction> {
     let plan = &outcome.plan;
     let fitted = &outcome.fitted[c];
-    let examined =
-        (outcome.pairs.iter().zip(&fitted.mixed).enumerate()).filter(|(_, ((j, k), _))| plan.joint(c, *j, *k));
-    let mut interactions: Vec<Interaction> = examined
-        .map(|(index, (&(j, k), mixed))| {
-            let share = shares.and_then(|shares| shares.pair(index, (j, k), mixed.map(|mixed| mixed.value)));
-            let [j, k] = [j, k].map(|position| plan.varying()[position]);
-            let together = problem.correlation().map_or(0.0, |correlation| correlation.of(j, k));
-            let exact = fitted.exact.as_ref().and_then(|exact| exact.mixed[index]);
-            let coefficient = mixed.map(|mixed| mixed.value);
-            let mean_shift = match shares {
-                Some(shares) => shares.pair_shift(index, coefficient, together),
-                None => coefficient.map(|value| value * together),
-            };
-            let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
-            let missing = (exact.is_none() && mixed.is_none()).then(|| missing(outcome, c, &[j, k]));
-            Interaction {
-                dimensions: [j, k].map(|d| problem.dimensions()[d].name().to_owned()),
-                missing,
-                mixed: exact.or(mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale)),
-                exact: exact.is_some(),
-                rounding: fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k)),
-                share,
-                mean_shift,
-            }
-        })
+    let share = |index: usize| {
+        let coefficient = fitted.mixed[index].map(|mixed| mixed.value);
+        shares.and_then(|shares| shares.pair(index, outcome.pairs[index], coefficient))
+    };
+    // Places are sorted rather than rows of several words and two names.
+    let mut order: Vec<(u32, f64)> = (outcome.pairs.iter().zip(&fitted.mixed).enumerate())
+        .filter(|(_, ((j, k), _))| plan.joint(c, *j, *k))
+        .map(|(index, _)| (index as u32, share(index).unwrap_or(-1.0)))
         .collect();
-    let strength = |interaction: &Interaction| interaction.share.unwrap_or(-1.0);
-    interactions.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
-    interactions
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let interaction = |index: usize| {
+        let mixed = fitted.mixed[index];
+        let (j, k) = outcome.pairs[index];
+        let [j, k] = [j, k].map(|position| plan.varying()[position]);
+        let together = problem.correlation().map_or(0.0, |correlation| correlation.of(j, k));
+        let exact = fitted.exact.as_ref().and_then(|exact| exact.mixed[index]);
+        let coefficient = mixed.map(|mixed| mixed.value);
+        let mean_shift = match shares {
+            Some(shares) => shares.pair_shift(index, coefficient, together),
+            None => coefficient.map(|value| value * together),
+        };
+        let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
+        let missing = (exact.is_none() && mixed.is_none()).then(|| missing(outcome, c, &[j, k]));
+        Interaction {
+            dimensions: [j, k].map(|d| problem.dimensions()[d].name().to_owned()),
+            missing,
+            mixed: exact.or(mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale)),
+            exact: exact.is_some(),
+            rounding: fitted.centre.map(|centre| f64::EPSILON * centre.abs() / step(j) / step(k)),
+            share: share(index),
+            mean_shift,
+        }
+    };
+    order.par_iter().map(|&(index, _)| interaction(index as usize)).collect()
 }
 
 /// Why a derivative by these dimensions is missing: what was stopped before any of its points failed was not evaluated.

@@ -120,11 +120,12 @@ pub(super) fn analyzed(
     let clock = Clock::start(asked.work.time);
     let analysis = analyze(study, asked.threads, &clock, look)?;
     let about = clock.about(study);
-    let report = Report::of(&study.problem, &analysis, about);
+    let report = Report::keeping(&study.problem, analysis, about);
+    let analysis = &report.analysis;
     let written = show(&report);
     let written = written.and(files.folder.map_or(Ok(()), |folder| folder.write(&csv_files(&report))));
     let written = written.and(files.page.map_or(Ok(()), |page| {
-        let what_if = WhatIf::of(&study.problem, &analysis, &study.lines, &study.costs);
+        let what_if = WhatIf::of(&study.problem, analysis, &study.lines, &study.costs);
         page.write(&analyze_html(&report, Some(&what_if)))
     }));
     let written = written.and(files.workbook.map_or(Ok(()), |workbook| {

@@ -96,7 +96,8 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     let problem = narrow.as_ref().map_or(&study.problem, |narrow| &narrow.problem);
     let plan = procedure.plan(problem, &study.options)?;
     let (evaluations, stages) = plan.cost();
-    let first = plan.next(&KnownAnswers::nothing(study.problem.characteristics().len())).unwrap_or_default();
+    let first = plan.first();
+    let of_first: usize = first.values().sum();
     let mut report = PlanReport {
         schema: crate::report::SCHEMA,
         command: "plan",
@@ -111,8 +112,8 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         fitted_over: narrow.as_ref().map(|narrow| FittedOver { inputs: narrow.inputs, dimensions: narrow.dimensions }),
         range: procedure.range(problem, &study.options),
         rounds: stages,
-        largest_batch: first.points.len().max(evaluations.saturating_sub(first.points.len())),
-        stages: vec![of_stage(&first)],
+        largest_batch: of_first.max(evaluations.saturating_sub(of_first)),
+        stages: vec![of_stage(first)],
         checks: match study.options.verification(study.problem.function().signature()) {
             0 => Some(0),
             most => study.problem.function().signature().costly.then_some(most.min(MOST_CHECKS)),
@@ -121,12 +122,13 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
         dimensions: plan.varying().iter().map(|&d| axis(problem, &*plan, d)).collect(),
     };
     if stages > 1 {
-        let left = evaluations - first.points.len();
+        let left = evaluations - of_first;
         let purpose = if report.range.is_some() { Purpose::Check } else { Purpose::Pair };
         let purposes = vec![PurposeReport { points: left, purpose: purpose.words() }];
         report.stages.push(StageReport { evaluations: left, known_beforehand: false, purposes });
     }
     if let Some(file) = written {
+        let first = plan.next(&KnownAnswers::nothing(study.problem.characteristics().len())).unwrap_or_default();
         file.write(&points::table(problem, &rows(&*plan, &first)))?;
         if stages > 1 {
             look.warn(&Warning::FirstStageOnly);
@@ -140,14 +142,11 @@ pub(super) fn run(asked: &PlanArgs, look: Look) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-fn of_stage(stage: &Stage) -> StageReport {
-    let mut counts: BTreeMap<Purpose, usize> = BTreeMap::new();
-    for (_, purpose) in &stage.points {
-        *counts.entry(*purpose).or_default() += 1;
-    }
+fn of_stage(counts: BTreeMap<Purpose, usize>) -> StageReport {
+    let evaluations = counts.values().sum();
     let purposes =
         counts.into_iter().map(|(purpose, points)| PurposeReport { points, purpose: purpose.words() }).collect();
-    StageReport { evaluations: stage.points.len(), known_beforehand: true, purposes }
+    StageReport { evaluations, known_beforehand: true, purposes }
 }
 
 fn axis(problem: &Problem, plan: &dyn Plan, d: usize) -> AxisReport {

@@ -224,7 +224,13 @@ impl Estimate<'_> {
         });
         let other: Vec<Term<'_>> = other.collect();
         let interactions = &self.surrogate.interactions;
-        let known = contributions(0.0, &known, interactions).moments;
+        // The moments of a surface of independent inputs are known already, but for their mean, of which nothing is asked here.
+        let own = self.outcome.order == Order::Second
+            && self.outcome.fitted[self.c].integrated.is_none()
+            && self.outcome.climbed.is_none()
+            && plan.inputs().correlation().is_none()
+            && self.surrogate.parts.iter().copied().eq(parts.iter().copied().map(Some));
+        let known = if own { *moments } else { contributions(0.0, &known, interactions).moments };
         let mut errors = apart(&contributions(0.0, &other, interactions).moments, &known);
         // Signs are a guess: what cancels need not.
         let sigma = moments.sigma();
@@ -282,10 +288,10 @@ impl Estimate<'_> {
         let plan = &self.outcome.plan;
         let parts: Vec<Option<Univariate>> = self.parts().into_iter().flatten().map(Some).collect();
         let independent = Inputs::independent(plan.inputs().shapes().to_vec());
-        let curved = Surrogate { parts: parts.clone(), ..self.surrogate.clone() };
-        let second = curved.contributions(&independent).map(|found| found.moments);
+        let curved = || Surrogate { parts: parts.clone(), ..self.surrogate.clone() };
         if self.outcome.order == Order::First {
-            let first = self.surrogate.contributions(&independent).map(|found| found.moments);
+            let [first, second] = [self.surrogate.contributions(&independent), curved().contributions(&independent)]
+                .map(|found| found.map(|found| found.moments));
             if let Some((first, second)) = first.zip(second) {
                 add(&mut self.errors, apart(&first, &second));
             }
@@ -303,11 +309,11 @@ impl Estimate<'_> {
             .flat_map(|j| (j + 1..n).map(move |k| (j, k)))
             .filter(|&(j, k)| plan.joint(self.c, j, k) && !examined(&(j, k)))
             .collect();
-        let examined = 0.5 * self.interactions_squared(&curved.interactions) / variance;
+        let examined = 0.5 * self.interactions_squared(&self.surrogate.interactions) / variance;
         let mut share = examined;
-        let mut products = curved.interactions.pairs();
+        let mut products = self.surrogate.interactions.pairs();
         if !left.is_empty() {
-            share += self.unexamined(&left, (&curved, &independent, second), variance, &mut products);
+            share += self.unexamined(&left, (&curved(), &independent), variance, &mut products);
         }
         // Those that are taken to be like others twist as these do.
         let seen: f64 = products.iter().map(|(.., value)| value * value).sum::<f64>() / variance;
@@ -330,14 +336,14 @@ impl Estimate<'_> {
     }
 
     fn interactions_squared(&self, interactions: &Interactions) -> f64 {
-        2.0 * interactions.pairs().iter().map(|(.., value)| value * value).sum::<f64>()
+        2.0 * interactions.each_pair().map(|(.., value)| value * value).sum::<f64>()
     }
 
     /// Adds what interactions that were not examined may do; the share of the variance that they are taken to have.
     fn unexamined(
         &mut self,
         left: &[(usize, usize)],
-        (surrogate, independent, moments): (&Surrogate, &Inputs, Option<Moments>),
+        (surrogate, independent): (&Surrogate, &Inputs),
         variance: f64,
         products: &mut Vec<(usize, usize, f64)>,
     ) -> f64 {
@@ -347,7 +353,8 @@ impl Estimate<'_> {
             let all = surrogate.interactions.pairs().into_iter().chain(more).filter(|&(.., value)| value != 0.0);
             let interactions = Interactions::of_pairs(surrogate.parts.len(), all);
             let whole = Surrogate { interactions, ..surrogate.clone() };
-            if let Some((whole, without)) = whole.contributions(independent).map(|found| found.moments).zip(moments) {
+            let [whole, without] = [&whole, surrogate].map(|of| Some(of.contributions(independent)?.moments));
+            if let Some((whole, without)) = whole.zip(without) {
                 add(&mut self.errors, apart(&whole, &without));
             }
             products.extend(left.iter().zip(&exact).map(|(&(j, k), &value)| (j, k, value)));

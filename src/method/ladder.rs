@@ -54,6 +54,10 @@ impl Procedure for Ladder {
         self.count
     }
 
+    fn check(&self, problem: &Problem, options: &Options) -> Result<(), MethodError> {
+        self.checked(problem, options).map(drop)
+    }
+
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {
         Ok(Arc::new(self.differences(problem, options)?))
     }
@@ -146,6 +150,12 @@ impl Ladder {
 
     /// The plan that it would follow.
     pub(super) fn differences(&self, problem: &Problem, options: &Options) -> Result<DifferencePlan, MethodError> {
+        let layout = self.checked(problem, options)?;
+        Ok(DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout))
+    }
+
+    /// The points that it would evaluate, once the options are found to mean something to it.
+    fn checked(&self, problem: &Problem, options: &Options) -> Result<Layout, MethodError> {
         if let Some(step) = options.step.filter(|step| !(step.is_finite() && *step > 0.0)) {
             return Err(MethodError::BadStep { step });
         }
@@ -157,8 +167,7 @@ impl Ladder {
         let (spread, pairs, stencil) = self.layout(problem, options)?;
         let exact = options.derivatives == Some(DerivativeSource::Exact);
         let spread = if exact { Spread::Bare } else { spread };
-        let layout = Layout { spread, pairs, stencil, step: options.step, fixed_too: options.all_sensitivities };
-        Ok(DifferencePlan::new(problem.dimensions(), problem.correlation(), problem.dependence(), layout))
+        Ok(Layout { spread, pairs, stencil, step: options.step, fixed_too: options.all_sensitivities })
     }
 
     fn layout(&self, problem: &Problem, options: &Options) -> Result<(Spread, PairChoice, Stencil), MethodError> {

@@ -12,6 +12,7 @@
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
+use rayon::prelude::*;
 
 use super::interactions::{Interactions, Kind};
 use super::part::JointCumulants;
@@ -112,19 +113,28 @@ fn sparse(parts: &[JointCumulants], rows: &[Vec<(usize, f64)>], factor: f64) -> 
     sums.collect()
 }
 
+/// Columns of `W` that are made at a time: each as in one product of the whole matrices, however many threads there are.
+const COLUMNS: usize = 256;
+
 fn dense(parts: &[JointCumulants], matrix: &Mat<f64>, factor: f64) -> Vec<Row> {
     let n = parts.len();
     let a = Mat::from_fn(n, n, |j, k| factor * matrix[(j, k)]);
-    let mut w = Mat::zeros(n, n);
-    matmul(&mut w, Accum::Replace, &a, &a, 1.0, Par::Seq);
-    (0..n)
-        .map(|j| {
+    let blocks = n.div_ceil(COLUMNS);
+    let of_block = |block: usize| -> Vec<Row> {
+        let (first, end) = (block * n / blocks, (block + 1) * n / blocks);
+        let mut w = Mat::zeros(n, end - first);
+        matmul(&mut w, Accum::Replace, &a, a.subcols(first, end - first), 1.0, Par::Seq);
+        let of_column = |column: usize| {
             let mut sums = Row::default();
-            for ((&a, &w), part) in a.col_as_slice(j).iter().zip(w.col_as_slice(j)).zip(parts) {
+            let both = a.col_as_slice(first + column).iter().zip(w.col_as_slice(column));
+            for ((&a, &w), part) in both.zip(parts) {
                 sums.add(a, w, part);
                 sums.ww += w * w;
             }
             sums
-        })
-        .collect()
+        };
+        (0..end - first).map(of_column).collect()
+    };
+    let rows: Vec<Vec<Row>> = (0..blocks).into_par_iter().map(of_block).collect();
+    rows.concat()
 }

@@ -16,6 +16,15 @@ pub(super) enum Kind {
     Dense(Mat<f64>),
 }
 
+/// The products in which one input has a part.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Row<'a> {
+    /// With these inputs, ascending.
+    Sparse(&'a [(usize, f64)]),
+    /// With every input, 0 where there is none.
+    Dense(&'a [f64]),
+}
+
 impl Interactions {
     /// No products of `dimensions` inputs.
     pub fn none(dimensions: usize) -> Self {
@@ -54,24 +63,31 @@ impl Interactions {
 
     /// Every pair that is not 0, as `(j, k, A_jk)` with `j < k`.
     pub fn pairs(&self) -> Vec<(usize, usize, f64)> {
-        match &self.kind {
-            Kind::Sparse(rows) => (rows.iter().enumerate())
-                .flat_map(|(j, row)| row.iter().filter(move |&&(k, _)| j < k).map(move |&(k, value)| (j, k, value)))
-                .collect(),
-            Kind::Dense(matrix) => (0..self.dimensions)
-                .flat_map(|j| (j + 1..self.dimensions).map(move |k| (j, k, matrix[(k, j)])))
-                .filter(|&(_, _, value)| value != 0.0)
-                .collect(),
-        }
+        self.each_pair().collect()
+    }
+
+    /// The same without a list.
+    pub(crate) fn each_pair(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let dense = matches!(self.kind, Kind::Dense(_));
+        let of_row = move |j| self.neighbours(j).filter(move |&(k, _)| j < k).map(move |(k, value)| (j, k, value));
+        (0..self.dimensions).flat_map(of_row).filter(move |&(_, _, value)| !dense || value != 0.0)
     }
 
     /// The products in which one input has a part: `(k, A_jk)`.
     pub(crate) fn neighbours(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let (sparse, dense) = match &self.kind {
-            Kind::Sparse(rows) => (&rows[j][..], &[][..]),
-            Kind::Dense(matrix) => (&[][..], matrix.col_as_slice(j)),
+        let (sparse, dense) = match self.row(j) {
+            Row::Sparse(row) => (row, &[][..]),
+            Row::Dense(row) => (&[][..], row),
         };
         sparse.iter().copied().chain(dense.iter().copied().enumerate())
+    }
+
+    /// The same as they are kept.
+    pub(crate) fn row(&self, j: usize) -> Row<'_> {
+        match &self.kind {
+            Kind::Sparse(rows) => Row::Sparse(&rows[j]),
+            Kind::Dense(matrix) => Row::Dense(matrix.col_as_slice(j)),
+        }
     }
 
     /// With `by_j by_k A_jk` in place of `A_jk`.

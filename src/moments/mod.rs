@@ -22,6 +22,7 @@ mod part;
 mod sum;
 
 pub use interactions::Interactions;
+pub(crate) use interactions::Row;
 pub use pairwise::Tables;
 pub use part::{JointCumulants, Term};
 pub(crate) use sum::exact;

@@ -1,6 +1,6 @@
 //! One dimension's nodes as numbers that a model can be given.
 
-use super::nodes::{MovedNode, Nodes, Spread, Tail};
+use super::nodes::{MovedNode, Nodes, Reaches, Spread, Tail};
 use crate::dimension::Dimension;
 
 /// A place on an axis: the value, and how many sigmas it really lies off the mean.
@@ -39,10 +39,20 @@ const SENSITIVITY_STEP: f64 = 1e-4;
 impl Axis {
     /// The axis of a dimension that varies.
     pub(crate) fn varying(dimension: &Dimension, spread: Spread, step: Option<f64>) -> Self {
+        Self::varying_with(dimension, spread, step, &mut Reaches::default())
+    }
+
+    /// The same, with what is known of dimensions before.
+    pub(super) fn varying_with(
+        dimension: &Dimension,
+        spread: Spread,
+        step: Option<f64>,
+        reaches: &mut Reaches,
+    ) -> Self {
         let distribution = dimension.distribution().expect("a dimension that varies");
         let nodes = match dimension.step().or(step) {
             Some(step) => Nodes::stepped(step, spread),
-            None => Nodes::matched(distribution, spread),
+            None => Nodes::matched_with(distribution, spread, reaches),
         };
         let mut axis = Self {
             mean: dimension.mean(),

@@ -1,14 +1,16 @@
 //! The central-difference plan: the centre, nodes on the axes, and corners for mixed derivatives.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Deref;
 use std::sync::Arc;
+
+use rayon::prelude::*;
 
 use super::Plan;
 use super::axis::Axis;
 use super::geometry::Geometry;
 use super::known_answers::KnownAnswers;
-use super::nodes::Spread;
+use super::nodes::{Reaches, Spread};
 use super::pairs::{PairChoice, Side, Stencil, strongest};
 use super::point::{AtNode, Point};
 use super::stage::{Purpose, Stage};
@@ -60,7 +62,9 @@ impl DifferencePlan {
         let varying: Vec<usize> = of_sigma(true).collect();
         let fixed: Vec<usize> = if layout.fixed_too { of_sigma(false).collect() } else { Vec::new() };
         let mut axes: Vec<Axis> = dimensions.iter().map(Axis::still).collect();
-        varying.iter().for_each(|&d| axes[d] = Axis::varying(&dimensions[d], layout.spread, layout.step));
+        let mut reaches = Reaches::default();
+        let mut axis = |d: usize| Axis::varying_with(&dimensions[d], layout.spread, layout.step, &mut reaches);
+        varying.iter().for_each(|&d| axes[d] = axis(d));
         fixed.iter().for_each(|&d| axes[d] = Axis::fixed(&dimensions[d], layout.spread));
         let mut nominal = Vec::new();
         for (d, dimension) in dimensions.iter().enumerate() {
@@ -137,7 +141,7 @@ impl DifferencePlan {
     }
 
     /// Every node, and for one at which some characteristic failed the next of its replacements.
-    fn add_axes(&self, stage: &mut Builder<'_>, dimensions: &[usize], purpose: Purpose) {
+    fn add_axes(&self, stage: &mut Builder<'_, impl FnMut(Point, Purpose)>, dimensions: &[usize], purpose: Purpose) {
         for &d in dimensions {
             for slot in &self.axes[d].slots {
                 for (rank, &node) in slot.iter().enumerate() {
@@ -157,13 +161,22 @@ impl DifferencePlan {
         }
     }
 
-    fn add_pairs(&self, stage: &mut Builder<'_>) {
-        let nodes = self.pair_nodes(stage.known);
-        let pairs = self.pairs(Some(stage.known));
-        if !stage.known.tried(&Point::Centre) {
-            stage.stage.points.reserve_exact(pairs.len() * self.layout.stencil.evaluations());
+    /// Hands out every point of the next stage.
+    fn each_wanted(&self, known: &KnownAnswers, take: impl FnMut(Point, Purpose)) {
+        let mut stage = Builder { known, seen: HashSet::new(), taken: 0, take };
+        stage.add(Point::Centre, Purpose::Centre);
+        stage.add(self.nominal.clone(), Purpose::Nominal);
+        self.add_axes(&mut stage, &self.varying, Purpose::Axis);
+        let axes_known = stage.taken == 0;
+        if self.layout.spread != Spread::Bare && (axes_known || self.layout.pairs != PairChoice::Strongest) {
+            self.add_pairs(&mut stage);
         }
-        for (j, k) in pairs {
+        self.add_axes(&mut stage, &self.fixed, Purpose::Sensitivity);
+    }
+
+    fn add_pairs(&self, stage: &mut Builder<'_, impl FnMut(Point, Purpose)>) {
+        let nodes = self.pair_nodes(stage.known);
+        for (j, k) in self.pairs(Some(stage.known)) {
             for &corner in self.layout.stencil.corners(self.opposite(j, k)) {
                 // No two pairs have a point in common; half a million of them need no set.
                 if let Some(point) = self.corner(&nodes, j, k, corner).filter(|point| *point != self.nominal) {
@@ -307,7 +320,8 @@ impl DifferencePlan {
             }
             (found > 0).then(|| Mixed { value: sum / weight, complete: found == corners.len() })
         };
-        pairs.iter().map(mixed).collect()
+        // Looking two points up in a million takes most of the time.
+        pairs.par_iter().map(mixed).collect()
     }
 
     /// For every pair its corners, where they have values, the two of the stencil of two points first: the two
@@ -380,16 +394,32 @@ impl Plan for DifferencePlan {
     }
 
     fn next(&self, known: &KnownAnswers) -> Option<Stage> {
-        let mut stage = Builder { known, seen: HashSet::new(), stage: Stage::default() };
-        stage.add(Point::Centre, Purpose::Centre);
-        stage.add(self.nominal.clone(), Purpose::Nominal);
-        self.add_axes(&mut stage, &self.varying, Purpose::Axis);
-        let axes_known = stage.stage.points.is_empty();
-        if self.layout.spread != Spread::Bare && (axes_known || self.layout.pairs != PairChoice::Strongest) {
-            self.add_pairs(&mut stage);
+        let mut stage = Stage::default();
+        let whole = self.cost();
+        // Every point of a plan of all pairs is known: they need not be looked up one by one.
+        if self.layout.pairs == PairChoice::All && whole == (known.points().len(), 1) && !known.has_failures() {
+            return None;
         }
-        self.add_axes(&mut stage, &self.fixed, Purpose::Sensitivity);
-        (!stage.stage.points.is_empty()).then_some(stage.stage)
+        if !known.tried(&Point::Centre) {
+            stage.points.reserve_exact(whole.0);
+        }
+        self.each_wanted(known, |point, purpose| stage.points.push((point, purpose)));
+        (!stage.points.is_empty()).then_some(stage)
+    }
+
+    fn first(&self) -> BTreeMap<Purpose, usize> {
+        let mut counts = BTreeMap::new();
+        let (mut purpose, mut points) = (Purpose::Centre, 0);
+        // Most points come after one of the same purpose.
+        self.each_wanted(&KnownAnswers::nothing(self.depends.len()), |_, of| {
+            if of != purpose {
+                *counts.entry(purpose).or_default() += points;
+                (purpose, points) = (of, 0);
+            }
+            points += 1;
+        });
+        *counts.entry(purpose).or_default() += points;
+        counts
     }
 }
 
@@ -414,24 +444,26 @@ impl PairNodes {
     }
 }
 
-/// Collects points that are neither known nor collected yet.
-struct Builder<'k> {
+/// Hands out points that are neither known nor handed out yet.
+struct Builder<'k, T> {
     known: &'k KnownAnswers,
     seen: HashSet<Point>,
-    stage: Stage,
+    taken: usize,
+    take: T,
 }
 
-impl Builder<'_> {
-    /// A point that cannot have been collected yet.
+impl<T: FnMut(Point, Purpose)> Builder<'_, T> {
+    /// A point that cannot have been handed out yet.
     fn add_distinct(&mut self, point: Point, purpose: Purpose) {
         if !self.known.tried(&point) {
-            self.stage.points.push((point, purpose));
+            self.taken += 1;
+            (self.take)(point, purpose);
         }
     }
 
     fn add(&mut self, point: Point, purpose: Purpose) {
-        if !self.known.tried(&point) && self.seen.insert(point.clone()) {
-            self.stage.points.push((point, purpose));
+        if self.seen.insert(point.clone()) {
+            self.add_distinct(point, purpose);
         }
     }
 }

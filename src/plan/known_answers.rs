@@ -30,6 +30,13 @@ impl KnownAnswers {
         self.characteristics
     }
 
+    /// Makes room for so many points more.
+    pub(crate) fn reserve(&mut self, points: usize) {
+        self.rows.reserve(points, |&row| self.points[row as usize].mixed());
+        self.points.reserve(points);
+        self.values.iter_mut().for_each(|column| column.reserve(points));
+    }
+
     /// Keeps one characteristic's answer at a point.
     pub(crate) fn learn(&mut self, point: &Point, characteristic: usize, answer: Result<f64, EvaluationError>) {
         let row = match self.row(point) {
@@ -51,6 +58,9 @@ impl KnownAnswers {
     }
 
     fn row(&self, point: &Point) -> Option<u32> {
+        if self.points.is_empty() {
+            return None;
+        }
         self.rows.find(point.mixed(), |&row| self.points[row as usize] == *point).copied()
     }
 

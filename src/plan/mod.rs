@@ -28,6 +28,7 @@ pub use pairs::{PairChoice, Stencil};
 pub use point::{AtNode, Point};
 pub use stage::{Purpose, Stage};
 
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::ops::Deref;
 
@@ -44,6 +45,14 @@ pub trait Plan: Debug + Send + Sync {
 
     /// The next points, or None when nothing is left that could help.
     fn next(&self, known: &KnownAnswers) -> Option<Stage>;
+
+    /// How many points the first stage has for each purpose.
+    fn first(&self) -> BTreeMap<Purpose, usize> {
+        let mut counts = BTreeMap::new();
+        let stage = self.next(&KnownAnswers::nothing(self.geometry().depends.len())).unwrap_or_default();
+        stage.points.iter().for_each(|(_, purpose)| *counts.entry(*purpose).or_default() += 1);
+        counts
+    }
 }
 
 /// A plan is read as its geometry, whatever its kind.

@@ -1,6 +1,6 @@
 //! Where on its axis a dimension is evaluated, in units of its sigma about its mean.
 
-use crate::distribution::{Distribution, Rule};
+use crate::distribution::{Distribution, Jacobi, Rule};
 
 /// How many nodes an axis has beside the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,13 +72,18 @@ impl Nodes {
     /// the nodes of the distribution's four-point Gauss rule, which never do. With fewer than five atoms, or where even that
     /// is too far out, five points fall back to the pair.
     pub fn matched(distribution: &dyn Distribution, spread: Spread) -> Self {
+        Self::matched_with(distribution, spread, &mut Reaches::default())
+    }
+
+    /// The same, with what is known of dimensions before.
+    pub(super) fn matched_with(distribution: &dyn Distribution, spread: Spread, reaches: &mut Reaches) -> Self {
         let (mean, sigma) = (distribution.mean(), distribution.sigma());
         let support = distribution.support().map(|edge| (edge - mean) / sigma);
         if spread == Spread::Bare {
             return Self { u: Vec::new(), moved: Vec::new(), tail: None };
         }
         let five = if spread == Spread::Five { five(distribution, support) } else { None };
-        let reach = distribution.jacobi(REACH).gauss().nodes.iter().fold(0.0f64, |reach, u| reach.max(u.abs()));
+        let reach = reaches.of(distribution);
         let (u, moved, rule, long) = match five {
             Some((u, rule)) => (u, Vec::new(), Some(rule), LONG_FIVE),
             None => {
@@ -102,6 +107,22 @@ impl Nodes {
             Spread::Five => vec![-2.0 * step, -step, step, 2.0 * step],
         };
         Self { u, moved: Vec::new(), tail: None }
+    }
+}
+
+/// How far the moments of distributions reach: dimensions of one distribution share what takes eigenvalues.
+#[derive(Debug, Default)]
+pub(super) struct Reaches(Vec<(Jacobi, f64)>);
+
+impl Reaches {
+    fn of(&mut self, distribution: &dyn Distribution) -> f64 {
+        let jacobi = distribution.jacobi(REACH);
+        if let Some((_, reach)) = self.0.iter().find(|(of, _)| *of == jacobi) {
+            return *reach;
+        }
+        let reach = jacobi.gauss().nodes.iter().fold(0.0f64, |reach, u| reach.max(u.abs()));
+        self.0.push((jacobi, reach));
+        reach
     }
 }
 

@@ -152,12 +152,17 @@ pub struct About {
 impl Report {
     /// The report of an analysis.
     pub fn of(problem: &Problem, analysis: &Analysis, about: About) -> Self {
+        Self::keeping(problem, analysis.clone(), about)
+    }
+
+    /// The same without a copy: half a million interactions have a million names.
+    pub(crate) fn keeping(problem: &Problem, analysis: Analysis, about: About) -> Self {
         Self {
             head: Head::of("analyze", &about),
-            analysis: analysis.clone(),
             dimensions: problem.dimensions().iter().map(DimensionReport::of).collect(),
             correlation: correlation(problem),
             warnings: about.warnings.iter().chain(&analysis.warnings).map(WarningReport::of).collect(),
+            analysis,
         }
     }
 

@@ -8,9 +8,15 @@ use crate::elementary::{self, Elementary, Work, on_this_processor};
 pub(super) const LANES: usize = 256;
 
 /// Runs a program on blocks of at most [`LANES`] rows.
+///
+/// A value that is the same in all rows of a block is computed once: at the points of a difference plan most variables stand at their means.
 pub(super) struct Machine<'a> {
     program: &'a Program,
     registers: Vec<Vec<f64>>,
+    /// For every register its one number, where all rows of this block have the same.
+    same: Vec<Option<f64>>,
+    /// The same of every variable up to the last that the program uses.
+    variables: Vec<Option<f64>>,
 }
 
 /// One operand's values: a column, or the same number everywhere.
@@ -22,7 +28,13 @@ enum Values<'a> {
 
 impl<'a> Machine<'a> {
     pub(super) fn new(program: &'a Program) -> Self {
-        Self { program, registers: vec![vec![0.0; LANES]; program.registers] }
+        let variables = program.variables.last().map_or(0, |last| last + 1);
+        Self {
+            program,
+            registers: vec![vec![0.0; LANES]; program.registers],
+            same: vec![None; program.registers],
+            variables: vec![None; variables],
+        }
     }
 
     /// Evaluates `rows` rows, whose variables are the slices that `variable` returns, and hands out every result.
@@ -33,6 +45,9 @@ impl<'a> Machine<'a> {
         mut result: impl FnMut(usize, &[f64]),
     ) {
         assert!(rows <= LANES, "a block of at most {LANES} rows");
+        for &index in &self.program.variables {
+            self.variables[index] = the_same(&variable(index)[..rows]);
+        }
         self.steps(&self.program.steps, rows, variable);
         for (index, &operand) in self.program.results.iter().enumerate() {
             match self.values(operand, rows, variable) {
@@ -50,8 +65,14 @@ impl<'a> Machine<'a> {
     ) -> Values<'s> {
         match operand {
             Operand::Constant(value) => Values::Same(value),
-            Operand::Variable(index) => Values::Each(&variable(index)[..rows]),
-            Operand::Register(register) => Values::Each(&self.registers[register][..rows]),
+            Operand::Variable(index) => match self.variables[index] {
+                Some(value) => Values::Same(value),
+                None => Values::Each(&variable(index)[..rows]),
+            },
+            Operand::Register(register) => match self.same[register] {
+                Some(value) => Values::Same(value),
+                None => Values::Each(&self.registers[register][..rows]),
+            },
         }
     }
 
@@ -59,11 +80,11 @@ impl<'a> Machine<'a> {
         for step in steps {
             match step {
                 Step::Unary { function, a, to } => self.write_register(*to, |machine, out| {
-                    unary(*function, machine.values(*a, rows, variable), &mut out[..rows]);
+                    unary(*function, machine.values(*a, rows, variable), &mut out[..rows])
                 }),
                 Step::Binary { function, a, b, to } => self.write_register(*to, |machine, out| {
                     let (a, b) = (machine.values(*a, rows, variable), machine.values(*b, rows, variable));
-                    binary(*function, a, b, &mut out[..rows]);
+                    binary(*function, a, b, &mut out[..rows])
                 }),
                 Step::If { condition, then, otherwise, to } => {
                     self.branch(*condition, then, otherwise, *to, rows, variable);
@@ -102,17 +123,45 @@ impl<'a> Machine<'a> {
                 if taken { machine.values(branch.result, rows, variable) } else { Values::Same(f64::NAN) }
             };
             let (then, otherwise) = (branch(any, then), branch(!all, otherwise));
+            if let (Values::Same(condition), Values::Same(then), Values::Same(otherwise)) = (condition, then, otherwise)
+            {
+                return Some(select(condition, then, otherwise));
+            }
             for (row, out) in out[..rows].iter_mut().enumerate() {
                 *out = select(condition.at(row), then.at(row), otherwise.at(row));
             }
+            None
         });
     }
 
-    /// Takes a register out while the others are read: no operation writes to one of its own operands.
-    fn write_register(&mut self, to: usize, operation: impl FnOnce(&Self, &mut [f64])) {
+    /// Takes a register out while the others are read: no operation writes to one of its own operands. An operation whose result is the
+    /// same in all rows returns it and writes nothing.
+    fn write_register(&mut self, to: usize, operation: impl FnOnce(&Self, &mut [f64]) -> Option<f64>) {
         let mut out = std::mem::take(&mut self.registers[to]);
-        operation(self, &mut out);
+        self.same[to] = operation(self, &mut out);
         self.registers[to] = out;
+    }
+}
+
+/// The number that all of these are, to the bit; None where they differ.
+fn the_same(values: &[f64]) -> Option<f64> {
+    let (first, last) = (values.first()?, values.last()?);
+    // Most columns that vary are told by their ends.
+    let ends = first.to_bits() == last.to_bits();
+    (ends && on_this_processor(AllLike { values, bits: first.to_bits() })).then_some(*first)
+}
+
+struct AllLike<'a> {
+    values: &'a [f64],
+    bits: u64,
+}
+
+impl Work for AllLike<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn work(self) -> bool {
+        self.values.iter().fold(0, |differing, value| differing | (value.to_bits() ^ self.bits)) == 0
     }
 }
 
@@ -125,13 +174,17 @@ impl Values<'_> {
     }
 }
 
-/// A loop per function, so that the compiler sees each one alone.
-fn unary(function: Unary, a: Values<'_>, out: &mut [f64]) {
+/// A loop per function, so that the compiler sees each one alone. A result that is the same in all rows is returned instead.
+fn unary(function: Unary, a: Values<'_>, out: &mut [f64]) -> Option<f64> {
+    let a = match a {
+        Values::Same(x) => return Some(function.apply(x)),
+        Values::Each(a) => a,
+    };
     macro_rules! each {
         ($($name:ident),*; $($block:ident),*) => {
             match function {
-                $(Unary::$name => map(a, out, |x| Unary::$name.apply(x)),)*
-                $(Unary::$block => block::<elementary::$block>(a, out),)*
+                $(Unary::$name => out.iter_mut().zip(a).for_each(|(out, &x)| *out = Unary::$name.apply(x)),)*
+                $(Unary::$block => elementary::$block::map(a, out),)*
             }
         };
     }
@@ -139,23 +192,14 @@ fn unary(function: Unary, a: Values<'_>, out: &mut [f64]) {
         Negate, Abs, Sqrt, Log10, Asin, Atan, Sinh, Cosh, Tanh, Floor, Ceil, Sign;
         Exp, Ln, Sin, Cos, Tan, Acos
     );
+    None
 }
 
-fn block<E: Elementary>(a: Values<'_>, out: &mut [f64]) {
-    match a {
-        Values::Same(x) => out.fill(E::of(x)),
-        Values::Each(a) => E::map(a, out),
+/// The same of two operands.
+fn binary(function: Binary, a: Values<'_>, b: Values<'_>, out: &mut [f64]) -> Option<f64> {
+    if let (Values::Same(x), Values::Same(y)) = (a, b) {
+        return Some(function.apply(x, y));
     }
-}
-
-fn map(a: Values<'_>, out: &mut [f64], function: impl Fn(f64) -> f64) {
-    match a {
-        Values::Same(x) => out.fill(function(x)),
-        Values::Each(a) => out.iter_mut().zip(a).for_each(|(out, &x)| *out = function(x)),
-    }
-}
-
-fn binary(function: Binary, a: Values<'_>, b: Values<'_>, out: &mut [f64]) {
     macro_rules! each {
         ($($name:ident),*) => {
             match function {
@@ -180,6 +224,7 @@ fn binary(function: Binary, a: Values<'_>, b: Values<'_>, out: &mut [f64]) {
         Atan2,
         Hypot
     );
+    None
 }
 
 struct Zip<'a, F> {
@@ -202,6 +247,47 @@ impl<F: Fn(f64, f64) -> f64> Work for Zip<'_, F> {
             (Values::Each(a), Values::Same(y)) => out.iter_mut().zip(a).for_each(|(out, &x)| *out = function(x, y)),
             (Values::Same(x), Values::Each(b)) => out.iter_mut().zip(b).for_each(|(out, &y)| *out = function(x, y)),
             (Values::Same(x), Values::Same(y)) => out.fill(function(x, y)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::assembly::formula::{Formula, FormulaSet, Meaning};
+
+    /// Blocks in which some variables stand still beside single rows, in which all do: the same bits, since a value belongs to its
+    /// arguments alone.
+    #[test]
+    fn what_is_the_same_in_a_block_is_what_it_is_row_by_row() {
+        const ROWS: usize = 600;
+        let formulas = [
+            "sqrt(a*b)*exp(c/4) + ln(a + b*c) - log10(d)*sin(a*d)",
+            "cos(a - b)*tan(c/5) + asin(a/9)*acos(b/9) + atan(c*d)",
+            "sinh(a/3)*cosh(b/3) + tanh(c*d/9) + hypot(a*b, c - d) + atan2(a*c, b)",
+            "if(a < b, a^b*c, d^3) + max(a*d, b) + min(c, a^2*b) + abs(a - c*d)",
+            "if(b > 2, a, if(c > 0, d, a/0)) + floor(a) + ceil(b) + sign(c - d)",
+            "b^2 - b",
+        ];
+        let names = ["a", "b", "c", "d"];
+        // One that varies everywhere, one that never does, one that does in the second block alone, one in a single row.
+        let column = |of: fn(usize) -> f64| (0..ROWS).map(of).collect::<Vec<f64>>();
+        let columns = [
+            column(|row| 1.0 + 0.001 * row as f64),
+            column(|_| 2.1),
+            column(|row| if (256..512).contains(&row) { 0.3 + 0.002 * row as f64 } else { 0.7 }),
+            column(|row| if row == 40 { 1.4 } else { 1.9 }),
+        ];
+        for text in formulas {
+            let meanings = names.iter().enumerate().map(|(index, name)| (*name, Meaning::Variable(index)));
+            let formula = vec![("y".to_owned(), Formula::parse(text).expect(text))];
+            let set = FormulaSet::new(formula, meanings).expect(text);
+            let mut together = vec![f64::NAN; ROWS];
+            set.evaluate(&[0], ROWS, |index| &columns[index], |_, row, value| together[row] = value);
+            for row in 0..ROWS {
+                let mut alone = f64::NAN;
+                set.evaluate(&[0], 1, |index| &columns[index][row..=row], |_, _, value| alone = value);
+                assert_eq!(alone.to_bits(), together[row].to_bits(), "{text} in row {row}");
+            }
         }
     }
 }

@@ -48,36 +48,30 @@ impl FormulaSet {
     /// Cost: `n` variables of a formula of `m` operations take about `12 n m` products, whatever the number of pairs.
     pub(crate) fn mixed(&self, formula: usize, at: &[f64], pairs: &[(usize, usize)]) -> Option<Vec<f64>> {
         let tape = Tape::of(self, self.roots[formula], at)?;
-        let place = |variable: usize| {
-            tape.variables
-                .binary_search_by_key(&variable, |&(index, _)| index)
-                .ok()
-                .map(|found| tape.variables[found].1)
-        };
-        let mut along: Vec<usize> =
-            pairs.iter().map(|pair| pair.0).filter(|&variable| place(variable).is_some()).collect();
-        along.sort_unstable();
-        along.dedup();
-        let mut of_first = vec![Vec::new(); along.len()];
-        for (index, (first, _)) in pairs.iter().enumerate() {
-            if let Ok(found) = along.binary_search(first) {
-                of_first[found].push(index);
+        let mut places = vec![None; at.len()];
+        tape.variables.iter().for_each(|&(variable, place)| places[variable] = Some(place));
+        let mut of_first = vec![Vec::new(); at.len()];
+        for (index, &(first, _)) in pairs.iter().enumerate() {
+            if places[first].is_some() {
+                of_first[first].push(index as u32);
             }
         }
-        let passes: Vec<Vec<(usize, f64)>> = (along.par_chunks(LANES).zip(of_first.par_chunks(LANES)))
-            .map(|(along, of_first)| {
-                let places: Vec<usize> = along.iter().filter_map(|&variable| place(variable)).collect();
-                let changes = tape.changes(&places);
-                let lanes = of_first.iter().enumerate();
-                let second = |&index: &usize| place(pairs[index].1).map(|place| (index, place));
-                lanes
-                    .flat_map(|(lane, of)| of.iter().filter_map(second).map(move |found| (lane, found)))
-                    .map(|(lane, (index, place))| (index, changes[place][lane]))
-                    .collect()
+        let along: Vec<usize> = (0..at.len()).filter(|&variable| !of_first[variable].is_empty()).collect();
+        let passes: Vec<Vec<f64>> = (along.par_chunks(LANES))
+            .map(|along| {
+                let changes = tape.changes(&along.iter().filter_map(|&variable| places[variable]).collect::<Vec<_>>());
+                let change =
+                    |index: u32, lane: usize| places[pairs[index as usize].1].map(|place| changes[place][lane]);
+                let of_lane = |(lane, &first): (usize, &usize)| {
+                    let of_pair = |&index: &u32| change(index, lane).unwrap_or(0.0);
+                    of_first[first].iter().map(of_pair).collect::<Vec<f64>>()
+                };
+                along.iter().enumerate().flat_map(of_lane).collect()
             })
             .collect();
         let mut mixed = vec![0.0; pairs.len()];
-        passes.into_iter().flatten().for_each(|(index, value)| mixed[index] = value);
+        let indices = along.iter().flat_map(|&first| &of_first[first]);
+        indices.zip(passes.into_iter().flatten()).for_each(|(&index, value)| mixed[index as usize] = value);
         mixed.iter().all(|value| value.is_finite()).then_some(mixed)
     }
 }

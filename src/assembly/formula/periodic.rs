@@ -13,13 +13,19 @@ impl FormulaSet {
     /// Every variable of a sine or cosine whose argument is linear, with its factor: radians per unit.
     pub(crate) fn turning(&self) -> Vec<(usize, f64)> {
         let nodes = self.graph.nodes();
+        let turned = |node: &GraphNode| match *node {
+            GraphNode::Unary(Unary::Sin | Unary::Cos, a) => Some(a),
+            _ => None,
+        };
+        // A sum of a thousand variables elsewhere has five hundred thousand terms on its way.
+        let needed = self.graph.needed(nodes.iter().filter_map(turned));
         let mut linear: Vec<Option<Linear>> = Vec::with_capacity(nodes.len());
         let mut found = Vec::new();
-        for node in nodes {
-            if let GraphNode::Unary(Unary::Sin | Unary::Cos, a) = *node {
+        for (node, needed) in nodes.iter().zip(needed) {
+            if let Some(a) = turned(node) {
                 found.extend(linear[a as usize].iter().flatten().map(|(&variable, &factor)| (variable, factor)));
             }
-            let of = self.linear(*node, &linear);
+            let of = if needed { self.linear(*node, &linear) } else { None };
             linear.push(of);
         }
         found

@@ -32,6 +32,8 @@ pub(super) struct Program {
     pub(super) steps: Vec<Step>,
     pub(super) results: Vec<Operand>,
     pub(super) registers: usize,
+    /// The variables that it uses, ascending.
+    pub(super) variables: Vec<usize>,
 }
 
 /// Branches nested deeper are computed with the branch around them, which is right as well, only slower.
@@ -74,7 +76,15 @@ impl Program {
         };
         let steps = layout.emit(graph, 0, &mut registers);
         let results = roots.iter().map(|&root| registers.operand(graph, root)).collect();
-        Self { steps, results, registers: registers.count }
+        let needed = graph.needed(roots.iter().copied());
+        let variable = |(node, needed): (&GraphNode, bool)| match node {
+            GraphNode::Variable(index) if needed => Some(*index),
+            _ => None,
+        };
+        let mut variables: Vec<usize> = graph.nodes().iter().zip(needed).filter_map(variable).collect();
+        variables.sort_unstable();
+        variables.dedup();
+        Self { steps, results, registers: registers.count, variables }
     }
 }
 

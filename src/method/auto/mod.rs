@@ -74,6 +74,14 @@ impl Procedure for Auto {
         BASE.count
     }
 
+    fn check(&self, problem: &Problem, options: &Options) -> Result<(), MethodError> {
+        if options.derivatives == Some(DerivativeSource::Exact) {
+            return EXACT.check(problem, options);
+        }
+        accuracy(options)?;
+        BASE.check(problem, options)
+    }
+
     fn plan(&self, problem: &Problem, options: &Options) -> Result<Arc<dyn Plan>, MethodError> {
         if options.derivatives == Some(DerivativeSource::Exact) {
             return EXACT.plan(problem, options);
@@ -135,13 +143,19 @@ pub(crate) fn climb_until(
     }
 }
 
-fn climb<'p>(problem: &'p Problem, options: &Options) -> Result<Climb<'p>, MethodError> {
+/// The relative error of sigma that is wanted.
+fn accuracy(options: &Options) -> Result<f64, MethodError> {
     let accuracy = options.accuracy.unwrap_or(ACCURACY);
     for (figure, wanted) in [(Figure::Sigma, Some(accuracy))].into_iter().chain(options.accuracies.wanted()) {
         if let Some(accuracy) = wanted.filter(|wanted| !(wanted.is_finite() && *wanted > 0.0)) {
             return Err(MethodError::BadAccuracy { figure, accuracy });
         }
     }
+    Ok(accuracy)
+}
+
+fn climb<'p>(problem: &'p Problem, options: &Options) -> Result<Climb<'p>, MethodError> {
+    let accuracy = accuracy(options)?;
     Ok(Climb::new(problem, BASE.differences(problem, options)?, accuracy, options))
 }
 
