@@ -1739,8 +1739,8 @@ class TailPoint(Record):
 
     at: float
     """The value."""
-    error: float
-    """Its estimated error."""
+    error: Optional[float]
+    """Its estimated error; null where one randomisation has all values, so that none differs from it."""
     share: float
     """The share."""
 

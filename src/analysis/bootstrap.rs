@@ -21,9 +21,8 @@ use crate::moments::Moments;
 use crate::problem::Problem;
 use crate::surrogate::{InputShape, Inputs, Pooled, Relocation, Surrogate};
 use crate::verdict::including;
+use crate::verification::CONFIDENCE;
 
-/// The probability with which an interval covers the truth.
-const LEVEL: f64 = 0.95;
 /// As many resamples as an end of the interval needs to be known to a tenth of its width or so;
 const RESAMPLES: usize = 1000;
 /// with so many it still means something.
@@ -175,7 +174,7 @@ pub(super) fn intervals(
             let influences: Vec<Vec<f64>> = (left_out.iter().zip(&measured).zip(&groups))
                 .map(|((of, one), groups)| influences(of.iter().map(|of| of[t][figure]), one, groups))
                 .collect();
-            bca(estimate[figure], &mut values, acceleration(&influences), LEVEL)
+            bca(estimate[figure], &mut values, acceleration(&influences), CONFIDENCE)
         };
         let depends = |one: &&Measurement<'_>| depends_on(target.index, one);
         let samples = (measured.iter().filter(depends))
@@ -193,7 +192,7 @@ pub(super) fn intervals(
                 }
             }),
             cpk: interval(5),
-            level: LEVEL,
+            level: CONFIDENCE,
             resamples: resampled.len(),
             samples: samples.collect(),
         });

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::law::{LawFigure, LawTail};
+use crate::law::{LawFigure, LawTail, QUANTILE};
 use crate::method::Outcome;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, SOBOL_DIMENSIONS, Sampler};
@@ -13,8 +13,6 @@ const ROWS: usize = 1024;
 /// Of which fewer are drawn where all of them would take more numbers than this.
 const NUMBERS: usize = 4_000_000;
 const FEWEST: usize = 1 << 13;
-/// Standard errors that bound an error, as those of laws that are sampled: a normal distribution leaves 0.3 % beyond.
-const ERRORS: f64 = 2.95;
 /// Points on either side that a count has been off at least, so that none that was seen is not none: three errors then reach 5/n, where
 /// no point of `n` leaves 1 % beyond 4.6/n.
 const UNSEEN: f64 = 3.0;
@@ -70,7 +68,7 @@ pub(super) fn counted(
 fn error(count: f64, points: usize) -> f64 {
     let n = points as f64 + 2.0 * UNSEEN;
     let share = (count + UNSEEN) / n;
-    ERRORS * (n * share * (1.0 - share)).sqrt()
+    QUANTILE * (n * share * (1.0 - share)).sqrt()
 }
 
 /// The value in the middle of those that a count of this probability may have been off.

@@ -6,7 +6,7 @@ use super::errors::of_yield;
 use super::recorded::Recorded;
 use super::remembered::Remembered;
 use super::strides::{Beside, StridedFigures, Strides};
-use super::wanted::excess;
+use super::wanted::{MORE, PART, excess};
 use super::{CharacteristicAnalysis, SampledModel};
 use crate::assembly::{NonRepeatable, Run};
 use crate::capability::{Capability, Law};
@@ -25,12 +25,8 @@ const MOST: u64 = 1 << 18;
 const FEWEST: u64 = 48;
 /// Points of the first attempt, at the least.
 const FIRST: u64 = 1 << 10;
-/// Points are drawn until a standard error is this part of what is wanted, so that two of them keep it.
-const PART: f64 = 0.5;
-/// By how much a second attempt exceeds the first.
-const MORE: u64 = 4;
-/// Points of strides beside regressions, at most: where they have not reached what is wanted, a regression does not follow the model. Of
-/// what a costly model may be asked they are a part, because the points of its sample are others.
+/// Points of strides beside regressions, at most: where they have not reached what is wanted, a regression does not follow the model, and
+/// each stride fits all of them anew. Of what a costly model may be asked they are a part, because the points of its sample are others.
 const STRIDES: usize = 512;
 const COSTLY_PART: usize = 4;
 
@@ -102,7 +98,7 @@ pub(super) fn fall_back(
             return spent;
         }
         let enough = short.iter().all(|&c| known(&found.characteristics[c], climbed));
-        let last = enough || spent.run.evaluations + MORE * samples > most;
+        let last = enough || spent.run.evaluations + MORE as u64 * samples > most;
         if last {
             for &c in &short {
                 let depends = outcome.plan.varying().iter().copied().filter(|&d| outcome.plan.depends(c, d));
@@ -111,7 +107,7 @@ pub(super) fn fall_back(
             }
             return spent;
         }
-        samples *= MORE;
+        samples *= MORE as u64;
     }
     spent
 }

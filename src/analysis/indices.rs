@@ -13,16 +13,13 @@ use std::collections::HashMap;
 
 use super::CharacteristicAnalysis;
 use super::sobol::{FactorIndices, IndexSource, SobolIndices};
-use super::verified::VerificationKind;
+use super::verified::{UNTRUSTED, VerificationKind};
 use crate::assembly::Run;
 use crate::capability::EstimatedShare;
 use crate::correlation::factors;
 use crate::method::{Options, Order, Outcome};
 use crate::problem::Problem;
 use crate::verification::factor_shares;
-
-/// A surface that leaves more of the variance unexplained has no contributions to show.
-pub(super) const UNTRUSTED: f64 = 0.05;
 
 /// First order and total of one factor.
 type Pair = (Option<EstimatedShare>, Option<EstimatedShare>);

@@ -33,7 +33,7 @@ pub(super) enum Shape {
 
 /// The middle exceeds its neighbours by this factor only where something happens between the inner points.
 const KINK: f64 = 4.0;
-/// A difference below this part of another is none.
+/// A difference below this part of another is rounding.
 const NONE: f64 = 1e-6;
 /// Slopes on both sides of a jump agree to this part of it.
 const JUMP: f64 = 0.05;

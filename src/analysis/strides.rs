@@ -22,39 +22,30 @@ use crate::moments::Moments;
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Estimate, Fine, Portion, SOBOL_DIMENSIONS, Sampler, Scale};
-use crate::simulation::Histogram;
+use crate::simulation::{BINS, CHOICE, Histogram};
 use crate::summary::RunSummary;
 use crate::surrogate::{Chaos, Places, Sparse, Surrogate};
 use crate::time::Instant;
-use crate::verification::{MOMENTS, Share, carried_by, effective, jackknife, standard, student, totals};
+use crate::verification::{
+    MOMENTS, OVERLOOKED, OVERLOOKED_BY, REPLICATES, Share, TOO_SMALL, carried_by, effective, jackknife, standard,
+    student, totals,
+};
 
-/// Scramblings, and the parts into which they fall.
-const REPLICATES: usize = 16;
+/// The parts into which the scramblings fall.
 const PARTS: usize = 4;
-/// Points to which a regression is fitted, at most.
+/// Points that the method has evaluated and a regression is fitted to as well, at most.
 const FITTED: usize = 1 << 10;
 /// Points of a regression in each scrambling, at most and at least, and the numbers that all of them may take.
 const KNOTS: usize = 1 << 12;
 const FEWEST: usize = 1 << 8;
 const NUMBERS: usize = 1 << 21;
-/// The difference that so many points overlook: 0.004 sigma at 14 points, as at the check points of a costly model.
-const FLOOR: f64 = 0.004;
-const CHECKS: f64 = 14.0;
-/// A root mean square of a handful of differences is this much too small at times.
-const SMALL: f64 = 1.3;
 /// The root mean squares of the influence of a point on mean, sigma, skewness and kurtosis of a normal law, in its sigmas
 /// (Serfling 1980).
 const INFLUENCE: [f64; MOMENTS] = [1.0, 1.0, 4.3, 9.8];
-/// The smaller of two errors is too small: errors of 16 scramblings are uncertain by a fifth.
-const CHOICE: f64 = 1.1;
-/// From so many points on they tell by themselves what there is three sigma out: one of 370 lies there along a line.
-const TELL: usize = 1 << 10;
 /// Exact moments of a regression that differ from its own points by more standard errors than that are not believed.
 const EXACT: f64 = 4.0;
 /// With a scale below this part of the origin, roundings would take more than 1e-8 of a fourth power.
 const CANCELS: f64 = 1e-2;
-/// Intervals of the histogram.
-const BINS: usize = 40;
 
 /// Points that were drawn together, the same number of every scrambling, one scrambling after the other.
 struct Stride {
@@ -227,12 +218,10 @@ impl<'p> Strides<'p> {
         Beside { kind, chaos, surface, exact, parts: Vec::new(), sign: 1.0, rows: 0, far: 0.0 }
     }
 
-    /// The estimates by the points, the regressions fitted anew while they are few.
-    pub(super) fn found(&self, c: usize, beside: &mut Vec<Beside<'_>>, left: f64) -> Option<StridedFigures> {
+    /// The estimates by the points, the regressions fitted anew where points were added.
+    pub(super) fn found(&self, c: usize, beside: &mut [Beside<'_>], left: f64) -> Option<StridedFigures> {
         for beside in beside.iter_mut().filter(|beside| beside.rows < self.rows()) {
-            if REPLICATES * self.rows() <= FITTED {
-                self.fit(c, beside);
-            }
+            self.fit(c, beside);
         }
         let values: Vec<f64> = self.strides.iter().flat_map(|stride| &stride.y[c]).copied().collect();
         let valid: Vec<f64> = values.iter().copied().filter(|y| y.is_finite()).collect();
@@ -248,13 +237,7 @@ impl<'p> Strides<'p> {
         let each: Vec<Option<Figures>> = beside.iter().map(|beside| self.figures(c, Some(beside), unit)).collect();
         let best = (0..each.len()).min_by(|&a, &b| error(&each[a]).total_cmp(&error(&each[b])));
         let with = best.and_then(|best| each[best].as_ref());
-        let found = with.map_or_else(|| plain.clone(), |with| chosen(&plain, with));
-        if REPLICATES * self.rows() >= FITTED {
-            // None is fitted any more: the best stays, where it is of use.
-            let useful = best.filter(|&best| error(&each[best]) < plain.errors[1]);
-            *beside = useful.map(|best| beside.swap_remove(best)).into_iter().collect();
-        }
-        let best = found;
+        let best = with.map_or_else(|| plain.clone(), |with| chosen(&plain, with));
         let estimate = |i: usize| Estimate { value: best.values[i], standard_error: Some(best.errors[i]) };
         let limits = self.problem.characteristics()[c].limits();
         let share = |i: usize| best.values[i].clamp(0.0, 1.0);
@@ -406,7 +389,7 @@ impl<'p> Strides<'p> {
         let values = of(&totals(&sums));
         let mut errors = jackknife(of, &sums);
         let all = self.rows() * REPLICATES;
-        let floor = FLOOR * CHECKS.sqrt() / all as f64;
+        let floor = OVERLOOKED * OVERLOOKED_BY.sqrt() / all as f64;
         let units = [scale, scale, 1.0, 1.0];
         for (moment, error) in errors.iter_mut().enumerate().take(MOMENTS) {
             *error *= student(REPLICATES) * carried_by(effective(carried[moment].iter().copied()));
@@ -414,7 +397,7 @@ impl<'p> Strides<'p> {
         }
         // That no point was seen does not mean that there is none: the weight of one, or what limits that are off by the difference
         // change, whichever is less.
-        let rho = SMALL * (square / f64::max(count, 1.0)).sqrt() + FLOOR * (CHECKS / all as f64).sqrt();
+        let rho = TOO_SMALL * (square / f64::max(count, 1.0)).sqrt() + OVERLOOKED * (OVERLOOKED_BY / all as f64).sqrt();
         let moved = |side: usize| {
             let limit = [limits.lower(), limits.upper()][side];
             let (Some(limit), Some(knots)) = (limit, &knots) else { return limit.map(|_| f64::INFINITY) };
@@ -426,7 +409,7 @@ impl<'p> Strides<'p> {
         for (error, one) in errors[MOMENTS..].iter_mut().zip([one[0], one[1], one[0].hypot(one[1])]) {
             *error = (*error * student(REPLICATES)).hypot(one);
         }
-        if let Some(beside) = beside.filter(|_| all < TELL) {
+        if let Some(beside) = beside {
             let far = Climbed::far_out(beside.far / scale);
             let grown = [far * scale, far * scale, 6.0 * far, 20.0 * far];
             errors.iter_mut().zip(grown).for_each(|(error, far)| *error = error.hypot(far));

@@ -1,6 +1,7 @@
 //! Where a surrogate does not do what the moments take it to do.
 
 use super::shapes::{Shape, higher, shape};
+use super::verified::UNTRUSTED;
 use super::wanted::beside_sigma;
 use super::{CharacteristicAnalysis, YieldSource};
 use crate::method::{ClimbEnd, Climbed, Outcome};
@@ -15,10 +16,8 @@ const BEND: f64 = 1e-3;
 const HELD: f64 = 0.01;
 /// and where it has not, by how much they move sigma.
 const SCATTER: f64 = 1e-4;
-/// Variance that is left unexplained is worth a warning from here on,
+/// Variance that is left unexplained is worth a warning from here on.
 const LEFT_OUT: f64 = 1e-3;
-/// and from here on the surrogate does not follow the model.
-const UNTRUSTED: f64 = 0.05;
 
 /// The Pearson fit is worth a warning where it is off by more than the interval of the yield, by this part of what is rejected, and by
 /// more than a hundredth of a part per million, which does not matter.

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use super::CharacteristicAnalysis;
 use super::errors::of_yield;
-use super::indices::UNTRUSTED;
-use super::verified::{TRUSTED, VarianceShare, Verification, VerificationKind};
+use super::verified::{TRUSTED, UNTRUSTED, VarianceShare, Verification, VerificationKind};
+use super::wanted::{MORE, PART};
 use crate::assembly::{EvaluationError, NonRepeatable, Run};
 use crate::capability::{Capability, Law};
 use crate::method::{ErrorEstimate, ErrorSource, Method, Options, Order, Outcome, interpolated};
@@ -24,13 +24,10 @@ use crate::verification::{
 };
 use crate::warning::{Change, Warning};
 
-/// A sample that leaves more open than this part of what is wanted is drawn again, four times as large,
-const PART: f64 = 0.5;
-/// or more of a share than this part of what a target lets be rejected,
+/// A sample is drawn again, larger, where it leaves more of a share open than this part of what a target lets be rejected: of 1e-4, 1e-5.
 const TARGET: f64 = 0.1;
-/// up to so many points in its core.
+/// Points in the core of the largest sample.
 const MOST: usize = 1 << 19;
-const MORE: usize = 4;
 /// From this many errors on a figure contradicts the model, and from this part of sigma on, or this share, it matters.
 const OFF: f64 = 3.0;
 const MATTERS: f64 = 0.01;
@@ -40,8 +37,8 @@ const AGREES: f64 = 2.0;
 const UNKNOWN: f64 = 0.1;
 /// A switch is worth a warning from one assembly in ten million on.
 const SELDOM: f64 = 1e-7;
-/// The share of the variance of a correlated dimension of which a method that integrates knows none: it is neither idle nor does it get
-/// check points of its own.
+/// The share of the variance of a correlated dimension of which a method that integrates knows none: any between those from which on an
+/// input is not idle and from which on it gets check points of its own, 1e-4 and 0.03.
 const ORDINARY: f64 = 0.01;
 /// The largest error of a difference, in roundings of the value at the means.
 const ROUNDINGS: f64 = 8.0;
@@ -181,6 +178,8 @@ fn sample(
     let Some(moments) = one.moments else { return true };
     let error = |of: Option<Verified>, value: Option<f64>| Some(of?.error_of(value?));
     let law = one.capability.and_then(|capability| capability.yield_());
+    let limits = one.characteristic.limits();
+    let sides = [limits.lower().is_some(), limits.upper().is_some()];
     one.error_estimate = Some(ErrorEstimate {
         mean: error(found.mean, Some(moments.mean())),
         sigma: error(found.sigma, Some(moments.sigma())),
@@ -204,9 +203,9 @@ fn sample(
         }),
         unseen: None,
         shares,
-        tails: found.tails,
+        tails: found.sample.as_ref().filter(|_| limits.exist()).map(|sample| sample.tails(sides)),
         replaced,
-        sample: found.sample.map(Arc::new),
+        sample: found.sample.filter(|_| one.characteristic.inspection().is_some()).map(Arc::new),
     });
     true
 }

@@ -24,6 +24,8 @@ pub enum VerificationKind {
 
 /// Of the variance: a surface that leaves more unexplained says nothing of the tails, nor of an optimum.
 pub(crate) const TRUSTED: f64 = 0.01;
+/// A surface that leaves more of the variance unexplained does not follow the model, and has no contributions to show.
+pub(super) const UNTRUSTED: f64 = 0.05;
 
 /// The results of the model itself for a characteristic.
 #[derive(Debug, Clone, PartialEq, Serialize)]

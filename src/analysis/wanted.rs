@@ -4,6 +4,12 @@ use super::CharacteristicAnalysis;
 use crate::method::Accuracies;
 use crate::warning::Figure;
 
+/// A standard error is this part of what is wanted, so that two of them keep it; where it is more, the sample is drawn again.
+pub(super) const PART: f64 = 0.5;
+/// By how many times a further sample exceeds the one before: errors of twice the size at the least, and all samples together cost a third
+/// more than the last.
+pub(super) const MORE: usize = 4;
+
 /// The figures with an accuracy to reach beside sigma and their estimated errors, infinite where an error is unknown; without
 /// figures that the characteristic does not have: a shape where nothing varies, a yield without limits.
 pub(super) fn beside_sigma(one: &CharacteristicAnalysis, wanted: &Accuracies) -> Vec<(Figure, f64, f64)> {

@@ -23,9 +23,8 @@ const SHIFT: f64 = 0.1;
 /// and so does curvature that adds more than this part of the linear variance.
 const CURVED: f64 = 0.05;
 
-/// Rules of so many nodes are exact to the fifth degree, and the fourth power of a parabola is of the eighth: curvature that adds
+/// Rules of three nodes are exact to the fifth degree, and the fourth power of a parabola is of the eighth: curvature that adds
 /// more than this part of the variance shows in the kurtosis.
-const SHALLOW: usize = 3;
 const SHALLOW_CURVED: f64 = 1e-2;
 /// A fitted surface that misses its values by more than this part of sigma is not to be trusted.
 const POOR: f64 = 0.05;
@@ -295,7 +294,7 @@ fn doubtful(outcome: &Outcome, c: usize, analysis: &CharacteristicAnalysis) -> V
     }
     warnings.extend(law(analysis, &characteristic));
     let curved: f64 = analysis.sensitivities.iter().filter_map(|row| row.curvature_share).sum();
-    if fitted.integrated.as_ref().is_some_and(|integrated| integrated.nodes == SHALLOW) && curved > SHALLOW_CURVED {
+    if fitted.integrated.as_ref().is_some_and(|integrated| integrated.nodes == 3) && curved > SHALLOW_CURVED {
         warnings.push(Warning::ShallowRules { characteristic: characteristic.clone(), share: curved });
     }
     let residual = fitted.residual.and_then(|residual| residual.standard_error).map(|residual| residual / sigma);

@@ -14,7 +14,7 @@ use faer::{Mat, Side};
 use rayon::prelude::*;
 
 use super::input::Input;
-use super::points::{REPLICATES, mixed};
+use super::points::{QUANTILE, REPLICATES, mixed};
 use super::quadrant::both_broken;
 use super::{LawFigure, SurfaceLaw};
 use crate::characteristic::SpecLimits;
@@ -84,7 +84,7 @@ fn overlap(limited: &[&(&SurfaceLaw, SpecLimits)], tails: f64) -> LawFigure {
     let variance = several.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (n - 1.0);
     // As for every other sampled figure; and no point with two broken limits is not a proof that there is none.
     let fewest = if mean == 0.0 { (3.0 / (n * POINTS as f64)).min(tails) } else { 0.0 };
-    let error = 2.95 * (variance / n).sqrt();
+    let error = QUANTILE * (variance / n).sqrt();
     LawFigure::new(mean, error.max(fewest))
 }
 

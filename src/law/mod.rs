@@ -48,6 +48,7 @@ mod zones;
 pub use held::HeldTail;
 pub use joint::joint_yield;
 pub(crate) use joint::rejected;
+pub(crate) use points::QUANTILE;
 pub(crate) use quantile::Sought;
 #[cfg(feature = "html")]
 pub(crate) use tabulated::TabulatedInput;

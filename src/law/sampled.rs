@@ -13,7 +13,7 @@ use super::direction::{Direction, Terms};
 use super::input::Input;
 use super::inversion::Inversion;
 use super::panels::{EXACT, expectation};
-use super::points::{Along, REPLICATES, Sample, visit};
+use super::points::{Along, QUANTILE, REPLICATES, Sample, visit};
 use super::polynomial::{Quartic, derivative, roots, value};
 use super::surface::Surface;
 use super::table::Table;
@@ -21,9 +21,6 @@ use super::tilt::{Proposal, Tilts};
 use super::transform::Transform;
 use super::{LawFigure, LawOptions, LawTail};
 
-/// Standard errors of the mean of 16 replicates that bound the error: Student's distribution with 15 degrees of freedom leaves
-/// 1 % beyond.
-const QUANTILE: f64 = 2.95;
 /// Sigma of the exact components by that along the direction from which on they take its place.
 const WIDE: f64 = 0.5;
 /// A plain estimate of this relative error rules where a tilted one contradicts it, which may have seen one of two modes.

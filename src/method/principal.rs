@@ -16,8 +16,8 @@ use crate::sampling::{Joint, Summary};
 const ALIKE: f64 = 0.95;
 /// An input whose sigma is below this part of its mean does not vary.
 pub(super) const STILL: f64 = 1e-12;
-/// An eigenvalue below this part of the greatest is rounding of 0.
-const ZERO: f64 = 1e-12;
+/// An eigenvalue of a correlation matrix of `m` inputs below `m` times this is rounding of 0.
+pub(super) const ZERO: f64 = 1e-12;
 
 /// The directions in which inputs vary together.
 pub(super) struct Axes {

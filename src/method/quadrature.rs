@@ -15,6 +15,7 @@ use std::sync::Arc;
 
 use faer::{Mat, Side};
 
+use super::principal::ZERO;
 use super::{
     Basis, Cost, DerivativeSource, ExactDerivatives, Fitted, Integrated, Lacking, Method, MethodError, Options, Order,
     Outcome,
@@ -27,11 +28,10 @@ use crate::plan::{AtNode, Design, KnownAnswers, Mixed, Plan, Point, Purpose};
 use crate::problem::Problem;
 use crate::surrogate::Univariate;
 
-/// An eigenvalue below this is rounding of 0.
-const ZERO: f64 = 1e-12;
 /// A median as near to the mean as this part of sigma is the mean.
 const SAME: f64 = 1e-9;
-/// Derivatives are taken from nodes at least so far from the mean: chords of a shorter step drown in noise.
+/// Derivatives are taken from nodes at least so far from the mean: chords of a shorter step drown in noise. The innermost nodes of a normal
+/// input stand at 0.62 with six nodes and at 0.54 with eight; those of a skewed one may stand anywhere.
 const NEAREST: f64 = 0.35;
 
 /// An independent standardised variable.

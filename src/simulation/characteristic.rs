@@ -139,11 +139,14 @@ const QUANTILES: [f64; 7] = [TAIL, 0.01, 0.05, 0.5, 0.95, 0.99, 1.0 - TAIL];
 /// Fewer values than this beyond a quantile say nothing of its standard error.
 const BEYOND: f64 = 5.0;
 /// Rejected assemblies in every replicate, on average, from which their differences are an interval of the yield.
-const REJECTED: u64 = 5;
+pub(super) const REJECTED: u64 = 5;
 /// The eighth power of a larger value is beyond the largest double, 1.8e308; the standard error of a kurtosis needs it.
 const LARGEST: f64 = 1e38;
 /// Intervals of the histogram between the outer quantiles.
-const BINS: usize = 40;
+pub(crate) const BINS: usize = 40;
+/// The factor by which the standard error of the better of two estimates grows: it was chosen by the same points. Errors of 16 replicates
+/// are uncertain by `1/sqrt(30)`, a fifth, and the smaller of two such is 0.56 of that too small where both are alike: a tenth.
+pub(crate) const CHOICE: f64 = 1.1;
 
 /// An estimate that is a number, with an error that is one.
 fn finite(estimate: Option<Estimate>) -> Option<Estimate> {
@@ -344,8 +347,6 @@ impl<'a> Evidence<'a> {
 /// Judged by the scatter of all points as if they were random. Standard errors of 16 replicates are uncertain by a fifth: the smaller
 /// of two would be too small.
 fn better(controlled: Option<Controlled>, plain: Option<Estimate>, random: Option<Estimate>) -> Option<Estimate> {
-    // The factor by which the standard error of the better of two estimates grows: it was chosen by the same points.
-    const CHOICE: f64 = 1.1;
     let Some(Controlled { estimate, random: own }) = controlled else { return plain };
     // Where powers of the values overflow, only the controlled figure, in units of its own sigma, is left.
     let without =

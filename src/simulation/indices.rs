@@ -21,7 +21,7 @@ use crate::problem::Problem;
 use crate::sampling::Normals;
 use crate::summary::RunSummary;
 use crate::time::Instant;
-use crate::verification::{Columns, Space, jackknife, totals};
+use crate::verification::{CONFIDENCE, Columns, Space, jackknife, totals};
 
 /// Evaluations of a costly model without a budget, at most.
 const UNASKED: u64 = 10_000;
@@ -29,8 +29,6 @@ const UNASKED: u64 = 10_000;
 const NUMBERS: usize = 1 << 23;
 /// The streams of the points, apart from those of other samples.
 const STREAM: u64 = 1 << 36;
-/// The probability below the upper end of a 95 % interval.
-const UPPER: f64 = 0.975;
 
 /// An index with what the sample leaves uncertain of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -221,7 +219,8 @@ fn estimated(
     };
     let (values, errors) = (figures(&all), jackknife(figures, &rows));
     let freedom = (REPLICATES - 1) as f64;
-    let times = StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| law.inverse_cdf(UPPER));
+    let times =
+        StudentsT::new(0.0, 1.0, freedom).map_or(f64::INFINITY, |law| law.inverse_cdf(0.5 * (1.0 + CONFIDENCE)));
     let estimate = |index: usize| {
         let (value, standard_error) = (values[index], errors[index]);
         let half = times * standard_error;

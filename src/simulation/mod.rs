@@ -17,6 +17,7 @@ mod written;
 pub(crate) use written::SimulatedShape;
 
 pub use crate::sampling::{Estimate, Sampler, SamplingError};
+pub(crate) use characteristic::{BINS, CHOICE};
 pub use characteristic::{Histogram, SimulatedCharacteristic, SurrogateControl, YieldEstimate};
 pub use indices::{IndexEstimate, SampledFactor};
 
@@ -158,7 +159,7 @@ impl SimulationOptions {
 }
 
 /// Replicates of Sobol's points, each scrambled by itself: what they differ by is the standard error.
-pub(crate) const REPLICATES: u64 = 16;
+pub(crate) const REPLICATES: u64 = crate::verification::REPLICATES as u64;
 /// Points that a task evaluates together.
 const ROWS: usize = 1024;
 /// Tasks between two looks at the clock and at what is wanted.

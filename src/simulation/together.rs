@@ -1,18 +1,13 @@
 //! Results of a sample for several characteristics at once: the share that keeps all limits, and how they vary together.
 
-use super::characteristic::YieldEstimate;
+use super::characteristic::{REJECTED, YieldEstimate};
 use super::count::Lens;
 use super::replicate::of_replicates;
 use crate::assembly::Responses;
 use crate::elementary::{Work, on_this_processor};
 use crate::problem::Problem;
 use crate::sampling::{Sampler, wilson};
-use crate::verification::{OutputCorrelation, student};
-
-/// Parts of the sample that errors follow from: the replicates of Sobol' points, or as many parts of random ones.
-const GROUPS: usize = super::REPLICATES as usize;
-/// Fewer assemblies on either side of the limits in each replicate say nothing of their differences.
-const REJECTED: u64 = 5;
+use crate::verification::{OutputCorrelation, REPLICATES, student};
 
 /// One part of a sample.
 #[derive(Debug, Clone, Default)]
@@ -25,9 +20,6 @@ pub(super) struct Together {
     known: u64,
     kept: u64,
 }
-
-/// More characteristics than this have no table of correlations: its cells grow with their square.
-const MOST: usize = OutputCorrelation::MOST;
 
 impl Together {
     /// The parts of a portion, by their numbers; none of a single characteristic.
@@ -97,7 +89,7 @@ impl Work for Groups<'_> {
     fn work(self) -> Vec<Together> {
         let Self { out, lenses } = self;
         let columns: Vec<&[f64]> = (0..lenses.len()).map(|output| out.column(output)).collect();
-        let mut groups = vec![Together::default(); GROUPS];
+        let mut groups = vec![Together::default(); REPLICATES];
         let limited: Vec<usize> = (0..lenses.len()).filter(|&c| lenses[c].limits.exist()).collect();
         if limited.len() > 1 {
             let (mut known, mut kept) = (vec![1.0; out.rows()], vec![1.0; out.rows()]);
@@ -114,7 +106,7 @@ impl Work for Groups<'_> {
                 [together.known, together.kept] = [counts[0][group] as u64, counts[1][group] as u64];
             }
         }
-        if lenses.len() > MOST {
+        if lenses.len() > OutputCorrelation::MOST {
             return groups;
         }
         let mut full = vec![1.0; out.rows()];
@@ -137,7 +129,7 @@ impl Work for Groups<'_> {
             for (mean, count) in means.iter_mut().zip(counts) {
                 *mean = if count > 0.0 { *mean / count } else { 0.0 };
             }
-            for (apart, full) in apart.chunks_mut(GROUPS).zip(full.chunks(GROUPS)) {
+            for (apart, full) in apart.chunks_mut(REPLICATES).zip(full.chunks(REPLICATES)) {
                 for ((apart, full), mean) in apart.iter_mut().zip(full).zip(&means) {
                     *apart = if *full > 0.0 { *apart - mean } else { 0.0 };
                 }
@@ -161,11 +153,11 @@ impl Work for Groups<'_> {
 
 /// The sum over the points of every group.
 #[inline(always)]
-fn by_group(values: &[f64]) -> [f64; GROUPS] {
-    let (rows, rest) = values.as_chunks::<GROUPS>();
-    let mut sums = [0.0; GROUPS];
+fn by_group(values: &[f64]) -> [f64; REPLICATES] {
+    let (rows, rest) = values.as_chunks::<REPLICATES>();
+    let mut sums = [0.0; REPLICATES];
     for row in rows {
-        for group in 0..GROUPS {
+        for group in 0..REPLICATES {
             sums[group] += row[group];
         }
     }
@@ -175,13 +167,13 @@ fn by_group(values: &[f64]) -> [f64; GROUPS] {
 
 /// The parts of a whole sample, in the order of their numbers.
 pub(super) fn parts() -> Vec<Together> {
-    vec![Together::default(); GROUPS]
+    vec![Together::default(); REPLICATES]
 }
 
 /// The correlation of every pair of characteristics; none of a single one, and of more than 40. Errors by the jackknife over the parts.
 pub(super) fn correlations(problem: &Problem, parts: &[Together]) -> Vec<OutputCorrelation> {
     let names: Vec<&str> = problem.characteristics().iter().map(|one| one.name()).collect();
-    if !(2..=MOST).contains(&names.len()) {
+    if !(2..=OutputCorrelation::MOST).contains(&names.len()) {
         return Vec::new();
     }
     let all = |except: Option<usize>| {
@@ -198,7 +190,7 @@ pub(super) fn correlations(problem: &Problem, parts: &[Together]) -> Vec<OutputC
         let n = without.len() as f64;
         let mean = without.iter().map(|of| of[index]).sum::<f64>() / n;
         let squares: f64 = without.iter().map(|of| (of[index] - mean).powi(2)).sum();
-        let error = student(GROUPS) * (squares * (n - 1.0) / n).sqrt();
+        let error = student(REPLICATES) * (squares * (n - 1.0) / n).sqrt();
         let value = values.get(index).copied().filter(|value| value.is_finite());
         OutputCorrelation {
             between: [a, b].map(|c| names[c].to_owned()),

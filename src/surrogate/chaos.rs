@@ -44,12 +44,14 @@ const COLUMNS: usize = 80;
 /// After so many columns that did not help no further one is tried.
 const PATIENCE: usize = 12;
 /// A column that the others explain up to this part is not a new one.
-const DEPENDENT: f64 = 1e-8;
+pub(crate) const DEPENDENT: f64 = 1e-8;
 
 /// `sqrt(beta_(n+1)) p_(n+1) = (u - alpha_n) p_n - sqrt(beta_n) p_(n-1)`, as far as the distribution has them.
 struct Recurrence {
     alpha: Vec<f64>,
     root: Vec<f64>,
+    /// The Gauss rule of [`COARSE`] nodes; None where there are as few atoms.
+    coarse: Option<Rule>,
 }
 
 impl Recurrence {
@@ -70,15 +72,11 @@ impl Recurrence {
             alpha.push(middle);
             root.push(norm);
         }
-        Self { alpha, root }
-    }
-
-    /// The Gauss rule of fewer nodes; None where there are as few atoms.
-    fn coarse(&self) -> Option<Rule> {
-        let of = |alpha: &[f64]| {
-            Jacobi::new(alpha.to_vec(), self.root[..COARSE].iter().map(|root| root * root).collect()).gauss()
+        let gauss = |alpha: &[f64]| {
+            Jacobi::new(alpha.to_vec(), root[..COARSE].iter().map(|root| root * root).collect()).gauss()
         };
-        self.alpha.get(..COARSE).map(of)
+        let coarse = alpha.get(..COARSE).map(gauss);
+        Self { alpha, root, coarse }
     }
 
     /// `p_degree` at every place.
@@ -226,21 +224,29 @@ impl Chaos {
             let [(j, degree)] = factors[..] else { return None };
             parts.entry(j).or_default().push((degree, *factor));
         }
-        let own = |j: usize, terms: &[(usize, f64)], rule: &Rule, p: f64| {
-            let mut values = vec![0.0; rule.nodes.len()];
+        // The part of an input at the nodes of a rule, with their weights.
+        let at = |j: usize, terms: &[(usize, f64)], rule: &Rule| -> Vec<(f64, f64)> {
+            let mut values: Vec<(f64, f64)> = rule.weights.iter().map(|&weight| (0.0, weight)).collect();
             for &(degree, factor) in terms {
                 let column = self.recurrences[j].column(&rule.nodes, degree);
-                values.iter_mut().zip(column).for_each(|(value, part)| *value += factor * part);
+                values.iter_mut().zip(column).for_each(|((value, _), part)| *value += factor * part);
             }
-            values.iter().zip(&rule.weights).map(|(value, weight)| weight * (p * value).exp()).sum::<f64>().ln()
+            values
         };
+        let both = |(&j, terms): (&usize, &Vec<(usize, f64)>)| {
+            (at(j, terms, &shapes[j].rule), self.recurrences[j].coarse.as_ref().map(|coarse| at(j, terms, coarse)))
+        };
+        let inputs: Vec<_> = parts.iter().map(both).collect();
         let logarithm = |p: f64| {
+            let own = |values: &[(f64, f64)]| {
+                values.iter().map(|(value, weight)| weight * (p * value).exp()).sum::<f64>().ln()
+            };
             let (mut whole, mut apart) = (p * sparse.constant, 0.0);
-            for (&j, terms) in &parts {
-                let fine = own(j, terms, &shapes[j].rule, p);
+            for (fine, coarse) in &inputs {
+                let fine = own(fine);
                 whole += fine;
                 // Few atoms are all in the rule.
-                apart += self.recurrences[j].coarse().map_or(0.0, |coarse| (fine - own(j, terms, &coarse, p)).abs());
+                apart += coarse.as_ref().map_or(0.0, |coarse| (fine - own(coarse)).abs());
             }
             (apart <= CONFIRMED).then_some(whole).filter(|whole| whole.is_finite())
         };

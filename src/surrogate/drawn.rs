@@ -7,12 +7,11 @@ use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
+use super::sampled::BLOCKS;
 use super::setting::Setting;
 use crate::moments::{Contributions, Moments, Sampled};
 use crate::sampling::Summary;
 
-/// Groups of the sample: what they differ by is the standard error (delete-one jackknife), and each has its own seed.
-const GROUPS: u64 = 64;
 /// Operations that the sample takes at most, about; it is never smaller than some thousand points.
 const EFFORT: usize = 1 << 27;
 const FEWEST: usize = 1 << 14;
@@ -34,9 +33,9 @@ pub(super) fn contributions(setting: &Setting<'_>) -> Contributions {
     let means: Vec<f64> = (0..n).map(|j| mean_of(setting, j)).collect();
     let together = |&(j, k, value): &(usize, usize, f64)| value * setting.correlation.of(j, k);
     let mean = means.iter().sum::<f64>() + setting.pairs.iter().map(together).sum::<f64>();
-    let draws = (EFFORT / (n + setting.pairs.len())).clamp(FEWEST, MOST) / GROUPS as usize;
+    let draws = (EFFORT / (n + setting.pairs.len())).clamp(FEWEST, MOST) / BLOCKS as usize;
     let groups: Vec<Group> =
-        (0..GROUPS).into_par_iter().map(|seed| group(setting, (&lines, &means, mean), seed, draws)).collect();
+        (0..BLOCKS).into_par_iter().map(|seed| group(setting, (&lines, &means, mean), seed, draws)).collect();
     let all = |except: Option<usize>| {
         let mut whole = Summary::default();
         groups.iter().enumerate().filter(|(g, _)| Some(*g) != except).for_each(|(_, of)| whole.merge(&of.summary));
@@ -46,9 +45,9 @@ pub(super) fn contributions(setting: &Setting<'_>) -> Contributions {
     let found = all(None);
     let without: Vec<[f64; 3]> = (0..groups.len()).map(|g| all(Some(g))).collect();
     let errors = [0, 1, 2].map(|i| {
-        let mean = without.iter().map(|of| of[i]).sum::<f64>() / GROUPS as f64;
+        let mean = without.iter().map(|of| of[i]).sum::<f64>() / BLOCKS as f64;
         let squares: f64 = without.iter().map(|of| (of[i] - mean).powi(2)).sum();
-        (squares * (GROUPS as f64 - 1.0) / GROUPS as f64).sqrt()
+        (squares * (BLOCKS as f64 - 1.0) / BLOCKS as f64).sqrt()
     });
     let sum = |of: &dyn Fn(&Group) -> f64| groups.iter().map(of).sum::<f64>();
     let total = sum(&|group| group.lines.iter().chain(&group.rests).chain(&group.products).sum());
@@ -66,7 +65,7 @@ pub(super) fn contributions(setting: &Setting<'_>) -> Contributions {
                 .collect(),
         ),
         sampled: Some(Sampled {
-            samples: draws * GROUPS as usize,
+            samples: draws * BLOCKS as usize,
             sigma: errors[0] * setting.scale,
             skewness: errors[1],
             kurtosis: errors[2],

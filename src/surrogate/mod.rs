@@ -20,7 +20,7 @@ mod shape;
 mod univariate;
 mod values;
 
-pub(crate) use chaos::{Chaos, Places, Sparse};
+pub(crate) use chaos::{Chaos, DEPENDENT, Places, Sparse};
 pub use inputs::Inputs;
 pub(crate) use pooled::Pooled;
 pub use relocation::Relocation;

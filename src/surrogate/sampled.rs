@@ -9,7 +9,7 @@ use super::parabolas::Parabolas;
 use crate::moments::{Contributions, Moments, Sampled};
 
 /// Blocks of the sample: what they differ by is the standard error (delete-one jackknife), and each has its own seed.
-const BLOCKS: u64 = 64;
+pub(super) const BLOCKS: u64 = 64;
 /// Operations that a sample takes at most, about; it is never smaller than some thousand points.
 const EFFORT: usize = 1 << 26;
 const FEWEST: usize = 1 << 13;

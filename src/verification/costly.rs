@@ -5,7 +5,7 @@ use statrs::distribution::{Beta, ContinuousCDF};
 use super::checks::{Design, Wish};
 use super::figures::moments;
 use super::residual::{Judged, Surface, judge, regression};
-use super::sample::steepest;
+use super::sample::{FAR, steepest};
 use super::space::{Columns, Space};
 use super::strata::{HalfSpace, between};
 use crate::assembly::{Points, Request, Responses, Run};
@@ -20,10 +20,8 @@ const KNOTS: usize = 1 << 13;
 const FEWEST: usize = 1 << 9;
 /// Multiplications that all points of a surface may take: a tenth of a second.
 const WORK: usize = 200_000_000;
-/// Where the tails begin, in sigmas along the line.
-const FAR: f64 = 2.5;
-/// The confidence with which so many points that agree bound the share of the assemblies that does not.
-const CONFIDENCE: f64 = 0.95;
+/// The confidence of an interval, and with which so many points that agree bound the share of the assemblies that does not.
+pub(crate) const CONFIDENCE: f64 = 0.95;
 
 /// A characteristic whose surface is to be judged.
 #[derive(Debug, Clone, Copy)]

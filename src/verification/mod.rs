@@ -22,10 +22,13 @@ mod strata;
 mod tails;
 mod weighted;
 
+pub(crate) use costly::CONFIDENCE;
 pub use costly::{Checked, CheckedFigures, MOST_CHECKS, Target, unseen, verify_by_checks};
 pub(crate) use figures::{MOMENTS, carried_by, effective, jackknife, standard, student, totals};
 pub use outputs::OutputCorrelation;
 pub(crate) use outputs::output_correlations;
+pub(crate) use residual::{OVERLOOKED, OVERLOOKED_BY, TOO_SMALL};
+pub(crate) use sample::REPLICATES;
 pub use shares::Share;
 pub use sides::{Crossing, FoundSwitch};
 pub(crate) use space::{Columns, Space};
@@ -96,9 +99,7 @@ pub struct SampledFigures {
     pub switches: Option<Vec<FoundSwitch>>,
     /// Whether the model told all of its switches.
     pub switches_complete: bool,
-    /// The tails towards the limits; None without a limit.
-    pub(crate) tails: Option<Tails>,
-    /// The sample itself, of a characteristic that is inspected.
+    /// The sample itself, of a characteristic that has limits or is inspected.
     pub(crate) sample: Option<WeightedSample>,
 }
 
@@ -268,8 +269,7 @@ pub(crate) fn verify_characteristic(
         valid: Verified { value: figures.valid.0, error: figures.valid.1 },
         switches: sides.switches,
         switches_complete: sides.complete,
-        tails: limits.exist().then(|| sample.tails([limits.lower().is_some(), limits.upper().is_some()])),
-        sample: problem.characteristics()[c].inspection().map(|_| sample.kept()),
+        sample: (limits.exist() || problem.characteristics()[c].inspection().is_some()).then(|| sample.kept()),
     })
 }
 
@@ -295,7 +295,6 @@ fn constant(model: &Model<'_>, [low, high]: [f64; 2]) -> SampledFigures {
         valid: Verified { value: f64::from(u8::from(known)), error: 0.0 },
         switches: None,
         switches_complete: true,
-        tails: None,
         sample: None,
     }
 }

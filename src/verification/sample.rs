@@ -20,13 +20,12 @@ use super::model::Model;
 use super::sides::{Sides, sides};
 use super::space::Columns;
 use super::strata::{HalfSpace, between, unit};
-use super::tails::{Tails, Weighed, tail};
 use super::weighted::WeightedSample;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
 
 /// Randomisations.
-pub(super) const REPLICATES: usize = 16;
+pub(crate) const REPLICATES: usize = 16;
 /// Points of a half-space in all randomisations together.
 pub(super) const TAIL: usize = 1 << 12;
 /// Numbers that the points of one stratum may take at most.
@@ -35,7 +34,7 @@ const NUMBERS: usize = 1_000_000;
 pub(super) const PILOT: usize = 1 << 10;
 const WINSORISED: f64 = 4.0;
 /// Where the tails begin, in sigmas along their direction.
-const FAR: f64 = 2.5;
+pub(super) const FAR: f64 = 2.5;
 
 /// The points of one stratum in one randomisation that no earlier stratum holds.
 struct Part {
@@ -183,21 +182,7 @@ impl Sample {
         Some(std::array::from_fn(|i| Verified { value: values[i], error: (student * errors[i]).hypot(self.one) }))
     }
 
-    /// The tails below and above, of the sides that are asked for.
-    pub(super) fn tails(&self, [below, above]: [bool; 2]) -> Tails {
-        let of = |part: &Part| -> Vec<Weighed> {
-            let points = part.values.iter().zip(&part.weights).filter(|(y, _)| y.is_finite());
-            points.map(|(&y, &weight)| (y, weight, part.replicate)).collect()
-        };
-        let values: Vec<Weighed> = self.parts.iter().flat_map(of).collect();
-        let towards = |asked: bool, above: bool| match asked {
-            true => tail(&values, above, (REPLICATES, self.one)),
-            false => Vec::new(),
-        };
-        Tails { below: towards(below, false), above: towards(above, true) }
-    }
-
-    /// All of it, for shares that are asked for later.
+    /// All of it, for tails and shares that are asked for later.
     pub(super) fn kept(self) -> WeightedSample {
         let parts = self.parts.into_iter().map(|part| (part.replicate, part.values, part.weights));
         WeightedSample::new(parts, REPLICATES, self.one)

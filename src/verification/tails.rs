@@ -31,8 +31,8 @@ pub(crate) struct TailPoint {
     pub(crate) at: f64,
     /// The share.
     pub(crate) share: f64,
-    /// Its estimated error.
-    pub(crate) error: f64,
+    /// Its estimated error; null where one randomisation has all values, so that none differs from it.
+    pub(crate) error: Option<f64>,
 }
 
 /// A value with its weight and its randomisation.
@@ -79,7 +79,8 @@ pub(super) fn tail(values: &[Weighed], above: bool, (replicates, one): (usize, f
         parts.iter().map(|part| part / all).collect::<Vec<f64>>()
     };
     let (values, errors, wide) = (shares(&totals(&sums)), jackknife(shares, &sums), student(replicates));
-    let point = |((at, share), error): ((f64, f64), f64)| TailPoint { at, share, error: (wide * error).hypot(one) };
+    let known = |error: f64| error.is_finite().then(|| (wide * error).hypot(one));
+    let point = |((at, share), error): ((f64, f64), f64)| TailPoint { at, share, error: known(error) };
     let mut found: Vec<TailPoint> = at.into_iter().zip(values).zip(errors).map(point).collect();
     found.reverse();
     found
@@ -105,7 +106,7 @@ mod tests {
                 let exact = if above { law.sf(point.at) } else { law.cdf(point.at) };
                 // A quantile stands in the middle of its point's weight.
                 assert!((point.share - exact - 0.5 / COUNT as f64).abs() < 1e-9, "{point:?} for {exact}");
-                assert!(point.error >= 1e-5);
+                assert!(point.error.unwrap() >= 1e-5);
             }
             assert!(found.windows(2).all(|two| two[1].share < two[0].share && (two[1].at > two[0].at) == above));
         }
@@ -118,5 +119,13 @@ mod tests {
         let found = tail(&values, true, (16, 1e-3));
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].at, found[0].share), (1.0, 0.5));
+    }
+
+    /// Without the one randomisation that has values there is no share: their scatter is unknown, not a number that is none.
+    #[test]
+    fn values_of_one_randomisation_have_no_error() {
+        let values: Vec<Weighed> = (0..1000).map(|i| (f64::from(i), 1.0, 3)).collect();
+        let found = tail(&values, true, (16, 1e-3));
+        assert!(!found.is_empty() && found.iter().all(|point| point.error.is_none()), "{found:?}");
     }
 }

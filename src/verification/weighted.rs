@@ -2,6 +2,7 @@
 
 use super::Verified;
 use super::figures::{jackknife, student, totals};
+use super::tails::{Tails, Weighed, tail};
 
 /// Values with their weights, by randomisation.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,20 @@ pub(crate) struct WeightedSample {
 impl WeightedSample {
     pub(super) fn new(parts: impl Iterator<Item = (usize, Vec<f64>, Vec<f64>)>, replicates: usize, one: f64) -> Self {
         Self { parts: parts.collect(), replicates, one }
+    }
+
+    /// The tails below and above, of the sides that are asked for.
+    pub(crate) fn tails(&self, [below, above]: [bool; 2]) -> Tails {
+        let of = |(replicate, values, weights): &(usize, Vec<f64>, Vec<f64>)| -> Vec<Weighed> {
+            let points = values.iter().zip(weights).filter(|(y, _)| y.is_finite());
+            points.map(|(&y, &weight)| (y, weight, *replicate)).collect()
+        };
+        let values: Vec<Weighed> = self.parts.iter().flat_map(of).collect();
+        let towards = |asked: bool, above: bool| match asked {
+            true => tail(&values, above, (self.replicates, self.one)),
+            false => Vec::new(),
+        };
+        Tails { below: towards(below, false), above: towards(above, true) }
     }
 
     /// The finite values in order, with their weights.

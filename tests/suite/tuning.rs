@@ -24,10 +24,19 @@ fn constants(code: &str) -> Vec<(String, String)> {
     found
 }
 
+/// The kinds, and the kind of each constant by file and name ([tests/tuning/kinds.toml](../tuning/kinds.toml)).
+fn kinds() -> (toml::Table, toml::Table) {
+    let text = std::fs::read_to_string(repository("tests/tuning/kinds.toml")).unwrap();
+    let mut table: toml::Table = text.parse().unwrap();
+    ["kinds", "constants"].map(|key| table.remove(key).unwrap().as_table().unwrap().clone()).into()
+}
+
 #[test]
-fn every_constant_has_its_row() {
+fn every_constant_has_its_kind_and_its_row() {
     let page = std::fs::read_to_string(repository("docs/reference/tuning.md")).unwrap();
-    let rows = |file: &str| page.split("\n## `").find_map(|part| part.strip_prefix(file)?.strip_prefix("`\n"));
+    let (kinds, constants_by_file) = kinds();
+    let sections: Vec<&str> = page.split("\n## ").skip(1).collect();
+    let section = |kind: &str| sections.iter().find_map(|section| section.strip_prefix(kind)?.strip_prefix('\n'));
     let sources = Sources::read();
     let mut lacking = Vec::new();
     let mut seen = 0;
@@ -35,17 +44,24 @@ fn every_constant_has_its_row() {
         if !FOLDERS.contains(&module.split('/').next().unwrap_or_default()) || module.ends_with("/tests") {
             continue;
         }
-        let rows = [format!("{module}.rs"), format!("{module}/mod.rs")].iter().find_map(|file| rows(file));
+        let files = [format!("{module}.rs"), format!("{module}/mod.rs")];
         for (name, value) in constants(code) {
             seen += 1;
-            let row = format!("| `{name}` | `{value}` |");
-            if !rows.is_some_and(|rows| rows.contains(&row)) {
-                lacking.push(format!("{module}: {row}"));
+            let of = |file: &String| Some((file.clone(), constants_by_file.get(file)?.get(&name)?.as_str()?));
+            let Some((file, kind)) = files.iter().find_map(of).filter(|(_, kind)| kinds.contains_key(*kind)) else {
+                lacking.push(format!("{module}: {name} has no kind"));
+                continue;
+            };
+            let row = format!("| `{file}` | `{name}` | `{value}` |");
+            if !section(kind).is_some_and(|rows| rows.contains(&row)) {
+                lacking.push(format!("{kind}: {row}"));
             }
         }
     }
     assert!(seen > 200, "{seen} constants");
-    assert!(lacking.is_empty(), "run tests/tuning/measure.py: {lacking:#?}");
+    assert!(lacking.is_empty(), "tests/tuning/kinds.toml and tests/tuning/measure.py: {lacking:#?}");
+    let listed: usize = constants_by_file.values().map(|names| names.as_table().unwrap().len()).sum();
+    assert_eq!(listed, seen, "kinds of constants that are no more");
 }
 
 #[test]

@@ -5,6 +5,8 @@
     python3 tests/tuning/measure.py --all  # all of them anew; an hour of CPU time
     python3 tests/tuning/measure.py --write # what was measured before the measurement was ended
 
+Each constant is of a kind, which kinds.toml says: the page lists those that decide first.
+
 The library is copied to target/tuning with its constants as variables, compiled once, and run on the functions that constants may be
 tuned on (tests/data/accuracy). The functions by which errors are judged (tests/data/trust.jsonl) are not looked at: a constant that is
 chosen by this table has not been chosen by them. A constant that sizes an array, or that another constant is made of, stays as it is.
@@ -16,9 +18,11 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+KINDS = Path(__file__).with_name("kinds.toml")
 PAGE = ROOT / "docs" / "reference" / "tuning.md"
 BUILD = ROOT / "target" / "tuning"
 FOLDERS = ["analysis", "method", "simulation", "surrogate", "verification"]
@@ -28,6 +32,10 @@ DEFINITION = re.compile(
 )
 # A row whose measurement was ended before its turn came: the next run measures it.
 OPEN = "not measured yet"
+# The further runs were ended before its turn came.
+HALF = "nothing in the first runs"
+# Of these kinds all runs are made.
+FURTHER = ["decision", "statistic", "guard"]
 # Noise below which two results are the same: sums in another order.
 SAME = 1e-9
 
@@ -105,9 +113,16 @@ def scaled_copy(fixed):
             for other in (source / "src").rglob("*.rs"):
                 if other != path:
                     text = other.read_text()
-                    if re.search(rf"\buse [^;]*\b{one['name']}\b", text) and Path(one["file"]).stem in text:
+                    if imports(text, one):
                         other.write_text(called(text, one["name"]))
     return source
+
+
+def imports(text, one):
+    """Whether a file imports a constant: from its file, or as its folder passes it on."""
+    places = {Path(one["file"]).stem, Path(one["file"]).parent.name}
+    uses = re.findall(rf"\buse ([^;]*\b{one['name']}\b[^;]*);", text)
+    return any(re.search(rf"\b({'|'.join(places)})::", use) for use in uses)
 
 
 def called(text, name):
@@ -175,14 +190,18 @@ def compiled():
     sys.exit("no end of constants that cannot vary")
 
 
-def run(driver, tuned=None):
-    """What the functions come to: by function and kind of run."""
+def run(driver, tuned=None, further=False):
+    """What the functions come to: by function and way of running."""
     environment = dict(os.environ)
     if tuned:
         environment["SENSITOL_TUNE"] = tuned
     try:
         ran = subprocess.run(
-            [driver, ROOT / "tests" / "data" / "accuracy"], env=environment, capture_output=True, text=True, timeout=600
+            [driver, ROOT / "tests" / "data" / "accuracy", "further" if further else "first"],
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=600,
         )
     except subprocess.TimeoutExpired:
         return None
@@ -236,10 +255,28 @@ def effect(before, after):
     return ", ".join(said)
 
 
-def written(rows, before):
-    known, covered = figures(before)
-    total = sum(line["evaluations"] for line in before.values() if "sampled" not in line["kind"])
-    names = {name for name, _ in before}
+def both(driver, before, one, factor):
+    """What a factor changes: in the first runs, and for what decides, where it is nothing there, in the further ones."""
+    tuned = f"{key(one)}={factor}"
+    found = effect(before["first"], run(driver, tuned))
+    if found != "nothing" or kinds()[one["file"]][one["name"]] not in FURTHER:
+        return found
+    found = effect(before["further"], run(driver, tuned, further=True))
+    return found if found == "nothing" else f"further: {found}"
+
+
+def kinds():
+    """The kind of every constant, by file and name."""
+    return tomllib.loads(KINDS.read_text())["constants"]
+
+
+def written(rows, first, further):
+    known, covered = figures(first)
+    total = sum(line["evaluations"] for line in first.values() if "sampled" not in line["kind"])
+    names = {name for name, _ in first}
+    meanings = tomllib.loads(KINDS.read_text())["kinds"]
+    by_kind = {kind: [row for row in rows if kinds()[row[0]["file"]][row[0]["name"]] == kind] for kind in meanings}
+    still = lambda row: all(cell in ("nothing", HALF) for cell in row[1:])
     text = f"""# Constants, and what they do
 
 Written by [tests/tuning/measure.py](../../tests/tuning/measure.py), which doubles and halves every numeric constant of
@@ -247,18 +284,27 @@ Written by [tests/tuning/measure.py](../../tests/tuning/measure.py), which doubl
 on ([docs/accuracy.md](../accuracy.md)) of at most 20 dimensions, all but `saturating-3`, in four ways: `auto` of a cheap model, `full` with check points,
 `auto` without any verification at 1 % and at 0.1 %. The functions by which errors are judged are not among them.
 
-As they are: {len(before)} runs, {total} evaluations of models that cost something, {known} figures with an estimated error, {known - covered} of
-them more than three estimates off. "3 of {len(before)}" says how many runs give another number, an error or a warning. "Nothing" is
-said of guards against what these functions do not have (poles, overflow, memory, a budget), and of constants that a doubling leaves on the
-same side of everything. "Fixed" sizes an array, or other constants are made of it. A row was measured when its constant last changed; `--all`
-measures all rows anew. [A test](../../tests/suite/tuning.rs) holds that every constant has its row.
+As they are: {len(first)} runs, {total} evaluations of models that cost something, {known} figures with an estimated error, {known - covered} of
+them more than three estimates off. "3 of {len(first)}" says how many runs give another number, an error or a warning. Where a constant of
+the kinds {", ".join(f"`{kind}`" for kind in FURTHER)} changes nothing there, {len(further)} further runs follow, and "further: 3 of {len(further)}" is said of them: of a costly model with a
+budget from which it may be sampled, of `full` without verification, and of functions of 21 to 60 dimensions. "Nothing" is
+said of guards against what these functions do not have (poles, overflow, correlated inputs), and of constants that a doubling leaves on the
+same side of everything; after "nothing in the first runs" the further runs are still to be made. "Fixed" sizes an array, or other constants are made of it. A row was measured when its constant last changed; `--all`
+measures all rows anew. [A test](../../tests/suite/tuning.rs) holds that every constant has its row and its kind, which
+[tests/tuning/kinds.toml](../../tests/tuning/kinds.toml) says.
 
+| kind | meaning | constants | change nothing |
+|---|---|--:|--:|
 """
-    for file in dict.fromkeys(one["file"] for one, _, _ in rows):
-        text += f"## `{file}`\n\n| constant | value | meaning | halved | doubled |\n|---|---|---|---|---|\n"
-        for one, half, double in rows:
-            if one["file"] == file:
-                text += f"| `{one['name']}` | `{cell(one['value'])}` | {cell(one['meaning']) or '-'} | {half} | {double} |\n"
+    for kind, meaning in meanings.items():
+        own = by_kind[kind]
+        text += f"| [{kind}](#{kind}) | {meaning} | {len(own)} | {sum(map(still, own))} |\n"
+    text += f"| all | | {len(rows)} | {sum(map(still, rows))} |\n\n"
+    for kind, own in by_kind.items():
+        text += f"## {kind}\n\n| file | constant | value | meaning | halved | doubled |\n|---|---|---|---|---|---|\n"
+        for one, half, double in own:
+            named = f"| `{one['file']}` | `{one['name']}` | `{cell(one['value'])}` "
+            text += f"{named}| {cell(one['meaning']) or '-'} | {half} | {double} |\n"
         text += "\n"
     PAGE.write_text(text.rstrip("\n") + "\n")
 
@@ -269,13 +315,14 @@ def cell(text):
 
 def measured():
     """The effects on the page, by file, name and value."""
-    rows, file = {}, None
+    rows = {}
     for line in PAGE.read_text().splitlines() if PAGE.exists() and "--all" not in sys.argv else []:
-        if line.startswith("## `"):
-            file = line.strip("# `")
-        found = re.match(r"\| `(?P<name>\w+)` \| `(?P<value>.*?)` \| .* \| (?P<half>[^|]*) \| (?P<double>[^|]*) \|$", line)
-        if found and found["half"] not in (OPEN, "fixed"):
-            rows[file, found["name"], found["value"]] = [found["half"], found["double"]]
+        found = re.match(
+            r"\| `(?P<file>[\w/.]+)` \| `(?P<name>\w+)` \| `(?P<value>.*?)` \| .* \| (?P<half>[^|]*) \| (?P<double>[^|]*) \|$", line
+        )
+        effects = [found["half"], found["double"]] if found else []
+        if found and not {OPEN, HALF, "fixed"} & set(effects):
+            rows[found["file"], found["name"], found["value"]] = effects
     return rows
 
 
@@ -283,7 +330,7 @@ def main():
     driver, fixed = compiled()
     # As they were compiled: sources may change meanwhile.
     every = list(constants())
-    before = run(driver)
+    before = {"first": run(driver), "further": run(driver, further=True)}
     # A measurement that was ended goes on where it was, unless the driver is another one.
     kept = BUILD / "effects.json"
     effects = json.loads(kept.read_text()) if kept.exists() and kept.stat().st_mtime > driver.stat().st_mtime else {}
@@ -295,11 +342,11 @@ def main():
     for one in every:
         if key(one) in fixed or key(one) in effects or "--write" in sys.argv:
             continue
-        effects[key(one)] = [effect(before, run(driver, f"{key(one)}={factor}")) for factor in (0.5, 2.0)]
+        effects[key(one)] = [both(driver, before, one, factor) for factor in (0.5, 2.0)]
         print(f"{key(one)}: {' | '.join(effects[key(one)])}", file=sys.stderr, flush=True)
         kept.write_text(json.dumps(effects))
     rest = lambda one: ["fixed", "fixed"] if key(one) in fixed else [OPEN, OPEN]
-    written([(one, *effects.get(key(one), rest(one))) for one in every], before)
+    written([(one, *effects.get(key(one), rest(one))) for one in every], before["first"], before["further"])
 
 
 main()

@@ -7,10 +7,9 @@ use super::chosen::ChosenPoints;
 use super::view::View;
 use crate::plan::{DifferencePlan, KnownAnswers, Point};
 
-/// The product leaves less than this part of what the surface leaves, at the points that check,
-const BETTER: f64 = 0.1;
-/// and less than this part of the wanted error as a share of the variance.
-const LEFT: f64 = 0.1;
+/// The share of the variance that the product leaves at the points that check is less than this part of what the surface leaves, and of
+/// the wanted error: neither counts beside it.
+const PART: f64 = 0.1;
 
 /// Whether `f(m) prod_j exp(a_j u_j + b_j u_j^2)` through the values on the axes explains the points that check, where the surface of
 /// `view` does not. All values must have one sign.
@@ -31,7 +30,7 @@ pub(super) fn is_product(
     };
     let Some(off) = bought.checks.iter().flatten().map(off).collect::<Option<Vec<f64>>>() else { return false };
     let remains = view.share(off.iter().map(|d| d * d).sum::<f64>() / off.len().max(1) as f64);
-    !off.is_empty() && remains < BETTER * left && remains < LEFT * accuracy
+    !off.is_empty() && remains < PART * left.min(accuracy)
 }
 
 /// Slope and bend of the logarithm along every axis, from its innermost nodes; None without values of the centre's sign there.

@@ -18,6 +18,8 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::SolveLstsqCore;
 use faer::{Accum, Conj, Mat, Par};
 
+use crate::surrogate::DEPENDENT;
+
 /// Signs and what was seen there.
 pub(super) struct Probed<'a> {
     pub(super) signs: Vec<&'a [f64]>,
@@ -37,8 +39,6 @@ pub(super) struct Fit {
 
 /// A pair for every so many probes.
 const PROBES_PER_PAIR: f64 = 2.5;
-/// A column that the others explain up to this part is not a new one.
-const DEPENDENT: f64 = 1e-8;
 
 /// The best fit to the first, judged by the second; `slopes` in units of the signs, `enough` the mean square that may be left.
 pub(super) fn fit(fitted: &Probed<'_>, judging: &Probed<'_>, slopes: &[f64], enough: f64) -> Fit {

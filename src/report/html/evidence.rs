@@ -152,12 +152,15 @@ fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
     }
     // Lines without length and with round ends are dots, and shorter than circles. The band is that of two standard errors.
     let (mut dots, mut band) = (String::new(), String::new());
-    for point in shown() {
+    shown().for_each(|point| {
         let _ = write!(dots, "M{:.1} {:.1}h0", x(point.at), y(point.share));
-        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y(point.share + 2.0 * point.error));
+    });
+    let known: Vec<(&TailPoint, f64)> = shown().filter_map(|point| Some((point, point.error?))).collect();
+    for (point, error) in &known {
+        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y(point.share + 2.0 * error));
     }
-    for point in shown().collect::<Vec<_>>().into_iter().rev() {
-        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y((point.share - 2.0 * point.error).max(least)));
+    for (point, error) in known.iter().rev() {
+        let _ = write!(band, "{:.1} {:.1} ", x(point.at), y((point.share - 2.0 * error).max(least)));
     }
     let limit = x(tail.limit);
     let (from, to) = if tail.upper { (limit, WIDTH) } else { (LEFT, limit) };
