@@ -70,7 +70,7 @@ pub(super) struct Near {
 /// The part of the square of a change of tolerances by which a requirement that is followed along its slopes may be off: the second derivatives of
 /// the [corrections](super::correction) of a room are some tenths.
 const BENT: f64 = 0.1;
-/// What differences of moments leave of a requirement, ten times: their steps in `ln T` know them to 1e-10.
+/// Ten times the error of moments by differences, whose steps in `ln T` know them to 1e-10.
 const NOISE: f64 = 1e-9;
 
 impl Near {

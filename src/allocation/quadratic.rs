@@ -32,7 +32,7 @@ pub(super) struct Quadratic<'a> {
 /// The solution.
 pub(super) struct Step {
     pub(super) d: Vec<f64>,
-    /// What the rows are exceeded by.
+    /// The excess of the rows.
     pub(super) slack: f64,
     /// Of the rows, then of the lower and the upper bound of every unknown.
     pub(super) multipliers: Vec<f64>,

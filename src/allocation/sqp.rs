@@ -15,7 +15,7 @@ const FALL: f64 = 1e-4;
 const HALVINGS: i32 = 25;
 /// The weights of what rows are exceeded by: the least and the greatest that doubles bear beside an objective near 1.
 const WEIGHTS: [f64; 2] = [1e-6, 1e6];
-/// What a row is exceeded by through rounding of the quadratic problem.
+/// The excess of a row by rounding of the quadratic problem.
 const ROUNDING: f64 = 1e-12;
 /// Powell's bound of damping.
 const DAMPED: f64 = 0.2;
@@ -32,7 +32,7 @@ struct Place {
 }
 
 impl Place {
-    /// What the rows are exceeded by.
+    /// The excess of the rows.
     fn excess(&self) -> f64 {
         self.rows.iter().fold(0.0, |most, row| most.max(row.0))
     }
