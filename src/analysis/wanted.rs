@@ -6,8 +6,8 @@ use crate::warning::Figure;
 
 /// A standard error is this part of what is wanted, so that two of them keep it; where it is more, the sample is drawn again.
 pub(super) const PART: f64 = 0.5;
-/// By how many times a further sample exceeds the one before: errors of twice the size at the least, and all samples together cost a third
-/// more than the last.
+/// A further sample has so many times the points of the one before: half its error, and all samples together take a third more points than
+/// the last.
 pub(super) const MORE: usize = 4;
 
 /// The figures with an accuracy to reach beside sigma and their estimated errors, infinite where an error is unknown; without

@@ -26,7 +26,7 @@ use super::strata::along;
 pub(crate) const OVERLOOKED: f64 = 0.004;
 pub(crate) const OVERLOOKED_BY: f64 = 14.0;
 /// A root mean square of a handful of residuals is this much too small at times: of a dozen normal ones, the largest counted twice, in 6 %
-/// of all cases; of 32, all counted once, in 4 %.
+/// of all cases; of 32, all counted once, in 3 %.
 pub(crate) const TOO_SMALL: f64 = 1.3;
 /// Polynomials are not followed farther than this, in sigmas.
 const CLIPPED: f64 = 4.5;

@@ -321,7 +321,8 @@ def measured():
             r"\| `(?P<file>[\w/.]+)` \| `(?P<name>\w+)` \| `(?P<value>.*?)` \| .* \| (?P<half>[^|]*) \| (?P<double>[^|]*) \|$", line
         )
         effects = [found["half"], found["double"]] if found else []
-        if found and not {OPEN, HALF, "fixed"} & set(effects):
+        open_ = {OPEN, "fixed"} if "--write" in sys.argv else {OPEN, HALF, "fixed"}
+        if found and not open_ & set(effects):
             rows[found["file"], found["name"], found["value"]] = effects
     return rows
 
