@@ -23,7 +23,8 @@ const PLAIN: &str =
 /// The command in a shell with this limit or redirection, `$0` being the program.
 fn in_shell(script: &str, arguments: &[&str]) -> Output {
     let program = sensitol(&[]).get_program().to_owned();
-    Command::new("bash").arg("-c").arg(script).arg(program).args(arguments).output().unwrap()
+    // As `sensitol`, whoever runs the tests.
+    Command::new("bash").arg("-c").arg(script).arg(program).args(arguments).env("LC_ALL", "C.UTF-8").output().unwrap()
 }
 
 #[test]
