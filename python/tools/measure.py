@@ -171,7 +171,7 @@ def main() -> None:
         "# The Python package",
         "",
         f"`python/tools/measure.py` writes this page: {os.cpu_count()} cores, Python {platform.python_version()}, NumPy {np.__version__}, "
-        f"sensitol {st.__version__} as `pip install ./python` builds it.",
+        f"sensitol {st.__version__} as a release wheel.",
         f"Times are the shortest of several runs, beside other work: the load average was {load:.1f} at the start.",
         "",
         "| what | value |",
