@@ -4,7 +4,7 @@
 //! it passes the limit. All other requirements are rows `value - 1`.
 
 use super::augmented::{Ended, Near, Slope, Smooth, cost};
-use super::constraint::Constraint;
+use super::constraint::{Constraint, Linearised};
 use super::quadratic::dot;
 use super::solve::{SMALL, Setting};
 use super::solved::Solved;
@@ -50,13 +50,13 @@ impl Setting<'_> {
         let at = self.within(&tolerances(&x));
         let linearised = self.linearised(&at)?;
         // Both rows of a requirement are 0 together, so that one's slopes are a multiple of the other's.
-        let scaled = |((multiplier, own), value): ((&f64, &Slope), &Vec<f64>)| match dot(value, value) {
+        let scaled = |((multiplier, own), value): ((&f64, &Slope), &Linearised)| match dot(&value.slopes, &value.slopes)
+        {
             0.0 => 0.0,
-            square => multiplier * scale * dot(value, &own.1) / square,
+            square => multiplier * scale * dot(&value.slopes, &own.1) / square,
         };
-        let values: Vec<Vec<f64>> = linearised.iter().map(|one| one.slopes.clone()).collect();
         let own = rows(&x)?;
-        let multipliers: Vec<f64> = multipliers.iter().zip(&own).zip(&values).map(scaled).collect();
+        let multipliers: Vec<f64> = multipliers.iter().zip(&own).zip(&linearised).map(scaled).collect();
         let mut solved = self.judged(&at, &linearised, &multipliers, false);
         solved.converged = solved.residual <= SMALL;
         self.tighten(&mut solved);

@@ -30,6 +30,7 @@ pub(super) struct Quadratic<'a> {
 }
 
 /// The solution.
+#[derive(Clone)]
 pub(super) struct Step {
     pub(super) d: Vec<f64>,
     /// The excess of the rows.

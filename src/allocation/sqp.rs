@@ -130,12 +130,11 @@ impl Smooth<'_> {
             let moved = here.x.iter().zip(d).zip(self.bounds);
             self.place(moved.map(|((x, d), &[low, high])| (x + part * d).clamp(low, high)).collect())
         };
-        let copied = |step: &Step| Step { d: step.d.clone(), slack: step.slack, multipliers: step.multipliers.clone() };
         for halved in 0..HALVINGS {
             let part = 0.5f64.powi(halved);
             let Some(there) = along(&step.d, part) else { continue };
             if lower(&there, part) {
-                return Some((there, copied(step), part));
+                return Some((there, step.clone(), part));
             }
             if halved == 0 && there.excess() > step.slack {
                 let bent: Vec<Slope> = (here.rows.iter().zip(&there.rows))

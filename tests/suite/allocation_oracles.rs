@@ -5,13 +5,10 @@ use sensitol::{Study, Verdict};
 use serde_json::Value;
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
-use super::support::repository;
+use super::support;
 
 fn problem(name: &str) -> Value {
-    let text = std::fs::read_to_string(repository("tests/data/allocation.json")).unwrap();
-    let all: Value = serde_json::from_str(&text).unwrap();
-    let found = all["problems"].as_array().unwrap().iter().find(|one| one["name"] == name);
-    found.unwrap_or_else(|| panic!("no {name}")).clone()
+    support::problem("allocation.json", name)
 }
 
 fn allocated(of: &Value) -> Allocation {

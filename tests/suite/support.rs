@@ -45,6 +45,13 @@ pub fn data(name: &str) -> serde_json::Value {
     serde_json::from_str(&text).unwrap()
 }
 
+/// The problem of this name in a file of `tests/data` that lists `problems`.
+pub fn problem(file: &str, name: &str) -> serde_json::Value {
+    let all = data(file);
+    let found = all["problems"].as_array().unwrap().iter().find(|one| one["name"] == name);
+    found.unwrap_or_else(|| panic!("no {name}")).clone()
+}
+
 /// Asserts `|found - expected| <= tolerance max(|expected|, scale)`.
 #[track_caller]
 pub fn close(found: f64, expected: f64, tolerance: f64, scale: f64) {
