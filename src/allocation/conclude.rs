@@ -167,7 +167,7 @@ impl Driver<'_> {
             let nominal: Vec<Option<f64>> = station.analysis.characteristics.iter().map(|one| one.nominal).collect();
             self.confirm(allocation, &station.problem, &nominal, samples)?;
         }
-        allocation.after = Some(station.analysis);
+        allocation.after = Some(self.completed(&station));
         allocation.problem = station.problem;
         Ok(())
     }

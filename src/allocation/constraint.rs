@@ -18,9 +18,9 @@ use super::correction::Correction;
 use super::cost::Priced;
 use super::rejects::of_scores;
 use super::response::Responses;
-use super::root::root;
 use super::separable::{Row, Term};
 use super::unknown::Unknown;
+use super::yield_room::YieldRoom;
 use crate::capability::{self, Capability, Law};
 use crate::characteristic::SpecLimits;
 use crate::moments::Moments;
@@ -123,7 +123,17 @@ impl Constraint {
         }
         let k = self.characteristic;
         let factors = responses.factors(priced, at);
-        let ratio = self.ratio(responses, priced, at).filter(|ratio| ratio.is_finite())?;
+        let (ratio, room) = match self.requirement {
+            Requirement::Rss => (self.ratio_at(responses, priced, &factors, None)?, None),
+            _ => {
+                let moments = responses.moments(k, &factors)?;
+                let room = self.room(&moments, self.target(responses))?;
+                (self.ratio_in(responses, &moments, &room, &factors)?, Some(room))
+            }
+        };
+        if !ratio.is_finite() {
+            return None;
+        }
         let value = ratio * ratio;
         if value == 0.0 {
             // Nothing varies here.
@@ -144,17 +154,16 @@ impl Constraint {
                 let (variance, squares) = responses.plain_squares(k, priced, &factors)?;
                 squares.iter().map(|square| square / variance).collect()
             }
-            _ => self.with_room(responses, priced, &factors)?,
+            _ => self.with_room(responses, priced, &room?, &factors)?,
         };
         let slopes = slopes.into_iter().map(|slope| 2.0 * value * slope).collect::<Vec<f64>>();
         slopes.iter().all(|slope| slope.is_finite()).then_some(Linearised { value, slopes, linear: false })
     }
 
     /// Slopes of `ln(sigma/s)`.
-    fn with_room(&self, responses: &Responses, priced: &[Priced], factors: &[f64]) -> Option<Vec<f64>> {
-        let moments = responses.moments(self.characteristic, factors)?;
+    fn with_room(&self, responses: &Responses, priced: &[Priced], room: &Room, factors: &[f64]) -> Option<Vec<f64>> {
         let by = responses.moment_slopes(self.characteristic, priced, factors)?;
-        let partial = self.room_slopes(&moments, self.target(responses))?;
+        let partial = room.slopes()?;
         let of = |by: &[f64; 4]| by[1] - partial[0] * by[0] - partial[1] * by[2] - partial[2] * by[3];
         let correction = self.correction(responses);
         let corrected = |group: &Priced| {
@@ -229,18 +238,19 @@ impl Constraint {
             let share = responses.rejects(&responses.limited()).share(responses, factors, shifts)?;
             return Some(of_scores(share, 1.0 - self.target(responses)));
         }
+        if self.requirement == Requirement::Rss {
+            let rss = responses.rss_squared(self.characteristic, priced, factors)?.0.sqrt();
+            let room = self.room_about(responses.middle(self.characteristic, factors, shifts)?)?;
+            return Some(by_room(rss, self.part * room));
+        }
         let moments = responses.moments_shifted(self.characteristic, factors, shifts)?;
-        let (own, room) = match self.requirement {
-            Requirement::Rss => {
-                let rss = responses.rss_squared(self.characteristic, priced, factors)?.0.sqrt();
-                (rss, self.part * self.room_about(responses.middle(self.characteristic, factors, shifts)?)?)
-            }
-            _ => {
-                let factor = self.correction(responses).map_or(1.0, |of| of.factor(factors));
-                (moments.sigma(), factor * self.room(&moments, self.target(responses))?)
-            }
-        };
-        if own == 0.0 { Some(if room > 0.0 { 0.0 } else { f64::INFINITY }) } else { Some(own / room) }
+        self.ratio_in(responses, &moments, &self.room(&moments, self.target(responses))?, factors)
+    }
+
+    /// The ratio of sigma to the room for it, corrected at these factors.
+    fn ratio_in(&self, responses: &Responses, moments: &Moments, room: &Room, factors: &[f64]) -> Option<f64> {
+        let factor = self.correction(responses).map_or(1.0, |of| of.factor(factors));
+        Some(by_room(moments.sigma(), factor * room.sigma()))
     }
 
     /// Whether it is kept when all tolerances are `factor` times as wide; infinite where that is unknown.
@@ -349,12 +359,12 @@ impl Constraint {
     fn correction(&self, responses: &Responses) -> Option<Arc<Correction>> {
         let Requirement::Yield(least) = self.requirement else { return None };
         let target = self.target(responses);
-        let room = |moments: &Moments| self.room(moments, target);
-        responses.correction(self.characteristic, least, &room, &|moments| self.room_slopes(moments, target))
+        let room = |moments: &Moments| Some(self.room(moments, target)?.sigma());
+        responses.correction(self.characteristic, least, &room, &|moments| self.room(moments, target)?.slopes())
     }
 
     /// The largest sigma that keeps it, with this mean and shape; None where none does, and where it is no matter of the mean.
-    pub(super) fn room(&self, moments: &Moments, target: f64) -> Option<f64> {
+    pub(super) fn room(&self, moments: &Moments, target: f64) -> Option<Room> {
         let (below, above) =
             (self.limits.lower().map(|l| moments.mean() - l), self.limits.upper().map(|u| u - moments.mean()));
         let side = match self.side {
@@ -364,51 +374,24 @@ impl Constraint {
         };
         let positive = |room: f64| (room > 0.0).then_some(room);
         match self.requirement {
-            Requirement::Sigma(_) => Some(target),
-            Requirement::Cpk(_) => positive(side? / (3.0 * target)),
-            Requirement::Rss | Requirement::WorstCase => None,
-            Requirement::Yield(_) => room_for_yield(moments, [below, above], 1.0 - target),
-        }
-    }
-
-    /// Derivatives of `ln s` by mean, skewness and excess.
-    fn room_slopes(&self, moments: &Moments, target: f64) -> Option<[f64; 3]> {
-        let room = self.room(moments, target)?;
-        match self.requirement {
-            Requirement::Sigma(_) => return Some([0.0; 3]),
+            Requirement::Sigma(_) => Some(Room::Given { sigma: target, by_mean: 0.0 }),
             Requirement::Cpk(_) => {
+                let sigma = positive(side? / (3.0 * target))?;
                 let sign = if self.side == Side::Above { -1.0 } else { 1.0 };
-                return Some([sign / (3.0 * target * room), 0.0, 0.0]);
+                Some(Room::Given { sigma, by_mean: sign / (3.0 * target * sigma) })
             }
-            Requirement::Rss | Requirement::WorstCase | Requirement::Yield(_) => {}
+            Requirement::Rss | Requirement::WorstCase => None,
+            Requirement::Yield(_) => YieldRoom::of(moments, [below, above], 1.0 - target).map(Room::Yield),
         }
-        let (mean, sigma) = (moments.mean(), moments.sigma());
-        let (skewness, excess) = (moments.skewness()?, moments.excess()?);
-        let difference = |at: &dyn Fn(f64) -> Moments, step: f64| {
-            let ln = |step: f64| self.room(&at(step), target).map(f64::ln);
-            match (ln(step), ln(-step)) {
-                (Some(up), Some(down)) => Some((up - down) / (2.0 * step)),
-                // Beside the least kurtosis, or the limit itself, one side is all there is.
-                (Some(up), None) => Some((up - room.ln()) / step),
-                (None, Some(down)) => Some((room.ln() - down) / step),
-                _ => None,
-            }
-        };
-        Some([
-            difference(&|step| Moments::new(mean + step, sigma, skewness, excess), 1e-5 * room)?,
-            difference(&|step| Moments::new(mean, sigma, skewness + step, excess), 1e-4)?,
-            difference(&|step| Moments::new(mean, sigma, skewness, excess + step), 1e-4)?,
-        ])
     }
 
     /// How `ln` of the room grows with the lower limit lowered and the upper limit raised, per unit.
     fn room_by_limits(&self, moments: &Moments, target: f64) -> Option<[f64; 2]> {
-        let room = self.room(moments, target)?;
-        let step = 1e-5 * room;
+        let step = 1e-5 * self.room(moments, target)?.sigma();
         let moved = |lower: f64, upper: f64| {
             let limits =
                 SpecLimits::new(self.limits.lower().map(|l| l - lower), self.limits.upper().map(|u| u + upper));
-            Self { limits: limits.unwrap_or(self.limits), ..*self }.room(moments, target)
+            Some(Self { limits: limits.unwrap_or(self.limits), ..*self }.room(moments, target)?.sigma())
         };
         let difference = |by: &dyn Fn(f64) -> Option<f64>| match (by(step), by(-step)) {
             (Some(up), Some(down)) => (up.ln() - down.ln()) / (2.0 * step),
@@ -428,36 +411,40 @@ impl Constraint {
     }
 }
 
-/// The sigma at which a law of this mean and shape leaves just this share beyond limits at these distances from the mean.
-fn room_for_yield(moments: &Moments, [below, above]: [Option<f64>; 2], rejected: f64) -> Option<f64> {
-    let shape = Moments::new(0.0, 1.0, moments.skewness().unwrap_or(0.0), moments.excess().unwrap_or(0.0));
-    let Law::Pearson(law) = Law::fit(&shape).ok()? else { return None };
-    let single = |distance: f64, quantile: f64| match (distance > 0.0, quantile > 0.0) {
-        (true, true) => Some(distance / quantile),
-        // Fewer must keep the limit than the half that does at any sigma.
-        (true, false) => Some(f64::INFINITY),
-        (false, _) => None,
-    };
-    let alone = [
-        below.map(|distance| single(distance, -law.quantile(rejected))),
-        above.map(|distance| single(distance, law.upper_quantile(rejected))),
-    ];
-    let (low, high) = match alone {
-        [None, None] => return None,
-        [Some(only), None] | [None, Some(only)] => return only,
-        [Some(low), Some(high)] => (low?, high?),
-    };
-    // Each limit may take all of what may be rejected, or half of it: the answer lies between.
-    let most = low.min(high);
-    let share =
-        |sigma: f64| law.cdf(-below.unwrap_or(f64::INFINITY) / sigma) + law.sf(above.unwrap_or(f64::INFINITY) / sigma);
-    let miss = |ln: f64| (share(ln.exp()) / rejected).ln();
-    if !most.is_finite() {
-        return None;
+/// The largest sigma that keeps a requirement, at a mean and a shape.
+pub(super) enum Room {
+    /// Whatever the shape, with the derivative of its logarithm by the mean.
+    Given {
+        sigma: f64,
+        by_mean: f64,
+    },
+    Yield(YieldRoom),
+}
+
+impl Room {
+    pub(super) fn sigma(&self) -> f64 {
+        match self {
+            Self::Given { sigma, .. } => *sigma,
+            Self::Yield(room) => room.sigma(),
+        }
     }
-    let half = [(below, -law.quantile(0.5 * rejected)), (above, law.upper_quantile(0.5 * rejected))];
-    let least = half.iter().filter_map(|&(distance, quantile)| single(distance?, quantile)).fold(most, f64::min);
-    Some(root(miss, [least.ln(), most.ln()], 0.0).exp())
+
+    /// Derivatives of its logarithm by mean, skewness and excess.
+    fn slopes(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::Given { by_mean, .. } => Some([*by_mean, 0.0, 0.0]),
+            Self::Yield(room) => room.slopes(),
+        }
+    }
+}
+
+/// What varies by the room for it: nothing takes none of it.
+fn by_room(own: f64, room: f64) -> f64 {
+    match own == 0.0 {
+        true if room > 0.0 => 0.0,
+        true => f64::INFINITY,
+        false => own / room,
+    }
 }
 
 impl Linearised {

@@ -119,11 +119,11 @@ impl Driver<'_> {
             .budget
             .map(|budget| budget.saturating_sub(usize::try_from(self.spent.run.evaluations).unwrap_or(usize::MAX)));
         let options = Options { budget, ..self.options.derivatives(&problem) };
-        let (analysis, outcome) = analyze_keeping(&problem, &options, self.run)?;
+        let (analysis, kept) = analyze_keeping(&problem, &options, self.run)?;
         self.spent.run = self.spent.run.and(&analysis.run);
         self.spent.rounds += 1;
         self.spent.stopped |= analysis.run.unfinished();
-        let mut responses = Responses::of(&problem, &outcome, &analysis, &self.task.requirements);
+        let mut responses = Responses::of(&problem, &kept.outcome, &analysis, &self.task.requirements);
         if self.spent.rounds > SETTLED {
             self.spent.unknown.resize(responses.of.len(), Unknown::default());
             for (one, most) in responses.of.iter_mut().zip(&mut self.spent.unknown) {
@@ -138,7 +138,15 @@ impl Driver<'_> {
             let Spent { places, points, .. } = &mut self.spent;
             responses.follow_corners(&problem, places, points);
         }
-        Ok(Station { problem, analysis, responses })
+        Ok(Station { problem, analysis, kept, responses })
+    }
+
+    /// The analysis of a station, with what is reported of it and no search reads.
+    pub(super) fn completed(&self, station: &Station) -> Analysis {
+        let Station { problem, analysis, kept, .. } = station;
+        let mut analysis = analysis.clone();
+        analysis.complete(kept, problem, &self.options.derivatives(problem), self.run);
+        analysis
     }
 
     /// Corrects by samples of the model what its own figures refute, where something is required of that and the model is cheap.

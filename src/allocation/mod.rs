@@ -75,6 +75,7 @@ mod unknown;
 mod vector;
 mod worst;
 mod written_cost;
+mod yield_room;
 
 pub use basis::CostBasis;
 pub(crate) use cost::CurveKind;

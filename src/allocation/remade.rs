@@ -110,7 +110,7 @@ impl Constraint {
         let moments = if normal { Moments::new(found.mean(), found.sigma(), 0.0, 0.0) } else { found };
         match self.requirement {
             Requirement::Rss | Requirement::WorstCase => None,
-            _ => self.room(&moments, self.target(responses)),
+            _ => Some(self.room(&moments, self.target(responses))?.sigma()),
         }
     }
 }

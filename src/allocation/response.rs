@@ -309,7 +309,7 @@ impl Responses {
         Some(slopes)
     }
 
-    /// The same of normal inputs whose means stay, without a difference.
+    /// The same of independent inputs whose means stay, without a difference.
     fn exact_moment_slopes(&self, characteristic: usize, priced: &[Priced], factors: &[f64]) -> Option<Vec<[f64; 4]>> {
         let by_dimension = self.exact_slopes(characteristic, factors)?;
         let of = |group: &Priced| {
@@ -328,7 +328,7 @@ impl Responses {
             return None;
         }
         let (surrogate, inputs) = self.relocated(characteristic, factors, None)?;
-        let by_position = surrogate.normal_slopes(&inputs)?;
+        let by_position = surrogate.growths(&inputs)?;
         let mut slopes = vec![[0.0; 4]; self.dimensions.len()];
         for ((&d, scaling), slope) in self.varying.iter().zip(&self.scaling).zip(by_position) {
             if !matches!(scaling, Scaling::Still) {

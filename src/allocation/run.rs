@@ -97,7 +97,7 @@ impl Driver<'_> {
         let mut allocation = Allocation {
             status: Status::OutOfTime,
             problem: problem.clone(),
-            before: first.analysis.clone(),
+            before: self.completed(&first),
             after: None,
             confirmed: false,
             cost_before: self.cost_to_hold(problem).and_then(|held| Some(held + self.loss_at(&first)?)),

@@ -137,7 +137,7 @@ impl Setting<'_> {
             !one_start && found.cost > self.cost(start) * (1.0 + SAME) && kept(self.value(start))
         };
         let descend = |start: &[f64]| {
-            let found = self.usable(start, &tight).and_then(|start| self.descend(&start));
+            let found = self.usable(start, &tight).and_then(|(start, linearised)| self.descend(start, linearised));
             let ended = |found: &Solved| found.converged && kept(found.value);
             let from = match &found {
                 Some(found) if ended(found) && !left(found, start) => None,
@@ -246,22 +246,23 @@ impl Setting<'_> {
         from.iter().zip(to).map(|(from, to)| from.powf(1.0 - part) * to.powf(part)).collect()
     }
 
-    /// The start, or the first on the way to the tightest at which all constraints are finite.
-    fn usable(&self, start: &[f64], tight: &[f64]) -> Option<Vec<f64>> {
+    /// The start, or the first on the way to the tightest at which all constraints are finite, with their slopes there.
+    fn usable(&self, start: &[f64], tight: &[f64]) -> Option<(Vec<f64>, Vec<Linearised>)> {
         let parts = [0.0, 0.25, 0.5, 0.75, 0.9, 1.0];
-        parts.iter().map(|&part| self.reached(start, tight, part)).find(|at| self.linearised(at).is_some())
+        let mut all = parts.iter().map(|&part| self.reached(start, tight, part));
+        all.find_map(|at| self.linearised(&at).map(|linearised| (at, linearised)))
     }
 
-    fn descend(&self, start: &[f64]) -> Option<Solved> {
-        let mut at = start.to_vec();
+    fn descend(&self, mut at: Vec<f64>, first: Vec<Linearised>) -> Option<Solved> {
+        let mut known = Some(first);
         let mut multipliers: Option<Vec<f64>> = None;
         let mut best: Option<Solved> = None;
         let (mut part, mut last_step, mut converged, mut closed) = (1.0f64, f64::INFINITY, false, false);
-        let (mut least, mut in_vain) = (f64::INFINITY, 0);
+        let (mut least, mut in_vain, mut still_at_last) = (f64::INFINITY, 0, false);
         let exact = self.is_exact();
         let still = STILL[usize::from(!exact)];
         for step in 0..STEPS {
-            let Some(linearised) = self.linearised(&at) else { break };
+            let Some(linearised) = known.take().or_else(|| self.linearised(&at)) else { break };
             if let Some(multipliers) = &multipliers {
                 let now = self.judged(&at, &linearised, multipliers, closed);
                 in_vain = if now.residual < 0.5 * least { 0 } else { in_vain + 1 };
@@ -269,7 +270,7 @@ impl Setting<'_> {
                 let done = now.residual <= still || now.residual <= SMALL && in_vain >= PATIENCE;
                 keep(&mut best, now);
                 if done {
-                    converged = true;
+                    (converged, still_at_last) = (true, true);
                     break;
                 }
             }
@@ -300,7 +301,9 @@ impl Setting<'_> {
                 converged = true;
             }
         }
-        if let (Some(multipliers), Some(linearised)) = (&multipliers, self.linearised(&at)) {
+        // Judged already where it stands still.
+        let open = multipliers.as_ref().filter(|_| !still_at_last);
+        if let Some((multipliers, linearised)) = open.and_then(|of| Some((of, self.linearised(&at)?))) {
             let now = self.judged(&at, &linearised, multipliers, closed);
             converged |= now.residual <= SMALL;
             keep(&mut best, now);

@@ -5,7 +5,7 @@ use super::response::Responses;
 use super::result::{Kept, ShadowPrice};
 use super::solve::Setting;
 use super::solved::Solved;
-use crate::analysis::Analysis;
+use crate::analysis::{self, Analysis};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 
@@ -15,7 +15,9 @@ const BINDING: f64 = 1e-6;
 /// Tolerances with their derivatives.
 pub(super) struct Station {
     pub(super) problem: Problem,
+    /// As far as a search reads it.
     pub(super) analysis: Analysis,
+    pub(super) kept: analysis::Kept,
     pub(super) responses: Responses,
 }
 

@@ -1,6 +1,7 @@
 //! The results of one characteristic.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
@@ -170,8 +171,10 @@ pub struct Sensitivity {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Interaction {
-    /// The two dimensions.
-    pub dimensions: [String; 2],
+    /// The two dimensions. Their names are shared: N of them may have N (N - 1)/2 pairs.
+    #[serde(serialize_with = "names")]
+    #[cfg_attr(feature = "cli", schemars(with = "[String; 2]"))]
+    pub dimensions: [Arc<str>; 2],
     /// Mixed second derivative at the means; None where it is missing.
     pub mixed: Option<f64>,
     /// Why it is missing; None where it is not.
@@ -184,6 +187,10 @@ pub struct Interaction {
     pub share: Option<f64>,
     /// How far it moves the mean: not at all unless the two are correlated.
     pub mean_shift: Option<f64>,
+}
+
+fn names<S: Serializer>(names: &[Arc<str>; 2], serializer: S) -> Result<S::Ok, S::Error> {
+    names.each_ref().map(|name| &**name).serialize(serializer)
 }
 
 /// Why a derivative is missing.
@@ -414,7 +421,7 @@ fn curved(problem: &Problem, sensitivities: &[Sensitivity], interactions: &[Inte
     let halves: HashMap<&str, f64> =
         problem.dimensions().iter().enumerate().map(|(d, dimension)| (dimension.name(), half(d))).collect();
     let both = |one: &Interaction| {
-        let [j, k] = [0, 1].map(|side| halves.get(one.dimensions[side].as_str()));
+        let [j, k] = [0, 1].map(|side| halves.get(&*one.dimensions[side]));
         Some(one.mixed?.abs() * j? * k?)
     };
     let own = sensitivities.iter().enumerate().map(own).sum::<Option<f64>>()?;
@@ -500,6 +507,7 @@ fn interactions(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&
         .map(|(index, _)| (index as u32, share(index).unwrap_or(-1.0)))
         .collect();
     order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let names: Vec<Arc<str>> = problem.dimensions().iter().map(|dimension| dimension.name().into()).collect();
     let interaction = |index: usize| {
         let mixed = fitted.mixed[index];
         let (j, k) = outcome.pairs[index];
@@ -514,7 +522,7 @@ fn interactions(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&
         let step = |d: usize| if exact.is_some() { plan.axis(d).scale } else { 0.5 * plan.axis(d).nearest_step() };
         let missing = (exact.is_none() && mixed.is_none()).then(|| missing(outcome, c, &[j, k]));
         Interaction {
-            dimensions: [j, k].map(|d| problem.dimensions()[d].name().to_owned()),
+            dimensions: [j, k].map(|d| Arc::clone(&names[d])),
             missing,
             mixed: exact.or(mixed.map(|mixed| mixed.value / plan.axis(j).scale / plan.axis(k).scale)),
             exact: exact.is_some(),

@@ -10,6 +10,7 @@
 //! exchanging inputs, or by the ranks of a sample that is there already; contributions of that surface are then unknown.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::CharacteristicAnalysis;
 use super::sobol::{FactorIndices, IndexSource, SobolIndices};
@@ -118,7 +119,7 @@ fn of_surface(one: &CharacteristicAnalysis, factors: &[Vec<usize>]) -> Vec<Pair>
     for (place, factor) in factors.iter().enumerate() {
         holders.extend(factor.iter().map(|&d| (one.sensitivities[d].dimension.as_str(), place)));
     }
-    let holder = |name: &String| holders.get(name.as_str()).copied();
+    let holder = |name: &Arc<str>| holders.get(&**name).copied();
     let mut inside: Vec<Option<f64>> =
         factors.iter().map(|factor| factor.iter().map(own).sum::<Option<f64>>().filter(|_| trusted)).collect();
     let mut across: Vec<Option<f64>> = vec![complete.then_some(0.0); factors.len()];

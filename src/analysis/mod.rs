@@ -64,6 +64,7 @@ use serde::Serialize;
 
 use crate::assembly::Run;
 use crate::extremes::{SearchedExtremes, enclose, search};
+use crate::law::SurfaceLaw;
 use crate::method::{
     Basis, ClimbEnd, DerivativeSource, Method, MethodError, Narrow, Narrowed, Options, Outcome, climb_until,
 };
@@ -142,15 +143,24 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_with(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
-    analyze_keeping(problem, options, run).map(|(analysis, _)| analysis)
+    let (mut analysis, kept) = analyze_keeping(problem, options, run)?;
+    analysis.complete(&kept, problem, options, run);
+    Ok(analysis)
 }
 
-/// [`analyze_with`], with what the method found out, for who goes on from there.
+/// What an analysis leaves to who goes on from there.
+pub(crate) struct Kept {
+    pub(crate) outcome: Outcome,
+    /// The laws of the surfaces by characteristic, where the yields have them.
+    laws: Vec<Option<SurfaceLaw>>,
+}
+
+/// [`analyze_with`] as far as a search of tolerances reads it, which asks for one result after another: [`Analysis::complete`] adds the rest.
 pub(crate) fn analyze_keeping(
     problem: &Problem,
     options: &Options,
     run: &Run<'_>,
-) -> Result<(Analysis, Outcome), MethodError> {
+) -> Result<(Analysis, Kept), MethodError> {
     let begun = Instant::now();
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
@@ -182,17 +192,15 @@ pub(crate) fn analyze_keeping(
     if options.verification(signature) > 0 && !run.stopped() {
         enclose_all(problem, &outcome, &mut characteristics, run);
     }
-    let joint = settle::settle(problem, &outcome, options, &mut characteristics);
+    let laws = settle::settle(problem, &outcome, options, &mut characteristics);
+    let joint = options.target_joint_yield.and_then(|_| settle::joint(&characteristics, &laws));
     let spent = spent(&outcome, options).and(&fallback.run).and(&jumps.run).and(&verified);
-    let correlations = outputs::correlations(problem, &outcome, options, &characteristics);
     // The extremes say nothing of a share.
     characteristics.iter_mut().for_each(|one| one.unfinished = spent.unfinished());
     let warnings = warnings::of(problem, &outcome, &characteristics, jumps.warnings);
     let account = Account::of(problem, &outcome, &characteristics, outcome.evaluated.evaluations);
     let drawn = bootstrap::intervals(problem, &outcome, &mut characteristics, seed);
     let surface = Surface::of(&outcome, &characteristics);
-    // Last, because warnings and accounts read the contributions of a surface that is not trusted too.
-    indices::add(problem, &outcome, options, &mut characteristics, run);
     let analysis = Analysis {
         method: outcome.method,
         varying: outcome.plan.varying().len(),
@@ -208,10 +216,25 @@ pub(crate) fn analyze_keeping(
         joint_requirement: joint_requirement(problem, options, joint, &characteristics),
         characteristics,
         joint,
-        correlations,
+        correlations: Vec::new(),
         warnings,
     };
-    Ok((analysis, outcome))
+    Ok((analysis, Kept { outcome, laws }))
+}
+
+impl Analysis {
+    /// Adds what the rest does not follow from: the joint yield, how characteristics vary together, and the indices of Sobol'.
+    pub(crate) fn complete(&mut self, kept: &Kept, problem: &Problem, options: &Options, run: &Run<'_>) {
+        let begun = Instant::now();
+        let Kept { outcome, laws } = kept;
+        if self.joint.is_none() {
+            self.joint = settle::joint(&self.characteristics, laws);
+        }
+        self.correlations = outputs::correlations(problem, outcome, options, &self.characteristics);
+        // Last, because warnings and accounts read the contributions of a surface that is not trusted too.
+        indices::add(problem, outcome, options, &mut self.characteristics, run);
+        self.run.wall += begun.elapsed();
+    }
 }
 
 /// Whether the joint yield reaches its target: by its value and two errors on either side.

@@ -34,13 +34,13 @@ struct Rejected {
 }
 
 /// Decides for every characteristic what its yield comes from, and sets capability and the error of the yield accordingly; the
-/// share of assemblies that keep the limits of all characteristics. Evaluates nothing of the model.
+/// laws of the surfaces. Evaluates nothing of the model.
 pub(super) fn settle(
     problem: &Problem,
     outcome: &Outcome,
     options: &Options,
     characteristics: &mut [CharacteristicAnalysis],
-) -> Option<Verified> {
+) -> Vec<Option<SurfaceLaw>> {
     let (densities, seed) = (options.densities, options.seed.unwrap_or(Options::SEED));
     let mut laws: Vec<Option<SurfaceLaw>> = Vec::new();
     for (c, one) in characteristics.iter_mut().enumerate() {
@@ -67,12 +67,12 @@ pub(super) fn settle(
         }
         one.inspection = inspected(one, laws[c].as_ref());
     }
-    joint(characteristics, &laws)
+    laws
 }
 
-/// `1 - sum of all rejects + E[(number of broken limits - 1)+]`: the rejects by their sources, what they have in common by the laws of
+/// The share of assemblies that keep the limits of all characteristics, `1 - sum of all rejects + E[(number of broken limits - 1)+]`: the rejects by their sources, what they have in common by the laws of
 /// the surfaces. None with fewer than two characteristics with limits, and where a law or an error is not known.
-fn joint(characteristics: &[CharacteristicAnalysis], laws: &[Option<SurfaceLaw>]) -> Option<Verified> {
+pub(super) fn joint(characteristics: &[CharacteristicAnalysis], laws: &[Option<SurfaceLaw>]) -> Option<Verified> {
     let limited = || characteristics.iter().zip(laws).filter(|(one, _)| one.characteristic.limits().exist());
     if limited().count() < 2 {
         return None;

@@ -77,8 +77,9 @@ fn overlap(limited: &[&(&SurfaceLaw, SpecLimits)], tails: f64) -> LawFigure {
         return both;
     }
     let inputs = Inputs::of(limited);
-    let several: Vec<f64> =
-        (0..REPLICATES).into_par_iter().map(|replicate| inputs.several(limited, replicate)).collect();
+    let sobol = Sobol::new(inputs.laws.len().min(SOBOL_DIMENSIONS));
+    let of = |replicate: usize| inputs.several(limited, &inputs.columns(sobol.as_ref(), replicate));
+    let several: Vec<f64> = (0..REPLICATES).into_par_iter().map(of).collect();
     let n = REPLICATES as f64;
     let mean = several.iter().sum::<f64>() / n;
     let variance = several.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (n - 1.0);
@@ -138,36 +139,57 @@ impl Inputs {
         Self { laws, members, factor, blocks }
     }
 
-    /// The mean of the broken limits beyond the first over the points of a replicate.
-    #[expect(clippy::needless_range_loop, reason = "a point is a row over all columns")]
-    fn several(&self, characteristics: &[&(&SurfaceLaw, SpecLimits)], replicate: usize) -> f64 {
-        let sobol = Sobol::new(self.laws.len().min(SOBOL_DIMENSIONS));
-        let columns: Vec<Vec<f64>> = (0..self.laws.len())
-            .map(|dimension| {
-                let key = mixed(mixed(mixed(SEED) ^ replicate as u64).wrapping_add(dimension as u64));
-                let mut column = vec![0.0; POINTS];
-                match &sobol {
-                    Some(sobol) if dimension < SOBOL_DIMENSIONS => sobol.column(dimension, 0, Some(key), &mut column),
-                    _ => column.iter_mut().enumerate().for_each(|(i, u)| {
-                        *u = (mixed(key ^ i as u64) >> 12) as f64 / (1u64 << 52) as f64;
-                    }),
+    /// The mean of the broken limits beyond the first over some points.
+    fn several(&self, characteristics: &[&(&SurfaceLaw, SpecLimits)], columns: &[Vec<f64>]) -> f64 {
+        let mut broken = vec![0usize; POINTS];
+        for (law, limits) in characteristics {
+            let mut own: Vec<&[f64]> = vec![&[]; law.given.len()];
+            for ((position, _), column) in self.laws.iter().zip(columns) {
+                if let Some(at) = law.given.places.get(*position).copied().flatten() {
+                    own[at] = column;
                 }
-                column
-            })
-            .collect();
-        let (mut z, mut scratch) = (vec![0.0; self.laws.len()], Vec::new());
-        let mut own: Vec<Vec<f64>> = characteristics.iter().map(|(law, _)| vec![0.0; law.given.len()]).collect();
-        let mut sum = 0usize;
-        for point in 0..POINTS {
-            let u = |place: usize| columns[place][point] + 0.5f64.powi(53);
-            let tail = |u: f64| if u > 0.5 { u - 1.0 } else { u };
-            for (place, (z, (_, law))) in z.iter_mut().zip(&self.laws).enumerate() {
-                *z = if self.members.contains(&place) {
-                    standard_normal::quantile(u(place))
-                } else {
-                    law.at_tail(tail(u(place)))
-                };
             }
+            for (broken, value) in broken.iter_mut().zip(law.given.values(&own, POINTS)) {
+                *broken += usize::from(!limits.contains(value));
+            }
+        }
+        broken.into_iter().map(|broken| broken.saturating_sub(1)).sum::<usize>() as f64 / POINTS as f64
+    }
+
+    /// The inputs at the points of a replicate, in sigmas off their means.
+    fn columns(&self, sobol: Option<&Sobol>, replicate: usize) -> Vec<Vec<f64>> {
+        let mut columns: Vec<Vec<f64>> = Vec::with_capacity(self.laws.len());
+        for (dimension, (_, law)) in self.laws.iter().enumerate() {
+            let key = mixed(mixed(mixed(SEED) ^ replicate as u64).wrapping_add(dimension as u64));
+            let mut column = vec![0.0; POINTS];
+            match sobol {
+                Some(sobol) if dimension < SOBOL_DIMENSIONS => sobol.column(dimension, 0, Some(key), &mut column),
+                _ => column.iter_mut().enumerate().for_each(|(i, u)| {
+                    *u = (mixed(key ^ i as u64) >> 12) as f64 / (1u64 << 52) as f64;
+                }),
+            }
+            // Counted from the nearer end, at the middle of a cell.
+            for u in &mut column {
+                *u += 0.5f64.powi(53);
+                *u = if *u > 0.5 { *u - 1.0 } else { *u };
+            }
+            match self.members.contains(&dimension) {
+                true => standard_normal::quantiles(&mut column),
+                false => law.at_tails(&mut column),
+            }
+            columns.push(column);
+        }
+        if !self.members.is_empty() {
+            self.correlate(&mut columns);
+        }
+        columns
+    }
+
+    /// From independent normal variables of the correlated inputs to the inputs.
+    fn correlate(&self, columns: &mut [Vec<f64>]) {
+        let (mut z, mut scratch) = (vec![0.0; self.laws.len()], Vec::new());
+        for point in 0..POINTS {
+            z.iter_mut().zip(columns.iter()).for_each(|(z, column)| *z = column[point]);
             let normals: Vec<f64> = self.members.iter().map(|&place| z[place]).collect();
             for (a, &place) in self.members.iter().enumerate() {
                 z[place] = normals.iter().enumerate().map(|(b, v)| self.factor[(a, b)] * v).sum();
@@ -175,23 +197,12 @@ impl Inputs {
             self.blocks.iter().for_each(|block| block.apply(&mut z, &mut scratch));
             for &place in &self.members {
                 let (law, normal) = (&self.laws[place].1, z[place]);
-                z[place] = match (law.is_normal(), normal < 0.0) {
+                columns[place][point] = match (law.is_normal(), normal < 0.0) {
                     (true, _) => normal,
                     (_, true) => law.at_tail(standard_normal::cdf(normal)),
                     _ => law.at_tail(-standard_normal::sf(normal)),
                 };
             }
-            let mut broken = 0usize;
-            for ((law, limits), own) in characteristics.iter().zip(&mut own) {
-                for (place, (position, _)) in self.laws.iter().enumerate() {
-                    if let Some(at) = law.given.places.get(*position).copied().flatten() {
-                        own[at] = z[place];
-                    }
-                }
-                broken += usize::from(!limits.contains(law.given.value(own)));
-            }
-            sum += broken.saturating_sub(1);
         }
-        sum as f64 / POINTS as f64
     }
 }

@@ -9,6 +9,7 @@ use super::input::Input;
 use super::polynomial::{Quartic, range, value};
 use crate::correlation::{Block, Correlation};
 use crate::distribution::Distribution;
+use crate::elementary::{Work, on_this_processor};
 use crate::surrogate::Surrogate;
 
 /// `y = centre + sum g_j(z_j) + sum b_jk z_j z_k` over the inputs that have a part in it.
@@ -141,6 +142,11 @@ impl Surface {
         self.centre + own + self.products().map(|(j, k, b)| b * z[j] * z[k]).sum::<f64>()
     }
 
+    /// The surface itself at some points: a column for every input.
+    pub(super) fn values(&self, z: &[&[f64]], points: usize) -> Vec<f64> {
+        on_this_processor(Values { surface: self, z, points })
+    }
+
     /// Sets of inputs that depend on each other, by products or by correlation; each ascending.
     pub(super) fn components(&self) -> Vec<Vec<usize>> {
         let n = self.len();
@@ -222,6 +228,40 @@ impl Surface {
         // The rounding errors of the sums are added on either side, so that the bounds are a proof.
         let slack = |end: f64| 4.0 * f64::EPSILON * (self.len() + 1) as f64 * end.abs().max(self.centre.abs());
         [low - slack(low), high + slack(high)]
+    }
+}
+
+/// Points that are taken together.
+const LANES: usize = 256;
+
+struct Values<'a> {
+    surface: &'a Surface,
+    z: &'a [&'a [f64]],
+    points: usize,
+}
+
+impl Work for Values<'_> {
+    type Output = Vec<f64>;
+
+    /// Every sum in the order of [`Surface::value`].
+    #[inline(always)]
+    fn work(self) -> Vec<f64> {
+        let Self { surface, z, points } = self;
+        let mut values = Vec::with_capacity(points);
+        for first in (0..points).step_by(LANES) {
+            let rows = first..points.min(first + LANES);
+            let (mut own, mut products) = ([0.0; LANES], [0.0; LANES]);
+            for (part, z) in surface.parts.iter().zip(z) {
+                own.iter_mut().zip(&z[rows.clone()]).for_each(|(own, &z)| *own += value(part, z));
+            }
+            for (j, k, b) in surface.products() {
+                let both = z[j][rows.clone()].iter().zip(&z[k][rows.clone()]);
+                products.iter_mut().zip(both).for_each(|(sum, (zj, zk))| *sum += b * zj * zk);
+            }
+            let sums = own.iter().zip(&products).take(rows.len());
+            values.extend(sums.map(|(own, products)| surface.centre + own + products));
+        }
+        values
     }
 }
 

@@ -16,11 +16,13 @@
 //! reproduced (see `examples/stacked-blocks/README.md`).
 
 mod assemble;
+mod growth;
 mod interactions;
 mod pairwise;
 mod part;
 mod sum;
 
+pub(crate) use growth::growths;
 pub use interactions::Interactions;
 pub(crate) use interactions::Row;
 pub use pairwise::Tables;
@@ -196,8 +198,7 @@ pub fn contributions(constant: f64, terms: &[Term<'_>], interactions: &Interacti
     assert_eq!(terms.len(), interactions.dimensions(), "as many terms as the interactions have rows");
     let mean_shift: Vec<f64> = terms.iter().map(Term::mean).collect();
     let mean = sum::exact([constant].into_iter().chain(mean_shift.iter().copied()));
-    let largest = terms.iter().map(Term::largest).fold(interactions.largest(), f64::max);
-    if largest == 0.0 {
+    let Some((sigma, per_sigma)) = unit_of(terms, interactions) else {
         let none = vec![0.0; terms.len()];
         let moments = Moments::constant(mean);
         return Contributions {
@@ -209,15 +210,11 @@ pub fn contributions(constant: f64, terms: &[Term<'_>], interactions: &Interacti
             products: None,
             sampled: None,
         };
-    }
-    // Divided by the largest coefficient first and by sigma then: no square leaves the range of a double.
-    let variances = terms.iter().map(|term| term.variance(1.0 / largest));
-    let relative = (sum::exact(variances) + interactions.variance(1.0 / largest)).sqrt();
-    let per_sigma = 1.0 / largest / relative;
+    };
     let parts: Vec<JointCumulants> = terms.iter().map(|term| term.part(per_sigma)).collect();
     let assembly = Assembly::of(&parts, interactions, per_sigma);
     Contributions {
-        moments: Moments::new(mean, largest * relative, assembly.skewness, assembly.excess),
+        moments: Moments::new(mean, sigma, assembly.skewness, assembly.excess),
         linear: parts.iter().map(|part| part.p * part.p).collect(),
         curvature: parts.iter().map(|part| part.curved).collect(),
         mean_shift,
@@ -225,6 +222,18 @@ pub fn contributions(constant: f64, terms: &[Term<'_>], interactions: &Interacti
         products: None,
         sampled: None,
     }
+}
+
+/// Sigma, and by what a coefficient is multiplied so that sigma is 1; None where nothing varies.
+fn unit_of(terms: &[Term<'_>], interactions: &Interactions) -> Option<(f64, f64)> {
+    let largest = terms.iter().map(Term::largest).fold(interactions.largest(), f64::max);
+    if largest == 0.0 {
+        return None;
+    }
+    // Divided by the largest coefficient first and by sigma then: no square leaves the range of a double.
+    let variances = terms.iter().map(|term| term.variance(1.0 / largest));
+    let relative = (sum::exact(variances) + interactions.variance(1.0 / largest)).sqrt();
+    Some((largest * relative, 1.0 / largest / relative))
 }
 
 /// Moments of a second-order model, the case that the published methods treat:

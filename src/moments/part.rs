@@ -101,6 +101,38 @@ impl Term<'_> {
         }
     }
 
+    /// How the joint cumulants of `factor g` grow with the logarithm of the input's scale, about its mean; `growth` are the values of `u g'(u)` at
+    /// the nodes of a table.
+    pub(super) fn part_growth(&self, factor: f64, growth: &[f64]) -> JointCumulants {
+        let ((p, h), moments) = (self.split(factor), self.moments());
+        let (dp, dh) = self.split_growth(factor, growth);
+        let (s, k) = (moments.skewness, moments.excess);
+        JointCumulants {
+            p: dp,
+            curved: dh.hh,
+            q: dp * s + dh.uuh,
+            w: 2.0 * p * dp * s + 2.0 * (dp * h.uuh + p * dh.uuh) + dh.uhh,
+            k3: 3.0 * p * p * (dp * s + dh.uuh) + 6.0 * p * dp * h.uuh + 3.0 * (dp * h.uhh + p * dh.uhh) + dh.hhh,
+            c13: dp * k + dh.uuuh,
+            c22: 2.0 * p * dp * k + 2.0 * (dp * h.uuuh + p * dh.uuuh) + dh.uuhh,
+            k4: 4.0 * p.powi(3) * (dp * k + dh.uuuh)
+                + 6.0 * p * p * (2.0 * dp * h.uuuh + dh.uuhh)
+                + 12.0 * p * dp * h.uuhh
+                + 4.0 * (dp * h.uhhh + p * dh.uhhh)
+                + dh.hhhh,
+            s: 0.0,
+            k: 0.0,
+        }
+    }
+
+    /// How the mean grows with it.
+    pub(super) fn mean_growth(&self, growth: &[f64]) -> f64 {
+        match self {
+            Self::Quadratic { curvature, .. } => 2.0 * curvature,
+            Self::Tabulated { rule, .. } => expectation(rule, |i| growth[i]),
+        }
+    }
+
     fn moments(&self) -> &StandardMoments {
         match self {
             Self::Quadratic { moments, .. } | Self::Tabulated { moments, .. } => moments,
@@ -132,6 +164,27 @@ impl Term<'_> {
                     rest = RestCumulants { hh: if straight { 0.0 } else { f64::NAN }, ..RestCumulants::default() };
                 }
                 (p, rest)
+            }
+        }
+    }
+
+    /// How what [`split`](Self::split) returns grows with the logarithm of the input's scale.
+    fn split_growth(&self, factor: f64, growth: &[f64]) -> (f64, RestCumulants) {
+        match self {
+            // The slope grows as the scale, the curvature as its square.
+            Self::Quadratic { linear, .. } => {
+                let (p, h) = self.split(factor);
+                (2.0 * p - factor * linear, h.growing_as_squares())
+            }
+            Self::Tabulated { values, rule, .. } => {
+                let centred = |values: &[f64]| -> (f64, Vec<f64>) {
+                    let mean = expectation(rule, |i| values[i]);
+                    let centred: Vec<f64> = values.iter().map(|value| factor * (value - mean)).collect();
+                    let p = expectation(rule, |i| centred[i] * rule.nodes[i]);
+                    (p, centred.iter().zip(&rule.nodes).map(|(g, u)| g - p * u).collect())
+                };
+                let ((_, h), (dp, dh)) = (centred(values), centred(growth));
+                (dp, RestCumulants::growth_of_table(&h, &dh, rule))
             }
         }
     }
@@ -170,6 +223,36 @@ impl RestCumulants {
             uuhh: a * a * (uuvv - 2.0 * s * uuuv + s2 * k),
             uhhh: a.powi(3) * (uvvv - 3.0 * s * uuvv + 3.0 * s2 * uuuv - s2 * s * k),
             hhhh: a.powi(4) * (vvvv - 4.0 * s * uvvv + 6.0 * s2 * uuvv - 4.0 * s2 * s * uuuv + s2 * s2 * k),
+        }
+    }
+
+    /// Derivatives where `h` grows as the square of what they are by the logarithm of.
+    fn growing_as_squares(self) -> Self {
+        Self {
+            hh: 4.0 * self.hh,
+            uuh: 2.0 * self.uuh,
+            uhh: 4.0 * self.uhh,
+            hhh: 6.0 * self.hhh,
+            uuuh: 2.0 * self.uuuh,
+            uuhh: 4.0 * self.uuhh,
+            uhhh: 6.0 * self.uhhh,
+            hhhh: 8.0 * self.hhhh,
+        }
+    }
+
+    /// Derivatives where `h` grows by `d`.
+    fn growth_of_table(h: &[f64], d: &[f64], rule: &Rule) -> Self {
+        let mean = |f: &dyn Fn(f64, f64, f64) -> f64| expectation(rule, |i| f(rule.nodes[i], h[i], d[i]));
+        let (hh, growth) = (mean(&|_, h, _| h * h), mean(&|_, h, d| 2.0 * h * d));
+        Self {
+            hh: growth,
+            uuh: mean(&|u, _, d| u * u * d),
+            uhh: mean(&|u, h, d| 2.0 * u * h * d),
+            hhh: mean(&|_, h, d| 3.0 * h * h * d),
+            uuuh: mean(&|u, _, d| u * u * u * d),
+            uuhh: mean(&|u, h, d| 2.0 * (u * u - 1.0) * h * d),
+            uhhh: mean(&|u, h, d| 3.0 * u * h * h * d),
+            hhhh: mean(&|_, h, d| 4.0 * h * h * h * d) - 6.0 * hh * growth,
         }
     }
 

@@ -521,8 +521,8 @@ impl CharacteristicAnalysis {
         };
         Columns::default()
             .data("characteristic", |_| Cell::text(self.name()))
-            .data("dimension_a", |pair: &&Interaction| Cell::text(&pair.dimensions[0]))
-            .data("dimension_b", |pair| Cell::text(&pair.dimensions[1]))
+            .data("dimension_a", |pair: &&Interaction| Cell::text(&*pair.dimensions[0]))
+            .data("dimension_b", |pair| Cell::text(&*pair.dimensions[1]))
             .named("", "pair", both)
             .column("mixed", "mixed derivative", |pair| {
                 Cell::both(Value::Number(pair.mixed), derivative(pair.mixed, pair.rounding, 6))

@@ -124,8 +124,9 @@ impl Budget {
 }
 
 /// Whether it has a product with another: at the means its slope may be 0 all the same.
-fn interacts(one: &CharacteristicAnalysis, dimension: &String) -> bool {
-    let with = |pair: &Interaction| pair.dimensions.contains(dimension) && pair.mixed.is_some_and(|mixed| mixed != 0.0);
+fn interacts(one: &CharacteristicAnalysis, dimension: &str) -> bool {
+    let named = |pair: &Interaction| pair.dimensions.iter().any(|of| **of == *dimension);
+    let with = |pair: &Interaction| named(pair) && pair.mixed.is_some_and(|mixed| mixed != 0.0);
     one.interactions.iter().any(with)
 }
 

@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use crate::elementary::{Work, on_this_processor};
+
 /// Primitive polynomials and initial direction numbers of Joe and Kuo (2008).
 const JOE_KUO: &str = include_str!("joe_kuo.txt");
 /// Binary digits of a coordinate: the index of a point has as many.
@@ -50,10 +52,7 @@ impl Sobol {
     pub fn column(&self, dimension: usize, first: u64, key: Option<u64>, out: &mut [f64]) {
         let mut digits = vec![0; out.len()];
         self.digits(dimension, first, &mut digits);
-        for (value, digits) in out.iter_mut().zip(digits) {
-            let digits = key.map_or(digits, |key| nested(digits, key));
-            *value = (digits >> (64 - DIGITS)) as f64 / (1u64 << DIGITS) as f64;
-        }
+        on_this_processor(Coordinates { digits: &digits, key, out });
     }
 
     /// The same as words, digits from the top down, not scrambled.
@@ -73,6 +72,26 @@ impl Sobol {
                 out[i] = out[i - known] ^ direction;
             }
             known *= 2;
+        }
+    }
+}
+
+struct Coordinates<'a> {
+    digits: &'a [u64],
+    key: Option<u64>,
+    out: &'a mut [f64],
+}
+
+impl Work for Coordinates<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        let of = |digits: u64| (digits >> (64 - DIGITS)) as f64 / (1u64 << DIGITS) as f64;
+        let points = self.out.iter_mut().zip(self.digits);
+        match self.key {
+            Some(key) => points.for_each(|(value, &digits)| *value = of(nested(digits, key))),
+            None => points.for_each(|(value, &digits)| *value = of(digits)),
         }
     }
 }

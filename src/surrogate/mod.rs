@@ -9,8 +9,8 @@
 mod chaos;
 mod correlated;
 mod drawn;
+mod growth;
 mod inputs;
-mod normal_slopes;
 mod parabolas;
 mod pooled;
 mod relocation;

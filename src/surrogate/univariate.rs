@@ -107,6 +107,12 @@ impl Univariate {
         higher.iter().all(|coefficient| coefficient.abs() <= part * slope.abs())
     }
 
+    /// `u g'(u)` at these places: how the part grows with the logarithm of the input's scale.
+    pub(crate) fn growth_at(&self, places: &[f64]) -> Vec<f64> {
+        let [a, b, c, d] = self.coefficients;
+        places.iter().map(|u| (((4.0 * d * u + 3.0 * c) * u + 2.0 * b) * u + a) * u).collect()
+    }
+
     /// The part as a term of the moments: a parabola by the input's moments, anything higher by its rule.
     pub(crate) fn term<'a>(&self, shape: &'a InputShape) -> Term<'a> {
         let moments = &shape.moments;

@@ -82,11 +82,13 @@ impl<'p> Space<'p> {
 
     /// The points of the problem.
     pub(crate) fn points(&self, normals: &Columns) -> Points {
-        let columns = self.standardised(normals);
         let mut points = Points::repeated(&self.centre, normals.first().map_or(1, Vec::len));
-        for (input, column) in self.inputs.iter().zip(&columns) {
+        let together = self.correlated.as_ref().map(|together| together.apply(normals));
+        for (input, column) in self.inputs.iter().zip(together.as_ref().unwrap_or(normals)) {
             let values = points.column_mut(input.dimension);
-            values.iter_mut().zip(column).for_each(|(x, u)| *x = input.mean + input.sigma * u);
+            values.copy_from_slice(column);
+            input.transform(values);
+            values.iter_mut().for_each(|x| *x = input.mean + input.sigma * *x);
         }
         points
     }
