@@ -72,7 +72,7 @@ fn quadratics_are_exact() {
         relative(found.moments.unwrap().sigma(), f64::sqrt(variance), 1e-14);
         relative(found.moments.unwrap().mean(), 1.3, 1e-14);
         let strongest = &found.interactions[0];
-        assert_eq!(strongest.dimensions, ["x1", "x2"]);
+        assert_eq!(strongest.dimensions, ["x1", "x2"].map(std::sync::Arc::from));
         relative(strongest.mixed.unwrap(), 0.7, 1e-13);
         relative(strongest.share.unwrap(), 0.49 / variance, 1e-13);
         relative(found.sensitivities[0].second.unwrap(), 0.6, 1e-13);
@@ -213,7 +213,7 @@ fn six_n_picks_the_strongest_pairs() {
     let f = |x: &[f64]| 3.0 * x[0] + 0.1 * (x[1] + x[2] + x[3]) + 2.0 * x[4] * x[4] + x[5] * x[5] + 0.5 * x[4] * x[5];
     let found = analysis(standard(6), Method::SixN, f).characteristics.remove(0);
     assert_eq!(found.interactions.len(), 6);
-    assert_eq!(found.interactions[0].dimensions, ["x4", "x5"]);
+    assert_eq!(found.interactions[0].dimensions, ["x4", "x5"].map(std::sync::Arc::from));
     relative(found.interactions[0].mixed.unwrap(), 0.5, 1e-13);
     assert_eq!((found.possible_interactions, found.left_out_share), (15, None));
     let three = analysis(standard(3), Method::SixN, |x| x[0] * x[1] + x[2]).characteristics.remove(0);
