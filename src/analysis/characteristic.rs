@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use super::coverage_intervals::CoverageIntervals;
@@ -17,11 +16,13 @@ use crate::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
 use crate::moments::{Moments, Sampled};
+use crate::parallel::prelude::*;
 use crate::pearson::PearsonError;
 use crate::plan::Point;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::shape::{Four, through};
+use crate::short_sort::ShortSort;
 use crate::verdict::{self, Judged, Verdict};
 
 /// Moments, sensitivities and contributions of one characteristic. Unknown values are None.
@@ -499,7 +500,7 @@ fn interactions(problem: &Problem, outcome: &Outcome, c: usize, shares: Option<&
         .filter(|(_, ((j, k), _))| plan.joint(c, *j, *k))
         .map(|(index, _)| (index as u32, share(index).unwrap_or(-1.0)))
         .collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    order.sort_short_by(|a, b| b.1.total_cmp(&a.1));
     let interaction = |index: usize| {
         let mixed = fitted.mixed[index];
         let (j, k) = outcome.pairs[index];
