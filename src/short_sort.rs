@@ -64,7 +64,7 @@ mod tests {
             prop_assert_eq!(&by_key, &expected);
             whole.sort_short();
             prop_assert_eq!(whole, expected);
-            descending.sort_by(|a, b| b.0.cmp(&a.0));
+            descending.sort_by_key(|&(key, _)| std::cmp::Reverse(key));
             by.sort_short_by(|a, b| b.0.cmp(&a.0));
             prop_assert_eq!(by, descending);
         }
