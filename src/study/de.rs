@@ -141,7 +141,7 @@ fn words(expected: &dyn de::Expected) -> String {
 }
 
 impl Tree {
-    /// A value of another kind than `expected`.
+    /// The fault of a value that is not `expected`.
     #[cold]
     fn mismatch(&self, expected: &dyn de::Expected) -> Error {
         let found = match &self.value {
@@ -273,7 +273,7 @@ impl<'de> Deserializer<'de> for &'de Tree {
         if is_spanned(name) {
             return visitor.visit_map(SpannedDeserializer::new(self, self.span.clone()));
         }
-        // Keys have names: a list of values in the order of a structure's fields is no table.
+        // Keys have names: a list of values in the order of a structure's fields is not a table.
         self.deserialize_map(visitor)
     }
 
@@ -349,5 +349,45 @@ impl<'de> Deserializer<'de> for &'de Key {
     serde::forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct
         newtype_struct seq tuple tuple_struct map enum identifier ignored_any
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[derive(Debug, Deserialize)]
+    #[allow(dead_code)]
+    struct Entry {
+        nominal: f64,
+        count: u64,
+        name: Option<String>,
+        pair: Option<[f64; 2]>,
+    }
+
+    /// An entry as it is read, or its first fault.
+    fn read_entry(entry: &str) -> Result<Entry, String> {
+        let tree = Tree::of_json(&format!("{{\"entry\": {entry}}}")).map_err(|fault| fault.fault.to_string())?;
+        let found = read::<std::collections::BTreeMap<String, Entry>>(&tree);
+        found.map(|mut found| found.remove("entry").unwrap()).map_err(|faults| faults.0[0].fault.to_string())
+    }
+
+    #[test]
+    fn values_of_a_wrong_type_are_named() {
+        let entry = read_entry(r#"{"nominal": 1, "count": 2, "name": "a", "pair": [1, 2.5]}"#).unwrap();
+        assert_eq!((entry.nominal, entry.count, entry.pair), (1.0, 2, Some([1.0, 2.5])));
+        for (wrong, said) in [
+            (r#"[1, 2, "a"]"#, "a list stands"),
+            (r#"{"nominal": "1", "count": 2}"#, "the text \"1\" stands where a number is needed"),
+            (r#"{"nominal": 1, "count": 2.5}"#, "the number 2.5 stands"),
+            (r#"{"nominal": 1, "count": 2, "name": true}"#, "`true` stands where a text in quotes is needed"),
+            (r#"{"nominal": 1, "count": 2, "pair": [1, 2, 3]}"#, "a list of 3 stands"),
+            (r#"{"nominal": 1, "count": 2, "pair": {"a": 1}}"#, "a table stands"),
+        ] {
+            let found = read_entry(wrong).unwrap_err();
+            assert!(found.starts_with(said), "{wrong}: {found}");
+        }
     }
 }
