@@ -11,6 +11,7 @@ use crate::method::{self, Method, Options, Procedure};
 use crate::problem::Problem;
 use crate::sampling::{Estimate, Sampler, one_error};
 use crate::shape::seconds;
+use crate::short_sort::ShortSort;
 use crate::simulation::{SimulatedCharacteristic, Simulation, SimulationError, SimulationOptions, simulate_with};
 use crate::summary::RunSummary;
 use crate::time::Instant;
@@ -414,7 +415,7 @@ impl Comparer<'_> {
             ran.errors =
                 ran.figures.iter().zip(&reference.characteristics).map(|(found, of)| errors(found, of)).collect();
         }
-        self.ran.sort_by_key(|ran| ran.evaluations);
+        self.ran.sort_short_by_key(|ran| ran.evaluations);
         let fronts: Vec<Vec<bool>> = (0..reference.characteristics.len()).map(|c| front(&self.ran, c)).collect();
         for (index, ran) in self.ran.iter_mut().enumerate() {
             ran.pareto = fronts.iter().map(|front| front[index]).collect();

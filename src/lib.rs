@@ -108,6 +108,7 @@ mod method_kind;
 pub mod models;
 mod moments;
 mod names;
+mod parallel;
 pub mod pearson;
 mod plan;
 pub mod probe;
@@ -118,6 +119,7 @@ pub mod report;
 mod requirement;
 mod sampling;
 mod shape;
+mod short_sort;
 pub mod simulation;
 #[cfg(feature = "study")]
 pub mod study;

@@ -1,4 +1,4 @@
-// The page from its parts: `node assemble.mjs FOLDER PAGE`, where FOLDER has the engine as wasm-bindgen and wasm-opt left it.
+// The page from its parts: `node assemble.mjs FOLDER PAGE`, where FOLDER has the engine and what unpacks it as web/build left them.
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -31,12 +31,14 @@ const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base
 
 const style = part("page.css"), script = scripted(["study.js", "engine.js", "serve.js", "page.js", "folder.js"].map(part).join(""));
 const policy = `default-src 'none'; style-src ${hash(style)}; script-src ${hash(script)} 'wasm-unsafe-eval'; worker-src blob:; base-uri 'none'; form-action 'none'`;
-const wasm = gzipSync(readFileSync(join(folder, "small.wasm")), { level: 9 });
+const made = (name) => readFileSync(join(folder, name)), glue = (name) => scripted(made(name).toString("utf8"));
+const packed = made("engine.packed"), unpack = made("unpack.wasm");
 const parts = {
   POLICY: policy, VERSION: version, STYLE: style, SCRIPT: script, EXAMPLES: data(examples),
-  GLUE: scripted(readFileSync(join(folder, "engine.js"), "utf8")), WORKER: scripted(part("worker.js")), ENGINE: wasm.toString("base64"),
+  GLUE: glue("engine.js"), WORKER: scripted(part("worker.js")), ENGINE: packed.toString("base64"),
+  UNPACKGLUE: glue("unpack.js"), UNPACKWORKER: scripted(part("unpack.js")), UNPACK: unpack.toString("base64"),
 };
 const text = part("page.html").replace(/@([A-Z]+)@/g, (whole, name) => parts[name] ?? whole);
 mkdirSync(dirname(page), { recursive: true });
 writeFileSync(page, text);
-console.log(`${page}: ${Math.round(text.length / 1000)} kB, ${Math.round(gzipSync(text).length / 1000)} kB gzipped; the engine ${Math.round(wasm.length / 1000)} kB gzipped`);
+console.log(`${page}: ${Math.round(text.length / 1000)} kB, ${Math.round(gzipSync(text).length / 1000)} kB gzipped; the engine ${Math.round(packed.length / 1000)} kB packed`);

@@ -18,6 +18,7 @@ use crate::dimension::Dimension;
 use crate::law::rejected;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
+use crate::short_sort::ShortSort;
 
 /// Choices few enough to look at all.
 const ALL: usize = 20_000;
@@ -278,7 +279,7 @@ impl<'s, 'a> Judge<'s, 'a> {
         };
         let all: usize = counts.iter().product();
         let mut choices: Vec<(f64, usize)> = (0..all).map(|code| (self.held(&picks(code)), code)).collect();
-        choices.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        choices.sort_short_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut best: Option<(f64, Vec<usize>, f64)> = None;
         let mut nodes = 0;
         for (held, code) in choices {

@@ -18,6 +18,7 @@ use super::task::{AllocateError, Goal};
 use crate::analysis::TRUSTED;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
+use crate::short_sort::ShortSort;
 use crate::simulation::{SimulationOptions, simulate_with};
 use crate::summary::StopReason;
 use crate::verdict::{Judged, Verdict};
@@ -314,7 +315,7 @@ impl Driver<'_> {
                 });
             }
         }
-        all.sort_by_key(|one| one.dimension);
+        all.sort_short_by_key(|one| one.dimension);
         all
     }
 }

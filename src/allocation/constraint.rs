@@ -25,6 +25,7 @@ use crate::capability::{self, Capability, Law};
 use crate::characteristic::SpecLimits;
 use crate::moments::Moments;
 use crate::requirement::Requirement;
+use crate::short_sort::ShortSort;
 
 /// The difference that sums in another order may make: limits that are met to the last digit are kept.
 pub(super) const KEPT: f64 = 1e-12;
@@ -515,7 +516,7 @@ impl Constraint {
             .map(|d| (responses.spread(self.characteristic, d), d))
             .filter(|(harm, _)| *harm > 0.0)
             .collect();
-        harm.sort_by(|a, b| b.0.total_cmp(&a.0));
+        harm.sort_short_by(|a, b| b.0.total_cmp(&a.0));
         harm.into_iter().map(|(_, d)| responses.dimensions[d].name().to_owned()).collect()
     }
 

@@ -7,6 +7,7 @@ use super::made::Made;
 use super::written_cost::WrittenCost;
 use crate::assembly::formula::{Formula, FormulaError};
 use crate::problem::Problem;
+use crate::short_sort::ShortSort;
 
 /// Cost of one part over its half band `T`, falling as the tolerance opens.
 ///
@@ -289,7 +290,7 @@ impl Priced {
             (offer.min == offer.max && offer.made.is_none()).then_some((offer.min, offer.curve.cost(offer.min)))
         };
         let mut points: Vec<(f64, f64)> = offers.iter().filter_map(single).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.sort_short_by(|a, b| a.0.total_cmp(&b.0));
         if let Some(pair) = points.windows(2).find(|pair| pair[0].0 < pair[1].0 && pair[1].1 > pair[0].1) {
             return Err(CostError::Rising { loose: pair[1].0, tight: pair[0].0 });
         }

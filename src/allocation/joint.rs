@@ -2,9 +2,8 @@
 
 use serde::Serialize;
 
-use rayon::prelude::*;
-
 use super::response::Responses;
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler, wilson};
 

@@ -7,8 +7,6 @@
 //! idea of convex approximations, C. Fleury, "Structural optimization: a new dual method using mixed variables", Int. J. Numerical
 //! Methods in Engineering 23 (1986).
 
-use rayon::prelude::*;
-
 use super::augmented::augmented;
 use super::closed_form::closed_form;
 use super::constraint::{Constraint, Linearised, kept};
@@ -19,6 +17,7 @@ use super::response::Responses;
 use super::separable::{Row, Separable};
 use super::setup::SetUp;
 use super::solved::{Ends, Solved, Starts};
+use crate::parallel::prelude::*;
 use crate::requirement::Requirement;
 
 /// The constraints, and the tolerances that they are on.

@@ -72,7 +72,7 @@ impl Ends {
     /// How many different costs they have.
     pub(super) fn different(&self) -> usize {
         let mut costs = self.costs.clone();
-        costs.sort_by(f64::total_cmp);
+        costs.sort_unstable_by(f64::total_cmp);
         costs.dedup_by(|high, low| *high <= *low * (1.0 + SAME_END));
         costs.len()
     }

@@ -8,7 +8,6 @@
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rayon::prelude::*;
 
 use super::interval::{acceleration, bca};
 use super::{CharacteristicAnalysis, SamplingInterval};
@@ -18,6 +17,7 @@ use crate::correlation::JointLaw;
 use crate::distribution::{Distribution, Resample, Reweighted, StandardMoments};
 use crate::method::Outcome;
 use crate::moments::Moments;
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::surrogate::{InputShape, Inputs, Pooled, Relocation, Surrogate};
 use crate::verdict::including;

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use super::coverage_intervals::CoverageIntervals;
@@ -18,6 +17,7 @@ use crate::characteristic::{Characteristic, SpecLimits};
 use crate::extremes::{Extremes, ExtremesProof};
 use crate::method::{ErrorEstimate, Order, Outcome, Residual, estimate};
 use crate::moments::{Moments, Sampled};
+use crate::parallel::prelude::*;
 use crate::pearson::PearsonError;
 use crate::plan::Point;
 use crate::problem::Problem;
@@ -171,7 +171,8 @@ pub struct Sensitivity {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Interaction {
-    /// The two dimensions. Their names are shared: N of them may have N (N - 1)/2 pairs.
+    /// The two dimensions.
+    // Their names are shared: N of them may have N (N - 1)/2 pairs.
     #[serde(serialize_with = "names")]
     #[cfg_attr(feature = "cli", schemars(with = "[String; 2]"))]
     pub dimensions: [Arc<str>; 2],

@@ -1,9 +1,8 @@
 //! The shares beyond the limits and the quantiles counted at points of a surface whose law could not be computed.
 
-use rayon::prelude::*;
-
 use crate::law::{LawFigure, LawTail, QUANTILE};
 use crate::method::Outcome;
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, SOBOL_DIMENSIONS, Sampler};
 

@@ -9,6 +9,7 @@
 use crate::assembly::{NonRepeatable, Points, Request, Responses, Run};
 use crate::method::{Basis, Outcome};
 use crate::problem::Problem;
+use crate::short_sort::ShortSort;
 use crate::summary::RunSummary;
 use crate::time::Instant;
 use crate::warning::Warning;
@@ -72,7 +73,7 @@ pub(super) fn find(
     }
     let mut sides: Vec<Side> =
         (0..characteristics.len()).flat_map(|c| suspicious(outcome, c, &characteristics[c])).collect();
-    sides.sort_by(|a, b| b.curvature.total_cmp(&a.curvature).then(a.dimension.cmp(&b.dimension)));
+    sides.sort_short_by(|a, b| b.curvature.total_cmp(&a.curvature).then(a.dimension.cmp(&b.dimension)));
     sides.truncate(AXES.min(left.unwrap_or(usize::MAX) / ALL));
     for step in 0..ALL {
         if step == FIRST {
@@ -155,7 +156,7 @@ fn warning(problem: &Problem, outcome: &Outcome, side: &Side, characteristics: &
     let mut at = [place(from), place(to)];
     // From the mean outwards, and so downwards on the left.
     let by = if at[0] > at[1] { before - after } else { after - before };
-    at.sort_by(f64::total_cmp);
+    at.sort_unstable_by(f64::total_cmp);
     let sigma = characteristics[side.characteristic].moments.map_or(f64::NAN, |moments| moments.sigma());
     Warning::Discontinuity {
         characteristic: problem.characteristics()[side.characteristic].name().to_owned(),

@@ -1,8 +1,7 @@
 //! Cheap models on all cores: a batch cut into blocks of rows.
 
-use rayon::prelude::*;
-
 use super::{Points, Request, Responses, Run};
+use crate::parallel::prelude::*;
 
 /// Rows that one task evaluates: enough to hide the cost of starting it, few enough to stay in the cache.
 pub(crate) const BLOCK: usize = 1024;

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::labels::{LETTER, Label, placed};
 use super::number::{plain, significant};
 use super::{Chart, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Stroke};
+use crate::short_sort::ShortSort;
 
 /// The colours of what is to be looked at, and of what it is compared with.
 const ACCENT: &str = "#1f6feb";
@@ -262,7 +263,7 @@ fn beside(plot: &Plot, y: &Ruler, [above, floor]: [f64; 2]) -> Vec<Beside> {
         _ => None,
     };
     let mut names: Vec<Beside> = plot.layers.iter().filter_map(name).collect();
-    names.sort_by(|a, b| a.0.total_cmp(&b.0));
+    names.sort_short_by(|a, b| a.0.total_cmp(&b.0));
     let mut last = above - NEAR;
     for one in &mut names {
         one.0 = one.0.max(last + NEAR);

@@ -151,7 +151,7 @@ fn stationary(coefficients: &[f64; 4], from: f64, to: f64) -> Vec<f64> {
     // Between the zeros of its own derivative the slope is monotonic and has one zero at most.
     let mut ends = vec![from, to];
     ends.extend(quadratic_roots(2.0 * c2, 6.0 * c3, 12.0 * c4).into_iter().filter(|u| from < *u && *u < to));
-    ends.sort_by(f64::total_cmp);
+    ends.sort_unstable_by(f64::total_cmp);
     // A zero that is one of these points changes no sign on either side of it.
     let inner = ends[1..ends.len() - 1].to_vec();
     ends.windows(2).filter_map(|ends| bisect(slope, ends[0], ends[1])).chain(inner).collect()

@@ -13,6 +13,7 @@ use crate::distribution::Distribution;
 use crate::method::Outcome;
 use crate::plan::Point;
 use crate::problem::Problem;
+use crate::short_sort::ShortSort;
 
 /// A surrogate has foretold values that it misses by no more than this part of their range.
 const FORETOLD: f64 = 1e-9;
@@ -187,7 +188,7 @@ impl Task {
             .filter_map(|x| Some((x.clone(), sign * self.value(answers, x)?)))
             .filter(|&(_, y)| y <= strong)
             .collect();
-        others.sort_by(|a, b| a.1.total_cmp(&b.1));
+        others.sort_short_by(|a, b| a.1.total_cmp(&b.1));
         let from = std::iter::once((best, y)).chain(others).take(CLIMBS);
         from.map(|(x, y)| Climb::new(&self.region, &self.surrogate, x, y)).collect()
     }

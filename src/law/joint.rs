@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use faer::{Mat, Side};
-use rayon::prelude::*;
 
 use super::input::Input;
 use super::points::{QUANTILE, REPLICATES, mixed};
@@ -20,6 +19,7 @@ use super::{LawFigure, SurfaceLaw};
 use crate::characteristic::SpecLimits;
 use crate::correlation::Block;
 use crate::distribution::standard_normal;
+use crate::parallel::prelude::*;
 use crate::sampling::{SOBOL_DIMENSIONS, Sobol};
 
 /// Points in every replicate.

@@ -1,10 +1,9 @@
 //! The points of the sampled branch: what the surface is along the direction, at scrambled Sobol' points of the others.
 
-use rayon::prelude::*;
-
 use super::direction::{Direction, Terms};
 use super::polynomial::Quartic;
 use super::tilt::{Proposal, Tilts};
+use crate::parallel::prelude::*;
 use crate::sampling::{SOBOL_DIMENSIONS, Sobol};
 
 /// Replicates: what they differ by is the error.

@@ -6,6 +6,7 @@ use super::hats::{Hat, Hats};
 use super::single_sum::Single;
 use super::surface::Surface;
 use super::tree::Tree;
+use crate::short_sort::ShortSort;
 
 /// A tilt up to this many by sigma is looked for.
 const FARTHEST: f64 = 2000.0;
@@ -88,7 +89,7 @@ impl Transform {
         transform.trees.retain(|tree| !heavy.contains(&tree.sorted()));
         left.extend(heavy);
         if !left.is_empty() {
-            left.sort();
+            left.sort_short();
             transform.measure();
         }
         transform.domain = transform.reach();

@@ -18,8 +18,6 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::cost::affordable;
 use super::quadrature::{Quadrature, check, complete};
 use super::{
@@ -28,6 +26,7 @@ use super::{
 use crate::assembly::Run;
 use crate::distribution::Rule;
 use crate::moments::{Moments, exact};
+use crate::parallel::prelude::*;
 use crate::plan::{KnownAnswers, Plan, Point, Purpose};
 use crate::problem::Problem;
 

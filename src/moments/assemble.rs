@@ -10,9 +10,9 @@
 //!        + (1/2) k'(B∘B) k
 //! ```
 
+use crate::parallel::prelude::*;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
-use rayon::prelude::*;
 
 use super::interactions::{Interactions, Kind};
 use super::part::JointCumulants;

@@ -30,10 +30,9 @@
 //! Cost: `O(N^3 m^3)` multiplications for N variables of m nodes; no evaluation. Accuracy: rounding of `1e-15` times the number
 //! of parts, beside 1 for the skewness and beside 3 for the kurtosis.
 
-use rayon::prelude::*;
-
 use super::Moments;
 use super::sum::exact;
+use crate::parallel::prelude::*;
 
 /// A function of independent discrete variables as tables of its parts.
 #[derive(Debug, Clone)]

@@ -4,8 +4,6 @@ use std::collections::{BTreeMap, HashSet};
 use std::ops::Deref;
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::Plan;
 use super::axis::Axis;
 use super::geometry::Geometry;
@@ -16,6 +14,7 @@ use super::point::{AtNode, Point};
 use super::stage::{Purpose, Stage};
 use crate::correlation::Correlation;
 use crate::dimension::Dimension;
+use crate::parallel::prelude::*;
 use crate::surrogate::{InputShape, Inputs, Univariate, shapes};
 
 /// The points that a difference plan evaluates.

@@ -5,6 +5,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::names::UnknownName;
+use crate::short_sort::ShortSort;
 
 /// Which mixed derivatives are evaluated.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -91,7 +92,7 @@ pub(super) fn strongest(
             }
         }
     }
-    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+    ranked.sort_short_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
     let mut pairs: Vec<(usize, usize)> = ranked.into_iter().take(count).map(|(_, j, k)| (j, k)).collect();
     pairs.sort_unstable();
     pairs

@@ -15,12 +15,12 @@
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rayon::prelude::*;
 
 use super::place::{BEFORE, FARTHEST, Place, PlaceKind};
 use super::space::Columns;
 use super::target::Target;
 use crate::distribution::standard_normal;
+use crate::parallel::prelude::*;
 
 /// How likely what lies beyond a component's shifted limit is, by what lies beyond the limit itself, and the component's part
 /// of the points as long as nothing else is known: from far beyond the limit to far before it.

@@ -40,6 +40,7 @@ use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::sampling::{Estimate, SamplingError};
 use crate::shape::{text, through};
+use crate::short_sort::ShortSort;
 use crate::simulation::{Pace, SimulationError, Surrogates};
 use crate::summary::RunSummary;
 use crate::time::Instant;
@@ -398,7 +399,7 @@ fn correct(places: Vec<Place>, targets: &[Target<'_>], budget: usize, model: &mu
     let mut order: Vec<usize> = (0..places.len()).collect();
     // The first place of every target before the second of any.
     let rank = |p: &usize| places[..*p].iter().filter(|other| other.target == places[*p].target).count();
-    order.sort_by_key(|p| (rank(p), *p));
+    order.sort_short_by_key(|p| (rank(p), *p));
     let mut asked: Vec<(usize, f64)> = Vec::new();
     for p in order {
         let stations = places[p].stations();
@@ -457,7 +458,7 @@ fn look(
             continue;
         }
         values.extend(before.get(p).into_iter().flatten());
-        values.sort_by(|a, b| a.0.total_cmp(&b.0));
+        values.sort_short_by(|a, b| a.0.total_cmp(&b.0));
         values.dedup_by(|a, b| a.0 == b.0);
         looked.crosses[p] = Some(place.correct(&targets[place.target], values));
     }

@@ -18,6 +18,7 @@ use crate::document::{
 };
 use crate::requirement::Requirement;
 use crate::shape::finite;
+use crate::short_sort::ShortSort;
 use crate::verdict::{Judged, Verdict};
 
 /// A smaller residual is rounding.
@@ -232,7 +233,7 @@ impl AllocationReport {
             .filter_map(|one| Some((one.of.dimension.as_str(), 0.01 * one.of.of.after * one.of.of.bound_price?)))
             .filter(|(_, saves)| *saves > 0.0)
             .collect();
-        priced.sort_by(|a, b| b.1.total_cmp(&a.1));
+        priced.sort_short_by(|a, b| b.1.total_cmp(&a.1));
         let named = priced.iter().take(MOST).map(|(name, saves)| format!("{} {}", short(name), significant(*saves, 3)));
         let named: Vec<String> = named.collect();
         if !named.is_empty() {
@@ -274,7 +275,7 @@ impl AllocationReport {
             let Allocated { cost_before, cost_after, .. } = one.of.of;
             let mut parts = vec![part(Fill::Before, cost_before), part(Fill::Linear, cost_after)];
             // The longer one below, so that both are seen.
-            parts.sort_by(|a, b| b.1[1].total_cmp(&a.1[1]));
+            parts.sort_short_by(|a, b| b.1[1].total_cmp(&a.1[1]));
             let text = format!("{} / {}", known(cost_before, money), known(cost_after, money));
             Bar { name: one.of.dimension.clone(), parts, text, remark: Line::default() }
         };

@@ -23,6 +23,7 @@ use crate::document::{
 use crate::extremes::{Extreme, Place};
 use crate::method::Basis;
 use crate::pearson::Pearson;
+use crate::short_sort::ShortSort;
 
 /// Contributions and interactions that a terminal shows unless all are asked for, and interactions that a page shows.
 const CONTRIBUTIONS: usize = 30;
@@ -418,7 +419,7 @@ impl CharacteristicAnalysis {
         let all: Vec<Row<'_>> = self.sensitivities.iter().zip(dimensions).collect();
         let mut view: Vec<usize> = (0..all.len()).filter(|&index| matters(all[index].0, all[index].1)).collect();
         let size = |index: usize| size(all[index].0);
-        view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
+        view.sort_short_by(|&a, &b| size(b).total_cmp(&size(a)));
         let rest = &view[view.len().min(CONTRIBUTIONS)..];
         let together: f64 = rest.iter().filter_map(|&index| part(all[index].0)).sum();
         let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));

@@ -8,6 +8,7 @@ use crate::analysis::CharacteristicAnalysis;
 use crate::capability::Capability;
 use crate::document::number::{UNKNOWN, band, beside, estimated, index, limits, percent, plain, plural, yielded};
 use crate::document::{Blocks, Cell, Columns, DataTable, Document, Section, Tone, Value};
+use crate::short_sort::ShortSort;
 use crate::verdict::Verdict;
 
 /// A share of the variance that moves by less than this is not worth a line.
@@ -333,6 +334,6 @@ fn shares(both: &[Option<CharacteristicAnalysis>; 2]) -> Vec<SharePair> {
         .collect();
     let moved = |row: &SharePair| (row.shares[1].unwrap_or(0.0) - row.shares[0].unwrap_or(0.0)).abs();
     found.retain(|row| moved(row) >= SEEN);
-    found.sort_by(|a, b| moved(b).total_cmp(&moved(a)));
+    found.sort_short_by(|a, b| moved(b).total_cmp(&moved(a)));
     found
 }

@@ -6,6 +6,7 @@ use crate::document::rejects::Rejects;
 use crate::document::{Cell, Columns, DataTable};
 use crate::requirement::Requirement;
 use crate::sampling::one_error;
+use crate::short_sort::ShortSort;
 use crate::simulation::YieldEstimate;
 use crate::verdict::Judged;
 
@@ -16,7 +17,7 @@ const TOGETHER: usize = 6;
 pub(super) fn together(correlations: &[OutputCorrelation]) -> Option<String> {
     let mut known: Vec<(f64, &OutputCorrelation)> =
         correlations.iter().filter_map(|one| Some((one.value?, one))).collect();
-    known.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    known.sort_short_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let said = known.iter().take(TOGETHER).map(|(value, one)| {
         let [first, second] = [&one.between[0], &one.between[1]].map(|name| short(name));
         format!("{first} with {second} {}", coefficient(*value, one.error))

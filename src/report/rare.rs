@@ -14,6 +14,7 @@ use crate::document::{Blocks, Cell, Columns, DataTable, Document, Element, Line,
 use crate::problem::Problem;
 use crate::rare::{Beyond, DesignPoint, RareCharacteristic, RareEvents};
 use crate::sampling::Estimate;
+use crate::short_sort::ShortSort;
 
 /// The report of rare events, as `--json` prints it. Unknown values are null, never 0.
 #[derive(Debug, Clone, Serialize)]
@@ -150,7 +151,7 @@ fn farthest(point: &DesignPoint, dimensions: &[DimensionReport]) -> String {
         .filter(|(dimension, _)| dimension.sigma > 0.0)
         .map(|(dimension, value)| ((value - dimension.mean) / dimension.sigma, short(&dimension.name)))
         .collect();
-    moved.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    moved.sort_short_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let rest = moved.len().saturating_sub(SHOWN);
     let words = moved.iter().take(SHOWN).map(|(sigmas, name)| format!("{name} {sigmas:+.2}"));
     let rest = if rest > 0 { format!(" and {rest} less") } else { String::new() };

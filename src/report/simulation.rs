@@ -19,6 +19,7 @@ use crate::moments::Moments;
 use crate::pearson::Pearson;
 use crate::problem::Problem;
 use crate::sampling::{Estimate, one_error};
+use crate::short_sort::ShortSort;
 use crate::simulation::{IndexEstimate, SampledFactor, SimulatedCharacteristic, Simulation, YieldEstimate};
 
 /// The report of a simulation, as `--json` prints it. Unknown values are null, never 0.
@@ -215,7 +216,7 @@ impl SimulatedCharacteristic {
     fn sobol(&self, section: &mut Section) {
         let Some(of) = &self.indices else { return };
         let mut order: Vec<usize> = (0..of.len()).collect();
-        order.sort_by(|&a, &b| of[b].total.value.total_cmp(&of[a].total.value));
+        order.sort_short_by(|&a, &b| of[b].total.value.total_cmp(&of[a].total.value));
         let value = |of: IndexEstimate| Cell::number(of.value, |value| estimated(value, Some(of.standard_error)));
         let interval = |of: IndexEstimate| {
             let [low, high] = of.interval.map(|end| estimated(end, Some(of.standard_error)));

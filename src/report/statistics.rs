@@ -7,6 +7,7 @@ use crate::document::number::{UNKNOWN, carried, known, percent, plain, shape_wit
 use crate::document::{Blocks, Cell, Columns, DataTable, Section, Value};
 use crate::method::{ErrorEstimate, ErrorSource};
 use crate::names::element;
+use crate::short_sort::ShortSort;
 
 /// Contributors that a terminal names.
 const CONTRIBUTORS: usize = 6;
@@ -158,7 +159,7 @@ impl CharacteristicAnalysis {
         }
         let mut view: Vec<usize> = (0..all.len()).filter(|&index| all[index].parts.iter().any(does)).collect();
         let size = |index: usize| all[index].size();
-        view.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
+        view.sort_short_by(|&a, &b| size(b).total_cmp(&size(a)));
         let rest = &view[view.len().min(CONTRIBUTORS)..];
         let together: f64 = rest.iter().filter_map(|&index| all[index].part()).sum();
         let rest = format!("and {} more with {} % together; -v shows all", rest.len(), percent(together));

@@ -3,8 +3,6 @@
 //! The moments of the surrogate are exact; only what the model differs by is sampled ([`super::difference`]). Nothing is assumed of the
 //! surrogate: coefficients are fitted, and where the plain sample has the smaller standard error, it is the estimate.
 
-use rayon::prelude::*;
-
 use super::surrogates::{KnownSurrogate, Shape, Surrogates};
 use super::{ROWS, SimulationError, SimulationOptions};
 use crate::assembly::{Points, Run};
@@ -12,6 +10,7 @@ use crate::characteristic::{Characteristic, SpecLimits};
 use crate::evaluation::Evaluated;
 use crate::method::{Method, Options, Outcome};
 use crate::moments::Sampled;
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion, Sampler};
 use crate::summary::StopReason;
@@ -130,7 +129,7 @@ impl<'p> Control<'p> {
             sum
         };
         // Whole numbers: the order in which threads finish does not matter.
-        let hits = (0..blocks).into_par_iter().map(block).reduce(nothing, add);
+        let hits = (0..blocks).into_par_iter().map(block).collect::<Vec<_>>().into_iter().fold(nothing(), add);
         for (twin, hits) in self.twins.iter_mut().zip(hits) {
             if let Some(twin) = twin.as_mut().filter(|twin| twin.limits.exist()) {
                 twin.outside = Some(Outside { points, hits });

@@ -10,13 +10,13 @@
 //! of the jackknife over 16 scramblings, intervals by Student's quantile. An index near 0 may come out negative: it is within its
 //! error, and stays as it is.
 
-use rayon::prelude::*;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Pace, REPLICATES, SimulationError};
 use crate::assembly::{Request, Responses, Run};
 use crate::correlation::factors;
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::sampling::Normals;
 use crate::summary::RunSummary;

@@ -23,11 +23,11 @@ pub use indices::{IndexEstimate, SampledFactor};
 
 use std::time::Duration;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::assembly::{EvaluationError, NonRepeatable, Points, Request, Responses, Run};
 use crate::method::{Method, MethodError, Options, Outcome};
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::sampling::{Draws, Portion};
 use crate::shape::through;

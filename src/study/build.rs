@@ -34,6 +34,7 @@ use crate::models::{self, Model};
 use crate::names::{element, is_hidden, nearest};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
+use crate::short_sort::ShortSort;
 use crate::warning::{NameKind, Warning, aggregated};
 
 /// The content of a study file.
@@ -160,7 +161,7 @@ fn full_turns(dimensions: &[Dimension], composite: &Composite) -> Option<Warning
     };
     let mut found: Vec<String> = composite.turning().iter().filter_map(turns).collect();
     found.dedup();
-    found.sort();
+    found.sort_short();
     found.dedup();
     (!found.is_empty()).then_some(Warning::PeriodicInput { dimensions: found })
 }

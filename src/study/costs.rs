@@ -18,6 +18,7 @@ use crate::fits::{HeldEnd, held_end};
 use crate::names::nearest;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
+use crate::short_sort::ShortSort;
 
 /// The present half band by this, and times this, where no bound is given.
 const RANGE: f64 = 10.0;
@@ -322,7 +323,7 @@ fn offers(
         });
     }
     // The loosest first, so that neighbours in the list are neighbours in cost.
-    offers.sort_by(|x, y| (y.max, y.min).partial_cmp(&(x.max, x.min)).unwrap_or(std::cmp::Ordering::Equal));
+    offers.sort_short_by(|x, y| (y.max, y.min).partial_cmp(&(x.max, x.min)).unwrap_or(std::cmp::Ordering::Equal));
     Ok(Offers { all: offers, rounded: None })
 }
 

@@ -33,6 +33,11 @@ impl Error {
         Fault { span: self.span, key: self.path.join(".").replace(".[", "["), fault: self.fault }
     }
 
+    #[cold]
+    fn too_long(length: usize, expected: usize) -> Self {
+        de::Error::invalid_length(length, &format!("a list of {expected}").as_str())
+    }
+
     fn within(mut self, key: &str) -> Self {
         self.path.insert(0, key.to_owned());
         self
@@ -135,6 +140,33 @@ fn words(expected: &dyn de::Expected) -> String {
     }
 }
 
+impl Tree {
+    /// The fault of a value that is not `expected`.
+    #[cold]
+    fn mismatch(&self, expected: &dyn de::Expected) -> Error {
+        let found = match &self.value {
+            Value::Table(_) => de::Unexpected::Map,
+            Value::Array(_) => de::Unexpected::Seq,
+            Value::Text(text) => de::Unexpected::Str(text),
+            Value::Number(value) => de::Unexpected::Float(*value),
+            Value::Integer(value) => de::Unexpected::Signed(*value),
+            Value::Truth(truth) => de::Unexpected::Bool(*truth),
+            Value::Other(what) => de::Unexpected::Other(what),
+        };
+        <Error as de::Error>::invalid_type(found, expected).at(&self.span)
+    }
+
+    /// All `values` of this list.
+    fn items<'de, V: Visitor<'de>>(&'de self, values: &'de [Tree], visitor: V) -> Result<V::Value, Error> {
+        let mut items = Items { items: values.iter(), index: 0 };
+        let result = visitor.visit_seq(&mut items).and_then(|value| match items.items.len() {
+            0 => Ok(value),
+            left => Err(Error::too_long(values.len(), values.len() - left)),
+        });
+        result.map_err(|error| error.at(&self.span))
+    }
+}
+
 impl<'de> IntoDeserializer<'de, Error> for &'de Tree {
     type Deserializer = Self;
 
@@ -149,23 +181,79 @@ impl<'de> Deserializer<'de> for &'de Tree {
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         let result = match &self.value {
             Value::Table(entries) => visitor.visit_map(Entries { entries: entries.iter(), value: None }),
-            Value::Array(values) => {
-                let mut items = Items { items: values.iter(), index: 0 };
-                visitor.visit_seq(&mut items).and_then(|value| match items.items.len() {
-                    0 => Ok(value),
-                    left => {
-                        let wanted = format!("a list of {}", values.len() - left);
-                        Err(de::Error::invalid_length(values.len(), &wanted.as_str()))
-                    }
-                })
-            }
+            Value::Array(values) => return self.items(values, visitor),
             Value::Text(text) => visitor.visit_borrowed_str(text),
             Value::Number(value) => visitor.visit_f64(*value),
             Value::Integer(value) => visitor.visit_i64(*value),
             Value::Truth(truth) => visitor.visit_bool(*truth),
-            Value::Other(what) => Err(de::Error::invalid_type(de::Unexpected::Other(what), &visitor)),
+            Value::Other(_) => return Err(self.mismatch(&visitor)),
         };
         result.map_err(|error| error.at(&self.span))
+    }
+
+    // For types that have values of one kind alone: their visitors then have no code for the other kinds.
+
+    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match &self.value {
+            Value::Truth(truth) => visitor.visit_bool(*truth).map_err(|error: Error| error.at(&self.span)),
+            _ => Err(self.mismatch(&visitor)),
+        }
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        let result = match &self.value {
+            Value::Number(value) => visitor.visit_f64(*value),
+            Value::Integer(value) => visitor.visit_i64(*value),
+            _ => return Err(self.mismatch(&visitor)),
+        };
+        result.map_err(|error: Error| error.at(&self.span))
+    }
+
+    fn deserialize_i64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match &self.value {
+            Value::Integer(value) => visitor.visit_i64(*value).map_err(|error: Error| error.at(&self.span)),
+            _ => Err(self.mismatch(&visitor)),
+        }
+    }
+
+    fn deserialize_u8<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        self.deserialize_i64(visitor)
+    }
+
+    fn deserialize_u32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        self.deserialize_i64(visitor)
+    }
+
+    fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        self.deserialize_i64(visitor)
+    }
+
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match &self.value {
+            Value::Text(text) => visitor.visit_borrowed_str(text).map_err(|error: Error| error.at(&self.span)),
+            _ => Err(self.mismatch(&visitor)),
+        }
+    }
+
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match &self.value {
+            Value::Array(values) => self.items(values, visitor),
+            _ => Err(self.mismatch(&visitor)),
+        }
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
+        self.deserialize_seq(visitor)
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match &self.value {
+            Value::Table(entries) => {
+                let entries = Entries { entries: entries.iter(), value: None };
+                visitor.visit_map(entries).map_err(|error| error.at(&self.span))
+            }
+            _ => Err(self.mismatch(&visitor)),
+        }
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
@@ -185,12 +273,12 @@ impl<'de> Deserializer<'de> for &'de Tree {
         if is_spanned(name) {
             return visitor.visit_map(SpannedDeserializer::new(self, self.span.clone()));
         }
-        self.deserialize_any(visitor)
+        // Keys have names: a list of values in the order of a structure's fields is not a table.
+        self.deserialize_map(visitor)
     }
 
     serde::forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq
-        tuple tuple_struct map enum identifier ignored_any
+        i8 i16 i32 i128 u16 u128 f32 char str bytes byte_buf unit unit_struct tuple_struct enum identifier ignored_any
     }
 }
 
@@ -261,5 +349,45 @@ impl<'de> Deserializer<'de> for &'de Key {
     serde::forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct
         newtype_struct seq tuple tuple_struct map enum identifier ignored_any
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[derive(Debug, Deserialize)]
+    #[allow(dead_code)]
+    struct Entry {
+        nominal: f64,
+        count: u64,
+        name: Option<String>,
+        pair: Option<[f64; 2]>,
+    }
+
+    /// An entry as it is read, or its first fault.
+    fn read_entry(entry: &str) -> Result<Entry, String> {
+        let tree = Tree::of_json(&format!("{{\"entry\": {entry}}}")).map_err(|fault| fault.fault.to_string())?;
+        let found = read::<std::collections::BTreeMap<String, Entry>>(&tree);
+        found.map(|mut found| found.remove("entry").unwrap()).map_err(|faults| faults.0[0].fault.to_string())
+    }
+
+    #[test]
+    fn values_of_a_wrong_type_are_named() {
+        let entry = read_entry(r#"{"nominal": 1, "count": 2, "name": "a", "pair": [1, 2.5]}"#).unwrap();
+        assert_eq!((entry.nominal, entry.count, entry.pair), (1.0, 2, Some([1.0, 2.5])));
+        for (wrong, said) in [
+            (r#"[1, 2, "a"]"#, "a list stands"),
+            (r#"{"nominal": "1", "count": 2}"#, "the text \"1\" stands where a number is needed"),
+            (r#"{"nominal": 1, "count": 2.5}"#, "the number 2.5 stands"),
+            (r#"{"nominal": 1, "count": 2, "name": true}"#, "`true` stands where a text in quotes is needed"),
+            (r#"{"nominal": 1, "count": 2, "pair": [1, 2, 3]}"#, "a list of 3 stands"),
+            (r#"{"nominal": 1, "count": 2, "pair": {"a": 1}}"#, "a table stands"),
+        ] {
+            let found = read_entry(wrong).unwrap_err();
+            assert!(found.starts_with(said), "{wrong}: {found}");
+        }
     }
 }

@@ -19,6 +19,7 @@ use crate::method::MethodError;
 use crate::names::UnknownName;
 use crate::problem::ProblemError;
 use crate::requirement::RequirementError;
+use crate::short_sort::ShortSort;
 
 /// A study that cannot be used: file, place, key, what is wrong, and what to write instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -43,7 +44,7 @@ impl StudyError {
     /// Of the faults of one study, those that come first in its file; None without a fault.
     pub(super) fn of(faults: Vec<Fault>, file: &str, text: &Arc<str>) -> Option<Self> {
         let mut faults = faults;
-        faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
+        faults.sort_short_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
         let error = |Fault { span, key, fault }| Self {
             file: file.to_owned(),
             text: Arc::clone(text),

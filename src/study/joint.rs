@@ -9,6 +9,7 @@ use super::file::{DimensionEntry, StudyFile};
 use super::spanned::Spanned;
 use crate::correlation::{JointLaw, Pair, Rows};
 use crate::names::nearest;
+use crate::short_sort::ShortSort;
 use crate::warning::Warning;
 
 /// Fewer rows than this in common say nothing of how columns vary together.
@@ -100,7 +101,7 @@ fn block(group: &[Member<'_>], data: &mut Data<'_>) -> Result<Option<Block>, Fau
     let mut common: Vec<&String> =
         columns[0].keys().filter(|key| columns[1..].iter().all(|column| column.contains_key(*key))).collect();
     // In the order of the first file, so that sums do not depend on a hash.
-    common.sort_by_key(|key| columns[0][*key].1);
+    common.sort_short_by_key(|key| columns[0][*key].1);
     for (member, column) in group.iter().zip(&columns) {
         let kept: HashSet<u64> = common.iter().map(|key| column[*key].1).collect();
         if member.serial.is_some() && kept.len() < column.len() {

@@ -14,6 +14,7 @@ use super::write;
 use crate::allocation::Offer;
 use crate::dimension::Dimension;
 use crate::problem::Problem;
+use crate::short_sort::ShortSort;
 
 /// A study written anew.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,7 +106,7 @@ impl Study {
                 replaced_fits.push(name.to_owned());
             }
         }
-        edits.sort_by_key(|(place, _)| (place.start, place.end));
+        edits.sort_short_by_key(|(place, _)| (place.start, place.end));
         let (mut text, mut at) = (String::with_capacity(self.text.len()), 0);
         for (place, new) in &edits {
             text += &self.text[at..place.start];

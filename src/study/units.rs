@@ -14,6 +14,7 @@ use crate::assembly::process::ForeignUnits;
 use crate::dimension::Dimension;
 use crate::models::{Model, ModelOutput};
 use crate::names::nearest;
+use crate::short_sort::ShortSort;
 use crate::unit::{SAME, Unit};
 use crate::warning::Warning;
 
@@ -128,7 +129,7 @@ impl Units {
     /// The first finding, with the other formulas.
     fn warning(&self, findings: Vec<UnitFinding>) -> Option<Warning> {
         let mut findings = findings;
-        findings.sort_by_key(|finding| finding.formula);
+        findings.sort_short_by_key(|finding| finding.formula);
         let mut all = findings.into_iter();
         let UnitFinding { formula, span, what, remedy, .. } = all.next()?;
         let others = all.map(|other| self.places[other.formula].name.clone()).collect();
@@ -261,7 +262,7 @@ fn mode(file: &StudyFile) -> Result<Mode, Fault> {
 fn unknown_unit(mode: Mode, unknown: &[(&str, &str)]) -> Option<Warning> {
     unknown.first().filter(|_| mode != Mode::Labels)?;
     let mut units: Vec<String> = unknown.iter().map(|(_, unit)| (*unit).to_owned()).collect();
-    units.sort();
+    units.sort_short();
     units.dedup();
     Some(Warning::UnknownUnit { units })
 }

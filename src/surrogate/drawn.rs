@@ -5,11 +5,11 @@
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rayon::prelude::*;
 
 use super::sampled::BLOCKS;
 use super::setting::Setting;
 use crate::moments::{Contributions, Moments, Sampled};
+use crate::parallel::prelude::*;
 use crate::sampling::Summary;
 
 /// Operations that the sample takes at most, about; it is never smaller than some thousand points.

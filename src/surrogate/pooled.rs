@@ -13,12 +13,11 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
 use super::setting::Setting;
 use super::{Inputs, Surrogate, Univariate, drawn};
 use crate::correlation::{Atom, Correlation};
 use crate::moments::{Contributions, Interactions, Moments, Term, contributions};
+use crate::parallel::prelude::*;
 
 /// Combinations of places that are pooled at most.
 const MOST: usize = 200_000;

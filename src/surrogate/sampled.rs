@@ -3,10 +3,10 @@
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rayon::prelude::*;
 
 use super::parabolas::Parabolas;
 use crate::moments::{Contributions, Moments, Sampled};
+use crate::parallel::prelude::*;
 
 /// Blocks of the sample: what they differ by is the standard error (delete-one jackknife), and each has its own seed.
 pub(super) const BLOCKS: u64 = 64;

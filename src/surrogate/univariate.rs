@@ -2,6 +2,7 @@
 
 use super::InputShape;
 use crate::moments::Term;
+use crate::short_sort::ShortSort;
 
 /// `g(u) = c1 u + c2 u^2 + c3 u^3 + c4 u^4`, of the degree that the nodes allow.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +34,7 @@ impl Univariate {
     /// ```
     pub fn through(samples: &[(f64, f64)]) -> Option<Self> {
         let mut samples = samples.to_vec();
-        samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+        samples.sort_short_by(|a, b| a.0.total_cmp(&b.0));
         let (n, mut coefficients) = (samples.len(), [0.0; Self::DEGREE]);
         if n == 0 || n > Self::DEGREE {
             return None;

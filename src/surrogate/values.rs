@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
 use super::{Surrogate, Univariate};
 use crate::elementary::{Work, on_this_processor};
 use crate::moments::{Interactions, Row};
+use crate::parallel::prelude::*;
 
 /// Rows whose sums stay in registers while all products are added.
 const TILE: usize = 32;

@@ -1,12 +1,12 @@
 //! How the characteristics of a cheap model vary together, by points of the model itself.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::Verified;
 use super::figures::{jackknife, student, totals};
 use super::model::Model;
 use super::sample::REPLICATES;
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::sampling::Normals;
 

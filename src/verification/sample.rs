@@ -12,8 +12,6 @@
 //! number of points that carry the variance of a power (Kish 1965), by Student's quantile, and for a share by the weight of one
 //! point: that none was seen does not mean that there is none.
 
-use rayon::prelude::*;
-
 use super::Verified;
 use super::figures::{MOMENTS, carried_by, effective, jackknife, moments, standard, student, totals};
 use super::model::Model;
@@ -21,6 +19,7 @@ use super::sides::{Sides, sides};
 use super::space::Columns;
 use super::strata::{HalfSpace, between, unit};
 use super::weighted::WeightedSample;
+use crate::parallel::prelude::*;
 use crate::sampling::Normals;
 use crate::surrogate::Surrogate;
 

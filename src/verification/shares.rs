@@ -9,11 +9,10 @@
 //! the second. `S_j` is what the input explains by itself, `T_j` adds every interaction in which it has a part. Errors by the
 //! jackknife over 8 scramblings, widened by Student's quantile.
 
-use rayon::prelude::*;
-
 use super::figures::{jackknife, student, totals};
 use super::model::Model;
 use super::space::Columns;
+use crate::parallel::prelude::*;
 use crate::sampling::Normals;
 
 /// Evaluations, and the scramblings that share them.

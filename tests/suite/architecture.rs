@@ -34,7 +34,7 @@ const LAYERS: &[&[&str]] = &[
     &["distribution", "fits", "requirement", "inspection"],
     &["pearson", "method_kind"],
     &["names", "elementary", "summary", "time", "unit", "table", "labels"],
-    &["shape"],
+    &["shape", "parallel", "short_sort"],
 ];
 
 fn layer(module: &str) -> usize {

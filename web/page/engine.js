@@ -2,15 +2,19 @@
 // Workers that hold the engine. A run is ended by ending its worker.
 const engine = (() => {
   let compiled, source;
-  const bytes = (text) => Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0));
-  const unpacked = async (text) => {
-    const stream = new Blob([bytes(text)]).stream().pipeThrough(new DecompressionStream("gzip"));
-    return new Response(stream).arrayBuffer();
-  };
   const load = async () => {
-    const text = (id) => document.getElementById(id).textContent;
-    compiled = await WebAssembly.compile(await unpacked(text("engine-wasm").trim()));
-    source = URL.createObjectURL(new Blob([text("engine-glue"), text("engine-worker")], { type: "text/javascript" }));
+    const text = (id) => document.getElementById(id).textContent.trim();
+    const script = (...ids) => URL.createObjectURL(new Blob(ids.map((id) => `${text(id)}\n`), { type: "text/javascript" }));
+    // Unpacked beside the page, so that the page answers meanwhile.
+    const worker = new Worker(script("unpack-glue", "unpack-worker"));
+    const unpacked = await new Promise((resolve, reject) => {
+      worker.onmessage = ({ data }) => (data ? resolve(data) : reject(new Error("the engine in this page is damaged")));
+      worker.onerror = ({ message }) => reject(new Error(message));
+      worker.postMessage({ unpacker: text("unpack-wasm"), packed: text("engine-packed") });
+    });
+    worker.terminate();
+    compiled = await WebAssembly.compile(unpacked);
+    source = script("engine-glue", "engine-worker");
   };
   class Engine {
     #worker; #waiting = new Map(); #last = 0; #ready;

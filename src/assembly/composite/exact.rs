@@ -1,11 +1,10 @@
 //! Exact derivatives of what is made of formulas and unknowns alone.
 
-use rayon::prelude::*;
-
 use super::{Composite, Needs, Origin};
 use crate::assembly::formula::Jet;
 use crate::assembly::implicit::Tangent;
 use crate::assembly::{Derivatives, Directions, Run};
+use crate::parallel::prelude::*;
 
 /// So many pairs are worth a tape of the formula.
 const TOGETHER: usize = 64;

@@ -1,9 +1,8 @@
 //! Where the outputs of a composition change their form, and their degree.
 
-use rayon::prelude::*;
-
 use super::{Composite, Origin, SolvedRows, Source};
 use crate::assembly::{Points, Run, Switch, SwitchKind, Switches};
+use crate::parallel::prelude::*;
 
 /// Rows whose unknowns one task finds.
 const ROWS: usize = 128;

@@ -1,12 +1,11 @@
 //! All mixed derivatives of a formula at once: a pass for every variable in place of one for every pair.
 
-use rayon::prelude::*;
-
 use super::functions::{Binary, Unary};
 use super::graph::{GraphNode, NodeId};
 use super::jet::Jet;
 use super::scalar::{Scalar, Verdict};
 use super::set::FormulaSet;
+use crate::parallel::prelude::*;
 
 /// Variables whose passes run side by side.
 const LANES: usize = 8;

@@ -1,44 +1,16 @@
 //! The page of an analysis.
 
-use serde::Serialize;
-
 use super::super::Report;
 use super::super::head::seed;
 use super::terms::terms;
 use super::verdict::{JudgedCharacteristic, Together, Words, verdict};
 use super::what_if::WhatIf;
-use super::{Fact, evidence, fact, inputs, json, others, provenance, render, sure};
+use super::{Fact, evidence, fact, inputs, json, others, provenance, render, sure, tries};
 use crate::analysis::Analysis;
 use crate::document::html::{head, sections};
-use crate::document::number::{plain, plural, significant};
+use crate::document::number::{plain, plural};
 use crate::method::Basis;
 use crate::summary::RunSummary;
-
-#[derive(Serialize)]
-struct Analysed<'r> {
-    what_if: Option<Tries<'r>>,
-    /// Why there is nothing to try.
-    no_what_if: Option<String>,
-}
-
-/// The dimensions and characteristics that can be tried.
-#[derive(Serialize)]
-struct Tries<'r> {
-    dimensions: Vec<Try<'r>>,
-    characteristics: Vec<(&'r str, &'r str, Option<&'r str>)>,
-    written: bool,
-    cost: Option<String>,
-}
-
-#[derive(Serialize)]
-struct Try<'r> {
-    name: &'r str,
-    unit: &'r str,
-    nominal: String,
-    half: f64,
-    band: bool,
-    fixed: Option<&'static str>,
-}
 
 /// An analysis as one page of HTML. With a [`WhatIf`] the page computes the results of other tolerances and means by itself, as
 /// [`Surface::at`](crate::analysis::Surface::at) does.
@@ -48,7 +20,11 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
     let possible = what_if.filter(|what_if| what_if.possible());
     let mut document = report.brief_document();
     evidence::add(report, &mut document.sections);
-    let analysed = Analysed { what_if: possible.map(tries), no_what_if: what_if.and_then(WhatIf::impossible) };
+    let tries = match (possible, what_if.and_then(WhatIf::impossible)) {
+        (Some(what_if), _) => tries::section(what_if),
+        (None, Some(why)) => tries::impossible(&why),
+        (None, None) => String::new(),
+    };
     let all = &report.analysis.characteristics;
     let rows: Vec<JudgedCharacteristic<'_>> = all
         .iter()
@@ -66,8 +42,8 @@ pub fn analyze_html(report: &Report, what_if: Option<&WhatIf>) -> String {
         true => [judged, head(&document) + &sure],
         false => [judged + &head(&document), sure],
     };
-    let parts = [first, sections(&document) + &inputs::section(report), rest, terms("analyze", false)];
-    render("what_if.html", &report.head, facts(report), parts, possible.map(json), analysed)
+    let parts = [first, sections(&document) + &inputs::section(report), tries + &rest, terms("analyze", false)];
+    render(&report.head, facts(report), parts, possible.map(json))
 }
 
 /// The method and the seed that give the same figures again.
@@ -109,26 +85,4 @@ fn facts(report: &Report) -> Vec<Fact> {
     }
     facts.extend(provenance(&report.head, run));
     facts
-}
-
-fn tries(what_if: &WhatIf) -> Tries<'_> {
-    let dimensions = what_if.dimensions().iter().map(|one| Try {
-        name: &one.name,
-        unit: one.unit.as_deref().unwrap_or_default(),
-        nominal: plain(one.nominal),
-        half: one.half,
-        band: one.band.is_some(),
-        fixed: one.fixed,
-    });
-    let characteristics = what_if.characteristics().iter();
-    Tries {
-        dimensions: dimensions.collect(),
-        characteristics: characteristics
-            .map(|one| (one.name.as_str(), one.unit.as_deref().unwrap_or_default(), one.why.as_deref()))
-            .collect(),
-        written: what_if.written(),
-        cost: what_if
-            .paid()
-            .map(|paid| paid.map_or("no process holds these tolerances".to_owned(), |paid| significant(paid, 6))),
-    }
 }

@@ -13,6 +13,7 @@ use crate::document::number::{band, beside, estimated, plain};
 use crate::document::svg::escaped;
 use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section, html};
 use crate::pearson::Pearson;
+use crate::short_sort::ShortSort;
 use crate::verification::TailPoint;
 
 /// A shift of the mean below this part of sigma is none.
@@ -260,7 +261,7 @@ fn shifts(one: &CharacteristicAnalysis, dimensions: &[DimensionReport]) -> Optio
         found.extend(pair.mean_shift.map(|moved| (name(), moved, "correlation".to_owned())));
     }
     found.retain(|(_, moved, _)| moved.abs() >= seen);
-    found.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    found.sort_short_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
     found.truncate(SHIFTS);
     let rest = mean - nominal - found.iter().map(|(_, moved, _)| moved).sum::<f64>();
     if rest.abs() >= seen {

@@ -9,6 +9,7 @@ use super::pareto::slope;
 use crate::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::document::number::{UNKNOWN, known, percent, percent_within, plain, plural, significant};
 use crate::document::svg::escaped;
+use crate::short_sort::ShortSort;
 
 /// Dimensions that are shown before the others are folded.
 const ROWS: usize = 12;
@@ -32,7 +33,7 @@ pub(super) fn section(report: &Report) -> String {
     let all = &report.analysis.characteristics;
     let shares: Vec<Option<f64>> = (0..report.dimensions.len()).map(|d| greatest(all, d)).collect();
     let mut rows: Vec<usize> = (0..shares.len()).collect();
-    rows.sort_by(|&a, &b| shares[b].unwrap_or(-1.0).total_cmp(&shares[a].unwrap_or(-1.0)));
+    rows.sort_short_by(|&a, &b| shares[b].unwrap_or(-1.0).total_cmp(&shares[a].unwrap_or(-1.0)));
     let mut rest = rows.split_off(rows.len().min(ROWS));
     let least = rest.first().and_then(|&d| shares[d]).filter(|share| *share > 0.0);
     // Of drawings and studies the reader knows their order.

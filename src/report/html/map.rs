@@ -6,6 +6,7 @@ use super::super::figures::Named;
 use crate::analysis::CharacteristicAnalysis;
 use crate::document::number::percent;
 use crate::document::svg::escaped;
+use crate::short_sort::ShortSort;
 
 /// Dimensions of a map of interactions, the most influential first.
 const MAPPED: usize = 16;
@@ -29,7 +30,7 @@ pub(super) fn map(one: &CharacteristicAnalysis) -> Option<String> {
         one.sensitivities.iter().filter_map(|row| Some((row.dimension.as_str(), own(row)?))).collect();
     let in_pair = |name: &str| one.interactions.iter().any(|pair| pair.dimensions.iter().any(|of| **of == *name));
     rows.retain(|(name, share)| *share > SEEN || in_pair(name));
-    rows.sort_by(|a, b| b.1.total_cmp(&a.1));
+    rows.sort_short_by(|a, b| b.1.total_cmp(&a.1));
     let left = rows.len().saturating_sub(MAPPED);
     rows.truncate(MAPPED);
     if rows.len() < 2 {

@@ -1,7 +1,7 @@
 //! Reports as pages: one file each that opens from disk and asks nothing of any network.
 //!
-//! Everything that comes from a study or an adapter goes through the templates, which escape it; drawings are made of
-//! numbers alone, and data for the page's script stand in a block of JSON in which no `<` is left. A content-security policy
+//! Everything that comes from a study or an adapter is escaped where it is written; drawings are made of numbers alone, and
+//! data for the page's script stand in a block of JSON in which no `<` is left. A content-security policy
 //! tells the browser the parts that may run: this script and this style, known by their hashes, and nothing else.
 
 mod analysis;
@@ -13,6 +13,7 @@ mod pages;
 mod pareto;
 mod sure;
 mod terms;
+mod tries;
 mod verdict;
 mod what_if;
 
@@ -20,9 +21,6 @@ pub use analysis::analyze_html;
 pub(crate) use pages::{allocate_html, compare_html, rare_html, simulate_html, sweep_html};
 pub use what_if::WhatIf;
 
-use minijinja::syntax::SyntaxConfig;
-use minijinja::value::Serde;
-use minijinja::{Environment, UndefinedBehavior, Value};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -31,6 +29,7 @@ use super::{DifferenceReport, Head, WarningReport};
 use crate::document::Document;
 use crate::document::html::{blocks, head as summary, sections};
 use crate::document::number::significant;
+use crate::document::svg::escaped;
 use crate::summary::RunSummary;
 
 const STYLE: &str = include_str!("page.css");
@@ -43,34 +42,7 @@ const SCRIPT: &str = concat!(
     include_str!("live.js"),
     include_str!("page.js")
 );
-const TEMPLATES: [(&str, &str); 2] =
-    [("page.html", include_str!("page.html")), ("what_if.html", include_str!("what_if.html"))];
-
-/// The common head of every page, and the page's own content.
-#[derive(Serialize)]
-struct Page<'p, T: Serialize> {
-    title: &'p str,
-    command: &'static str,
-    policy: String,
-    style: String,
-    /// Empty where the page has nothing to run.
-    script: &'static str,
-    /// JSON for the script, without any `<`.
-    data: String,
-    /// The cells of the title block.
-    block: Vec<(&'p str, &'p str)>,
-    facts: Vec<Fact>,
-    /// The parts of the page in their order, all of them markup.
-    head: String,
-    sections: String,
-    rest: String,
-    terms: String,
-    /// The content that a template adds.
-    of: T,
-}
-
 /// One thing worth knowing of a report.
-#[derive(Serialize)]
 struct Fact {
     name: &'static str,
     text: String,
@@ -109,7 +81,7 @@ pub(crate) fn difference_html(report: &DifferenceReport) -> String {
         fact("sensitol", format!("{}, report schema {}", report.head.sensitol, report.head.schema)),
     ];
     let parts = [summary(&document), sections(&document), String::new(), terms::terms("analyze", false)];
-    render("page.html", &report.head, facts, parts, None, ())
+    render(&report.head, facts, parts, None)
 }
 
 /// Warnings that stand in no section of their own, as markup.
@@ -144,48 +116,57 @@ fn footer(head: &Head) -> String {
     format!("@page {{ @bottom-left {{ content: \"{text}\"; }} }}\n")
 }
 
-/// A page from its template.
-fn render<T: Serialize>(
-    template: &str,
-    head: &Head,
-    facts: Vec<Fact>,
-    [first, sections, rest, terms]: [String; 4],
-    data: Option<String>,
-    of: T,
-) -> String {
+/// The page around its parts, which are markup in their order; `data` is JSON for the page's script, none where there is nothing to run.
+fn render(head: &Head, facts: Vec<Fact>, [first, sections, rest, terms]: [String; 4], data: Option<String>) -> String {
     let style = format!("{STYLE}{}", footer(head));
-    let script = if data.is_some() { SCRIPT } else { "" };
     let allowed = match data {
         Some(_) => format!(" script-src '{}';", hash(SCRIPT)),
         None => String::new(),
     };
-    let page = Page {
-        title: head.title.as_deref().unwrap_or("Tolerance report"),
-        command: head.command,
-        policy: format!(
-            "default-src 'none'; style-src '{}';{allowed} base-uri 'none'; form-action 'none'",
-            hash(&style)
-        ),
-        style,
-        script,
-        data: data.unwrap_or_default(),
-        block: block(head),
-        facts,
-        head: first,
-        sections,
-        rest,
-        terms,
-        of,
-    };
-    let mut environment = Environment::new();
-    environment.set_undefined_behavior(UndefinedBehavior::Strict);
-    let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
-    environment.set_syntax(syntax.expect("the usual delimiters"));
-    for (name, source) in TEMPLATES {
-        environment.add_template(name, source).expect("the templates are part of the program");
-    }
-    let template = environment.get_template(template).expect("the templates are part of the program");
-    template.render(Value::from(Serde(&page))).expect("the templates fit what they are given")
+    let policy =
+        format!("default-src 'none'; style-src '{}';{allowed} base-uri 'none'; form-action 'none'", hash(&style));
+    let (policy, command) = (escaped(&policy), escaped(head.command));
+    let title = escaped(head.title.as_deref().unwrap_or("Tolerance report"));
+    let entry = |name: &str, text: &str| format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(name), escaped(text));
+    let block: String = block(head).into_iter().map(|(name, text)| entry(name, text)).collect();
+    let facts: String = facts.iter().map(|one| entry(one.name, &one.text)).collect();
+    let script = data.map(|data| {
+        format!("<script type=\"application/json\" id=\"data\">{data}</script>\n<script>{SCRIPT}</script>\n")
+    });
+    let script = script.unwrap_or_default();
+    format!(
+        r#"<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta name="generator" content="sensitol">
+<title>{title} – {command}</title>
+<style>{style}</style>
+</head>
+<body>
+<header class="head">
+<div><p class="brand">sensitol {command}</p>
+<h1>{title}</h1></div>
+<dl class="block">
+{block}</dl>
+</header>
+<main>
+{first}
+{sections}
+{rest}
+<section aria-labelledby="about">
+<h2 id="about">What was done</h2>
+<dl class="facts">
+{facts}</dl>
+</section>
+{terms}
+</main>
+{script}</body>
+</html>"#
+    )
 }
 
 /// As a content-security policy names a script or style.

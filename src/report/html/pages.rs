@@ -29,7 +29,7 @@ struct Parts {
 
 fn page(head: &Head, run: &RunSummary, document: &Document, parts: Parts) -> String {
     let markup = [parts.verdict + &summary(document), sections(document), parts.sure, parts.terms];
-    render("page.html", head, provenance(head, run), markup, None, ())
+    render(head, provenance(head, run), markup, None)
 }
 
 /// With the warnings that belong to no section.

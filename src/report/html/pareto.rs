@@ -8,6 +8,7 @@ use super::super::{DimensionReport, Report};
 use crate::analysis::{CharacteristicAnalysis, EstimatedShare, Sensitivity};
 use crate::document::number::{NEWS, UNKNOWN, percent, percent_within, short, within};
 use crate::document::svg::escaped;
+use crate::short_sort::ShortSort;
 
 /// A diagram of more rows than this folds those below `SMALL` of the variance into one.
 const ROWS: usize = 12;
@@ -50,7 +51,7 @@ pub(super) fn pareto(report: &Report, one: &CharacteristicAnalysis) -> Option<St
     if all.is_empty() {
         return None;
     }
-    all.sort_by(|a, b| b.parts.iter().sum::<f64>().total_cmp(&a.parts.iter().sum()));
+    all.sort_short_by(|a, b| b.parts.iter().sum::<f64>().total_cmp(&a.parts.iter().sum()));
     if !of_model {
         fold(&mut all);
     }

@@ -2,6 +2,7 @@
 
 use super::line::{Line, as_number, unit_of};
 use crate::assembly::formula::{Formula, FormulaSet, Meaning};
+use crate::short_sort::ShortSort;
 use crate::study::de;
 use crate::study::dimension;
 use crate::study::error::Faults;
@@ -22,7 +23,7 @@ pub(super) fn range(line: &Line<'_>, formula: &str) -> Option<[f64; 2]> {
     let study = line.study;
     let parsed = Formula::parse(formula).ok()?;
     let mut names: Vec<String> = parsed.names().map(|(name, _)| name.to_owned()).collect();
-    names.sort();
+    names.sort_short();
     names.dedup();
     let band = |name: &String| {
         let constant = study.get("constants").and_then(|constants| constants.get(name));

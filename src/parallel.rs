@@ -1,0 +1,57 @@
+//! Loops over all cores: by rayon where there are threads; one item after the other in a browser, whose WebAssembly has one thread.
+//!
+//! Results are collected in the order of the items, so both give the same bits.
+
+#[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+pub(crate) mod prelude {
+    pub(crate) use rayon::prelude::*;
+}
+
+/// The functions of rayon that this crate calls, on iterators of the standard library.
+#[cfg(all(target_family = "wasm", target_os = "unknown"))]
+pub(crate) mod prelude {
+    pub(crate) trait IntoParallelIterator: IntoIterator + Sized {
+        fn into_par_iter(self) -> Self::IntoIter {
+            self.into_iter()
+        }
+    }
+
+    impl<I: IntoIterator> IntoParallelIterator for I {}
+
+    pub(crate) trait ParallelSlice<T> {
+        fn par_iter(&self) -> std::slice::Iter<'_, T>;
+        fn par_chunks(&self, size: usize) -> std::slice::Chunks<'_, T>;
+        fn par_chunks_mut(&mut self, size: usize) -> std::slice::ChunksMut<'_, T>;
+    }
+
+    impl<T> ParallelSlice<T> for [T] {
+        fn par_iter(&self) -> std::slice::Iter<'_, T> {
+            self.iter()
+        }
+
+        fn par_chunks(&self, size: usize) -> std::slice::Chunks<'_, T> {
+            self.chunks(size)
+        }
+
+        fn par_chunks_mut(&mut self, size: usize) -> std::slice::ChunksMut<'_, T> {
+            self.chunks_mut(size)
+        }
+    }
+
+    pub(crate) trait ParallelIterator: Iterator + Sized {
+        fn flat_map_iter<U: IntoIterator, F: FnMut(Self::Item) -> U>(self, each: F) -> std::iter::FlatMap<Self, U, F> {
+            self.flat_map(each)
+        }
+
+        fn map_init<T, R>(
+            self,
+            init: impl FnOnce() -> T,
+            mut each: impl FnMut(&mut T, Self::Item) -> R,
+        ) -> impl Iterator<Item = R> {
+            let mut room = init();
+            self.map(move |item| each(&mut room, item))
+        }
+    }
+
+    impl<I: Iterator> ParallelIterator for I {}
+}
