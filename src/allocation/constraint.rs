@@ -439,7 +439,7 @@ impl Room {
     }
 }
 
-/// What varies by the room for it: nothing takes none of it.
+/// A variation by the room for it: nothing takes none of it.
 fn by_room(own: f64, room: f64) -> f64 {
     match own == 0.0 {
         true if room > 0.0 => 0.0,

@@ -95,7 +95,7 @@ impl YieldRoom {
         slopes.iter().all(|slope| slope.is_finite()).then_some(slopes)
     }
 
-    /// What a standardised law rejects at a sigma.
+    /// The rejects of a standardised law at a sigma.
     fn share(&self, law: &Pearson, sigma: f64) -> f64 {
         let below = self.below.map_or(0.0, |distance| law.cdf(-distance / sigma));
         below + self.above.map_or(0.0, |distance| law.sf(distance / sigma))

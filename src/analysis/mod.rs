@@ -148,7 +148,7 @@ pub fn analyze_with(problem: &Problem, options: &Options, run: &Run<'_>) -> Resu
     Ok(analysis)
 }
 
-/// What an analysis leaves to who goes on from there.
+/// The findings of an analysis, for who goes on from there.
 pub(crate) struct Kept {
     pub(crate) outcome: Outcome,
     /// The laws of the surfaces by characteristic, where the yields have them.
