@@ -5,6 +5,7 @@ or SENSITOL with its path, and nothing but Python.
 """
 
 import argparse
+import contextlib
 import http.server
 import json
 import math
@@ -37,7 +38,9 @@ class Study:
             raise SystemExit(f"error: {program} cannot be started: {error}") from None
         self.writing = threading.Lock()
         self.waiting, self.sent, self.ended = {}, 0, None
-        self._write({"sensitol": 1, "dimensions": [], "characteristics": []})
+        # One that ends at once may be gone before it is asked: it has said why.
+        with contextlib.suppress(OSError):
+            self._write({"sensitol": 1, "dimensions": [], "characteristics": []})
         line = self.process.stdout.readline()
         self.ready = json.loads(line) if line else {"error": "sensitol ended before it was ready"}
         if "error" in self.ready:

@@ -271,6 +271,19 @@ def the_command_line_of_the_server_refuses():
         assert done.returncode != 0 and words in done.stderr and "Traceback" not in done.stderr, done.stderr
 
 
+def a_program_that_ends_unasked_is_one_error():
+    """The pipe to it may be broken before the first request."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = pathlib.Path(folder) / "sensitol"
+        program.write_text("#!/bin/sh\nexec 0<&-\necho 'error: it ends' >&2\nexit 3\n")
+        program.chmod(0o755)
+        done = subprocess.run(
+            [sys.executable, SERVER, "study.toml"], capture_output=True, text=True, timeout=60, check=False,
+            env={**os.environ, "SENSITOL": str(program)},
+        )  # fmt: skip
+    assert done.returncode != 0 and "it ends" in done.stderr and "Traceback" not in done.stderr, done.stderr
+
+
 def the_readme_shows_it():
     with server(4242):
         shown("cantilever-umbridge")
@@ -288,5 +301,6 @@ if __name__ == "__main__":
         a_failing_point_is_the_servers_exception,
         both_directions_meet,
         the_command_line_of_the_server_refuses,
+        a_program_that_ends_unasked_is_one_error,
         the_readme_shows_it,
     ])  # fmt: skip
