@@ -168,7 +168,7 @@ impl Driver<'_> {
             let nominal: Vec<Option<f64>> = station.analysis.characteristics.iter().map(|one| one.nominal).collect();
             self.confirm(allocation, &station.problem, &nominal, samples)?;
         }
-        allocation.after = Some(self.completed(&station));
+        allocation.after = Some(self.completed(station.analysis, &station.findings, &station.problem));
         allocation.problem = station.problem;
         Ok(())
     }

@@ -15,7 +15,7 @@ use super::solved::Solved;
 use super::station::Station;
 use super::task::{AllocateError, AllocationOptions, AllocationTask, Goal};
 use super::unknown::Unknown;
-use crate::analysis::{Analysis, CharacteristicAnalysis, analyze_keeping};
+use crate::analysis::{Analysis, CharacteristicAnalysis, Findings, analyze_keeping};
 use crate::assembly::Run;
 use crate::dimension::Dimension;
 use crate::method::{MethodError, Options};
@@ -119,11 +119,11 @@ impl Driver<'_> {
             .budget
             .map(|budget| budget.saturating_sub(usize::try_from(self.spent.run.evaluations).unwrap_or(usize::MAX)));
         let options = Options { budget, ..self.options.derivatives(&problem) };
-        let (analysis, kept) = analyze_keeping(&problem, &options, self.run)?;
+        let (analysis, findings) = analyze_keeping(&problem, &options, self.run)?;
         self.spent.run = self.spent.run.and(&analysis.run);
         self.spent.rounds += 1;
         self.spent.stopped |= analysis.run.unfinished();
-        let mut responses = Responses::of(&problem, &kept.outcome, &analysis, &self.task.requirements);
+        let mut responses = Responses::of(&problem, &findings.outcome, &analysis, &self.task.requirements);
         if self.spent.rounds > SETTLED {
             self.spent.unknown.resize(responses.of.len(), Unknown::default());
             for (one, most) in responses.of.iter_mut().zip(&mut self.spent.unknown) {
@@ -138,14 +138,12 @@ impl Driver<'_> {
             let Spent { places, points, .. } = &mut self.spent;
             responses.follow_corners(&problem, places, points);
         }
-        Ok(Station { problem, analysis, kept, responses })
+        Ok(Station { problem, analysis, findings, responses })
     }
 
-    /// The analysis of a station, with what is reported of it and no search reads.
-    pub(super) fn completed(&self, station: &Station) -> Analysis {
-        let Station { problem, analysis, kept, .. } = station;
-        let mut analysis = analysis.clone();
-        analysis.complete(kept, problem, &self.options.derivatives(problem), self.run);
+    /// The analysis of a station, with the results that are reported and no search reads.
+    pub(super) fn completed(&self, mut analysis: Analysis, findings: &Findings, problem: &Problem) -> Analysis {
+        analysis.complete(findings, problem, &self.options.derivatives(problem), self.run);
         analysis
     }
 

@@ -97,7 +97,7 @@ impl Driver<'_> {
         let mut allocation = Allocation {
             status: Status::OutOfTime,
             problem: problem.clone(),
-            before: self.completed(&first),
+            before: self.completed(first.analysis.clone(), &first.findings, problem),
             after: None,
             confirmed: false,
             cost_before: self.cost_to_hold(problem).and_then(|held| Some(held + self.loss_at(&first)?)),

@@ -5,7 +5,7 @@ use super::response::Responses;
 use super::result::{Kept, ShadowPrice};
 use super::solve::Setting;
 use super::solved::Solved;
-use crate::analysis::{self, Analysis};
+use crate::analysis::{Analysis, Findings};
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 
@@ -17,7 +17,7 @@ pub(super) struct Station {
     pub(super) problem: Problem,
     /// As far as a search reads it.
     pub(super) analysis: Analysis,
-    pub(super) kept: analysis::Kept,
+    pub(super) findings: Findings,
     pub(super) responses: Responses,
 }
 

@@ -143,13 +143,13 @@ pub fn analyze(problem: &Problem, options: &Options) -> Result<Analysis, MethodE
 
 /// [`analyze`], telling of finished points and stopping when told to.
 pub fn analyze_with(problem: &Problem, options: &Options, run: &Run<'_>) -> Result<Analysis, MethodError> {
-    let (mut analysis, kept) = analyze_keeping(problem, options, run)?;
-    analysis.complete(&kept, problem, options, run);
+    let (mut analysis, findings) = analyze_keeping(problem, options, run)?;
+    analysis.complete(&findings, problem, options, run);
     Ok(analysis)
 }
 
 /// The findings of an analysis, for who goes on from there.
-pub(crate) struct Kept {
+pub(crate) struct Findings {
     pub(crate) outcome: Outcome,
     /// The laws of the surfaces by characteristic, where the yields have them.
     laws: Vec<Option<SurfaceLaw>>,
@@ -160,7 +160,7 @@ pub(crate) fn analyze_keeping(
     problem: &Problem,
     options: &Options,
     run: &Run<'_>,
-) -> Result<(Analysis, Kept), MethodError> {
+) -> Result<(Analysis, Findings), MethodError> {
     let begun = Instant::now();
     let mut outcome = run_method(problem, options, run)?;
     let left = options.budget.map(|budget| budget.saturating_sub(outcome.evaluated.evaluations));
@@ -219,14 +219,14 @@ pub(crate) fn analyze_keeping(
         correlations: Vec::new(),
         warnings,
     };
-    Ok((analysis, Kept { outcome, laws }))
+    Ok((analysis, Findings { outcome, laws }))
 }
 
 impl Analysis {
-    /// Adds what the rest does not follow from: the joint yield, how characteristics vary together, and the indices of Sobol'.
-    pub(crate) fn complete(&mut self, kept: &Kept, problem: &Problem, options: &Options, run: &Run<'_>) {
+    /// Adds the results that no other one needs: the joint yield, how characteristics vary together, and the indices of Sobol'.
+    pub(crate) fn complete(&mut self, findings: &Findings, problem: &Problem, options: &Options, run: &Run<'_>) {
         let begun = Instant::now();
-        let Kept { outcome, laws } = kept;
+        let Findings { outcome, laws } = findings;
         if self.joint.is_none() {
             self.joint = settle::joint(&self.characteristics, laws);
         }

@@ -32,9 +32,9 @@ pub(crate) fn growths(terms: &[Term<'_>], growth: &[Vec<f64>], interactions: &In
     let (_, per_sigma) = unit_of(terms, interactions)?;
     let parts: Vec<JointCumulants> = terms.iter().map(|term| term.part(per_sigma)).collect();
     let whole = Assembly::of(&parts, interactions, per_sigma);
-    let rows = Rows::of(&parts, interactions, per_sigma);
+    let rows = rows(&parts, interactions, per_sigma);
     let slope = |m: usize| {
-        let (part, d, row) = (&parts[m], terms[m].part_growth(per_sigma, &growth[m]), &rows.of[m]);
+        let (part, d, row) = (&parts[m], terms[m].part_growth(per_sigma, &growth[m]), &rows[m]);
         let variance = 2.0 * d.p * part.p + d.curved + 2.0 * row.rho;
         let (p, q) = (d.p + part.p, d.q + 2.0 * part.q);
         let third =
@@ -88,50 +88,45 @@ struct Row {
     asbsa: f64,
 }
 
-struct Rows {
-    of: Vec<Row>,
-}
-
-impl Rows {
-    fn of(parts: &[JointCumulants], interactions: &Interactions, factor: f64) -> Self {
-        let n = parts.len();
-        let mut of = vec![Row::default(); n];
-        let row = |j: usize| interactions.neighbours(j).map(|(k, a)| (k, factor * a));
-        let product = Product::of(interactions, factor);
-        let mut w = vec![0.0; n];
-        for (j, sums) in of.iter_mut().enumerate() {
-            product.row(j, &mut w);
-            sums.squares = w.iter().map(|w| w * w).sum();
-            for (k, a) in row(j) {
-                let (part, b) = (&parts[k], a * a);
-                sums.rho += b;
-                sums.ap += a * part.p;
-                sums.aw += a * part.w;
-                sums.bq += b * part.q;
-                sums.cs += a * b * part.s;
-                sums.bc22 += b * part.c22;
-                sums.cc13 += a * b * part.c13;
-                sums.bbk += b * b * part.k;
-                sums.triangles += a * w[k];
-                sums.awq += a * w[k] * part.q;
-                sums.bws += b * w[k] * part.s;
-            }
+/// The sums over all rows.
+fn rows(parts: &[JointCumulants], interactions: &Interactions, factor: f64) -> Vec<Row> {
+    let n = parts.len();
+    let mut of = vec![Row::default(); n];
+    let row = |j: usize| interactions.neighbours(j).map(|(k, a)| (k, factor * a));
+    let product = Product::of(interactions, factor);
+    let mut w = vec![0.0; n];
+    for (j, sums) in of.iter_mut().enumerate() {
+        product.row(j, &mut w);
+        sums.squares = w.iter().map(|w| w * w).sum();
+        for (k, a) in row(j) {
+            let (part, b) = (&parts[k], a * a);
+            sums.rho += b;
+            sums.ap += a * part.p;
+            sums.aw += a * part.w;
+            sums.bq += b * part.q;
+            sums.cs += a * b * part.s;
+            sums.bc22 += b * part.c22;
+            sums.cc13 += a * b * part.c13;
+            sums.bbk += b * b * part.k;
+            sums.triangles += a * w[k];
+            sums.awq += a * w[k] * part.q;
+            sums.bws += b * w[k] * part.s;
         }
-        let known: Vec<[f64; 2]> = of.iter().map(|row| [row.rho, row.ap]).collect();
-        for (j, sums) in of.iter_mut().enumerate() {
-            for (k, a) in row(j) {
-                let (part, [rho, ap]) = (&parts[k], known[k]);
-                sums.aap += a * ap;
-                sums.asr += a * part.s * rho;
-                sums.bsap += a * a * part.s * ap;
-                sums.bkr += a * a * part.k * rho;
-            }
-        }
-        if parts.iter().any(|part| part.s != 0.0) {
-            of.iter_mut().zip(skewed(parts, interactions, factor)).for_each(|(sums, found)| sums.asbsa = found);
-        }
-        Self { of }
     }
+    let known: Vec<[f64; 2]> = of.iter().map(|row| [row.rho, row.ap]).collect();
+    for (j, sums) in of.iter_mut().enumerate() {
+        for (k, a) in row(j) {
+            let (part, [rho, ap]) = (&parts[k], known[k]);
+            sums.aap += a * ap;
+            sums.asr += a * part.s * rho;
+            sums.bsap += a * a * part.s * ap;
+            sums.bkr += a * a * part.k * rho;
+        }
+    }
+    if parts.iter().any(|part| part.s != 0.0) {
+        of.iter_mut().zip(skewed(parts, interactions, factor)).for_each(|(sums, found)| sums.asbsa = found);
+    }
+    of
 }
 
 /// `W = A A`: all of it where `A` is dense, row by row where it is sparse.

@@ -153,10 +153,7 @@ impl Term<'_> {
                 (b + a * moments.skewness, RestCumulants::of_curvature(a, moments))
             }
             Self::Tabulated { values, rule, moments } => {
-                let mean = self.mean();
-                let centred: Vec<f64> = values.iter().map(|value| factor * (value - mean)).collect();
-                let p = expectation(rule, |i| centred[i] * rule.nodes[i]);
-                let rest: Vec<f64> = centred.iter().zip(&rule.nodes).map(|(g, u)| g - p * u).collect();
+                let (p, rest) = split_table(values, rule, factor);
                 let mut rest = RestCumulants::of_table(&rest, rule);
                 // Without a fourth moment no curvature has a variance, whatever the rule says.
                 if moments.excess.is_nan() {
@@ -168,7 +165,7 @@ impl Term<'_> {
         }
     }
 
-    /// How what [`split`](Self::split) returns grows with the logarithm of the input's scale.
+    /// Derivatives of the results of [`split`](Self::split) by the logarithm of the input's scale.
     fn split_growth(&self, factor: f64, growth: &[f64]) -> (f64, RestCumulants) {
         match self {
             // The slope grows as the scale, the curvature as its square.
@@ -177,13 +174,7 @@ impl Term<'_> {
                 (2.0 * p - factor * linear, h.growing_as_squares())
             }
             Self::Tabulated { values, rule, .. } => {
-                let centred = |values: &[f64]| -> (f64, Vec<f64>) {
-                    let mean = expectation(rule, |i| values[i]);
-                    let centred: Vec<f64> = values.iter().map(|value| factor * (value - mean)).collect();
-                    let p = expectation(rule, |i| centred[i] * rule.nodes[i]);
-                    (p, centred.iter().zip(&rule.nodes).map(|(g, u)| g - p * u).collect())
-                };
-                let ((_, h), (dp, dh)) = (centred(values), centred(growth));
+                let ((_, h), (dp, dh)) = (split_table(values, rule, factor), split_table(growth, rule, factor));
                 (dp, RestCumulants::growth_of_table(&h, &dh, rule))
             }
         }
@@ -226,7 +217,7 @@ impl RestCumulants {
         }
     }
 
-    /// Derivatives where `h` grows as the square of what they are by the logarithm of.
+    /// Derivatives by the logarithm of the input's scale, where `h` grows as the square of the scale.
     fn growing_as_squares(self) -> Self {
         Self {
             hh: 4.0 * self.hh,
@@ -240,7 +231,7 @@ impl RestCumulants {
         }
     }
 
-    /// Derivatives where `h` grows by `d`.
+    /// Derivatives by the logarithm of the input's scale, where that of `h` is `d`.
     fn growth_of_table(h: &[f64], d: &[f64], rule: &Rule) -> Self {
         let mean = |f: &dyn Fn(f64, f64, f64) -> f64| expectation(rule, |i| f(rule.nodes[i], h[i], d[i]));
         let (hh, growth) = (mean(&|_, h, _| h * h), mean(&|_, h, d| 2.0 * h * d));
@@ -270,6 +261,14 @@ impl RestCumulants {
             hhhh: mean(&|_, h| h.powi(4)) - 3.0 * hh * hh,
         }
     }
+}
+
+/// The slope of the best straight line through `factor g`, and the rest at the nodes.
+fn split_table(values: &[f64], rule: &Rule, factor: f64) -> (f64, Vec<f64>) {
+    let mean = expectation(rule, |i| values[i]);
+    let centred: Vec<f64> = values.iter().map(|value| factor * (value - mean)).collect();
+    let p = expectation(rule, |i| centred[i] * rule.nodes[i]);
+    (p, centred.iter().zip(&rule.nodes).map(|(g, u)| g - p * u).collect())
 }
 
 fn expectation(rule: &Rule, value: impl Fn(usize) -> f64) -> f64 {
