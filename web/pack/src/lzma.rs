@@ -1,4 +1,4 @@
-//! The decoder of LZMA, for a page: a tenth of the code of one that is made for large files.
+//! The decoder of LZMA, for a page: of streams that fit in memory, whose sizes are known.
 //!
 //! Source: I. Pavlov, LZMA specification of 2015, in the public domain; its names are kept where it has them.
 
