@@ -75,24 +75,31 @@ impl YieldRoom {
         let (p_below, p_above) = (at(self.below, -1.0), at(self.above, 1.0));
         let over = self.below.unwrap_or(0.0) * p_below + self.above.unwrap_or(0.0) * p_above;
         let by_sigma = over / sigma;
-        let here = self.share(&self.law, sigma);
+        let limits = [self.below.map(|distance| -distance / sigma), self.above.map(|distance| distance / sigma)];
+        let exact = self.law.outside_by_shape(limits[0], limits[1]);
+        let [by_skewness, by_excess] = exact.or_else(|| self.by_differences())?.map(|slope| -slope / by_sigma);
+        let slopes = [(p_below - p_above) / over, by_skewness, by_excess];
+        slopes.iter().all(|slope| slope.is_finite()).then_some(slopes)
+    }
+
+    /// The derivatives of the share by skewness and excess of a density that ends too abruptly for formulas.
+    fn by_differences(&self) -> Option<[f64; 2]> {
+        let here = self.share(&self.law, self.sigma);
         let by_shape = |index: usize| {
             let share = |step: f64| {
                 let mut shape = self.shape;
                 shape[index] += step;
-                law_of(shape).map(|law| self.share(&law, sigma))
+                law_of(shape).map(|law| self.share(&law, self.sigma))
             };
-            let slope = match (share(STEP), share(-STEP)) {
+            Some(match (share(STEP), share(-STEP)) {
                 (Some(up), Some(down)) => (up - down) / (2.0 * STEP),
                 // Beside the least kurtosis one side is all there is.
                 (Some(up), None) => (up - here) / STEP,
                 (None, Some(down)) => (here - down) / STEP,
                 (None, None) => return None,
-            };
-            Some(-slope / by_sigma)
+            })
         };
-        let slopes = [(p_below - p_above) / over, by_shape(0)?, by_shape(1)?];
-        slopes.iter().all(|slope| slope.is_finite()).then_some(slopes)
+        Some([by_shape(0)?, by_shape(1)?])
     }
 
     /// The rejects of a standardised law at a sigma.

@@ -38,7 +38,7 @@ impl Equation {
     }
 
     /// C, by the distances to its roots: no cancellation near an end of the support.
-    fn c(&self, z: f64) -> f64 {
+    pub(super) fn c(&self, z: f64) -> f64 {
         let factor = |root: f64| if root.is_finite() { (root - z) / root } else { 1.0 };
         match self.roots {
             Roots::None => 1.0,
@@ -49,6 +49,16 @@ impl Equation {
                 ((z - centre) / scale).powi(2) + (width / scale).powi(2)
             }
         }
+    }
+
+    /// Its derivative.
+    pub(super) fn c_by(&self, z: f64) -> f64 {
+        self.c1 + 2.0 * self.c2 * z
+    }
+
+    /// The coefficient of the square.
+    pub(super) fn c2(&self) -> f64 {
+        self.c2
     }
 
     /// Distance to the next root.
@@ -64,6 +74,17 @@ impl Equation {
     /// `p'/p`, as a size.
     fn slope(&self, z: f64) -> f64 {
         ((self.c1 + self.d * z) / self.c(z)).abs()
+    }
+
+    /// How far a panel that begins at `z` can lead, by the next root.
+    pub(super) fn reach(&self, z: f64) -> f64 {
+        2.0 * REACH * self.distance(z) / (1.0 + REACH)
+    }
+
+    /// The derivative of `p'/p` by a parameter by which `c1` and `c2` have these.
+    pub(super) fn slope_by(&self, z: f64, [c1, c2]: [f64; 2]) -> f64 {
+        let c = self.c(z);
+        ((self.c1 + self.d * z) * (c1 + c2 * z) * z / c - (c1 + 3.0 * c2 * z)) / c
     }
 
     /// The panel that begins at `z` and leads outwards in the direction of `sign`. None where doubles are too coarse for

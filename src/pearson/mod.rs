@@ -23,6 +23,7 @@ mod equation;
 mod error;
 mod shape;
 mod side;
+mod slopes;
 mod standard;
 
 pub(crate) use equation::LEGENDRE;
@@ -174,6 +175,16 @@ impl Pearson {
     /// Probability above x: the survival function, with all its digits where the one below is 1.
     pub fn sf(&self, x: f64) -> f64 {
         if x.is_nan() { f64::NAN } else { self.turned(self.standard.cdf_sf(self.z(x)))[1] }
+    }
+
+    /// Derivatives of the probabilities below `lower` and above `upper`, together, by the skewness and by the kurtosis at this mean and sigma; None
+    /// where the density ends so abruptly that there are none.
+    pub(crate) fn outside_by_shape(&self, lower: Option<f64>, upper: Option<f64>) -> Option<[f64; 2]> {
+        let shape = [self.skewness.abs(), self.kurtosis[0] - 3.0 + self.kurtosis[1]];
+        let [lower, upper] = [lower, upper].map(|x| x.map(|x| self.z(x)));
+        let [below, above] = if self.mirrored() { [upper, lower] } else { [lower, upper] };
+        let [by_skewness, by_kurtosis] = self.standard.outside_by_shape(shape, below, above)?;
+        Some([if self.mirrored() { -by_skewness } else { by_skewness }, by_kurtosis])
     }
 
     /// Logarithm of the probability below x; it goes on where that vanishes.

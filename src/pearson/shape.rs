@@ -156,6 +156,18 @@ impl Shape {
         })
     }
 
+    /// The derivatives of `c1` and `c2` by the skewness, and by the excess.
+    pub(super) fn growth(skewness: f64, excess: f64) -> [[f64; 2]; 2] {
+        let square = skewness * skewness;
+        let c0 = 12.0 + 4.0 * excess - 3.0 * square;
+        let (first, second) = ((6.0 + excess) * skewness, 2.0 * excess - 3.0 * square);
+        let quotient = |c0_by: f64, first_by: f64, second_by: f64| {
+            [(first_by - first / c0 * c0_by) / c0, (second_by - second / c0 * c0_by) / c0]
+        };
+        let by = -6.0 * skewness;
+        [quotient(by, 6.0 + excess, by), quotient(4.0, skewness, 2.0)]
+    }
+
     /// The tail towards infinity, where the law has one that falls off as a power.
     pub(super) fn infinity(&self) -> Option<Infinity> {
         if self.c2 <= 0.0 {

@@ -2,6 +2,7 @@
 
 use super::ending::Ending;
 use super::equation::{Equation, Panel};
+use super::slopes::{Growth, Slopes};
 
 /// Tables end where log p has fallen by this: what lies beyond is computed when it is asked for.
 const CORE: f64 = -45.0;
@@ -117,6 +118,45 @@ impl Side {
             return Place::BEYOND;
         }
         Place { log_density, mills: mills(&self.equation, self.ending.as_ref(), self.sign, z) }
+    }
+
+    /// How the logarithm of p grows with the parameters, by the distance from the anchor and up to constants.
+    pub(super) fn rate(&self, distance: f64, growth: &Growth) -> Slopes {
+        let z = self.anchor + self.sign * distance;
+        growth.0.map(|of| self.sign * self.equation.slope_by(z, of))
+    }
+
+    /// The panels of the tables, by the distances of their ends from the anchor.
+    pub(super) fn panels(&self) -> impl ExactSizeIterator<Item = [f64; 2]> {
+        self.pieces.iter().map(|piece| [piece.from, self.sign * (piece.panel.end() - self.anchor)])
+    }
+
+    /// Whether what lies beyond the tables is nothing.
+    pub(super) fn ends_with_tables(&self) -> bool {
+        self.edge_log <= CORE
+    }
+
+    /// Whether so little is left to the end of the support that its distance has lost digits.
+    pub(super) fn is_at_its_end(&self, distance: f64) -> bool {
+        let whole = (self.limit - self.anchor).abs();
+        whole.is_finite() && whole - distance <= 1e-10 * whole
+    }
+
+    /// How far a series reaches at a distance from the anchor.
+    pub(super) fn reach(&self, distance: f64) -> f64 {
+        self.equation.reach(self.anchor + self.sign * distance)
+    }
+
+    /// The mass beyond a distance from the anchor, which lies in that panel of the tables.
+    pub(super) fn mass_in_panel(&self, index: usize, distance: f64) -> f64 {
+        let piece = &self.pieces[index];
+        let u = piece.panel.coordinate(self.anchor + self.sign * distance);
+        piece.log.exp() * (piece.beyond - piece.panel.mass(u))
+    }
+
+    /// The mass beyond a distance from the anchor.
+    pub(super) fn mass_beyond(&self, distance: f64) -> f64 {
+        self.at(self.anchor + self.sign * distance).log_mass().exp()
     }
 
     /// The ending, where the tables reach it, with its constant.
@@ -250,8 +290,56 @@ impl Side {
     }
 }
 
+/// Terms of a fraction before panels take over.
+const FRACTION: usize = 60;
+
+/// Mills' ratio by a continued fraction; None where it does not end while its terms are positive.
+///
+/// The moments `m_k` of what lies beyond `z`, about `z` and by the density there, keep, outwards with `y = sign z`,
+///
+/// ```text
+/// (1 + c2)(y m_0 + m_1) = C,    (1 + c2 - k c2) m_(k+1) = k C m_(k-1) + (k C' - (1 + c2) y) m_k
+/// m_0 = C/(1 + c2)/(y + m_1/m_0),    m_k/m_(k-1) = k C/((1 + c2) y - k C' + (1 + c2 - k c2) m_(k+1)/m_k)
+/// ```
+///
+/// of a normal law Laplace's fraction. As long as all terms are positive the value lies between any two approximants that follow each other.
+fn fraction(equation: &Equation, sign: f64, z: f64) -> Option<f64> {
+    let [c, by, y] = [equation.c(z), sign * equation.c_by(z), sign * z];
+    let (one, c2) = (1.0 + equation.c2(), equation.c2());
+    if !(c > 0.0 && y > 0.0) {
+        return None;
+    }
+    // Wallis: numerators and denominators of approximants, scaled before they leave the range of a double.
+    let (mut above, mut below) = ([1.0, y], [0.0, 1.0]);
+    let mut last = f64::INFINITY;
+    for k in 1..FRACTION {
+        let k = k as f64;
+        let (partial, weight) = (one * y - k * by, one - k * c2);
+        let before = if k == 1.0 { 1.0 } else { one - (k - 1.0) * c2 };
+        if !(partial > 0.0 && weight > 0.0) {
+            return None;
+        }
+        let numerator = before * k * c;
+        let next = [partial * above[1] + numerator * above[0], partial * below[1] + numerator * below[0]];
+        (above, below) = ([above[1], next[0]], [below[1], next[1]]);
+        let scale = 1.0 / below[1];
+        above.iter_mut().chain(&mut below).for_each(|value| *value *= scale);
+        // y + m_1/m_0, from above and from below by turns.
+        let value = above[1];
+        if (value - last).abs() <= f64::EPSILON * value {
+            return Some(c / (one * value));
+        }
+        last = value;
+    }
+    None
+}
+
 /// Mills' ratio beyond the tables: from panel to panel until nothing is left or the ending takes over.
 fn mills(equation: &Equation, ending: Option<&Ending>, sign: f64, mut z: f64) -> f64 {
+    let covered = ending.is_some_and(|ending| ending.covers(z));
+    if let Some(mills) = fraction(equation, sign, z).filter(|_| !covered) {
+        return mills;
+    }
     let (mut mass, mut density) = (0.0, 1.0);
     for _ in 0..PANELS {
         if let Some(ending) = ending.filter(|ending| ending.covers(z)) {

@@ -5,6 +5,7 @@ use super::ending::Ending;
 use super::equation::Equation;
 use super::shape::{PearsonType, Roots, Shape};
 use super::side::{Place, Side};
+use super::slopes::{Growth, Slopes, Walk};
 
 /// Two sides that meet at the anchor.
 #[derive(Debug, Clone)]
@@ -70,6 +71,22 @@ impl Standard {
         let inner = side.inner(z).unwrap_or(side.mass - beyond).max(0.0);
         let (outer, rest) = ((beyond / self.total).min(1.0), ((other.mass + inner) / self.total).min(1.0));
         if z < self.anchor { [outer, rest] } else { [rest, outer] }
+    }
+
+    /// Derivatives of the probabilities below one place and above another, together, by the skewness and the excess; None where the density ends
+    /// too abruptly.
+    pub(super) fn outside_by_shape(&self, shape: [f64; 2], below: Option<f64>, above: Option<f64>) -> Option<Slopes> {
+        let growth = Growth(Shape::growth(shape[0], shape[1]));
+        let (left, right) = (Walk::along(&self.left, growth)?, Walk::along(&self.right, growth)?);
+        let mean: Slopes = std::array::from_fn(|i| (left.all()[i] + right.all()[i]) / self.total);
+        // The whole stays 1.
+        let of = |z: f64, above: bool| {
+            let outside = if z < self.anchor { &left } else { &right };
+            let sign = if (z < self.anchor) == above { -1.0 } else { 1.0 };
+            outside.beyond((z - self.anchor).abs(), mean).map(|slope| sign * slope / self.total)
+        };
+        let (below, above) = (below.map_or([0.0; 2], |z| of(z, false)), above.map_or([0.0; 2], |z| of(z, true)));
+        Some([below[0] + above[0], below[1] + above[1]]).filter(|all| all.iter().all(|slope| slope.is_finite()))
     }
 
     /// Logarithms of the same; they go on where the probabilities vanish.
