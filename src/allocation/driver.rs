@@ -44,7 +44,7 @@ pub(super) struct Spent {
 
 /// Rounds after which uncertainties only grow. Those of a sample jump as an assembly passes a limit, and stations next to each other would
 /// be left for each other again and again.
-const SETTLED: usize = 6;
+const SETTLED: usize = 4;
 
 pub(super) struct Driver<'a> {
     pub(super) task: &'a AllocationTask,

@@ -7,7 +7,7 @@ use super::augmented::{Ended, Near, Slope, Smooth, cost};
 use super::constraint::{Constraint, Linearised};
 use super::quadratic::dot;
 use super::solve::{SMALL, Setting};
-use super::solved::Solved;
+use super::solved::{Ends, Solved};
 use crate::requirement::Requirement;
 
 /// Unknowns and rows beyond which the dense matrices of a step take longer than a round of the model.
@@ -15,8 +15,9 @@ const MOST: usize = 300;
 const NEAR: Near = Near { by: 1e-11, updates: 100 };
 
 impl Setting<'_> {
-    /// The end of a search from a start that need keep nothing; None where values are unknown there, or there are too many unknowns.
-    pub(super) fn finished(&self, start: &[f64]) -> Option<Solved> {
+    /// The end of a search from a start that need keep nothing, or that of an earlier one which it comes near; None where values are unknown there,
+    /// or there are too many unknowns.
+    pub(super) fn finished(&self, start: &[f64], ends: &Ends) -> Option<Solved> {
         if start.len() + self.constraints.len() > MOST {
             return None;
         }
@@ -46,8 +47,12 @@ impl Setting<'_> {
         };
         let smooth = Smooth { objective: &objective, rows: &rows, bounds: &bounds };
         let x: Vec<f64> = start.iter().map(|t| t.ln()).collect();
-        let Ended { x, multipliers, .. } = smooth.sequential(&x, NEAR)?;
+        let near = |x: &[f64], residual: f64| ends.near(&tolerances(x), residual).is_some();
+        let Ended { x, multipliers, residual } = smooth.sequential(&x, NEAR, &near)?;
         let at = self.within(&tolerances(&x));
+        if let Some(known) = ends.near(&at, residual) {
+            return Some(known.clone());
+        }
         let linearised = self.linearised(&at)?;
         // Both rows of a requirement are 0 together, so that one's slopes are a multiple of the other's.
         let scaled = |((multiplier, own), value): ((&f64, &Slope), &Linearised)| match dot(&value.slopes, &value.slopes)

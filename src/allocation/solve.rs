@@ -55,6 +55,8 @@ const STILL: [f64; 2] = [1e-11, 1e-9];
 pub(super) const SMALL: f64 = 1e-8;
 /// Steps in which a residual that still falls is at least halved.
 const PATIENCE: usize = 3;
+/// Steps of which none halves the residual: shortened ones, of a tenth, would need seven.
+const ASTRAY: usize = 12;
 /// Two ways to the same.
 const SAME: f64 = 1e-9;
 
@@ -135,8 +137,9 @@ impl Setting<'_> {
         let left = |found: &Solved, start: &[f64]| {
             !one_start && found.cost > self.cost(start) * (1.0 + SAME) && kept(self.value(start))
         };
-        let descend = |start: &[f64]| {
-            let found = self.usable(start, &tight).and_then(|(start, linearised)| self.descend(start, linearised));
+        let descend = |start: &[f64], ends: &Ends| {
+            let found =
+                self.usable(start, &tight).and_then(|(start, linearised)| self.descend(start, linearised, ends));
             let ended = |found: &Solved| found.converged && kept(found.value);
             let from = match &found {
                 Some(found) if ended(found) && !left(found, start) => None,
@@ -144,7 +147,7 @@ impl Setting<'_> {
                 _ => Some(start),
             };
             // Sums of powers lead nowhere from here, or not to the end.
-            let finished = from.and_then(|from| self.finished(from)).filter(ended);
+            let finished = from.and_then(|from| self.finished(from, ends)).filter(ended);
             finished.or(found)
         };
         let mut ends = Ends::default();
@@ -154,7 +157,8 @@ impl Setting<'_> {
             if done && (!self.anywhere || one_start) {
                 break;
             }
-            ends.take(descend(&start));
+            let end = descend(&start, &ends);
+            ends.take(end);
             if (self.stopped)() {
                 break;
             }
@@ -162,7 +166,8 @@ impl Setting<'_> {
         // Starts that disagree, or find nothing, leave it to a swarm to say where to begin.
         let confused = !one_start && (!ends.is_feasible() || ends.different() > MOST_ENDS);
         if let Some(start) = confused.then(|| self.swarmed(&bounds)).flatten() {
-            ends.take(descend(&start));
+            let end = descend(&start, &ends);
+            ends.take(end);
         }
         ends.found().or_else(|| self.kept_at_least(start, &tight))
     }
@@ -252,7 +257,8 @@ impl Setting<'_> {
         all.find_map(|at| self.linearised(&at).map(|linearised| (at, linearised)))
     }
 
-    fn descend(&self, mut at: Vec<f64>, first: Vec<Linearised>) -> Option<Solved> {
+    /// The end of a search, or that of an earlier one which it comes near.
+    fn descend(&self, mut at: Vec<f64>, first: Vec<Linearised>, ends: &Ends) -> Option<Solved> {
         let mut known = Some(first);
         let mut multipliers: Option<Vec<f64>> = None;
         let mut best: Option<Solved> = None;
@@ -267,7 +273,13 @@ impl Setting<'_> {
                 in_vain = if now.residual < 0.5 * least { 0 } else { in_vain + 1 };
                 least = least.min(now.residual);
                 let done = now.residual <= still || now.residual <= SMALL && in_vain >= PATIENCE;
+                if let Some(known) = ends.near(&now.at, now.residual).filter(|_| !done) {
+                    return Some(known.clone());
+                }
                 keep(&mut best, now);
+                if in_vain >= ASTRAY {
+                    break;
+                }
                 if done {
                     (converged, still_at_last) = (true, true);
                     break;

@@ -37,12 +37,17 @@ pub(super) struct Starts {
     pub(super) other: Option<f64>,
 }
 
+/// Half bands this near to an end, in logarithms, with a residual as small, are on their way to it.
+const NEAR_END: f64 = 1e-3;
+
 /// The ends of several searches.
 #[derive(Debug, Default)]
 pub(super) struct Ends {
     best: Option<Solved>,
-    /// Costs of the searches that ended by themselves.
+    /// Costs of the searches that ended by themselves,
     costs: Vec<f64>,
+    /// and where they ended, each place once.
+    places: Vec<Solved>,
     begun: usize,
 }
 
@@ -53,10 +58,19 @@ impl Ends {
         let Some(found) = found else { return };
         if found.converged && kept(found.value) {
             self.costs.push(found.cost);
+            if self.near(&found.at, found.residual).is_none() {
+                self.places.push(found.clone());
+            }
         }
         if cheaper(&found, self.best.as_ref()) {
             self.best = Some(found);
         }
+    }
+
+    /// The end that a search is about to reach, if an earlier one ended there.
+    pub(super) fn near(&self, at: &[f64], residual: f64) -> Option<&Solved> {
+        let close = |end: &&Solved| end.at.iter().zip(at).all(|(a, b)| (b / a).ln().abs() <= NEAR_END);
+        self.places.iter().find(close).filter(|_| residual <= NEAR_END)
     }
 
     /// Whether the best keeps all constraints.

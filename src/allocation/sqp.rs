@@ -52,8 +52,14 @@ impl Place {
 }
 
 impl Smooth<'_> {
-    /// The end of a search by quadratic problems from a start; None where values or slopes are not defined there.
-    pub(super) fn sequential(&self, start: &[f64], near: Near) -> Option<Ended> {
+    /// The end of a search by quadratic problems from a start, or the first place with its residual that `enough` is content with; None where values
+    /// or slopes are not defined there.
+    pub(super) fn sequential(
+        &self,
+        start: &[f64],
+        near: Near,
+        enough: &dyn Fn(&[f64], f64) -> bool,
+    ) -> Option<Ended> {
         let within: Vec<f64> = start.iter().zip(self.bounds).map(|(x, &[low, high])| x.clamp(low, high)).collect();
         let mut here = self.place(within)?;
         let mut inverse = Inverse::new(start.len());
@@ -70,7 +76,7 @@ impl Smooth<'_> {
                 let multipliers = step.multipliers[..here.rows.len()].to_vec();
                 best = Some(Ended { x: here.x.clone(), multipliers, residual });
             }
-            if residual <= near.by || in_vain > PATIENCE && least <= NEAR_THE_END {
+            if residual <= near.by || in_vain > PATIENCE && least <= NEAR_THE_END || enough(&here.x, residual) {
                 break;
             }
             match self.gone(&here, &step, &inverse, weight) {
@@ -242,7 +248,7 @@ mod tests {
         let smooth = Smooth { objective: &objective, rows: &rows, bounds: &[[-10.0, 10.0]; 4] };
         // From a point that keeps every row, and from one that breaks all.
         for start in [[0.0; 4], [9.0; 4]] {
-            let found = smooth.sequential(&start, Near { by: 1e-11, updates: 60 }).unwrap();
+            let found = smooth.sequential(&start, Near { by: 1e-11, updates: 60 }, &|_, _| false).unwrap();
             assert!(found.residual <= 1e-11, "{}", found.residual);
             let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
             assert!(near(&found.x, &[0.0, 1.0, 2.0, -1.0]), "{:?}", found.x);

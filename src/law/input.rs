@@ -1,6 +1,6 @@
 //! An input in units of its sigma about its mean: probabilities, quantiles, and panels on which its density is smooth.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 
 use super::LawTail;
 use super::polynomial::{Quartic, derivative, roots, value};
@@ -37,7 +37,8 @@ pub(super) struct Input {
     pub(super) atoms: Vec<(f64, f64)>,
     /// The share of what has a density.
     pub(super) smooth: f64,
-    panels: Vec<Panel>,
+    /// Made when first asked for: sums of normal inputs need none.
+    panels: OnceLock<Vec<Panel>>,
     /// Where the density is not smooth.
     corners: Vec<f64>,
     /// Where quadratures begin and end.
@@ -77,12 +78,8 @@ impl Input {
         let normal = law.name() == Normal::NAME;
         let corners = probability.corners().into_iter().map(scaled).collect();
         let law = Arc::clone(law);
-        let (panels, ends) = (Vec::new(), [low, high]);
-        let mut input = Self { law, mean, sigma, normal, atoms, smooth, panels, corners, ends, support };
-        if smooth > 0.0 {
-            input.panels = input.resolved();
-        }
-        Some(input)
+        let (panels, ends) = (OnceLock::new(), [low, high]);
+        Some(Self { law, mean, sigma, normal, atoms, smooth, panels, corners, ends, support })
     }
 
     /// Whether its tails fall as so low a power that quadratures reach out farther than their nodes resolve: Student's distribution
@@ -202,7 +199,11 @@ impl Input {
 
     /// The panels on which the density is smooth, with the factor of its weights.
     pub(super) fn panels(&self) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
-        self.panels.iter().map(|panel| ([panel.from, panel.to], panel.factor))
+        self.smooth_panels().iter().map(|panel| ([panel.from, panel.to], panel.factor))
+    }
+
+    fn smooth_panels(&self) -> &[Panel] {
+        self.panels.get_or_init(|| if self.smooth > 0.0 { self.resolved() } else { Vec::new() })
     }
 
     /// Quantile of a probability counted from the nearer end: `p` from below, `-p` from above.
@@ -285,7 +286,7 @@ impl Input {
     pub(super) fn nodes_within(&self, part: &Quartic, top: f64, near: f64, [low, high]: [f64; 2]) -> Nodes {
         let mut nodes = Nodes::default();
         let extremes = roots(&derivative(part), self.ends);
-        for panel in &self.panels {
+        for panel in self.smooth_panels() {
             let inside = extremes.as_slice().iter().copied().filter(|&z| z > panel.from && z < panel.to);
             let mut from = panel.from;
             for to in inside.chain([panel.to]) {

@@ -81,10 +81,11 @@ impl Equation {
         2.0 * REACH * self.distance(z) / (1.0 + REACH)
     }
 
-    /// The derivative of `p'/p` by a parameter by which `c1` and `c2` have these.
-    pub(super) fn slope_by(&self, z: f64, [c1, c2]: [f64; 2]) -> f64 {
-        let c = self.c(z);
-        ((self.c1 + self.d * z) * (c1 + c2 * z) * z / c - (c1 + 3.0 * c2 * z)) / c
+    /// The derivatives of `p'/p` by two parameters by which `c1` and `c2` have these.
+    pub(super) fn slopes_by(&self, z: f64, by: [[f64; 2]; 2]) -> [f64; 2] {
+        let inverse = 1.0 / self.c(z);
+        let own = (self.c1 + self.d * z) * z * inverse;
+        by.map(|[c1, c2]| (own * (c1 + c2 * z) - (c1 + 3.0 * c2 * z)) * inverse)
     }
 
     /// The panel that begins at `z` and leads outwards in the direction of `sign`. None where doubles are too coarse for

@@ -123,7 +123,7 @@ impl Side {
     /// How the logarithm of p grows with the parameters, by the distance from the anchor and up to constants.
     pub(super) fn rate(&self, distance: f64, growth: &Growth) -> Slopes {
         let z = self.anchor + self.sign * distance;
-        growth.0.map(|of| self.sign * self.equation.slope_by(z, of))
+        self.equation.slopes_by(z, growth.0).map(|slope| self.sign * slope)
     }
 
     /// The panels of the tables, by the distances of their ends from the anchor.
