@@ -356,6 +356,13 @@ impl Constraint {
         }
     }
 
+    /// Finds out about the station's law once, which everything else then knows.
+    pub(super) fn prepare(&self, responses: &Responses) {
+        if !self.is_joint() {
+            let _: Option<Arc<Correction>> = self.correction(responses);
+        }
+    }
+
     /// The correction of the room for a yield by the law of the surface.
     fn correction(&self, responses: &Responses) -> Option<Arc<Correction>> {
         let Requirement::Yield(least) = self.requirement else { return None };

@@ -20,6 +20,7 @@ use crate::assembly::Run;
 use crate::dimension::Dimension;
 use crate::method::{MethodError, Options};
 use crate::moments::Moments;
+use crate::parallel::prelude::*;
 use crate::problem::Problem;
 use crate::requirement::Requirement;
 use crate::summary::{RunSummary, StopReason};
@@ -137,6 +138,9 @@ impl Driver<'_> {
         if !problem.function().signature().costly {
             let Spent { places, points, .. } = &mut self.spent;
             responses.follow_corners(&problem, places, points);
+        }
+        if self.task.goal == Goal::LeastCost {
+            self.constraints(&problem, &self.task.requirements).par_iter().for_each(|one| one.prepare(&responses));
         }
         Ok(Station { problem, analysis, findings, responses })
     }

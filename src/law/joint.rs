@@ -20,7 +20,7 @@ use crate::characteristic::SpecLimits;
 use crate::correlation::Block;
 use crate::distribution::standard_normal;
 use crate::parallel::prelude::*;
-use crate::sampling::{SOBOL_DIMENSIONS, Sobol};
+use crate::sampling::{SOBOL_DIMENSIONS, Sobol, tails};
 
 /// Points in every replicate.
 const POINTS: usize = 1 << 11;
@@ -159,20 +159,16 @@ impl Inputs {
     /// The inputs at the points of a replicate, in sigmas off their means.
     fn columns(&self, sobol: Option<&Sobol>, replicate: usize) -> Vec<Vec<f64>> {
         let mut columns: Vec<Vec<f64>> = Vec::with_capacity(self.laws.len());
+        let mut digits = vec![0; POINTS];
         for (dimension, (_, law)) in self.laws.iter().enumerate() {
             let key = mixed(mixed(mixed(SEED) ^ replicate as u64).wrapping_add(dimension as u64));
-            let mut column = vec![0.0; POINTS];
             match sobol {
-                Some(sobol) if dimension < SOBOL_DIMENSIONS => sobol.column(dimension, 0, Some(key), &mut column),
-                _ => column.iter_mut().enumerate().for_each(|(i, u)| {
-                    *u = (mixed(key ^ i as u64) >> 12) as f64 / (1u64 << 52) as f64;
-                }),
+                Some(sobol) if dimension < SOBOL_DIMENSIONS => sobol.digits(dimension, 0, &mut digits),
+                // Random digits, scrambled like the others.
+                _ => digits.iter_mut().enumerate().for_each(|(i, digits)| *digits = mixed(key ^ i as u64)),
             }
-            // Counted from the nearer end, at the middle of a cell.
-            for u in &mut column {
-                *u += 0.5f64.powi(53);
-                *u = if *u > 0.5 { *u - 1.0 } else { *u };
-            }
+            let mut column = vec![0.0; POINTS];
+            tails(&digits, key, &mut column);
             match self.members.contains(&dimension) {
                 true => standard_normal::quantiles(&mut column),
                 false => law.at_tails(&mut column),

@@ -265,7 +265,7 @@ impl Work for Combined<'_> {
 }
 
 /// Scrambled digits as probabilities, each the middle of its cell, counted from the nearer end and negative from above.
-pub(super) fn tails(digits: &[u64], key: u64, out: &mut [f64]) {
+pub(crate) fn tails(digits: &[u64], key: u64, out: &mut [f64]) {
     on_this_processor(Tails { digits, key, out });
 }
 

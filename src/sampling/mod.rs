@@ -10,6 +10,7 @@ mod sobol;
 mod stream;
 mod summary;
 
+pub(crate) use draws::tails;
 pub use draws::{Draws, Portion, Sampler, SamplingError};
 pub use estimate::{Estimate, wilson};
 pub(crate) use estimate::{FEWEST, of_moments, one_error};
