@@ -131,7 +131,7 @@ impl Smooth<'_> {
 /// A separable problem from any start near to its multipliers, what is left after that Newton steps on the dual do: tolerances and
 /// multipliers of the rows. Every group must have one offer.
 pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    const NEAR: Near = Near { by: 1e-5, updates: 12 };
+    const NEAR: Near = Near { by: 1e-3, updates: 12 };
     let bounds: Vec<[f64; 2]> =
         problem.priced.iter().map(|group| [group.offers[0].min.ln(), group.offers[0].max.ln()]).collect();
     let scale = with_losses(problem, start).0.abs().max(f64::MIN_POSITIVE);

@@ -79,13 +79,20 @@ const SWEEPS: usize = 40;
 impl Separable<'_> {
     /// The best of one group among the offers from `range`.
     pub(super) fn best(&self, g: usize, multipliers: &[f64], range: std::ops::Range<usize>) -> Best {
-        let offers = &self.priced[g].offers[range.clone()];
-        let best =
-            offers.iter().enumerate().map(|(index, offer)| self.of_offer(g, offer, index + range.start, multipliers));
+        self.best_near(g, multipliers, range, None)
+    }
+
+    /// The same, found sooner where it lies near another one.
+    fn best_near(&self, g: usize, multipliers: &[f64], range: std::ops::Range<usize>, near: Option<&Best>) -> Best {
+        let offers = self.priced[g].offers[range.clone()].iter().zip(range);
+        let best = offers.map(|(offer, index)| {
+            let near = near.filter(|near| near.offer == index).map(|near| near.t);
+            self.of_offer(g, offer, index, multipliers, near)
+        });
         best.reduce(|a, b| if b.value < a.value { b } else { a }).expect("every group has an offer")
     }
 
-    fn of_offer(&self, g: usize, offer: &Offer, index: usize, multipliers: &[f64]) -> Best {
+    fn of_offer(&self, g: usize, offer: &Offer, index: usize, multipliers: &[f64], near: Option<f64>) -> Best {
         let parts = self.priced[g].parts;
         let slope = |t: f64| {
             let [first, second] = offer.curve.log_derivatives(t);
@@ -101,7 +108,7 @@ impl Separable<'_> {
             (first, second)
         };
         let (t, curvature) =
-            if offer.min == offer.max { (offer.min, 0.0) } else { least(&slope, offer.min, offer.max) };
+            if offer.min == offer.max { (offer.min, 0.0) } else { least(&slope, offer.min, offer.max, near) };
         let used: f64 = self.weighted(multipliers).map(|(row, multiplier)| multiplier * row.terms[g].value(t)).sum();
         Best { offer: index, t, value: parts * offer.curve.cost(t) + used, curvature }
     }
@@ -114,6 +121,14 @@ impl Separable<'_> {
 
     fn all(&self, multipliers: &[f64]) -> Vec<Best> {
         (0..self.priced.len()).map(|g| self.best(g, multipliers, 0..self.priced[g].offers.len())).collect()
+    }
+
+    /// The same near others.
+    fn all_near(&self, multipliers: &[f64], near: &[Best]) -> Vec<Best> {
+        let of = |(g, near): (usize, &Best)| {
+            self.best_near(g, multipliers, 0..self.priced[g].offers.len(), Some(near))
+        };
+        near.iter().enumerate().map(of).collect()
     }
 
     fn bound(&self, multipliers: &[f64], best: &[Best]) -> f64 {
@@ -129,29 +144,24 @@ impl Separable<'_> {
     /// `-sum_g j_g j_g' / curvature_g` over the groups within their bounds.
     pub(super) fn solve(&self, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut multipliers = start.to_vec();
-        let mut misses = self.misses(&multipliers);
+        let mut best = self.all(&multipliers);
         for round in 0..SWEEPS {
-            if self.newton(&mut multipliers, &mut misses) {
+            if self.newton(&mut multipliers, &mut best) {
                 break;
             }
             for k in 0..multipliers.len() {
                 self.alone(k, &mut multipliers);
             }
-            misses = self.misses(&multipliers);
+            best = self.all(&multipliers);
             // With one constraint, alone is all there is.
             if multipliers.len() == 1 && round > 0 {
                 break;
             }
         }
-        let at = self.all(&multipliers).iter().map(|best| best.t).collect();
-        (multipliers, at)
+        (multipliers, best.iter().map(|best| best.t).collect())
     }
 
-    fn misses(&self, multipliers: &[f64]) -> Vec<f64> {
-        self.misses_at(&self.all(multipliers))
-    }
-
-    fn misses_at(&self, best: &[Best]) -> Vec<f64> {
+    fn misses(&self, best: &[Best]) -> Vec<f64> {
         let at: Vec<f64> = best.iter().map(|best| best.t).collect();
         self.rows.iter().map(|row| row.value(&at) - 1.0).collect()
     }
@@ -164,16 +174,16 @@ impl Separable<'_> {
 
     /// Newton steps as long as the dual rises: steps that only bring the misses down may undo what [`alone`](Self::alone) does, and
     /// it theirs, for ever.
-    fn newton(&self, multipliers: &mut Vec<f64>, misses: &mut Vec<f64>) -> bool {
+    fn newton(&self, multipliers: &mut Vec<f64>, best: &mut Vec<Best>) -> bool {
         for _ in 0..NEWTON {
-            let error = Self::error(multipliers, misses);
+            let misses = self.misses(best);
+            let error = Self::error(multipliers, &misses);
             if error <= KEPT {
                 return true;
             }
             let active: Vec<usize> =
                 (0..multipliers.len()).filter(|&k| multipliers[k] > 0.0 || misses[k] > 0.0).collect();
-            let best = self.all(multipliers);
-            let value = self.bound(multipliers, &best);
+            let value = self.bound(multipliers, best);
             let n = active.len();
             let mut matrix = Mat::<f64>::zeros(n, n);
             for (g, best) in best.iter().enumerate().filter(|(_, best)| best.curvature > 0.0) {
@@ -203,16 +213,16 @@ impl Separable<'_> {
                     .iter()
                     .zip(step.col_as_slice(0))
                     .for_each(|(&k, step)| trial[k] = (trial[k] + part * step).max(0.0));
-                let best = self.all(&trial);
-                let found = self.misses_at(&best);
-                let rise = self.bound(&trial, &best) - value;
+                let there = self.all_near(&trial, best);
+                let found = self.misses(&there);
+                let rise = self.bound(&trial, &there) - value;
                 let foretold: f64 =
                     active.iter().map(|&k| misses[k] * (trial[k] - multipliers[k])).sum::<f64>().max(0.0);
                 // Near the top the dual is flat to its last digits, and misses tell more.
                 let flat =
                     rise.abs() <= FLAT * value.abs() && Self::error(&trial, &found) < error * (1.0 - 1e-4 * part);
                 if flat || rise > 1e-4 * foretold {
-                    (*multipliers, *misses, accepted) = (trial, found, true);
+                    (*multipliers, *best, accepted) = (trial, there, true);
                     break;
                 }
             }
@@ -315,8 +325,11 @@ impl Separable<'_> {
 }
 
 /// Where a convex function of `T` is least between two bounds, from its first and second derivative by `ln T`; with the second
-/// one there, 0 at a bound.
-fn least(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64) -> (f64, f64) {
+/// one there, 0 at a bound. From a place near it, where there is one, by Newton's method alone.
+fn least(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64, near: Option<f64>) -> (f64, f64) {
+    if let Some(found) = near.and_then(|near| least_near(slope, min, max, near)) {
+        return found;
+    }
     if slope(min).0 >= 0.0 {
         return (min, 0.0);
     }
@@ -347,4 +360,23 @@ fn least(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64) -> (f64, f64) {
     }
     let t = x.exp().clamp(min, max);
     (t, slope(t).1.max(f64::MIN_POSITIVE))
+}
+
+/// The same where Newton's method stays between the bounds and ends soon: a convex function has no other such place.
+fn least_near(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64, near: f64) -> Option<(f64, f64)> {
+    const STEPS: usize = 8;
+    let (low, high) = (min.ln(), max.ln());
+    let mut x = near.ln();
+    for _ in 0..STEPS {
+        let (first, second) = slope(x.exp());
+        let next = x - first / second;
+        if !(second > 0.0 && next > low && next < high) {
+            return None;
+        }
+        if (next - x).abs() <= 4.0 * f64::EPSILON * next.abs().max(1.0) {
+            return Some((next.exp().clamp(min, max), second));
+        }
+        x = next;
+    }
+    None
 }

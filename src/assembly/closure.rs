@@ -2,6 +2,9 @@
 
 use super::{AssemblyFunction, EvaluationError, Request, Responses, Run, Signature, in_blocks};
 
+/// Points that are put together at once: a cache line of every column.
+const TILE: usize = 8;
+
 type Answer = dyn Fn(&[f64], &mut [f64]) -> Result<(), EvaluationError> + Send + Sync;
 
 /// An assembly function made of a closure, which gets one point and answers with one value per output.
@@ -67,8 +70,14 @@ impl AssemblyFunction for Closure {
     fn evaluate(&self, request: &Request<'_>, run: &Run<'_>, out: &mut Responses) {
         in_blocks(request, run, out, |points, rows, out| {
             let mut y = vec![0.0; self.signature.outputs.len()];
-            for (row, r) in rows.enumerate() {
-                let answered = (self.answer)(&points.row(r), &mut y);
+            let mut tile = Vec::new();
+            let first = rows.start;
+            for r in rows.clone() {
+                let (row, within) = (r - first, (r - first) % TILE);
+                if within == 0 {
+                    points.rows_to(r..rows.end.min(r + TILE), &mut tile);
+                }
+                let answered = (self.answer)(&tile[within * points.dimensions()..][..points.dimensions()], &mut y);
                 for (column, &output) in request.outputs.iter().enumerate() {
                     match &answered {
                         Ok(()) => out.set(row, column, y[output]),

@@ -92,6 +92,16 @@ impl Points {
         (0..self.dimensions).map(|dimension| self.column(dimension)[row]).collect()
     }
 
+    /// Some points one after the other, in place of what `out` held.
+    pub(crate) fn rows_to(&self, rows: std::ops::Range<usize>, out: &mut Vec<f64>) {
+        out.clear();
+        out.resize(rows.len() * self.dimensions, 0.0);
+        for dimension in 0..self.dimensions {
+            let column = &self.column(dimension)[rows.clone()];
+            column.iter().enumerate().for_each(|(row, &x)| out[row * self.dimensions + dimension] = x);
+        }
+    }
+
     /// Changes one coordinate of one point.
     pub(crate) fn set(&mut self, row: usize, dimension: usize, value: f64) {
         self.values[dimension * self.rows + row] = value;
