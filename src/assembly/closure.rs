@@ -2,8 +2,8 @@
 
 use super::{AssemblyFunction, EvaluationError, Request, Responses, Run, Signature, in_blocks};
 
-/// Points that are put together at once: a cache line of every column.
-const TILE: usize = 8;
+/// Points that are put together at once: some cache lines of every column.
+const TILE: usize = 32;
 
 type Answer = dyn Fn(&[f64], &mut [f64]) -> Result<(), EvaluationError> + Send + Sync;
 

@@ -36,9 +36,11 @@ use crate::dimension::Dimension;
 pub(crate) fn factors(correlation: Option<&Correlation>, dimensions: &[usize]) -> Vec<Vec<usize>> {
     let mut factors: Vec<Vec<usize>> = Vec::new();
     for (place, &d) in dimensions.iter().enumerate() {
-        let member = correlation.filter(|of| of.members().binary_search(&d).is_ok());
-        let linked =
-            |factor: &Vec<usize>| member.is_some_and(|of| factor.iter().any(|&other| of.linked(d, dimensions[other])));
+        let Some(of) = correlation.filter(|of| of.members().binary_search(&d).is_ok()) else {
+            factors.push(vec![place]);
+            continue;
+        };
+        let linked = |factor: &Vec<usize>| factor.iter().any(|&other| of.linked(d, dimensions[other]));
         // A dimension may link factors that were apart so far.
         let (together, apart): (Vec<_>, Vec<_>) = std::mem::take(&mut factors).into_iter().partition(linked);
         let mut own: Vec<usize> = together.into_iter().flatten().collect();

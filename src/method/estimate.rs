@@ -303,17 +303,12 @@ impl Estimate<'_> {
         if variance == 0.0 {
             return;
         }
-        let n = plan.varying().len();
-        let examined = |pair: &(usize, usize)| self.outcome.pairs.binary_search(pair).is_ok();
-        let left: Vec<(usize, usize)> = (0..n)
-            .flat_map(|j| (j + 1..n).map(move |k| (j, k)))
-            .filter(|&(j, k)| plan.joint(self.c, j, k) && !examined(&(j, k)))
-            .collect();
+        let left = self.left_pairs();
         let examined = 0.5 * self.interactions_squared(&self.surrogate.interactions) / variance;
         let mut share = examined;
         let mut products = self.surrogate.interactions.pairs();
-        if !left.is_empty() {
-            share += self.unexamined(&left, (&curved(), &independent), variance, &mut products);
+        if left > 0 {
+            share += self.unexamined(left, (&curved(), &independent), variance, &mut products);
         }
         // Those that are taken to be like others twist as these do.
         let seen: f64 = products.iter().map(|(.., value)| value * value).sum::<f64>() / variance;
@@ -339,16 +334,31 @@ impl Estimate<'_> {
         2.0 * interactions.each_pair().map(|(.., value)| value * value).sum::<f64>()
     }
 
+    /// How many pairs that matter to the characteristic were not examined.
+    fn left_pairs(&self) -> usize {
+        let plan = &self.outcome.plan;
+        let own = plan.varying().iter().filter(|&&d| plan.depends(self.c, d)).count();
+        let examined = self.outcome.pairs.iter().filter(|&&(j, k)| plan.joint(self.c, j, k)).count();
+        (own * own.saturating_sub(1) / 2).saturating_sub(examined)
+    }
+
+    /// These pairs.
+    fn each_left_pair(&self) -> impl Iterator<Item = (usize, usize)> {
+        let n = self.outcome.plan.varying().len();
+        let examined = |pair: &(usize, usize)| self.outcome.pairs.binary_search(pair).is_ok();
+        let all = (0..n).flat_map(move |j| (j + 1..n).map(move |k| (j, k)));
+        all.filter(move |&(j, k)| self.outcome.plan.joint(self.c, j, k) && !examined(&(j, k)))
+    }
+
     /// Adds what interactions that were not examined may do; the share of the variance that they are taken to have.
     fn unexamined(
         &mut self,
-        left: &[(usize, usize)],
+        pairs: usize,
         (surrogate, independent): (&Surrogate, &Inputs),
         variance: f64,
         products: &mut Vec<(usize, usize, f64)>,
     ) -> f64 {
-        let pairs = left.len();
-        if let Some(exact) = self.exact_pairs(left) {
+        if let Some((left, exact)) = self.exact_pairs(pairs) {
             let more = left.iter().zip(&exact).map(|(&(j, k), &value)| (j, k, value));
             let all = surrogate.interactions.pairs().into_iter().chain(more).filter(|&(.., value)| value != 0.0);
             let interactions = Interactions::of_pairs(surrogate.parts.len(), all);
@@ -361,7 +371,7 @@ impl Estimate<'_> {
             self.sources.push(ErrorSource::ExactPairs { pairs });
             return exact.iter().map(|value| value * value).sum::<f64>() / variance;
         }
-        let Some(share) = self.similar_pairs(left, variance) else {
+        let Some(share) = self.similar_pairs(variance) else {
             self.known = [self.outcome.plan.inputs().correlation().is_none(), false, false, false];
             self.sources.push(ErrorSource::UnknownPairs { pairs });
             return 0.0;
@@ -372,12 +382,13 @@ impl Estimate<'_> {
         share
     }
 
-    /// The interactions in sigmas, as the assembly function knows them.
-    fn exact_pairs(&self, left: &[(usize, usize)]) -> Option<Vec<f64>> {
+    /// The pairs that were not examined, so many, with their interactions in sigmas, as the assembly function knows them.
+    fn exact_pairs(&self, pairs: usize) -> Option<(Vec<(usize, usize)>, Vec<f64>)> {
         let plan = &self.outcome.plan;
-        if left.len() > EXACT {
+        if pairs > EXACT {
             return None;
         }
+        let left: Vec<(usize, usize)> = self.each_left_pair().collect();
         let dimensions: Vec<(usize, usize)> =
             left.iter().map(|&(j, k)| (plan.varying()[j], plan.varying()[k])).collect();
         let directions = Directions { point: &plan.centre(), inputs: &[], pairs: &dimensions };
@@ -386,11 +397,12 @@ impl Estimate<'_> {
         let scaled = |(&(j, k), value): (&(usize, usize), &Option<f64>)| {
             Some(plan.axis(j).scale * plan.axis(k).scale * (*value)?)
         };
-        dimensions.iter().zip(&derivatives.mixed).map(scaled).collect()
+        let exact = dimensions.iter().zip(&derivatives.mixed).map(scaled).collect::<Option<_>>()?;
+        Some((left, exact))
     }
 
     /// The share of interactions that are to the shares of their dimensions as those examined are.
-    fn similar_pairs(&self, left: &[(usize, usize)], variance: f64) -> Option<f64> {
+    fn similar_pairs(&self, variance: f64) -> Option<f64> {
         let plan = &self.outcome.plan;
         let own: Vec<f64> = (self.parts()?.iter().zip(plan.inputs().shapes()))
             .map(|(part, shape)| part.term(shape).variance(1.0) / variance)
@@ -402,7 +414,7 @@ impl Estimate<'_> {
             return None;
         }
         let found = 0.5 * self.interactions_squared(&self.surrogate.interactions) / variance;
-        Some(found / seen * expected(&mut left.iter().copied()))
+        Some(found / seen * expected(&mut self.each_left_pair()))
     }
 
     /// One rounding of a value in every difference.
