@@ -335,8 +335,7 @@ impl CharacteristicAnalysis {
         let sensitivities: Vec<Sensitivity> =
             (0..problem.dimensions().len()).map(|d| sensitivity(problem, outcome, c, d, shares.as_ref())).collect();
         let interactions = interactions(problem, outcome, c, shares.as_ref());
-        let n = plan.varying().len();
-        let possible_interactions = (0..n).map(|j| (j + 1..n).filter(|&k| plan.joint(c, j, k)).count()).sum::<usize>();
+        let possible_interactions = plan.pairs_of(c);
         let complete = outcome.order == Order::Second
             && interactions.len() == possible_interactions
             && interactions.iter().all(|interaction| interaction.share.is_some())

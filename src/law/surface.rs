@@ -1,5 +1,7 @@
 //! The surface over the inputs that count, its range, and how it falls into independent components.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 use faer::Mat;
@@ -86,16 +88,18 @@ impl Surface {
         }
         let mut places = vec![None; n];
         let (mut inputs, mut parts) = (Vec::new(), Vec::new());
-        let mut made: Vec<(usize, Arc<Input>)> = Vec::new();
+        let mut made: HashMap<*const (), Arc<Input>> = HashMap::new();
         for position in (0..n).filter(|&position| counts[position]) {
             places[position] = Some(inputs.len());
             parts.push(coefficients[position]);
-            let same = made.iter().find(|(other, _)| Arc::ptr_eq(&laws[*other], &laws[position]));
-            let input = match same {
-                Some((_, input)) => Arc::clone(input),
-                None => Arc::new(Input::of(&laws[position]).ok_or(LawError::MomentsOnly { position })?),
+            // Inputs of one and the same law share what is found out about it.
+            let input = match made.entry(Arc::as_ptr(&laws[position]).cast()) {
+                Entry::Occupied(known) => Arc::clone(known.get()),
+                Entry::Vacant(new) => {
+                    let input = Input::of(&laws[position]).ok_or(LawError::MomentsOnly { position })?;
+                    Arc::clone(new.insert(Arc::new(input)))
+                }
             };
-            made.push((position, Arc::clone(&input)));
             inputs.push(input);
         }
         let mut neighbours = vec![Vec::new(); inputs.len()];

@@ -337,9 +337,8 @@ impl Estimate<'_> {
     /// How many pairs that matter to the characteristic were not examined.
     fn left_pairs(&self) -> usize {
         let plan = &self.outcome.plan;
-        let own = plan.varying().iter().filter(|&&d| plan.depends(self.c, d)).count();
         let examined = self.outcome.pairs.iter().filter(|&&(j, k)| plan.joint(self.c, j, k)).count();
-        (own * own.saturating_sub(1) / 2).saturating_sub(examined)
+        plan.pairs_of(self.c).saturating_sub(examined)
     }
 
     /// These pairs.

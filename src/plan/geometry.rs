@@ -64,6 +64,13 @@ impl Geometry {
         (0..self.depends.len()).any(|c| self.joint(c, j, k))
     }
 
+    /// How many pairs of varying dimensions matter to a characteristic.
+    pub(crate) fn pairs_of(&self, characteristic: usize) -> usize {
+        let row = &self.depends[characteristic];
+        let own = self.varying.iter().filter(|&&d| row[d]).count();
+        own * own.saturating_sub(1) / 2
+    }
+
     /// How many pairs of varying dimensions matter to some characteristic.
     pub fn possible_pairs(&self) -> usize {
         let n = self.varying.len();
