@@ -30,7 +30,7 @@ pub(super) struct Setting<'a> {
     pub(super) losses: &'a [QualityLoss],
     /// The costs of setting up machines.
     pub(super) setups: &'a [SetUp],
-    pub(super) stopped: &'a dyn Fn() -> bool,
+    pub(super) stopped: &'a (dyn Fn() -> bool + Sync),
     /// Whether optima are sought from everywhere, where there may be several, rather than from the start alone.
     pub(super) anywhere: bool,
 }
@@ -151,17 +151,20 @@ impl Setting<'_> {
             finished.or(found)
         };
         let mut ends = Ends::default();
-        for start in starts {
-            // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
-            let done = ends.has_ended();
-            if done && (!self.anywhere || one_start) {
-                break;
-            }
+        let mut starts = starts.into_iter();
+        // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
+        while !ends.has_ended()
+            && !(ends.has_begun() && (self.stopped)())
+            && let Some(start) = starts.next()
+        {
             let end = descend(&start, &ends);
             ends.take(end);
-            if (self.stopped)() {
-                break;
-            }
+        }
+        // The others side by side, each of which knows the ends so far: what is found depends on no order.
+        if self.anywhere && !one_start && !(self.stopped)() {
+            let rest: Vec<Vec<f64>> = starts.collect();
+            let found: Vec<Option<Solved>> = rest.par_iter().map(|start| descend(start, &ends)).collect();
+            found.into_iter().for_each(|end| ends.take(end));
         }
         // Starts that disagree, or find nothing, leave it to a swarm to say where to begin.
         let confused = !one_start && (!ends.is_feasible() || ends.different() > MOST_ENDS);

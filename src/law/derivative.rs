@@ -3,6 +3,8 @@
 //! A tolerance that grows by a part `e` makes `z_j` to `(1 + e) z_j` at fixed shape: the surface changes by
 //! `z_j dy/dz_j`, and `dK = s E[z_j dy/dz_j exp(s y)]/E[exp(s y)]`.
 
+use faer::Mat;
+
 use super::complex::Complex;
 use super::contour::Contour;
 use super::forms::Block;
@@ -12,6 +14,7 @@ use super::single_sum::BLOCK;
 use super::surface::Surface;
 use super::tree::Tree;
 use super::{Kind, LawFigure, LawTail, SurfaceLaw};
+use crate::elementary::{Work, on_this_processor};
 
 /// Of all inputs of the surrogate, 0 for one without a part in the surface; None where the law is a step function.
 pub(super) fn tail_derivatives(law: &SurfaceLaw, y: f64, tail: LawTail) -> Option<Vec<LawFigure>> {
@@ -87,26 +90,58 @@ fn x_coth_x_less_one(x: Complex) -> Complex {
 }
 
 /// `s (b_j mu_j + 2 (mu_j (H mu)_j + (Sigma H)_jj))` with the tilted mean `mu` and covariance `Sigma` of the form.
-#[expect(clippy::needless_range_loop, reason = "every input has its own list of points")]
 fn of_block(block: &Block, contour: &Contour, changes: &mut [Vec<Complex>]) {
-    let m = block.members.len();
-    let axis = |j: usize, i: usize| block.axes.as_ref().map_or(1.0, |axes| axes[(j, i)]);
-    let images = block.images();
-    let image = |j: usize, i: usize| images.as_ref().map_or(block.curvatures[0], |images| images[(j, i)]);
     let count = changes.first().map_or(0, Vec::len);
-    for at in 0..count {
-        let s = contour.s(at);
-        let inverse: Vec<Complex> =
-            block.curvatures.iter().map(|a| Complex::ONE / (Complex::ONE - s * (2.0 * a))).collect();
-        let mean: Vec<Complex> = inverse.iter().zip(&block.slopes).map(|(q, slope)| s * *q * *slope).collect();
+    let images = block.images();
+    for first in (0..count).step_by(LANES) {
+        on_this_processor(BlockChanges { block, images: images.as_ref(), contour, first, changes });
+    }
+}
+
+/// Points of a contour that are taken side by side.
+const LANES: usize = 16;
+
+/// The changes at some points of the contour.
+struct BlockChanges<'a> {
+    block: &'a Block,
+    images: Option<&'a Mat<f64>>,
+    contour: &'a Contour,
+    first: usize,
+    changes: &'a mut [Vec<Complex>],
+}
+
+impl Work for BlockChanges<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        let Self { block, images, contour, first, changes } = self;
+        let m = block.members.len();
+        let count = changes.first().map_or(0, Vec::len).min(first + LANES) - first;
+        let axis = |j: usize, i: usize| block.axes.as_ref().map_or(1.0, |axes| axes[(j, i)]);
+        let image = |j: usize, i: usize| images.map_or(block.curvatures[0], |images| images[(j, i)]);
+        let s: [Complex; LANES] = std::array::from_fn(|lane| contour.s(first + lane));
+        // Of every axis the tilted mean and variance at all points.
+        let tilted = |(a, slope): (&f64, &f64)| -> [[Complex; LANES]; 2] {
+            let inverse = s.map(|s| Complex::ONE / (Complex::ONE - s * (2.0 * a)));
+            [std::array::from_fn(|lane| s[lane] * inverse[lane] * *slope), inverse]
+        };
+        let tilted: Vec<[[Complex; LANES]; 2]> = block.curvatures.iter().zip(&block.slopes).map(tilted).collect();
         for (j, &member) in block.members.iter().enumerate() {
-            let (mut mu, mut moved, mut spread) = (Complex::ZERO, Complex::ZERO, Complex::ZERO);
-            for i in 0..m {
-                mu += mean[i] * axis(j, i);
-                moved += mean[i] * image(j, i);
-                spread += inverse[i] * (axis(j, i) * image(j, i));
+            let [mut mu, mut moved, mut spread] = [[Complex::ZERO; LANES]; 3];
+            for (i, [mean, inverse]) in tilted.iter().enumerate().take(m) {
+                let (axis, image) = (axis(j, i), image(j, i));
+                let both = axis * image;
+                for lane in 0..LANES {
+                    mu[lane] += mean[lane] * axis;
+                    moved[lane] += mean[lane] * image;
+                    spread[lane] += inverse[lane] * both;
+                }
             }
-            changes[member][at] = s * (mu * block.linear[j] + (mu * moved + spread) * 2.0);
+            for lane in 0..count {
+                changes[member][first + lane] =
+                    s[lane] * (mu[lane] * block.linear[j] + (mu[lane] * moved[lane] + spread[lane]) * 2.0);
+            }
         }
     }
 }

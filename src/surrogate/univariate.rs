@@ -71,6 +71,7 @@ impl Univariate {
     }
 
     /// `g(u)`.
+    #[inline(always)]
     pub fn value(&self, u: f64) -> f64 {
         self.coefficients.iter().rev().fold(0.0, |value, coefficient| (value + coefficient) * u)
     }

@@ -27,14 +27,11 @@ impl Surrogate {
     /// ```
     pub fn rises<C: AsRef<[f64]>>(&self, inputs: &[C]) -> Option<Vec<f64>> {
         let inputs: Vec<&[f64]> = inputs.iter().map(AsRef::as_ref).collect();
+        let parts: Vec<Univariate> = self.parts.iter().copied().collect::<Option<_>>()?;
         let mut rises = vec![0.0; inputs.first().map_or(0, |column| column.len())];
-        for (part, column) in self.parts.iter().zip(&inputs) {
-            let part = part.as_ref()?;
-            rises.iter_mut().zip(*column).for_each(|(rise, &u)| *rise += part.value(u));
-        }
         let products = |(tile, rises): (usize, &mut [f64])| {
             let inputs: Vec<&[f64]> = inputs.iter().map(|column| &column[tile * TILE..][..rises.len()]).collect();
-            on_this_processor(Products { interactions: &self.interactions, inputs: &inputs, rises });
+            on_this_processor(Rises { parts: &parts, interactions: &self.interactions, inputs: &inputs, rises });
         };
         // A row's products are added in one order, whoever adds them.
         if rises.len() > TILE && self.parts.len() >= MANY {
@@ -84,20 +81,24 @@ impl Surrogate {
     }
 }
 
-/// Adds every product to some rows, in the order of the pairs.
-struct Products<'a> {
+/// Adds every part to some rows, and then every product, in the order of the pairs.
+struct Rises<'a> {
+    parts: &'a [Univariate],
     interactions: &'a Interactions,
     /// A column of as many rows for every input.
     inputs: &'a [&'a [f64]],
     rises: &'a mut [f64],
 }
 
-impl Work for Products<'_> {
+impl Work for Rises<'_> {
     type Output = ();
 
     #[inline(always)]
     fn work(self) {
-        let Self { interactions, inputs, rises } = self;
+        let Self { parts, interactions, inputs, rises } = self;
+        for (part, column) in parts.iter().zip(inputs) {
+            rises.iter_mut().zip(*column).for_each(|(rise, &u)| *rise += part.value(u));
+        }
         for j in 0..interactions.dimensions() {
             match interactions.row(j) {
                 Row::Sparse(row) => {
