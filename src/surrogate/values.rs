@@ -9,6 +9,8 @@ use crate::parallel::prelude::*;
 
 /// Rows whose sums stay in registers while all products are added.
 const TILE: usize = 32;
+/// Rows whose sums stay in the nearest cache while all parts are added.
+const BLOCK: usize = 1024;
 /// Inputs from which the products of a tile are worth a task.
 const MANY: usize = 64;
 
@@ -29,9 +31,15 @@ impl Surrogate {
         let inputs: Vec<&[f64]> = inputs.iter().map(AsRef::as_ref).collect();
         let parts: Vec<Univariate> = self.parts.iter().copied().collect::<Option<_>>()?;
         let mut rises = vec![0.0; inputs.first().map_or(0, |column| column.len())];
+        for (block, rises) in rises.chunks_mut(BLOCK).enumerate() {
+            on_this_processor(Parts { parts: &parts, inputs: &inputs, first: block * BLOCK, rises });
+        }
+        if self.interactions.each_pair().next().is_none() {
+            return Some(rises);
+        }
         let products = |(tile, rises): (usize, &mut [f64])| {
             let inputs: Vec<&[f64]> = inputs.iter().map(|column| &column[tile * TILE..][..rises.len()]).collect();
-            on_this_processor(Rises { parts: &parts, interactions: &self.interactions, inputs: &inputs, rises });
+            on_this_processor(Products { interactions: &self.interactions, inputs: &inputs, rises });
         };
         // A row's products are added in one order, whoever adds them.
         if rises.len() > TILE && self.parts.len() >= MANY {
@@ -81,24 +89,40 @@ impl Surrogate {
     }
 }
 
-/// Adds every part to some rows, and then every product, in the order of the pairs.
-struct Rises<'a> {
+/// Adds every part to the rows from `first` on.
+struct Parts<'a> {
     parts: &'a [Univariate],
+    inputs: &'a [&'a [f64]],
+    first: usize,
+    rises: &'a mut [f64],
+}
+
+impl Work for Parts<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        for (part, column) in self.parts.iter().zip(self.inputs) {
+            let column = &column[self.first..];
+            self.rises.iter_mut().zip(column).for_each(|(rise, &u)| *rise += part.value(u));
+        }
+    }
+}
+
+/// Adds every product to some rows, in the order of the pairs.
+struct Products<'a> {
     interactions: &'a Interactions,
     /// A column of as many rows for every input.
     inputs: &'a [&'a [f64]],
     rises: &'a mut [f64],
 }
 
-impl Work for Rises<'_> {
+impl Work for Products<'_> {
     type Output = ();
 
     #[inline(always)]
     fn work(self) {
-        let Self { parts, interactions, inputs, rises } = self;
-        for (part, column) in parts.iter().zip(inputs) {
-            rises.iter_mut().zip(*column).for_each(|(rise, &u)| *rise += part.value(u));
-        }
+        let Self { interactions, inputs, rises } = self;
         for j in 0..interactions.dimensions() {
             match interactions.row(j) {
                 Row::Sparse(row) => {
