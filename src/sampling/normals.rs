@@ -4,9 +4,13 @@ use super::draws::tails;
 use super::sobol::{Sobol, mixed};
 use super::stream::Stream;
 use crate::distribution::{standard_normal, ziggurat};
+use crate::parallel::prelude::*;
 
 /// Up to so many variables the points are Sobol's: beyond, a few thousand of them are no more even than random ones.
 const QUASI: usize = 256;
+
+/// Numbers that are worth a task for every variable.
+const MANY: usize = 1 << 17;
 
 /// Points of independent standard normal variables: Sobol's, scrambled anew in every stream, or random ones for many variables.
 ///
@@ -25,21 +29,23 @@ impl Normals {
 
     /// The first `rows` points of a stream: a column for every variable.
     pub(crate) fn columns(&self, stream: u64, rows: usize) -> Vec<Vec<f64>> {
-        let mut digits = vec![0; if self.sobol.is_some() { rows } else { 0 }];
-        (0..self.dimensions)
-            .map(|place| {
-                let key = mixed(mixed(mixed(self.seed).wrapping_add(stream)).wrapping_add(place as u64));
-                let mut column = vec![0.0; rows];
-                match &self.sobol {
-                    Some(sobol) => {
-                        sobol.digits(place, 0, &mut digits);
-                        tails(&digits, key, &mut column);
-                        standard_normal::quantiles(&mut column);
-                    }
-                    None => ziggurat::normals(&mut Stream::new(key), ziggurat::STANDARD, &mut column),
+        let column = |place: usize| {
+            let key = mixed(mixed(mixed(self.seed).wrapping_add(stream)).wrapping_add(place as u64));
+            let mut column = vec![0.0; rows];
+            match &self.sobol {
+                Some(sobol) => {
+                    let mut digits = vec![0; rows];
+                    sobol.digits(place, 0, &mut digits);
+                    tails(&digits, key, &mut column);
+                    standard_normal::quantiles(&mut column);
                 }
-                column
-            })
-            .collect()
+                None => ziggurat::normals(&mut Stream::new(key), ziggurat::STANDARD, &mut column),
+            }
+            column
+        };
+        match rows * self.dimensions > MANY {
+            true => (0..self.dimensions).into_par_iter().map(column).collect(),
+            false => (0..self.dimensions).map(column).collect(),
+        }
     }
 }

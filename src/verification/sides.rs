@@ -5,6 +5,8 @@
 //! Lind (1974; Rackwitz and Fiessler 1978) lead to the likeliest point beyond, the design point `z*` at the distance `beta`. The
 //! half-space `z*/beta . z > beta - 0.5` holds nearly all of that side, and a stratum of its own makes it known as well as the rest.
 
+use std::cell::OnceCell;
+
 use serde::Serialize;
 
 use super::model::Model;
@@ -94,6 +96,12 @@ impl Margins {
         Some(Self(columns))
     }
 
+    /// At more points.
+    fn and(mut self, more: Self) -> Self {
+        self.0.iter_mut().zip(more.0).for_each(|(all, more)| all.extend(more));
+        self
+    }
+
     fn share(&self, switch: usize, sign: f64) -> f64 {
         let column = &self.0[switch];
         column.iter().filter(|&&margin| margin * sign > 0.0).count() as f64 / column.len().max(1) as f64
@@ -105,14 +113,13 @@ impl Margins {
 /// `scale` is the spread of the output, for what is a jump. Cost: 6144 points, and `12 (N + 22)` for every place looked at.
 pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
     let Some(known) = model.problem().function().switches(model.output()) else { return Sides::default() };
-    let plain_points = normals.columns(stream(0), POINTS);
-    let mut wide: Columns = vec![Vec::with_capacity(2 * POINTS); model.len()];
-    for (index, factor) in WIDE.iter().enumerate() {
-        for (all, more) in wide.iter_mut().zip(normals.columns(stream(1 + index), POINTS)) {
-            all.extend(more.into_iter().map(|z| factor * z));
-        }
+    if known.list.is_empty() {
+        return Sides { switches: Some(Vec::new()), complete: known.complete, ..Sides::default() };
     }
-    let margins = Margins::read(model, &plain_points).zip(Margins::read(model, &wide));
+    let places = Places { normals, plain: OnceCell::new(), wide: OnceCell::new() };
+    let wide = |index: usize| Margins::read(model, &places.widened(index));
+    let margins = Margins::read(model, &places.drawn(0)).zip(wide(0)).zip(wide(1));
+    let margins = margins.map(|((plain, near), far)| (plain, near.and(far)));
     let Some((plain, far)) = margins.filter(|(plain, _)| plain.0.len() == known.list.len()) else {
         return Sides::default();
     };
@@ -124,12 +131,13 @@ pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
         let sign = if plain.share(k, -1.0) <= plain.share(k, 1.0) { -1.0 } else { 1.0 };
         let first = found.half_spaces.len();
         if plain.share(k, sign) < SELDOM {
-            found.seek(k, sign, &wide, &far.0[k]);
+            found.seek(k, sign, &places, &far.0[k]);
         }
         let own = first..found.half_spaces.len();
-        let Some(probability) = found.probability(k, sign, own, (&plain_points, &plain.0[k])) else { continue };
+        let Some(probability) = found.probability(k, sign, own, (&places, &plain.0[k])) else { continue };
         // A point of the smaller side nearest to the middle, whose way from there crosses the border.
-        let beyond = nearest(&plain_points, &plain.0[k], sign).or_else(|| nearest(&wide, &far.0[k], sign));
+        let beyond = nearest(|| places.plain(), &plain.0[k], sign)
+            .or_else(|| nearest(|| places.wide(), &far.0[k], sign));
         let Some(crossing) = beyond.and_then(|point| found.crossing(k, sign, &switch, &point)) else { continue };
         switches.push(FoundSwitch { name: switch.name(output), switch, crossing, probability });
     }
@@ -144,10 +152,45 @@ fn row(z: &Columns, row: usize) -> Vec<f64> {
     z.iter().map(|column| column[row]).collect()
 }
 
-fn nearest(z: &Columns, margins: &[f64], sign: f64) -> Option<Vec<f64>> {
-    let square = |at: usize| z.iter().map(|column| column[at] * column[at]).sum::<f64>();
-    let beyond = (0..margins.len()).filter(|&at| margins[at] * sign > 0.0);
-    beyond.min_by(|&a, &b| square(a).total_cmp(&square(b))).map(|at| row(z, at))
+/// The point nearest to the middle where the margin has this sign, of points that are made where there is one.
+fn nearest<'z>(z: impl Fn() -> &'z Columns, margins: &[f64], sign: f64) -> Option<Vec<f64>> {
+    let beyond: Vec<usize> = (0..margins.len()).filter(|&at| margins[at] * sign > 0.0).collect();
+    let square = |at: usize| z().iter().map(|column| column[at] * column[at]).sum::<f64>();
+    beyond.into_iter().min_by(|&a, &b| square(a).total_cmp(&square(b))).map(|at| row(z(), at))
+}
+
+/// The points at which margins are read. They are made again where one is asked for, which is seldom: of many dimensions they take more
+/// memory than anything else.
+struct Places<'n> {
+    normals: &'n Normals,
+    plain: OnceCell<Columns>,
+    wide: OnceCell<Columns>,
+}
+
+impl Places<'_> {
+    fn drawn(&self, index: usize) -> Columns {
+        self.normals.columns(stream(index), POINTS)
+    }
+
+    /// Those of one width.
+    fn widened(&self, index: usize) -> Columns {
+        let mut z = self.drawn(1 + index);
+        z.iter_mut().flatten().for_each(|z| *z *= WIDE[index]);
+        z
+    }
+
+    fn plain(&self) -> &Columns {
+        self.plain.get_or_init(|| self.drawn(0))
+    }
+
+    /// Those of every width.
+    fn wide(&self) -> &Columns {
+        self.wide.get_or_init(|| {
+            let mut all = self.widened(0);
+            all.iter_mut().zip(self.widened(1)).for_each(|(all, more)| all.extend(more));
+            all
+        })
+    }
 }
 
 struct Search<'a, 'p> {
@@ -159,14 +202,18 @@ struct Search<'a, 'p> {
 
 impl Search<'_, '_> {
     /// Looks for the places of one side of a switch.
-    fn seek(&mut self, switch: usize, sign: f64, wide: &Columns, margins: &[f64]) {
+    fn seek(&mut self, switch: usize, sign: f64, places: &Places<'_>, margins: &[f64]) {
         let mut open: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();
+        if !open.contains(&true) {
+            return;
+        }
+        let wide = places.wide();
         for space in &self.half_spaces {
             open.iter_mut().zip(space.holds(wide)).for_each(|(open, held)| *open &= !held);
         }
         for _ in 0..PLACES {
             let left: Vec<f64> = open.iter().map(|&open| if open { 1.0 } else { 0.0 }).collect();
-            let Some(start) = nearest(wide, &left, 1.0).filter(|_| self.half_spaces.len() < MOST) else { return };
+            let Some(start) = nearest(|| wide, &left, 1.0).filter(|_| self.half_spaces.len() < MOST) else { return };
             let point = self.design_point(switch, sign, start);
             let distance = length(&point);
             if !(distance > 1.0 && distance < REACH) {
@@ -235,13 +282,13 @@ impl Search<'_, '_> {
         switch: usize,
         sign: f64,
         own: std::ops::Range<usize>,
-        (plain, margins): (&Columns, &[f64]),
+        (places, margins): (&Places<'_>, &[f64]),
     ) -> Option<f64> {
         let mut outside: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();
         let mut sum = 0.0;
         for index in own.clone() {
             let space = &self.half_spaces[index];
-            outside.iter_mut().zip(space.holds(plain)).for_each(|(outside, held)| *outside &= !held);
+            outside.iter_mut().zip(space.holds(places.plain())).for_each(|(outside, held)| *outside &= !held);
             let mut z = self.normals.columns(stream(8 + index), WITHIN);
             let weights = space.enter(&mut z);
             let mut counts = vec![true; WITHIN];
@@ -301,6 +348,6 @@ impl Search<'_, '_> {
         }
         let plain = self.normals.columns(stream(0), POINTS);
         let margins = self.margin(switch, &plain);
-        nearest(&plain, &margins, -sign).unwrap_or(middle)
+        nearest(|| &plain, &margins, -sign).unwrap_or(middle)
     }
 }
