@@ -125,9 +125,7 @@ impl Separable<'_> {
 
     /// The same near others.
     fn all_near(&self, multipliers: &[f64], near: &[Best]) -> Vec<Best> {
-        let of = |(g, near): (usize, &Best)| {
-            self.best_near(g, multipliers, 0..self.priced[g].offers.len(), Some(near))
-        };
+        let of = |(g, near): (usize, &Best)| self.best_near(g, multipliers, 0..self.priced[g].offers.len(), Some(near));
         near.iter().enumerate().map(of).collect()
     }
 

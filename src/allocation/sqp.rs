@@ -54,12 +54,7 @@ impl Place {
 impl Smooth<'_> {
     /// The end of a search by quadratic problems from a start, or the first place with its residual that `enough` is content with; None where values
     /// or slopes are not defined there.
-    pub(super) fn sequential(
-        &self,
-        start: &[f64],
-        near: Near,
-        enough: &dyn Fn(&[f64], f64) -> bool,
-    ) -> Option<Ended> {
+    pub(super) fn sequential(&self, start: &[f64], near: Near, enough: &dyn Fn(&[f64], f64) -> bool) -> Option<Ended> {
         let within: Vec<f64> = start.iter().zip(self.bounds).map(|(x, &[low, high])| x.clamp(low, high)).collect();
         let mut here = self.place(within)?;
         let mut inverse = Inverse::new(start.len());

@@ -136,8 +136,8 @@ pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
         let own = first..found.half_spaces.len();
         let Some(probability) = found.probability(k, sign, own, (&places, &plain.0[k])) else { continue };
         // A point of the smaller side nearest to the middle, whose way from there crosses the border.
-        let beyond = nearest(|| places.plain(), &plain.0[k], sign)
-            .or_else(|| nearest(|| places.wide(), &far.0[k], sign));
+        let beyond =
+            nearest(|| places.plain(), &plain.0[k], sign).or_else(|| nearest(|| places.wide(), &far.0[k], sign));
         let Some(crossing) = beyond.and_then(|point| found.crossing(k, sign, &switch, &point)) else { continue };
         switches.push(FoundSwitch { name: switch.name(output), switch, crossing, probability });
     }
