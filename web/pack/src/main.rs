@@ -1,4 +1,9 @@
-//! `pack MODULE PACKED`: packs a WebAssembly module for the page of the workbench.
+//! `pack MODULE PACKED`: packs the engine of the workbench for its page, which unpacks it by `page/unpack.js`: a WebAssembly module split
+//! into streams of like bytes, each compressed by LZMA. A browser knows gzip only, which leaves a half more.
+
+mod packing;
+mod split;
+mod streams;
 
 use std::process::ExitCode;
 
@@ -8,7 +13,7 @@ fn main() -> ExitCode {
         eprintln!("usage: pack MODULE PACKED");
         return ExitCode::from(2);
     };
-    let done = std::fs::read(module).and_then(|bytes| std::fs::write(packed, sensitol_pack::pack(&bytes)?));
+    let done = std::fs::read(module).and_then(|bytes| std::fs::write(packed, packing::pack(&bytes)?));
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
