@@ -13,11 +13,11 @@ const { unpacked, bytes } = new Function("onmessage", `${script}; return { unpac
 const scratch = mkdtempSync(join(tmpdir(), "sensitol-unpack-"));
 after(() => rmSync(scratch, { recursive: true, force: true }));
 
-// The packed module, or null where it is refused.
+// The packed module, and the module that is unpacked; null where it is refused.
 const pack = (module) => {
-  const [from, to] = ["module.wasm", "module.packed"].map((name) => join(scratch, name));
+  const [from, ordered, to] = ["module.wasm", "ordered.wasm", "module.packed"].map((name) => join(scratch, name));
   writeFileSync(from, module);
-  return spawnSync(process.env.PACK, [from, to]).status === 0 ? readFileSync(to) : null;
+  return spawnSync(process.env.PACK, [from, ordered, to]).status === 0 ? { packed: readFileSync(to), ordered: readFileSync(ordered) } : null;
 };
 
 // A module of one function of type `[] -> []`, by the binary format of the specification, with these variables and operators.
@@ -51,13 +51,35 @@ test("the page holds the packed engine", () => {
 });
 test("operands of every kind come back", () => {
   const whole = module(CODE);
-  assert.deepEqual(unpacked(pack(whole)), whole);
+  assert.deepEqual(unpacked(pack(whole).packed), whole);
+});
+test("functions in another order do the same", () => {
+  // An imported function, 0, gives 7; 1 calls 4 and 0, 2 calls 1 and 3 (by the table), 3 is a constant, and 4 calls 3 twice.
+  const bodies = [[0, 0x10, 4, 0x10, 0, 0x6a, 0x0b], [0, 0x10, 1, 0x41, 1, 0x11, 0, 0, 0x6c, 0x0b], [0, 0x41, 5, 0x0b], [0, 0x10, 3, 0x10, 3, 0x6a, 0x0b]];
+  const named = (names) => [names.length, ...names.flatMap(([name, index]) => [1, name.charCodeAt(0), 0, index])];
+  const whole = (...more) => Uint8Array.from([
+    0, ...Buffer.from("asm"), 1, 0, 0, 0, ...section(1, [1, 0x60, 0, 1, 0x7f]), ...section(2, [1, 1, 109, 1, 102, 0, 0]),
+    ...section(3, [4, 0, 0, 0, 0]), ...section(4, [1, 0x70, 0, 2]), ...section(7, named([["a", 1], ["b", 2], ["c", 3], ["d", 4]])),
+    ...section(9, [1, 0, 0x41, 0, 0x0b, 2, 2, 3]), ...section(10, [4, ...bodies.flatMap((body) => [body.length, ...body])]), ...more,
+  ]);
+  const results = (module) => {
+    const { exports } = new WebAssembly.Instance(new WebAssembly.Module(module), { m: { f: () => 7 } });
+    return ["a", "b", "c", "d"].map((name) => exports[name]());
+  };
+  const before = whole(), { packed, ordered } = pack(before);
+  assert.ok(!ordered.equals(before) && ordered.equals(unpacked(packed)));
+  assert.deepEqual(results(ordered), [17, 85, 5, 10]);
+  assert.deepEqual(results(before), [17, 85, 5, 10]);
+  // Names for people go by the places of functions.
+  const withNames = whole(...section(0, [4, ...Buffer.from("name"), 1, 4, 1, 3, 1, 99]));
+  assert.ok(pack(withNames).ordered.equals(withNames));
 });
 test("no module of WebAssembly 2.0 is not packed", () => {
-  for (const wrong of [Buffer.from("\0asm"), module([0, 0xfe, 0, 0, 0x0b]), module(CODE).subarray(0, 40)]) assert.equal(pack(wrong), null);
+  const unknown = module([0, 0xfe, 0, 0, 0x0b]), long = module([0, 0x20, 0x80, 0, 0x1a, 0x0b]);
+  for (const wrong of [Buffer.from("\0asm"), unknown, long, module(CODE).subarray(0, 40)]) assert.equal(pack(wrong), null);
 });
 test("a damaged engine is none, or another; of a part there is none", () => {
-  const packed = pack(module(CODE));
+  const { packed } = pack(module(CODE));
   for (let place = 0; place < packed.length; place++) {
     assert.equal(unpacked(packed.subarray(0, place)), undefined, `the first ${place} bytes`);
     // From the bytes of the first stream on: sizes before it ask for memory.

@@ -138,9 +138,10 @@ const decompress = (packed, size, properties) => {
 };
 
 // The module of its streams, which stand in the order of web/pack.
-const join = (streams, size) => {
+const join = (streams, size, imports) => {
   const [MODULE, DATA, OPERATOR, LOCALS, GET, , , OFFSET, STEP, ARGUMENT, INTEGER, LONG, FLOAT, CALLEE, BRANCH, BLOCK, OTHER] = streams.keys();
-  const places = new Uint32Array(streams.length), module = new Uint8Array(size);
+  // Sizes of the last function and of all take five bytes each until they are known.
+  const places = new Uint32Array(streams.length), module = new Uint8Array(size + 10);
   let at = 0;
   const next = (stream) => {
     if (places[stream] >= streams[stream].length) throw new RangeError("a stream ends too soon");
@@ -199,7 +200,10 @@ const join = (streams, size) => {
   const FIRST = [0xc5, 0xc8, 0xca, 0xcc];
   // Alignments follow from operators for the most part. An offset of 0 stands in the operator's byte too.
   const ALIGNED = [2, 3, 2, 3, 0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 2, 3, 2, 3, 0, 1, 0, 1, 2], UNALIGNED = 0xcc, WITHOUT_OFFSET = 0xd3;
-  const body = () => {
+  // The function after this one and all that were called.
+  let following = imports;
+  const body = (place) => {
+    following = Math.max(following, imports + place + 1);
     known = 0;
     for (let groups = number(LOCALS); groups > 0; groups--) {
       number(LOCALS);
@@ -241,10 +245,14 @@ const join = (streams, size) => {
         case 0x0b: depth--; break;
         case 0x0c: case 0x0d: digits(BRANCH); break;
         case 0x0e: for (let labels = number(BRANCH); labels >= 0; labels--) digits(BRANCH); break;
-        case 0x10: case 0x12: digits(CALLEE); break;
+        case 0x10: case 0x12: case 0xd2: {
+          const callee = read(CALLEE);
+          write(callee ? callee - 1 : following++);
+          break;
+        }
         case 0x11: case 0x13: digits(OTHER); digits(OTHER); break;
         case 0x1c: copy(OTHER, number(OTHER)); break;
-        case 0x23: case 0x24: case 0x25: case 0x26: case 0x3f: case 0x40: case 0xd0: case 0xd2: digits(OTHER); break;
+        case 0x23: case 0x24: case 0x25: case 0x26: case 0x3f: case 0x40: case 0xd0: digits(OTHER); break;
         case 0x41: {
           const after = streams[OPERATOR][places[OPERATOR]];
           const argument = after === 0x10 || after === 0x20 || after === 0x41 || (after >= FIRST[0] && after < FIRST[1]);
@@ -274,13 +282,13 @@ const join = (streams, size) => {
   copy(MODULE, 8);
   while (places[MODULE] < streams[MODULE].length) {
     const section = copied(MODULE);
-    if (section === 10) sized(() => { for (let functions = number(MODULE); functions > 0; functions--) sized(body); });
+    if (section === 10) sized(() => { for (let i = 0, functions = number(MODULE); i < functions; i++) sized(() => body(i)); });
     else {
       const stream = section === 11 ? DATA : MODULE;
       copy(stream, number(stream));
     }
   }
-  return at === size ? module : undefined;
+  return at === size ? module.subarray(0, size) : undefined;
 };
 
 // Undefined where `packed` is not what web/pack makes.
@@ -294,12 +302,12 @@ const unpacked = (packed) => {
     }
   };
   try {
-    const size = number();
+    const size = number(), imports = number();
     const streams = Array.from({ length: 17 }, () => {
       const size = number(), length = number(), properties = packed[place++];
       return decompress(packed.subarray(place, place += length), size, properties);
     });
-    return place === packed.length ? join(streams, size) : undefined;
+    return place === packed.length ? join(streams, size, imports) : undefined;
   } catch (error) {
     if (error instanceof RangeError) return undefined;
     throw error;

@@ -4,6 +4,7 @@ use std::io::{Error, ErrorKind, Write};
 
 use lzma_rust2::{LzmaOptions, LzmaWriter};
 
+use super::module::{imported, sections};
 use super::split::split;
 use super::streams::write_number;
 
@@ -14,15 +15,19 @@ const DICTIONARY: usize = 4096;
 const CONTEXTS: [[u32; 3]; 10] =
     [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0], [5, 0, 0], [6, 0, 0], [3, 0, 2], [0, 2, 2], [0, 3, 3]];
 
-/// A module, packed: its size, and for each stream its size, that of the packed one, the byte of LZMA's properties, and the packed one.
+/// A module, packed: its size, how many functions it imports, and for each stream its size, that of the packed one, the byte of LZMA's
+/// properties, and the packed one.
 ///
 /// # Errors
-/// Where this is no module of WebAssembly 2.0. One whose sizes are not in the fewest bytes is unpacked with such sizes.
+/// Where this is no module of WebAssembly 2.0, or its indices are not in the fewest bytes.
 pub fn pack(module: &[u8]) -> Result<Vec<u8>, Error> {
-    let no_module = || Error::new(ErrorKind::InvalidData, "no module of WebAssembly 2.0");
+    let no_module =
+        || Error::new(ErrorKind::InvalidData, "no module of WebAssembly 2.0 with indices in the fewest bytes");
     let streams = split(module).ok_or_else(no_module)?;
+    let imports = sections(module).and_then(|sections| imported(&sections)).ok_or_else(no_module)?;
     let mut packed = Vec::new();
     write_number(module.len(), &mut packed);
+    write_number(imports, &mut packed);
     for stream in &streams {
         let mut best: Option<([u32; 3], Vec<u8>)> = None;
         for contexts in CONTEXTS {

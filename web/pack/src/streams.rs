@@ -1,13 +1,15 @@
 //! What the engine is packed as: a WebAssembly module in streams of like bytes, which compress to a seventh less than the module does.
 //!
-//! The contents of memory are one stream, the operators of functions another, and their operands many, by what they mean. Operators have bytes of WebAssembly 2.0 but for these, which it does not use:
+//! The contents of memory are one stream, the operators of functions another, and their operands many, by what they mean. Operators have
+//! the bytes of WebAssembly 2.0 but for these, which it does not use:
 //!
 //! - 0xc5 to 0xcb, `local.get`, `local.set` and `local.tee` of one of the 3, 2 and 2 variables that were used last. The streams of these
 //!   operators have the others, by how many others were used since, less 3, 2 and 2.
 //! - 0xcc, an operator of memory that follows with its alignment; others are aligned as their types are.
 //! - 0xd3 to 0xe9, the 23 operators of memory with the offset 0.
 //!
-//! Numbers of operands are in groups of 7 bits as in WebAssembly, but the highest first. `page/unpack.js` does the same backwards.
+//! Numbers of operands are in groups of 7 bits as in WebAssembly, but the highest first. A call of the function after this one and all that
+//! were called before is 0, and others have their index and 1. `page/unpack.js` does the same backwards.
 
 /// What the bytes of a stream are.
 #[derive(Clone, Copy)]
