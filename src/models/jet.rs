@@ -49,7 +49,7 @@ impl Real for f64 {
     }
 }
 
-/// A value, its first and its second derivative. What is one instruction for each is inlined where code is optimised for size too.
+/// A value, its first and its second derivative. Sums, and products with a number, are inlined where code is optimised for size too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Jet(pub(super) [f64; 3]);
 

@@ -16,7 +16,7 @@ const NUMBERS: usize = {
 /// The dimensions that there are direction numbers for. The first takes none of the table.
 pub const SOBOL_DIMENSIONS: usize = 2048;
 
-/// What the direction numbers of a dimension follow from.
+/// The polynomial and the initial numbers that the direction numbers of a dimension follow from.
 #[derive(Clone, Copy)]
 pub(super) struct Start {
     /// The degree of its polynomial: as many initial numbers.

@@ -176,7 +176,7 @@ const join = (streams, size, imports) => {
       module[at - 1] &= 127;
     }
   };
-  // What `fill` writes, after its size.
+  // The bytes that `fill` writes, after their number.
   const sized = (fill) => {
     const start = at, content = at += 5;
     fill();

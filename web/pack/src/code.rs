@@ -94,7 +94,7 @@ impl<'b, F: FnMut(Piece<'b>, usize) -> Option<()>> Walk<'_, 'b, F> {
         self.tell(Piece::Callee(function))
     }
 
-    /// What follows an operator.
+    /// The operands of an operator.
     fn operands(&mut self, operator: u8) -> Option<()> {
         match operator {
             0x00 | 0x01 | 0x05 | 0x0b | 0x0f | 0x1a | 0x1b | 0x45..=0xc4 | 0xd1 => {}

@@ -1,4 +1,4 @@
-//! What the engine is packed as: a WebAssembly module in streams of like bytes, which compress to a seventh less than the module does.
+//! The form of the packed engine: a WebAssembly module in streams of like bytes, which compress to a seventh less than the module does.
 //!
 //! The contents of memory are one stream, the operators of functions another, and their operands many, by what they mean. Operators have
 //! the bytes of WebAssembly 2.0 but for these, which it does not use:
@@ -11,7 +11,7 @@
 //! Numbers of operands are in groups of 7 bits as in WebAssembly, but the highest first. A call of the function after this one and all that
 //! were called before is 0, and others have their index and 1. `page/unpack.js` does the same backwards.
 
-/// What the bytes of a stream are.
+/// Streams, by the meaning of their bytes.
 #[derive(Clone, Copy)]
 pub enum Stream {
     /// The module without the bodies of its functions and the contents of its memory.
