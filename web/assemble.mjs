@@ -1,13 +1,22 @@
-// The page from its parts: `node assemble.mjs FOLDER PAGE`, where FOLDER has the engine and what unpacks it as web/build left them.
+// The page from its parts: `node assemble.mjs FOLDER PAGE [small]`, where FOLDER has the engine as web/build left it. `small` takes what
+// only people read out of scripts and style, by esbuild where it is there.
+import { spawnSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
-const [folder, page] = process.argv.slice(2);
+const [folder, page, small] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url)), root = join(here, "..");
+const minified = (text, loader) => {
+  if (small !== "small") return text;
+  const { status, stdout } = spawnSync("esbuild", ["--minify", `--loader=${loader}`, "--log-level=error"], { input: text, encoding: "utf8" });
+  return status === 0 ? stdout.trimEnd() : text;
+};
 const part = (name) => readFileSync(join(here, "page", name), "utf8");
+// Bytes of a small page by gzip.
+const MOST = 1_100_000;
 const version = /^version = "(.*)"$/m.exec(readFileSync(join(root, "Cargo.toml"), "utf8"))[1];
 
 // Examples by what they teach.
@@ -29,16 +38,42 @@ const scripted = (text) => {
 };
 const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 
-const style = part("page.css"), script = scripted(["study.js", "engine.js", "serve.js", "page.js", "folder.js"].map(part).join(""));
+const style = minified(part("page.css"), "css");
+const script = scripted(minified(["study.js", "engine.js", "serve.js", "page.js", "folder.js"].map(part).join(""), "js"));
 const policy = `default-src 'none'; style-src ${hash(style)}; script-src ${hash(script)} 'wasm-unsafe-eval'; worker-src blob:; base-uri 'none'; form-action 'none'`;
-const made = (name) => readFileSync(join(folder, name)), glue = (name) => scripted(made(name).toString("utf8"));
-const packed = made("engine.packed"), unpack = made("unpack.wasm");
+// Bytes as text, as `bytes` of page/unpack.js reads it.
+const written = (bytes) => {
+  const SHORT = 35, character = (place) => String.fromCharCode(place + (place > 0x1a ? 0x22 : 0x21)), text = [];
+  let bits = 0, waiting = 0;
+  const write = () => {
+    const short = waiting >> bits - 6 & 63;
+    text.push(character(short < SHORT ? short : (waiting >> bits - 7 & 127) - SHORT));
+    bits -= short < SHORT ? 6 : 7;
+  };
+  for (const byte of bytes) {
+    waiting = (waiting << 8 | byte) & 0x7fff;
+    bits += 8;
+    while (bits >= 7) write();
+  }
+  if (bits > 0) {
+    waiting <<= 7;
+    bits += 7;
+    write();
+  }
+  return text.join("");
+};
+const packed = readFileSync(join(folder, "engine.packed")), glue = readFileSync(join(folder, "engine.js"), "utf8");
 const parts = {
   POLICY: policy, VERSION: version, STYLE: style, SCRIPT: script, EXAMPLES: data(examples),
-  GLUE: glue("engine.js"), WORKER: scripted(part("worker.js")), ENGINE: packed.toString("base64"),
-  UNPACKGLUE: glue("unpack.js"), UNPACKWORKER: scripted(part("unpack.js")), UNPACK: unpack.toString("base64"),
+  GLUE: scripted(minified(glue, "js")), WORKER: scripted(minified(part("worker.js"), "js")), UNPACK: scripted(minified(part("unpack.js"), "js")),
+  ENGINE: written(packed),
 };
 const text = part("page.html").replace(/@([A-Z]+)@/g, (whole, name) => parts[name] ?? whole);
 mkdirSync(dirname(page), { recursive: true });
 writeFileSync(page, text);
-console.log(`${page}: ${Math.round(text.length / 1000)} kB, ${Math.round(gzipSync(text).length / 1000)} kB gzipped; the engine ${Math.round(packed.length / 1000)} kB packed`);
+const size = gzipSync(text, { level: 9 }).length, kilobytes = (bytes) => `${Math.round(bytes / 1000)} kB`;
+console.log(`${page}: ${kilobytes(text.length)}, ${kilobytes(size)} gzipped; the engine ${kilobytes(packed.length)} packed`);
+if (small === "small" && size > MOST) {
+  console.error(`${page}: more than ${kilobytes(MOST)} gzipped`);
+  process.exitCode = 1;
+}

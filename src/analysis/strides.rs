@@ -168,7 +168,8 @@ impl<'p> Strides<'p> {
         let open = |row: usize| (0..out.outputs()).all(|output| out.is_open(row, output));
         let answered = (0..out.rows()).filter(|&row| !open(row)).count();
         let whole = (0..out.rows()).all(|row| (0..out.outputs()).all(|output| !out.is_open(row, output)));
-        let lost: std::collections::BTreeSet<usize> = out.errors().map(|(row, ..)| row).collect();
+        let mut lost = std::collections::BTreeSet::new();
+        lost.extend(out.errors().map(|(row, ..)| row));
         self.run = self.run.and(&RunSummary {
             evaluations: (answered as u64).saturating_add_signed(out.extra()),
             cached: out.count_reused() as u64,

@@ -49,7 +49,7 @@ impl Real for f64 {
     }
 }
 
-/// A value, its first and its second derivative.
+/// A value, its first and its second derivative. Sums, and products with a number, are inlined where code is optimised for size too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Jet(pub(super) [f64; 3]);
 
@@ -95,27 +95,30 @@ impl Real for Jet {
 impl Neg for Jet {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|part| -part))
+        let [a, a1, a2] = self.0;
+        Self([-a, -a1, -a2])
     }
 }
 
 impl Add for Jet {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self(std::array::from_fn(|part| self.0[part] + other.0[part]))
+        let ([a, a1, a2], [b, b1, b2]) = (self.0, other.0);
+        Self([a + b, a1 + b1, a2 + b2])
     }
 }
 
 impl Sub for Jet {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self(std::array::from_fn(|part| self.0[part] - other.0[part]))
+        let ([a, a1, a2], [b, b1, b2]) = (self.0, other.0);
+        Self([a - b, a1 - b1, a2 - b2])
     }
 }
 
@@ -142,7 +145,7 @@ impl Div for Jet {
 impl Add<f64> for Jet {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn add(self, constant: f64) -> Self {
         let [a, a1, a2] = self.0;
         Self([a + constant, a1, a2])
@@ -152,9 +155,10 @@ impl Add<f64> for Jet {
 impl Mul<f64> for Jet {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: f64) -> Self {
-        Self(self.0.map(|part| part * factor))
+        let [a, a1, a2] = self.0;
+        Self([a * factor, a1 * factor, a2 * factor])
     }
 }
 

@@ -158,8 +158,9 @@ impl Contributions {
         let part = self.moments.sigma() / sigma;
         let (skewness, excess) = self.moments.shape.unwrap_or((0.0, 0.0));
         let shares = |shares: Vec<f64>| shares.into_iter().map(|share| share * part * part).collect();
-        let products = self.products.map(|products| {
-            products.into_iter().map(|(pair, share)| (pair, share * part * part)).collect::<BTreeMap<_, _>>()
+        let products = self.products.map(|mut products| {
+            products.values_mut().for_each(|share| *share = *share * part * part);
+            products
         });
         Self {
             moments: Moments::new(self.moments.mean(), sigma, skewness * part.powi(3), excess * part.powi(4)),

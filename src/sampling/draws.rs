@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use faer::Mat;
 
-use super::sobol::{SOBOL_DIMENSIONS, Sobol, mixed, scrambled};
+use super::joe_kuo::SOBOL_DIMENSIONS;
+use super::sobol::{Sobol, mixed, scrambled};
 use super::stream::Stream;
 use crate::assembly::Points;
 use crate::correlation::{Block, Correlation, JointLaw};

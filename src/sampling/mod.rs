@@ -3,6 +3,7 @@
 mod draws;
 mod estimate;
 mod fine;
+mod joe_kuo;
 mod joint;
 mod normals;
 mod ranks;
@@ -15,8 +16,9 @@ pub use draws::{Draws, Portion, Sampler, SamplingError};
 pub use estimate::{Estimate, wilson};
 pub(crate) use estimate::{FEWEST, of_moments, one_error};
 pub use fine::{Fine, Scale};
+pub use joe_kuo::SOBOL_DIMENSIONS;
 pub(crate) use joint::Joint;
 pub(crate) use normals::Normals;
 pub use ranks::rank_first;
-pub use sobol::{SOBOL_DIMENSIONS, Sobol};
+pub use sobol::Sobol;
 pub use summary::Summary;

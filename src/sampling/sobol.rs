@@ -1,11 +1,8 @@
 //! Sobol's sequence with nested uniform scrambling.
 
-use std::sync::LazyLock;
-
+use super::joe_kuo::{SOBOL_DIMENSIONS, Start};
 use crate::elementary::{Work, on_this_processor};
 
-/// Primitive polynomials and initial direction numbers of Joe and Kuo (2008).
-const JOE_KUO: &str = include_str!("joe_kuo.txt");
 /// Binary digits of a coordinate: the index of a point has as many.
 const DIGITS: u32 = 52;
 /// Digits that are scrambled one by one; below them all at once, which makes no difference before the 2^42nd point.
@@ -33,11 +30,6 @@ type Directions = [u64; DIGITS as usize];
 pub struct Sobol {
     directions: Vec<Directions>,
 }
-
-/// The dimensions that there are direction numbers for.
-pub const SOBOL_DIMENSIONS: usize = 2048;
-
-static LINES: LazyLock<Vec<&str>> = LazyLock::new(|| JOE_KUO.lines().filter(|line| !line.starts_with('#')).collect());
 
 impl Sobol {
     /// In so many dimensions; None beyond [`SOBOL_DIMENSIONS`].
@@ -100,16 +92,15 @@ impl Work for Coordinates<'_> {
 fn directions(dimension: usize) -> Directions {
     let mut v = [0; DIGITS as usize];
     let place = |digit: usize, m: u64| m << (63 - digit);
-    let Some(line) = dimension.checked_sub(1).map(|line| LINES[line]) else {
+    let Some(start) = dimension.checked_sub(1).and_then(Start::of) else {
         // Van der Corput's sequence.
         v.iter_mut().enumerate().for_each(|(digit, v)| *v = place(digit, 1));
         return v;
     };
-    let mut numbers = line.split(' ').map(|number| number.parse::<u64>().expect("a number of the table"));
-    let (degree, polynomial) = (numbers.next().expect("a degree") as usize, numbers.next().expect("a polynomial"));
+    let (degree, polynomial) = (start.degree, start.middle);
     for digit in 0..DIGITS as usize {
         v[digit] = match digit < degree {
-            true => place(digit, numbers.next().expect("as many numbers as the degree")),
+            true => place(digit, start.initial(digit)),
             false => {
                 let middle = (1..degree).filter(|k| polynomial >> (degree - 1 - k) & 1 == 1);
                 middle.fold(v[digit - degree] ^ v[digit - degree] >> degree, |x, k| x ^ v[digit - k])

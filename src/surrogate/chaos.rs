@@ -182,9 +182,11 @@ impl Chaos {
         shapes: &[InputShape],
         surface: Option<(&Surrogate, f64)>,
     ) -> Option<[f64; 2]> {
-        let pairs: BTreeMap<(usize, usize), f64> = surface.map_or_else(BTreeMap::new, |(surrogate, _)| {
-            surrogate.interactions.pairs().into_iter().map(|(j, k, value)| ((j.min(k), j.max(k)), value)).collect()
-        });
+        let mut pairs: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        if let Some((surrogate, _)) = surface {
+            let of_surface = surrogate.interactions.pairs().into_iter();
+            pairs.extend(of_surface.map(|(j, k, value)| ((j.min(k), j.max(k)), value)));
+        }
         // The coefficient of a product in the known surface.
         let part = |factors: &[(usize, usize)]| -> Option<f64> {
             let (surrogate, sigma) = surface?;

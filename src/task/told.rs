@@ -117,8 +117,9 @@ impl Task {
                 Form::Text => ("text", json!(found.text(80, true))),
                 Form::Svg => ("svg", json!(found.svg(&self.name))),
                 Form::Tables => {
-                    let tables = found.tables().into_iter().map(|file| (file.name, json!(file.text)));
-                    ("tables", Value::Object(tables.collect()))
+                    let mut tables = Map::new();
+                    tables.extend(found.tables().into_iter().map(|file| (file.name, json!(file.text))));
+                    ("tables", Value::Object(tables))
                 }
             };
             shown.insert(name.to_owned(), value);

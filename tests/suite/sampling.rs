@@ -36,6 +36,34 @@ fn sobol_points_are_those_of_joe_and_kuo() {
     assert!(Sobol::new(SOBOL_DIMENSIONS + 1).is_none());
 }
 
+/// The numbers of Joe and Kuo's text are all there: point 2^k of a dimension is `m_(k+1)/2^(k+1)`, in the text up to the polynomial's
+/// degree `s`, and from there by the recurrence `m_k = 2 a_1 m_(k-1) xor .. 2^(s-1) a_(s-1) m_(k-s+1) xor 2^s m_(k-s) xor m_(k-s)`.
+#[test]
+fn every_direction_number_is_that_of_the_published_table() {
+    let sobol = Sobol::new(SOBOL_DIMENSIONS).unwrap();
+    let text = include_str!("../data/joe-kuo.txt");
+    let lines = text.lines().filter(|line| !line.starts_with('#'));
+    let mut dimensions = 1;
+    for (dimension, line) in (1..).zip(lines) {
+        let numbers: Vec<u64> = line.split(' ').map(|number| number.parse().unwrap()).collect();
+        let [degree, middle, ref initial @ ..] = numbers[..] else { panic!("{line}") };
+        let s = degree as usize;
+        assert_eq!(initial.len(), s, "{line}");
+        let mut m = initial.to_vec();
+        for k in s..s + 4 {
+            let sum = (1..s).filter(|i| middle >> (s - 1 - i) & 1 == 1).fold(0, |sum, i| sum ^ m[k - i] << i);
+            m.push(sum ^ m[k - s] << s ^ m[k - s]);
+        }
+        for (k, number) in m.into_iter().enumerate() {
+            let mut point = [0.0];
+            sobol.column(dimension, 1 << k, None, &mut point);
+            assert_eq!(point[0] * (2u64 << k) as f64, number as f64, "dimension {dimension}, m_{}", k + 1);
+        }
+        dimensions += 1;
+    }
+    assert_eq!(dimensions, SOBOL_DIMENSIONS);
+}
+
 /// Any block of points can be had by itself.
 #[test]
 fn sobol_blocks_are_parts_of_the_whole() {

@@ -1,9 +1,9 @@
-// The engine of the workbench in Node, as web/build leaves it, and the library that unpacks it in a page.
+// The engine of the workbench in Node, as web/build leaves it.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 
-export const load = (folder, name = "engine") => {
-  const glue = new Function(`${readFileSync(join(folder, `${name}.js`), "utf8")}; return wasm_bindgen;`)();
-  glue.initSync({ module: readFileSync(join(folder, `${name}.wasm`)) });
-  return glue;
+export const load = (folder) => {
+  const engine = new Function(`${readFileSync(join(folder, "engine.js"), "utf8")}; return wasm_bindgen;`)();
+  engine.initSync({ module: readFileSync(join(folder, "engine.wasm")) });
+  return engine;
 };

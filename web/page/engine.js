@@ -6,11 +6,11 @@ const engine = (() => {
     const text = (id) => document.getElementById(id).textContent.trim();
     const script = (...ids) => URL.createObjectURL(new Blob(ids.map((id) => `${text(id)}\n`), { type: "text/javascript" }));
     // Unpacked beside the page, so that the page answers meanwhile.
-    const worker = new Worker(script("unpack-glue", "unpack-worker"));
+    const worker = new Worker(script("unpack-worker"));
     const unpacked = await new Promise((resolve, reject) => {
       worker.onmessage = ({ data }) => (data ? resolve(data) : reject(new Error("the engine in this page is damaged")));
       worker.onerror = ({ message }) => reject(new Error(message));
-      worker.postMessage({ unpacker: text("unpack-wasm"), packed: text("engine-packed") });
+      worker.postMessage(text("engine-packed"));
     });
     worker.terminate();
     compiled = await WebAssembly.compile(unpacked);

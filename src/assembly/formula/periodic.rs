@@ -34,7 +34,11 @@ impl FormulaSet {
     /// None where a node is not linear.
     fn linear(&self, node: GraphNode, known: &[Option<Linear>]) -> Option<Linear> {
         let of = |id: NodeId| known[id as usize].as_ref();
-        let times = |terms: &Linear, by: f64| terms.iter().map(|(&variable, factor)| (variable, factor * by)).collect();
+        let times = |terms: &Linear, by: f64| {
+            let mut scaled = terms.clone();
+            scaled.values_mut().for_each(|factor| *factor *= by);
+            scaled
+        };
         match node {
             GraphNode::Constant(_) => Some(Linear::new()),
             GraphNode::Variable(index) => Some(Linear::from([(index, 1.0)])),

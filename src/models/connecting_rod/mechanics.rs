@@ -178,11 +178,11 @@ impl Loaded<'_> {
     /// With this force of the gas along the cylinder.
     #[inline(always)]
     fn by<T: Real>(&self, row: usize, angle: &Angle<T>, gas: T) -> T {
-        let x = |at: usize| self.rows.x[at][row];
-        let motion = Motion::of(angle, x(input::R), x(input::L), self.speed.circular(self.rows, row));
-        let along = gas + motion.piston * -x(input::M_P);
-        let body = [x(input::M_ROD), x(input::MC), x(input::I_G)];
-        effect(self.effect, angle, &motion, body, along, [x(input::R), x(input::L)])
+        let x = self.rows.row(row);
+        let motion = Motion::of(angle, x.of(input::R), x.of(input::L), self.speed.circular(self.rows, row));
+        let along = gas + motion.piston * -x.of(input::M_P);
+        let body = [x.of(input::M_ROD), x.of(input::MC), x.of(input::I_G)];
+        effect(self.effect, angle, &motion, body, along, [x.of(input::R), x.of(input::L)])
     }
 }
 
@@ -219,17 +219,17 @@ pub(super) struct Alone<'r> {
 impl Curve for Alone<'_> {
     #[inline(always)]
     fn at<T: Real>(&self, row: usize, angle: &Angle<T>) -> T {
-        let x = |at: usize| self.rows.x[at][row];
-        let (l, [reference, eyes]) = (x(input::L), REFERENCE);
-        let moved = |to: usize| x(to) + (x(input::MC) - reference);
+        let x = self.rows.row(row);
+        let (l, [reference, eyes]) = (x.of(input::L), REFERENCE);
+        let moved = |to: usize| x.of(to) + (x.of(input::MC) - reference);
         let cubes = |centre: f64, l: f64| centre * centre * centre + (l - centre) * (l - centre) * (l - centre);
         let (centre, factor) = match self.centre {
-            Centre::Given => (x(input::MC), 1.0),
-            Centre::Optimum => (moved(input::MC_F), cubes(x(input::MC_F), eyes) / cubes(reference, eyes)),
+            Centre::Given => (x.of(input::MC), 1.0),
+            Centre::Optimum => (moved(input::MC_F), cubes(x.of(input::MC_F), eyes) / cubes(reference, eyes)),
             Centre::Tied => (moved(input::MC_T), cubes(moved(input::MC_T), l) / cubes(reference, l)),
         };
-        let motion = Motion::of(angle, x(input::R), l, self.speed.circular(self.rows, row));
-        let body = [x(input::M_ROD), centre, factor * x(input::I_G)];
-        effect(self.effect, angle, &motion, body, angle.sin * 0.0, [x(input::R), l])
+        let motion = Motion::of(angle, x.of(input::R), l, self.speed.circular(self.rows, row));
+        let body = [x.of(input::M_ROD), centre, factor * x.of(input::I_G)];
+        effect(self.effect, angle, &motion, body, angle.sin * 0.0, [x.of(input::R), l])
     }
 }

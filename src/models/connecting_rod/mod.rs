@@ -419,6 +419,28 @@ struct Rows {
     count: usize,
 }
 
+impl Rows {
+    #[inline(always)]
+    fn row(&self, row: usize) -> Row<'_> {
+        Row { rows: self, row }
+    }
+}
+
+/// The inputs of one row.
+#[derive(Clone, Copy)]
+struct Row<'r> {
+    rows: &'r Rows,
+    row: usize,
+}
+
+impl Row<'_> {
+    /// Inlined where code is optimised for size too, as a closure is not: every angle takes some twenty inputs.
+    #[inline(always)]
+    fn of(self, input: usize) -> f64 {
+        self.rows.x[input][self.row]
+    }
+}
+
 /// The inputs' units in SI; degrees and rpm stay.
 const SI: [f64; INPUTS] = {
     let mut si = [1e-3; INPUTS];

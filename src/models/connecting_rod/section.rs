@@ -16,26 +16,26 @@ impl Root<'_> {
     /// Axial force and bending moment there.
     #[inline(always)]
     pub(super) fn load<T: Real>(&self, row: usize, angle: &Angle<T>) -> [T; 2] {
-        let x = |at: usize| self.rows.x[at][row];
-        let (l, root, length) = (x(input::L), x(input::R_IS) + x(input::T_S), shank(self.rows, row));
+        let x = self.rows.row(row);
+        let (l, root, length) = (x.of(input::L), x.of(input::R_IS) + x.of(input::T_S), shank(self.rows, row));
         let section = Section::of(self.rows, row);
-        let mass = x(input::RHO) * section.area(self.webs[row]) * length;
+        let mass = x.of(input::RHO) * section.area(self.webs[row]) * length;
         let centre = root + 0.5 * length;
-        let inertia = mass * length * length / 12.0 + x(input::I_S) + x(input::I_B);
-        let motion = Motion::of(angle, x(input::R), l, self.speed.circular(self.rows, row));
-        let along = gas_force(angle, x(input::D)) + motion.piston * -(x(input::M_P) + x(input::M_S));
+        let inertia = mass * length * length / 12.0 + x.of(input::I_S) + x.of(input::I_B);
+        let motion = Motion::of(angle, x.of(input::R), l, self.speed.circular(self.rows, row));
+        let along = gas_force(angle, x.of(input::D)) + motion.piston * -(x.of(input::M_P) + x.of(input::M_S));
         let side = motion.side_force([mass, centre, inertia], motion.acceleration(centre), along, l);
         let axial = -(along * motion.cos_a) - side * motion.sin_a;
         let normal = along * motion.sin_a - side * motion.cos_a;
         if !self.at_cut {
-            return [axial, normal * -root + motion.turn * x(input::I_S)];
+            return [axial, normal * -root + motion.turn * x.of(input::I_S)];
         }
         // The part of the shank before the section adds what accelerates it.
-        let before = x(input::CUT) * length;
-        let (mass, centre) = (mass * x(input::CUT), root + 0.5 * before);
+        let before = x.of(input::CUT) * length;
+        let (mass, centre) = (mass * x.of(input::CUT), root + 0.5 * before);
         let [ax, ay] = motion.acceleration(centre);
         let across = (ay * motion.cos_a - ax * motion.sin_a) * mass;
-        let inertia = x(input::I_S) + mass * before * before / 12.0;
+        let inertia = x.of(input::I_S) + mass * before * before / 12.0;
         let moment = motion.turn * inertia + across * centre - (normal + across) * (root + before);
         [axial + (ax * motion.cos_a + ay * motion.sin_a) * mass, moment]
     }
@@ -139,6 +139,6 @@ pub(super) fn crossing(mut function: impl FnMut(f64) -> f64, [mut low, mut high]
 /// Length of the shank.
 #[inline(always)]
 pub(super) fn shank(rows: &Rows, row: usize) -> f64 {
-    let x = |at: usize| rows.x[at][row];
-    x(input::L) - x(input::R_IS) - x(input::T_S) - x(input::T_B) - x(input::R_IB)
+    let x = rows.row(row);
+    x.of(input::L) - x.of(input::R_IS) - x.of(input::T_S) - x.of(input::T_B) - x.of(input::R_IB)
 }

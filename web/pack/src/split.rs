@@ -1,86 +1,95 @@
-//! From a module to its streams, where the engine is built.
+//! From a module to its streams.
 
-use super::streams::{CODE, LOCALS, MAGIC, Mover, Recent, STREAMS, Stream, Tape, body, write_number};
+use super::code::{Piece, body};
+use super::module::{CODE, DATA, MAGIC, imported, sections};
+use super::streams::{MEMORY, STREAMS, Stream, Tape, UNALIGNED, WITHOUT_OFFSET, write_number};
 
-impl Recent {
-    /// How many others were used since this one.
-    fn place_of(&mut self, variable: usize) -> Option<usize> {
-        self.extend(variable)?;
-        let place = self.order.iter().position(|&known| known == variable)?;
-        self.order[..=place].rotate_right(1);
-        Some(place)
-    }
-}
-
-/// From code to streams.
-struct Split<'b> {
-    code: Tape<'b>,
-    recent: Recent,
-    streams: [Vec<u8>; STREAMS],
-}
-
-impl Mover for Split<'_> {
-    fn begin(&mut self) {
-        self.recent.order.clear();
-    }
-
-    fn operator(&mut self) -> Option<u8> {
-        let operator = self.code.next()?;
-        let operators = &mut self.streams[Stream::Operator as usize];
-        let Some(local) = LOCALS.iter().find(|local| local.operator == operator) else {
-            operators.push(operator);
-            return Some(operator);
-        };
-        let place = self.recent.place_of(self.code.number()?)?;
-        if place < local.within {
-            operators.push(local.first + place as u8);
-        } else {
-            operators.push(operator);
-            write_number(place - local.within, &mut self.streams[local.stream as usize]);
-        }
-        Some(operator)
-    }
-
-    fn byte(&mut self, stream: Stream) -> Option<u8> {
-        let byte = self.code.next()?;
-        self.streams[stream as usize].push(byte);
-        Some(byte)
-    }
-
-    fn after_number(&self) -> Option<u8> {
-        let mut ahead = self.code;
-        while ahead.next()? >= 0x80 {}
-        ahead.next()
-    }
-}
+/// As many variables as engines allow in a function: <https://webassembly.github.io/spec/js-api/#limits>.
+const MOST_VARIABLES: usize = 50_000;
 
 /// The streams of a module. None where it is none, or has operators that are not known here.
 pub fn split(module: &[u8]) -> Option<[Vec<u8>; STREAMS]> {
-    let mut tape = Tape::of(module);
-    let mut mover = Split { code: Tape::default(), recent: Recent::default(), streams: Default::default() };
-    let mut rest = Vec::new();
-    rest.extend(tape.take(MAGIC.len()).filter(|magic| *magic == MAGIC)?);
-    while !tape.is_at_end() {
-        let section = tape.next()?;
-        let size = tape.number()?;
-        let content = tape.take(size)?;
+    let sections = sections(module)?;
+    let imports = imported(&sections)?;
+    let mut split = Split { next: imports, ..Split::default() };
+    let mut rest = MAGIC.to_vec();
+    for (section, content) in sections {
         rest.push(section);
         if section != CODE {
-            write_number(size, &mut rest);
-            rest.extend(content);
+            let stream = if section == DATA { &mut split.streams[Stream::Data as usize] } else { &mut rest };
+            write_number(content.len(), stream);
+            stream.extend(content);
             continue;
         }
-        mover.code = Tape::of(content);
-        let functions = mover.code.number()?;
+        let mut code = Tape::of(content);
+        let functions = code.number()?;
         write_number(functions, &mut rest);
-        for _ in 0..functions {
-            let size = mover.code.number()?;
-            let end = mover.code.place + size;
-            body(&mut mover)?;
-            (mover.code.place == end).then_some(())?;
+        for function in 0..functions {
+            let size = code.number()?;
+            let end = code.place + size;
+            split.recent.clear();
+            split.next = split.next.max(imports + function + 1);
+            body(&mut code, &mut |piece, _| split.put(piece))?;
+            (code.place == end).then_some(())?;
         }
-        mover.code.is_at_end().then_some(())?;
+        code.is_at_end().then_some(())?;
     }
-    mover.streams[Stream::Module as usize] = rest;
-    Some(mover.streams)
+    split.streams[Stream::Module as usize] = rest;
+    Some(split.streams)
+}
+
+#[derive(Default)]
+struct Split {
+    /// Local variables, the last one used first; those that were never used follow in order.
+    recent: Vec<usize>,
+    /// The function after this one and all that were called.
+    next: usize,
+    streams: [Vec<u8>; STREAMS],
+}
+
+impl Split {
+    fn put(&mut self, piece: Piece<'_>) -> Option<()> {
+        let operators = &mut self.streams[Stream::Operator as usize];
+        match piece {
+            Piece::Operator(operator) => operators.push(operator),
+            Piece::Local(local, variable) => {
+                let variable = Some(variable).filter(|&variable| variable < MOST_VARIABLES)?;
+                self.recent.extend(self.recent.len()..=variable);
+                let place = self.recent.iter().position(|&known| known == variable)?;
+                self.recent[..=place].rotate_right(1);
+                if place < local.within {
+                    operators.push(local.first + place as u8);
+                } else {
+                    operators.push(local.operator);
+                    write_number(place - local.within, &mut self.streams[local.stream as usize]);
+                }
+            }
+            Piece::Memory { operator, alignment, aligned, offset: [0] } if alignment == aligned => {
+                operators.push(WITHOUT_OFFSET + (operator - MEMORY));
+            }
+            Piece::Memory { operator, alignment, aligned, offset } => {
+                match alignment == aligned {
+                    true => operators.push(operator),
+                    false => operators.extend([UNALIGNED, operator, alignment]),
+                }
+                highest_first(offset, &mut self.streams[Stream::Offset as usize]);
+            }
+            Piece::Count(stream, bytes) | Piece::Bytes(stream, bytes) => self.streams[stream as usize].extend(bytes),
+            Piece::Number(stream, digits) => highest_first(digits, &mut self.streams[stream as usize]),
+            Piece::Callee(function) => {
+                let is_next = function == self.next;
+                self.next += usize::from(is_next);
+                write_number(if is_next { 0 } else { function + 1 }, &mut self.streams[Stream::Callee as usize]);
+            }
+        }
+        Some(())
+    }
+}
+
+/// Writes a number's groups with the highest first, since it is the easiest to expect.
+fn highest_first(digits: &[u8], stream: &mut Vec<u8>) {
+    let last = digits.len() - 1;
+    stream.extend(
+        digits.iter().rev().enumerate().map(|(place, digit)| if place < last { digit | 0x80 } else { digit & 0x7f }),
+    );
 }
