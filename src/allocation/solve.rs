@@ -153,12 +153,12 @@ impl Setting<'_> {
         let mut ends = Ends::default();
         let mut starts = starts.into_iter();
         // Costs are convex: another start may help where the constraints are not, and the search did not end by itself.
-        while !ends.has_ended()
-            && !(ends.has_begun() && (self.stopped)())
-            && let Some(start) = starts.next()
-        {
+        for start in starts.by_ref() {
             let end = descend(&start, &ends);
             ends.take(end);
+            if ends.has_ended() || (self.stopped)() {
+                break;
+            }
         }
         // The others side by side, each of which knows the ends so far: what is found depends on no order.
         if self.anywhere && !one_start && !(self.stopped)() {

@@ -67,11 +67,6 @@ impl Ends {
         }
     }
 
-    /// Whether a search has ended, somehow.
-    pub(super) fn has_begun(&self) -> bool {
-        self.begun > 0
-    }
-
     /// The end that a search is about to reach, if an earlier one ended there.
     pub(super) fn near(&self, at: &[f64], residual: f64) -> Option<&Solved> {
         let close = |end: &&Solved| end.at.iter().zip(at).all(|(a, b)| (b / a).ln().abs() <= NEAR_END);

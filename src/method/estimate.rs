@@ -357,8 +357,8 @@ impl Estimate<'_> {
         variance: f64,
         products: &mut Vec<(usize, usize, f64)>,
     ) -> f64 {
-        if let Some((left, exact)) = self.exact_pairs(pairs) {
-            let more = left.iter().zip(&exact).map(|(&(j, k), &value)| (j, k, value));
+        if let Some(exact) = self.exact_pairs(pairs) {
+            let more = exact.iter().copied();
             let all = surrogate.interactions.pairs().into_iter().chain(more).filter(|&(.., value)| value != 0.0);
             let interactions = Interactions::of_pairs(surrogate.parts.len(), all);
             let whole = Surrogate { interactions, ..surrogate.clone() };
@@ -366,9 +366,10 @@ impl Estimate<'_> {
             if let Some((whole, without)) = whole.zip(without) {
                 add(&mut self.errors, apart(&whole, &without));
             }
-            products.extend(left.iter().zip(&exact).map(|(&(j, k), &value)| (j, k, value)));
+            let share = exact.iter().map(|(.., value)| value * value).sum::<f64>() / variance;
+            products.extend(exact);
             self.sources.push(ErrorSource::ExactPairs { pairs });
-            return exact.iter().map(|value| value * value).sum::<f64>() / variance;
+            return share;
         }
         let Some(share) = self.similar_pairs(variance) else {
             self.known = [self.outcome.plan.inputs().correlation().is_none(), false, false, false];
@@ -382,7 +383,7 @@ impl Estimate<'_> {
     }
 
     /// The pairs that were not examined, so many, with their interactions in sigmas, as the assembly function knows them.
-    fn exact_pairs(&self, pairs: usize) -> Option<(Vec<(usize, usize)>, Vec<f64>)> {
+    fn exact_pairs(&self, pairs: usize) -> Option<Vec<(usize, usize, f64)>> {
         let plan = &self.outcome.plan;
         if pairs > EXACT {
             return None;
@@ -394,10 +395,9 @@ impl Estimate<'_> {
         let outputs = [self.problem.outputs()[self.c]];
         let derivatives = self.problem.function().derivatives(&outputs, &directions).into_iter().next()??;
         let scaled = |(&(j, k), value): (&(usize, usize), &Option<f64>)| {
-            Some(plan.axis(j).scale * plan.axis(k).scale * (*value)?)
+            Some((j, k, plan.axis(j).scale * plan.axis(k).scale * (*value)?))
         };
-        let exact = dimensions.iter().zip(&derivatives.mixed).map(scaled).collect::<Option<_>>()?;
-        Some((left, exact))
+        left.iter().zip(&derivatives.mixed).map(scaled).collect()
     }
 
     /// The share of interactions that are to the shares of their dimensions as those examined are.
