@@ -2,7 +2,6 @@
 
 use super::ending::Ending;
 use super::equation::{Equation, Panel};
-use super::slopes::{Growth, Slopes};
 
 /// Tables end where log p has fallen by this: what lies beyond is computed when it is asked for.
 const CORE: f64 = -45.0;
@@ -120,10 +119,10 @@ impl Side {
         Place { log_density, mills: mills(&self.equation, self.ending.as_ref(), self.sign, z) }
     }
 
-    /// How the logarithm of p grows with the parameters, by the distance from the anchor and up to constants.
-    pub(super) fn rate(&self, distance: f64, growth: &Growth) -> Slopes {
+    /// How much faster p falls outwards with two parameters, by the distance from the anchor and the growth of Pearson's coefficients.
+    pub(super) fn rate(&self, distance: f64, growth: [[f64; 2]; 2]) -> [f64; 2] {
         let z = self.anchor + self.sign * distance;
-        self.equation.slopes_by(z, growth.0).map(|slope| self.sign * slope)
+        self.equation.slopes_by(z, growth).map(|slope| self.sign * slope)
     }
 
     /// The panels of the tables, by the distances of their ends from the anchor.

@@ -29,10 +29,6 @@ const NODES: [(f64, f64); 4] = [
 /// Derivatives by skewness and by excess.
 pub(super) type Slopes = [f64; 2];
 
-/// The derivatives of Pearson's coefficients by skewness and excess, `c1.` and `c2.` of each.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Growth(pub(super) [[f64; 2]; 2]);
-
 /// A piece of a side, with integrals over it outwards.
 struct Span {
     /// Distances of its ends from the anchor.
@@ -47,13 +43,14 @@ struct Span {
 /// A side in pieces, from the anchor outwards.
 pub(super) struct Walk<'s> {
     side: &'s Side,
-    growth: Growth,
+    /// `c1.` and `c2.` by skewness and by excess.
+    growth: [[f64; 2]; 2],
     spans: Vec<Span>,
 }
 
 impl<'s> Walk<'s> {
     /// None where the integral beyond the tables does not end.
-    pub(super) fn along(side: &'s Side, growth: Growth) -> Option<Self> {
+    pub(super) fn along(side: &'s Side, growth: [[f64; 2]; 2]) -> Option<Self> {
         let mut walk = Self { side, growth, spans: Vec::new() };
         for (index, [from, to]) in side.panels().enumerate() {
             walk.spans.push(walk.span(from, to, Some(index)));
@@ -99,7 +96,7 @@ impl<'s> Walk<'s> {
         let (mut own, mut weighted) = ([0.0; 2], [0.0; 2]);
         for (x, weight) in NODES.iter().flat_map(|&(x, weight)| [(x, weight), (-x, weight)]) {
             let distance = middle + half * x;
-            let rate = self.side.rate(distance, &self.growth);
+            let rate = self.side.rate(distance, self.growth);
             let mass = match panel {
                 Some(index) => self.side.mass_in_panel(index, distance),
                 None => self.side.mass_beyond(distance),

@@ -5,7 +5,7 @@ use super::ending::Ending;
 use super::equation::Equation;
 use super::shape::{PearsonType, Roots, Shape};
 use super::side::{Place, Side};
-use super::slopes::{Growth, Slopes, Walk};
+use super::slopes::{Slopes, Walk};
 
 /// Two sides that meet at the anchor.
 #[derive(Debug, Clone)]
@@ -76,7 +76,7 @@ impl Standard {
     /// Derivatives of the probabilities below one place and above another, together, by the skewness and the excess; None where the density ends
     /// too abruptly.
     pub(super) fn outside_by_shape(&self, shape: [f64; 2], below: Option<f64>, above: Option<f64>) -> Option<Slopes> {
-        let growth = Growth(Shape::growth(shape[0], shape[1]));
+        let growth = Shape::growth(shape[0], shape[1]);
         let (left, right) = (Walk::along(&self.left, growth)?, Walk::along(&self.right, growth)?);
         let mean: Slopes = std::array::from_fn(|i| (left.all()[i] + right.all()[i]) / self.total);
         // The whole stays 1.
