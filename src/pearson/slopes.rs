@@ -17,8 +17,8 @@ const NOTHING: f64 = 1e-17;
 /// Pieces beyond the tables; where they are not enough, a density ends too abruptly for such slopes.
 const BEYOND: usize = 120;
 
-/// Positive nodes and weights of the Gauss-Legendre rule with 8 points (Abramowitz and Stegun 1964, table 25.4). On a panel, over which p falls by
-/// `e^4` at most and whose ends lie three times as far from the next root as from the middle, it leaves 1e-12.
+/// Positive nodes and weights of the Gauss-Legendre rule with 8 points (Abramowitz and Stegun 1964, table 25.4). It leaves 1e-12 on a panel, over
+/// which p falls by `e^4` at most and whose middle is 3.6 half widths away from the next root.
 const NODES: [(f64, f64); 4] = [
     (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
