@@ -16,8 +16,9 @@ let browser;
 before(async () => { browser = await Browser.start(); });
 after(async () => { await browser.stop(); rmSync(folder, { recursive: true, force: true }); });
 
+// A rod over a whole cycle takes seconds where two cores are free, and a minute where they are not.
 const settled = async (page) => {
-  for (let i = 0; i < 600; i += 1) {
+  for (let i = 0; i < 2400; i += 1) {
     if (await page.evaluate("document.documentElement.dataset.ready === '1'")) return;
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
