@@ -23,8 +23,11 @@ fn types(all: bool) -> BTreeMap<String, Vec<String>> {
                 folders.push(path);
                 continue;
             }
+            if !file.ends_with(".rs") {
+                continue;
+            }
             let text = std::fs::read_to_string(&path).unwrap();
-            for line in text.lines().filter(|_| file.ends_with(".rs")) {
+            for line in text.lines() {
                 let starts = ["pub struct ", "pub enum ", "pub trait "];
                 let kinds = ["struct ", "enum ", "trait ", "type "];
                 let line = line.trim_start();
