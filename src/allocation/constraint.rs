@@ -356,7 +356,7 @@ impl Constraint {
         }
     }
 
-    /// Finds out about the station's law once, which everything else then knows.
+    /// Computes the correction by the law of the station, which is kept for whoever asks next.
     pub(super) fn prepare(&self, responses: &Responses) {
         if !self.is_joint() {
             let _: Option<Arc<Correction>> = self.correction(responses);

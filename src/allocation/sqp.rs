@@ -71,7 +71,11 @@ impl Smooth<'_> {
                 let multipliers = step.multipliers[..here.rows.len()].to_vec();
                 best = Some(Ended { x: here.x.clone(), multipliers, residual });
             }
-            if residual <= near.by || in_vain > PATIENCE && least <= NEAR_THE_END || enough(&here.x, residual) {
+            if enough(&here.x, residual) {
+                let multipliers = step.multipliers[..here.rows.len()].to_vec();
+                return Some(Ended { x: here.x, multipliers, residual });
+            }
+            if residual <= near.by || in_vain > PATIENCE && least <= NEAR_THE_END {
                 break;
             }
             match self.gone(&here, &step, &inverse, weight) {

@@ -336,7 +336,7 @@ fn fraction(equation: &Equation, sign: f64, z: f64) -> Option<f64> {
 /// Mills' ratio beyond the tables: from panel to panel until nothing is left or the ending takes over.
 fn mills(equation: &Equation, ending: Option<&Ending>, sign: f64, mut z: f64) -> f64 {
     let covered = ending.is_some_and(|ending| ending.covers(z));
-    if let Some(mills) = fraction(equation, sign, z).filter(|_| !covered) {
+    if !covered && let Some(mills) = fraction(equation, sign, z) {
         return mills;
     }
     let (mut mass, mut density) = (0.0, 1.0);

@@ -10,21 +10,13 @@
 //! and alike below. With `u = 0` at the anchor, `E u` is the sum of the integrals over both sides, by parts. `u'` is a formula and `M` is tabled, so
 //! that Gauss-Legendre on the panels of the tables leaves rounding only.
 
+use super::equation::LEGENDRE;
 use super::side::Side;
 
 /// Contributions that are this part of all are nothing.
 const NOTHING: f64 = 1e-17;
 /// Pieces beyond the tables; where they are not enough, a density ends too abruptly for such slopes.
 const BEYOND: usize = 120;
-
-/// Positive nodes and weights of the Gauss-Legendre rule with 8 points (Abramowitz and Stegun 1964, table 25.4). It leaves 1e-12 on a panel, over
-/// which p falls by `e^4` at most and whose middle is 3.6 half widths away from the next root.
-const NODES: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
-    (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
-];
 
 /// Derivatives by skewness and by excess.
 pub(super) type Slopes = [f64; 2];
@@ -94,7 +86,7 @@ impl<'s> Walk<'s> {
     fn span(&self, from: f64, to: f64, panel: Option<usize>) -> Span {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let (mut own, mut weighted) = ([0.0; 2], [0.0; 2]);
-        for (x, weight) in NODES.iter().flat_map(|&(x, weight)| [(x, weight), (-x, weight)]) {
+        for (x, weight) in LEGENDRE.iter().flat_map(|&(x, weight)| [(x, weight), (-x, weight)]) {
             let distance = middle + half * x;
             let rate = self.side.rate(distance, self.growth);
             let mass = match panel {

@@ -123,7 +123,7 @@ pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
     let Some((plain, far)) = margins.filter(|(plain, _)| plain.0.len() == known.list.len()) else {
         return Sides::default();
     };
-    let mut found = Search { model, normals, half_spaces: Vec::new(), scale };
+    let mut found = Search { model, places: &places, half_spaces: Vec::new(), scale };
     let characteristic = model.problem().outputs().iter().position(|&output| output == model.output());
     let output = characteristic.map_or("", |c| model.problem().characteristics()[c].name());
     let mut switches = Vec::new();
@@ -131,10 +131,10 @@ pub(super) fn sides(model: &Model<'_>, normals: &Normals, scale: f64) -> Sides {
         let sign = if plain.share(k, -1.0) <= plain.share(k, 1.0) { -1.0 } else { 1.0 };
         let first = found.half_spaces.len();
         if plain.share(k, sign) < SELDOM {
-            found.seek(k, sign, &places, &far.0[k]);
+            found.seek(k, sign, &far.0[k]);
         }
         let own = first..found.half_spaces.len();
-        let Some(probability) = found.probability(k, sign, own, (&places, &plain.0[k])) else { continue };
+        let Some(probability) = found.probability(k, sign, own, &plain.0[k]) else { continue };
         // A point of the smaller side nearest to the middle, whose way from there crosses the border.
         let beyond =
             nearest(|| places.plain(), &plain.0[k], sign).or_else(|| nearest(|| places.wide(), &far.0[k], sign));
@@ -195,19 +195,19 @@ impl Places<'_> {
 
 struct Search<'a, 'p> {
     model: &'a Model<'p>,
-    normals: &'a Normals,
+    places: &'a Places<'a>,
     half_spaces: Vec<HalfSpace>,
     scale: f64,
 }
 
 impl Search<'_, '_> {
     /// Looks for the places of one side of a switch.
-    fn seek(&mut self, switch: usize, sign: f64, places: &Places<'_>, margins: &[f64]) {
+    fn seek(&mut self, switch: usize, sign: f64, margins: &[f64]) {
         let mut open: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();
         if !open.contains(&true) {
             return;
         }
-        let wide = places.wide();
+        let wide = self.places.wide();
         for space in &self.half_spaces {
             open.iter_mut().zip(space.holds(wide)).for_each(|(open, held)| *open &= !held);
         }
@@ -277,19 +277,13 @@ impl Search<'_, '_> {
 
     /// The probability of a side: by the plain points outside its half-spaces, and by points within each that no earlier one holds.
     /// None where none of them lies there.
-    fn probability(
-        &self,
-        switch: usize,
-        sign: f64,
-        own: std::ops::Range<usize>,
-        (places, margins): (&Places<'_>, &[f64]),
-    ) -> Option<f64> {
+    fn probability(&self, switch: usize, sign: f64, own: std::ops::Range<usize>, margins: &[f64]) -> Option<f64> {
         let mut outside: Vec<bool> = margins.iter().map(|margin| margin * sign > 0.0).collect();
         let mut sum = 0.0;
         for index in own.clone() {
             let space = &self.half_spaces[index];
-            outside.iter_mut().zip(space.holds(places.plain())).for_each(|(outside, held)| *outside &= !held);
-            let mut z = self.normals.columns(stream(8 + index), WITHIN);
+            outside.iter_mut().zip(space.holds(self.places.plain())).for_each(|(outside, held)| *outside &= !held);
+            let mut z = self.places.normals.columns(stream(8 + index), WITHIN);
             let weights = space.enter(&mut z);
             let mut counts = vec![true; WITHIN];
             for earlier in &self.half_spaces[own.start..index] {
@@ -346,8 +340,7 @@ impl Search<'_, '_> {
         if other(&middle) {
             return middle;
         }
-        let plain = self.normals.columns(stream(0), POINTS);
-        let margins = self.margin(switch, &plain);
-        nearest(|| &plain, &margins, -sign).unwrap_or(middle)
+        let plain = self.places.plain();
+        nearest(|| plain, &self.margin(switch, plain), -sign).unwrap_or(middle)
     }
 }
