@@ -162,7 +162,7 @@ impl JointLaw {
     /// points stay even.
     fn unit_place(&self, z: &[f64]) -> [f64; 2] {
         let [x, y] = [z[0], z[1]];
-        let radius = x.hypot(y);
+        let radius = libm::hypot(x, y);
         match self {
             Self::Diamond => {
                 let [p, q] = [x, y].map(|z| standard_normal::cdf(z) - standard_normal::sf(z));

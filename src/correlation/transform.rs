@@ -39,7 +39,7 @@ const SLACK: f64 = 1e-9;
 static GRID: LazyLock<[Vec<f64>; 2]> = LazyLock::new(|| {
     let places = (-REACH * PER_UNIT..=REACH * PER_UNIT).map(|i| f64::from(i) / f64::from(PER_UNIT));
     let places: Vec<f64> = places.collect();
-    let roots = places.iter().map(|z| (-0.25 * z * z).exp() / (2.0 * PI).powf(0.25)).collect();
+    let roots = places.iter().map(|z| libm::exp(-0.25 * z * z) / (2.0 * PI).sqrt().sqrt()).collect();
     [places, roots]
 });
 

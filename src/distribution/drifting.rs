@@ -114,7 +114,7 @@ impl Distribution for Drifting {
     }
 
     fn sigma(&self) -> f64 {
-        self.within.hypot(self.drift / 3f64.sqrt())
+        libm::hypot(self.within, self.drift / 3f64.sqrt())
     }
 
     /// The cumulants of the uniform part: `-2 d^4/15, 16 d^6/63, -16 d^8/15`.

@@ -6,7 +6,7 @@ use crate::elementary::{Elementary, Ln, Work, on_this_processor};
 
 /// Density.
 pub(crate) fn density(z: f64) -> f64 {
-    (-0.5 * z * z).exp() / (2.0 * PI).sqrt()
+    libm::exp(-0.5 * z * z) / (2.0 * PI).sqrt()
 }
 
 /// Probability below `z`, to a few ulp down to the smallest doubles.
@@ -124,7 +124,8 @@ fn near_tail(p: f64) -> (f64, bool) {
 
 #[inline(always)]
 fn polynomial(coefficients: &[f64; 8], r: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * r + coefficient)
+    let [a, b, c, d, e, f, g, h] = coefficients;
+    ((((((h * r + g) * r + f) * r + e) * r + d) * r + c) * r + b) * r + a
 }
 
 /// Numerator and denominator for `|p - 1/2| <= 0.425`.

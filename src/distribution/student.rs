@@ -140,7 +140,7 @@ impl Series {
         let (a, b) = (0.5 * n, 0.5);
         if r < 1.0 {
             let y = r * r / (1.0 + r * r);
-            return 0.5 - 0.5 * r / (1.0 + r * r).powf(a + b) / (b * self.beta) * sum(b, a, y);
+            return 0.5 - 0.5 * r / libm::pow(1.0 + r * r, a + b) / (b * self.beta) * sum(b, a, y);
         }
         if r.is_infinite() {
             return 0.0;
@@ -159,12 +159,12 @@ impl Series {
             _ => {}
         }
         let off = |z: f64| {
-            let t = z.sinh();
+            let t = libm::sinh(z);
             let above = self.above(t);
-            (libm::log(p / above), self.density(t) * z.cosh() / above)
+            (libm::log(p / above), self.density(t) * libm::cosh(z) / above)
         };
         // Beyond, nothing is left of a probability.
-        root([0.0, 700.0], -libm::log(2.0 * p) / self.degrees + 0.5, off).sinh()
+        libm::sinh(root([0.0, 700.0], -libm::log(2.0 * p) / self.degrees + 0.5, off))
     }
 }
 

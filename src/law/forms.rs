@@ -65,11 +65,11 @@ impl Block {
             }
         }
         let factor = factor(surface, members)?;
-        let rotated = match &factor {
-            Some(factor) => factor.transpose() * &form * factor,
-            None => form.clone(),
+        let eigen = match &factor {
+            Some(factor) => (factor.transpose() * &form * factor).self_adjoint_eigen(Side::Lower),
+            None => form.self_adjoint_eigen(Side::Lower),
         };
-        let eigen = rotated.self_adjoint_eigen(Side::Lower).ok()?;
+        let eigen = eigen.ok()?;
         let axes = match &factor {
             Some(factor) => factor * eigen.U(),
             None => eigen.U().to_owned(),

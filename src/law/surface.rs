@@ -79,13 +79,15 @@ impl Surface {
             }
             coefficients.push(quartic);
         }
-        let mut products = surrogate.interactions.pairs();
-        products.retain(|&(_, _, value)| value != 0.0);
-        let mut counts: Vec<bool> = coefficients.iter().map(|c| c.iter().any(|&c| c != 0.0)).collect();
-        for &(j, k, value) in &products {
+        // Gone over twice rather than listed: there may be half a million.
+        let products = || surrogate.interactions.each_pair().filter(|&(_, _, value)| value != 0.0);
+        let mut of_each = vec![0; n];
+        for (j, k, value) in products() {
             finite(value)?;
-            (counts[j], counts[k]) = (true, true);
+            (of_each[j], of_each[k]) = (of_each[j] + 1, of_each[k] + 1);
         }
+        let counts: Vec<bool> =
+            (0..n).map(|j| of_each[j] > 0 || coefficients[j].iter().any(|&coefficient| coefficient != 0.0)).collect();
         let mut places = vec![None; n];
         let (mut inputs, mut parts) = (Vec::new(), Vec::new());
         let mut made: HashMap<*const (), Arc<Input>> = HashMap::new();
@@ -102,13 +104,14 @@ impl Surface {
             };
             inputs.push(input);
         }
-        let mut neighbours = vec![Vec::new(); inputs.len()];
-        for (j, k, value) in products {
+        let mut neighbours: Vec<Vec<(usize, f64)>> =
+            (0..n).filter(|&position| counts[position]).map(|position| Vec::with_capacity(of_each[position])).collect();
+        for (j, k, value) in products() {
             let (Some(j), Some(k)) = (places[j], places[k]) else { continue };
             neighbours[j].push((k, value));
             neighbours[k].push((j, value));
         }
-        neighbours.iter_mut().for_each(|row: &mut Vec<(usize, f64)>| row.sort_unstable_by_key(|&(k, _)| k));
+        neighbours.iter_mut().for_each(|row| row.sort_unstable_by_key(|&(k, _)| k));
         let correlated = correlation.and_then(|correlation| Correlated::of(correlation, &places));
         Ok(Self { centre: finite(surrogate.centre)?, inputs, parts, neighbours, correlated, places })
     }
@@ -186,7 +189,9 @@ impl Surface {
     pub(super) fn with_products(&self, keep: impl Fn(usize, usize) -> bool) -> Self {
         let row = |(j, row): (usize, &Vec<(usize, f64)>)| row.iter().copied().filter(|&(k, _)| keep(j, k)).collect();
         let neighbours = self.neighbours.iter().enumerate().map(row).collect();
-        Self { neighbours, ..self.clone() }
+        let Self { centre, inputs, parts, correlated, places, .. } = self;
+        let (inputs, parts, correlated, places) = (inputs.clone(), parts.clone(), correlated.clone(), places.clone());
+        Self { centre: *centre, inputs, parts, neighbours, correlated, places }
     }
 
     /// The surface where one input varies by this factor more.

@@ -73,15 +73,19 @@ impl Work for Stroke<'_> {
             let reach = r[row] + 0.5 * s[row];
             let square = d[row] * d[row] + e[row] * e[row];
             let rest = (square - reach * reach).sqrt();
-            let ram = |reach: f64| {
-                let sin = (e[row] * rest + d[row] * reach) / square;
-                let cos = (d[row] * rest - e[row] * reach) / square;
-                let rise = height[row] - q[row] * cos;
-                q[row] * sin + (c[row] * c[row] - rise * rise).sqrt()
-            };
-            *stroke = ram(reach) - ram(-reach);
+            let arm = [d[row], e[row], q[row], c[row], height[row]];
+            *stroke = ram(arm, reach, [rest, square]) - ram(arm, -reach, [rest, square]);
         }
     }
+}
+
+/// Where the ram stands at one end of its stroke: of the frame, the arm and the link, for a pin on the one or the other side.
+#[inline(always)]
+fn ram([d, e, q, c, height]: [f64; 5], reach: f64, [rest, square]: [f64; 2]) -> f64 {
+    let sin = (e * rest + d * reach) / square;
+    let cos = (d * rest - e * reach) / square;
+    let rise = height - q * cos;
+    q * sin + (c * c - rise * rise).sqrt()
 }
 
 struct Ratio<'a> {

@@ -53,7 +53,7 @@ impl Scale {
         let even = f64::from(1u32 << EVEN);
         let from_middle = place - SIDE as f64;
         let octave = (from_middle.abs() / even).floor();
-        let u = octave.exp2() * (1.0 + from_middle.abs() / even - octave) - 1.0;
+        let u = libm::exp2(octave) * (1.0 + from_middle.abs() / even - octave) - 1.0;
         self.middle + self.spread * u.copysign(from_middle)
     }
 

@@ -81,9 +81,18 @@ impl Work for Coordinates<'_> {
     fn work(self) {
         let of = |digits: u64| (digits >> (64 - DIGITS)) as f64 / (1u64 << DIGITS) as f64;
         let points = self.out.iter_mut().zip(self.digits);
+        // Loops, as a closure over two may stay a function of its own, for the least processor.
         match self.key {
-            Some(key) => points.for_each(|(value, &digits)| *value = of(nested(digits, key))),
-            None => points.for_each(|(value, &digits)| *value = of(digits)),
+            Some(key) => {
+                for (value, &digits) in points {
+                    *value = of(nested(digits, key));
+                }
+            }
+            None => {
+                for (value, &digits) in points {
+                    *value = of(digits);
+                }
+            }
         }
     }
 }

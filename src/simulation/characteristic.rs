@@ -415,6 +415,6 @@ fn quantile(p: f64, fine: &Fine, [least, greatest]: [f64; 2], replicates: &[Repl
         })),
     };
     // The error of the interpolation within a bin is part of it.
-    let standard_error = standard_error.map(|error| error.hypot(fine.blur(p * n)));
+    let standard_error = standard_error.map(|error| libm::hypot(error, fine.blur(p * n)));
     Some(Estimate { value, standard_error })
 }

@@ -253,7 +253,7 @@ pub(super) fn moments(replicates: &[&Difference], twin: &Twin) -> [Option<Contro
                 standardised(&coefficients.moments(means, twin).0, twin)[moment].map(|(value, _)| value)
             })),
         };
-        let whole = |error: Option<f64>| error.filter(|_| known).map(|error| (fitted * error).hypot(own[moment]));
+        let whole = |error: Option<f64>| error.filter(|_| known).map(|error| libm::hypot(fitted * error, own[moment]));
         let estimate = Estimate { value, standard_error: whole(standard_error) };
         Some(Controlled { estimate, random: whole(random) })
     })
@@ -287,16 +287,16 @@ pub(super) fn shares(replicates: &[&Difference], outside: &Outside, enough: u64)
     let (own, ends) = (hits / points, wilson(hits, points));
     let rejected = own + all.net();
     let [gained, lost] = all.only.map(|count| (count as f64 / n, wilson(count as f64, n)));
-    let mut below = (gained.0 - gained.1[0]).hypot(lost.1[1] - lost.0);
-    let mut above = (gained.1[1] - gained.0).hypot(lost.0 - lost.1[0]);
+    let mut below = libm::hypot(gained.0 - gained.1[0], lost.1[1] - lost.0);
+    let mut above = libm::hypot(gained.1[1] - gained.0, lost.0 - lost.1[0]);
     if all.only[0] + all.only[1] >= enough {
         let nets = replicates.iter().map(|one| (one.sums.count() > 0).then(|| one.net()));
         if let Some(error) = of_replicates(nets).filter(|&error| error > 0.0) {
             (below, above) = (2.0 * error, 2.0 * error);
         }
     }
-    let most = rejected + above.hypot(ends[1] - own);
-    let least = rejected - below.hypot(own - ends[0]);
+    let most = rejected + libm::hypot(above, ends[1] - own);
+    let least = rejected - libm::hypot(below, own - ends[0]);
     Some(Shares {
         outside: [0, 1].map(|side| (outside.hits[side] as f64 / points + all.moved[side] as f64 / n).clamp(0.0, 1.0)),
         interval: [1.0 - most, 1.0 - least].map(|end| end.clamp(0.0, 1.0)),

@@ -99,8 +99,8 @@ impl Tree {
                 let a = a.value(x);
                 match *name {
                     "-" => -a,
-                    "atan" => a.atan(),
-                    "tanh" => a.tanh(),
+                    "atan" => libm::atan(a),
+                    "tanh" => libm::tanh(a),
                     "abs" => a.abs(),
                     "sqrt" => a.sqrt(),
                     "floor" => a.floor(),
@@ -116,13 +116,13 @@ impl Tree {
                     "-" => a - b,
                     "*" => a * b,
                     "/" => a / b,
-                    "atan2" => a.atan2(b),
+                    "atan2" => libm::atan2(a, b),
                     _ if nan => f64::NAN,
                     "<" => truth(a < b),
                     ">=" => truth(a >= b),
                     "min" => a.min(b),
                     "max" => a.max(b),
-                    "hypot" => a.hypot(b),
+                    "hypot" => libm::hypot(a, b),
                     _ => unreachable!(),
                 }
             }

@@ -205,3 +205,40 @@ fn the_rounds_of_a_program_are_printed() {
         assert!(text.contains(&words.replace("{}", &rounds.to_string())), "{rounds}: {text}");
     }
 }
+
+/// Every function of formulas, distributions and built-in models, without the instructions by which the system's library has other
+/// last digits on other processors: every figure is the same.
+#[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
+#[test]
+fn samples_are_the_same_on_every_processor() {
+    let folder = tempfile::tempdir().unwrap();
+    let formulas = folder.path().join("study.toml");
+    let text = r#"
+[dimensions]
+a = { nominal = 1.3, tolerance = 0.1 }
+b = { nominal = 0.7, tolerance = 0.02, distribution = { kind = "student", degrees = 12 } }
+c = { nominal = 0.4, sigma = 0.03, distribution = { kind = "weibull", origin = 0.3 } }
+
+[characteristics]
+powers = { formula = "a^1.5 + b^a", lower = 1.9 }
+angles = { formula = "atan2(a, b) + asin(c) + acos(b/2) + atan(a)", upper = 3.9 }
+waves = { formula = "sin(a)*cos(b) + tan(c)", upper = 1.4 }
+hyperbolas = { formula = "sinh(a) + cosh(b)*tanh(c)", upper = 2.4 }
+logarithms = { formula = "hypot(a, b)*log10(a + b) + ln(c)*exp(a)", upper = 0 }
+"#;
+    std::fs::write(&formulas, text).unwrap();
+    let formulas = formulas.to_str().unwrap();
+    let figures = |study: &str, hidden: Option<&str>| {
+        let mut command = sensitol(&["simulate", study, "--samples", "20000", "--json"]);
+        command.envs(hidden.map(|hidden| ("GLIBC_TUNABLES", hidden)));
+        let output = command.output().unwrap();
+        let mut report: Value =
+            serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"));
+        (report["wall_s"], report["in_model_s"]) = (Value::Null, Value::Null);
+        report
+    };
+    for study in [formulas, ENGINE, "examples/spot-weld/study.toml", "examples/connecting-rod/study.toml"] {
+        let hidden = "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4,-AVX512F";
+        assert_eq!(figures(study, None), figures(study, Some(hidden)), "{study}");
+    }
+}

@@ -195,7 +195,7 @@ impl Interval {
         if !(self.lower.abs() < LOST && self.upper.abs() < LOST) || self.upper - self.lower >= TAU {
             return Self { lower: -1.0, upper: 1.0, whole: self.whole && self.upper - self.lower < f64::INFINITY };
         }
-        let [a, b] = [self.lower, self.upper].map(f64::cos);
+        let [a, b] = [self.lower, self.upper].map(libm::cos);
         let upper = if self.passes(0.0, TAU) { 1.0 } else { up(a.max(b)).min(1.0) };
         let lower = if self.passes(PI, TAU) { -1.0 } else { down(a.min(b)).max(-1.0) };
         Self { lower, upper, whole: self.whole }
@@ -208,7 +208,7 @@ impl Interval {
         if !(self.lower.abs() < LOST && self.upper.abs() < LOST) || self.upper - self.lower >= TAU {
             return Self { lower: -1.0, upper: 1.0, whole: self.whole && self.upper - self.lower < f64::INFINITY };
         }
-        let [a, b] = [self.lower, self.upper].map(f64::sin);
+        let [a, b] = [self.lower, self.upper].map(libm::sin);
         let upper = if self.passes(FRAC_PI_2, TAU) { 1.0 } else { up(a.max(b)).min(1.0) };
         let lower = if self.passes(-FRAC_PI_2, TAU) { -1.0 } else { down(a.min(b)).max(-1.0) };
         Self { lower, upper, whole: self.whole }
@@ -222,7 +222,7 @@ impl Interval {
         if lost || self.passes(FRAC_PI_2, PI) {
             return Self::EVERYTHING;
         }
-        self.rising(f64::tan)
+        self.rising(libm::tan)
     }
 
     /// Whether it holds `place` plus a whole number of periods; or may hold it, within rounding.
@@ -256,7 +256,7 @@ impl Interval {
             (x.upper, exponent.lower),
             (x.upper, exponent.upper),
         ];
-        let values = ends.map(|(x, y)| x.powf(y));
+        let values = ends.map(|(x, y)| libm::pow(x, y));
         let one =
             if x.contains(1.0) || exponent.contains(0.0) { [1.0, 1.0] } else { [f64::INFINITY, f64::NEG_INFINITY] };
         let lower = values.iter().fold(one[0], |least, value| least.min(*value));
@@ -281,10 +281,11 @@ impl Interval {
         }
         if n % 2.0 == 0.0 {
             let size = self.abs();
-            let upper = not_lost(size.upper.powf(n), size.upper);
-            return Self { lower: down(size.lower.powf(n)).max(0.0), upper: up(upper), whole: true }.after(&[self]);
+            let upper = not_lost(libm::pow(size.upper, n), size.upper);
+            return Self { lower: down(libm::pow(size.lower, n)).max(0.0), upper: up(upper), whole: true }
+                .after(&[self]);
         }
-        self.rising(|x| not_lost(x.powf(n), x))
+        self.rising(|x| not_lost(libm::pow(x, n), x))
     }
 
     fn atan2(&self, abscissa: &Self) -> Self {
@@ -297,7 +298,7 @@ impl Interval {
             return Self::between(down(-PI), up(PI)).broken();
         }
         let ends = [(y.lower, x.lower), (y.lower, x.upper), (y.upper, x.lower), (y.upper, x.upper)];
-        let angles = ends.map(|(y, x)| y.atan2(x));
+        let angles = ends.map(|(y, x)| libm::atan2(y, x));
         let lower = angles.iter().fold(f64::INFINITY, |least, angle| least.min(*angle));
         let upper = angles.iter().fold(f64::NEG_INFINITY, |most, angle| most.max(*angle));
         Self { lower: down(lower), upper: up(upper), whole: true }.after(&[y, x])
@@ -308,8 +309,12 @@ impl Interval {
         if a.is_empty() || b.is_empty() {
             return Self::EMPTY;
         }
-        Self { lower: down(a.lower.hypot(b.lower)).max(0.0), upper: up(a.upper.hypot(b.upper)), whole: true }
-            .after(&[self, other])
+        Self {
+            lower: down(libm::hypot(a.lower, b.lower)).max(0.0),
+            upper: up(libm::hypot(a.upper, b.upper)),
+            whole: true,
+        }
+        .after(&[self, other])
     }
 
     /// 1 where it is certain, 0 where it is certainly not, and both otherwise.
@@ -342,27 +347,27 @@ impl Scalar for Interval {
             Unary::Abs => x.abs(),
             Unary::Sqrt => x.sqrt(),
             Unary::Exp => {
-                let Self { lower, upper, whole } = x.rising(|x| not_lost(x.exp(), 1.0));
+                let Self { lower, upper, whole } = x.rising(|x| not_lost(libm::exp(x), 1.0));
                 Self { lower: lower.max(0.0), upper, whole }.or_empty(&x)
             }
             Unary::Ln | Unary::Log10 => {
-                let log = if function == Unary::Ln { f64::ln } else { f64::log10 };
+                let log = if function == Unary::Ln { libm::log } else { libm::log10 };
                 // The logarithm of 0 is an infinity, of which something else may be made.
                 Self { whole: x.whole && x.lower > 0.0, ..x.within(0.0, f64::INFINITY).rising(log) }
             }
             Unary::Sin => x.sin(),
             Unary::Cos => x.cos(),
             Unary::Tan => x.tan(),
-            Unary::Asin => x.within(-1.0, 1.0).rising(f64::asin),
-            Unary::Acos => x.within(-1.0, 1.0).negate().rising(|x| (-x).acos()),
-            Unary::Atan => x.rising(f64::atan),
-            Unary::Sinh => x.rising(f64::sinh),
+            Unary::Asin => x.within(-1.0, 1.0).rising(libm::asin),
+            Unary::Acos => x.within(-1.0, 1.0).negate().rising(|x| libm::acos(-x)),
+            Unary::Atan => x.rising(libm::atan),
+            Unary::Sinh => x.rising(libm::sinh),
             Unary::Cosh => {
                 let size = x.abs();
-                Self { lower: down(size.lower.cosh()).max(1.0), ..size.rising(f64::cosh) }.or_empty(&x)
+                Self { lower: down(libm::cosh(size.lower)).max(1.0), ..size.rising(libm::cosh) }.or_empty(&x)
             }
             Unary::Tanh => {
-                let Self { lower, upper, whole } = x.rising(f64::tanh);
+                let Self { lower, upper, whole } = x.rising(libm::tanh);
                 Self { lower: lower.max(-1.0), upper: upper.min(1.0), whole }.or_empty(&x)
             }
             Unary::Floor => steps(f64::floor),

@@ -134,12 +134,12 @@ impl Jet {
                 1.0 => Self { value, ..*self },
                 _ if x == 0.0 && !whole || x < 0.0 && c.abs() >= WHOLE => Self::broken(value),
                 2.0 => self.through(value, 2.0 * x, 2.0),
-                _ => self.through(value, c * x.powf(c - 1.0), c * (c - 1.0) * x.powf(c - 2.0)),
+                _ => self.through(value, c * libm::pow(x, c - 1.0), c * (c - 1.0) * libm::pow(x, c - 2.0)),
             };
         }
         if x > 0.0 {
-            let logarithm = self.ln(x.ln(), 1.0);
-            let z = exponent.multiply(&logarithm, c * x.ln());
+            let logarithm = self.ln(libm::log(x), 1.0);
+            let z = exponent.multiply(&logarithm, c * libm::log(x));
             return z.through(value, value, value);
         }
         // 0 to whatever is above 0; anything else has no value beside the whole exponents.
@@ -160,7 +160,7 @@ impl Jet {
         if y.value == 0.0 && x.value < 0.0 && y.moves {
             return Self::broken(value); // from pi to -pi
         }
-        let radius = y.value.hypot(x.value);
+        let radius = libm::hypot(y.value, x.value);
         let (cos, sin) = (x.value / radius, y.value / radius);
         let outward = [0, 1].map(|d| cos * x.first[d] + sin * y.first[d]);
         let first = [0, 1].map(|d| (cos * y.first[d] - sin * x.first[d]) / radius);
@@ -198,8 +198,8 @@ impl Scalar for Jet {
             Unary::Exp => a.through(y, y, y),
             Unary::Ln => a.ln(y, 1.0),
             Unary::Log10 => a.ln(y, std::f64::consts::LOG10_E),
-            Unary::Sin => a.through(y, x.cos(), -y),
-            Unary::Cos => a.through(y, -x.sin(), -y),
+            Unary::Sin => a.through(y, libm::cos(x), -y),
+            Unary::Cos => a.through(y, -libm::sin(x), -y),
             Unary::Tan => {
                 let slope = 1.0 + y * y;
                 a.through(y, slope, 2.0 * y * slope)
@@ -213,10 +213,10 @@ impl Scalar for Jet {
                 let slope = 1.0 / (1.0 + x * x);
                 a.through(y, slope, -2.0 * x * slope * slope)
             }
-            Unary::Sinh => a.through(y, x.cosh(), y),
-            Unary::Cosh => a.through(y, x.sinh(), y),
+            Unary::Sinh => a.through(y, libm::cosh(x), y),
+            Unary::Cosh => a.through(y, libm::sinh(x), y),
             Unary::Tanh => {
-                let slope = x.cosh().recip().powi(2);
+                let slope = libm::cosh(x).recip().powi(2);
                 a.through(y, slope, -2.0 * y * slope)
             }
             Unary::Floor | Unary::Ceil if x == x.trunc() || y.is_nan() => Self::broken(y),

@@ -97,7 +97,8 @@ impl Quantity {
         if self.literal {
             return self.clone();
         }
-        let factors = self.factors.iter().filter(|factor| **factor > 0.0).map(|factor| factor.powf(exponent)).collect();
+        let factors =
+            self.factors.iter().filter(|factor| **factor > 0.0).map(|factor| libm::pow(*factor, exponent)).collect();
         Self { unit: self.unit.to_the(exponent), factors, literal: false }
     }
 }

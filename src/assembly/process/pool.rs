@@ -258,9 +258,7 @@ impl Pool {
             worker.exclusive = true;
             group.into_iter().for_each(|row| send(row, worker, batch));
         }
-        // No point beyond the next check: how many checks there are does not depend on when answers come.
-        let to_check = interval(worker.window).saturating_sub(worker.unchecked.len());
-        let window = if self.walking { 1 } else { worker.window.min(to_check) };
+        let window = if self.walking { 1 } else { worker.room() };
         while worker.under_way.len() < window && !worker.exclusive {
             let Some(&row) = batch.waiting.front() else { break };
             if batch.goes_alone(row) {

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::border::Border;
 use super::child::Child;
 use super::protocol::Line;
-use super::sentinel::SENTINEL;
+use super::sentinel::{SENTINEL, interval};
 
 /// The abilities that a program declares in `ready` beside its window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,6 +100,11 @@ impl Worker {
             self.since = Instant::now();
         }
         self.under_way.push_back(Sent { id, row, started: None });
+    }
+
+    /// Points that may be under way: none beyond the next check, so that the number of checks does not depend on when answers come.
+    pub(super) fn room(&self) -> usize {
+        self.window.min(interval(self.window).saturating_sub(self.unchecked.len()))
     }
 
     /// Takes back every point whose evaluation has not started, where the program can; a sentinel stays.
