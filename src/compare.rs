@@ -139,12 +139,12 @@ impl Errors {
     /// Root of the sum of squares of the errors of mean and sigma: how far off the bulk is, in sigmas; None where one of
     /// them is unknown.
     pub(crate) fn overall(&self) -> Option<f64> {
-        Some(self.off.mean?.hypot(self.off.sigma?))
+        Some(libm::hypot(self.off.mean?, self.off.sigma?))
     }
 
     /// The part of that error that the reference itself may have.
     pub(crate) fn floor(&self) -> f64 {
-        RESOLVED * self.reference.mean.unwrap_or(0.0).hypot(self.reference.sigma.unwrap_or(0.0))
+        RESOLVED * libm::hypot(self.reference.mean.unwrap_or(0.0), self.reference.sigma.unwrap_or(0.0))
     }
 
     /// Whether the reference tells the overall error from none.

@@ -76,6 +76,7 @@
 
 // Code for the command line and the reports alone is dead without them; with all features the compiler looks again.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 pub mod allocation;
 pub mod analysis;

@@ -248,7 +248,8 @@ impl Unit {
 
     pub(crate) fn to_the(&self, exponent: f64) -> Self {
         // Small whole powers by products, so that mm² is 1e-6 as nearly as a double is.
-        let scale = if exponent.fract() == 0.0 { self.scale.powi(exponent as i32) } else { self.scale.powf(exponent) };
+        let scale =
+            if exponent.fract() == 0.0 { self.scale.powi(exponent as i32) } else { libm::pow(self.scale, exponent) };
         Self {
             scale,
             dimension: self.dimension.map(|own| own * exponent),

@@ -205,7 +205,7 @@ pub fn of_cpk(
     let value = capability::cpk(mean, sigma, limits)?;
     let wide = value * sigma / most;
     let narrow = if least > 0.0 { value * sigma / least } else { value.signum() * f64::INFINITY };
-    let [down, up] = [value - wide.min(narrow), wide.max(narrow) - value].map(|by| by.max(0.0).hypot(reach));
+    let [down, up] = [value - wide.min(narrow), wide.max(narrow) - value].map(|by| libm::hypot(by.max(0.0), reach));
     Some([value - down, value + up])
 }
 

@@ -133,9 +133,9 @@ impl Smooth<'_> {
 pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Vec<f64>) {
     const NEAR: Near = Near { by: 1e-3, updates: 12 };
     let bounds: Vec<[f64; 2]> =
-        problem.priced.iter().map(|group| [group.offers[0].min.ln(), group.offers[0].max.ln()]).collect();
+        problem.priced.iter().map(|group| [libm::log(group.offers[0].min), libm::log(group.offers[0].max)]).collect();
     let scale = with_losses(problem, start).0.abs().max(f64::MIN_POSITIVE);
-    let tolerances = |x: &[f64]| x.iter().map(|x| x.exp()).collect::<Vec<f64>>();
+    let tolerances = |x: &[f64]| x.iter().map(|x| libm::exp(*x)).collect::<Vec<f64>>();
     let objective = |x: &[f64]| {
         let (value, slopes) = with_losses(problem, &tolerances(x));
         (value / scale, slopes.into_iter().map(|slope| slope / scale).collect())
@@ -149,7 +149,7 @@ pub(super) fn augmented(problem: &Separable<'_>, start: &[f64]) -> (Vec<f64>, Ve
         Some(problem.rows.iter().map(of).collect())
     };
     let smooth = Smooth { objective: &objective, rows: &rows, bounds: &bounds };
-    let x: Vec<f64> = start.iter().map(|t| t.ln()).collect();
+    let x: Vec<f64> = start.iter().map(|t| libm::log(*t)).collect();
     match smooth.minimised(&x, NEAR) {
         Some(Ended { x, multipliers, .. }) => {
             (tolerances(&x), multipliers.into_iter().map(|multiplier| multiplier * scale).collect())
@@ -172,8 +172,8 @@ fn with_losses(problem: &Separable<'_>, at: &[f64]) -> Slope {
 /// Cost of all groups, by the first offer of each, and its derivatives by `ln T`.
 pub(super) fn cost(priced: &[Priced], at: &[f64]) -> Slope {
     let of = priced.iter().zip(at).map(|(group, &t)| {
-        let curve = &group.offers[0].curve;
-        (group.parts * curve.cost(t), group.parts * curve.log_derivatives(t)[0])
+        let [cost, slope] = group.offers[0].curve.with_slope(t);
+        (group.parts * cost, group.parts * slope)
     });
     let (costs, slopes): (Vec<f64>, Vec<f64>) = of.unzip();
     (costs.iter().sum(), slopes)

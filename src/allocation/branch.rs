@@ -119,7 +119,7 @@ fn reference(setting: &Setting<'_>, start: &[f64]) -> Option<Vec<f64>> {
         start
             .iter()
             .zip(&bounds)
-            .map(|(t, &[low, high])| t.clamp(low, high).powf(1.0 - part) * low.powf(part))
+            .map(|(t, &[low, high])| libm::pow(t.clamp(low, high), 1.0 - part) * libm::pow(low, part))
             .collect()
     };
     parts.iter().map(|&part| toward(part)).find(|at| setting.linearised(at).is_some())
@@ -361,7 +361,7 @@ impl Search<'_> {
                 .map(|group| {
                     let offer = &group.offers[rng.random_range(0..group.offers.len())];
                     let part: f64 = rng.random();
-                    (offer.min.powf(1.0 - part) * offer.max.powf(part)).clamp(offer.min, offer.max)
+                    (libm::pow(offer.min, 1.0 - part) * libm::pow(offer.max, part)).clamp(offer.min, offer.max)
                 })
                 .collect();
             for (k, constraint) in self.setting.constraints.iter().enumerate() {

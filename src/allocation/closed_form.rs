@@ -40,13 +40,13 @@ fn bound_by(problem: &Separable<'_>, k: usize) -> Option<Vec<f64>> {
         let (b, k) = group.offers[0].curve.power()?;
         let same = group.offers.len() == 1 && k == exponent && term.power == power && term.coefficient > 0.0;
         // In units of the tolerance at which the term was taken.
-        same.then(|| (group.parts * b * term.at.powf(-k) / term.coefficient).powf(1.0 / (k + power)))
+        same.then(|| libm::pow(group.parts * b * libm::pow(term.at, -k) / term.coefficient, 1.0 / (k + power)))
     });
     let ratio: Vec<f64> = ratio.collect::<Option<_>>()?;
-    let used: f64 = row.terms.iter().zip(&ratio).map(|(term, ratio)| term.coefficient * ratio.powf(power)).sum();
+    let used: f64 = row.terms.iter().zip(&ratio).map(|(term, ratio)| term.coefficient * libm::pow(*ratio, power)).sum();
     let free = 1.0 - row.constant;
     (free > 0.0).then(|| {
-        let mu = (free / used).powf(1.0 / power);
+        let mu = libm::pow(free / used, 1.0 / power);
         row.terms.iter().zip(&ratio).map(|(term, ratio)| term.at * mu * ratio).collect()
     })
 }

@@ -183,7 +183,7 @@ impl Constraint {
         let mut trial = at.to_vec();
         for g in 0..at.len() {
             let mut of = |step: f64| {
-                trial[g] = at[g] * step.exp();
+                trial[g] = at[g] * libm::exp(step);
                 Some(self.ratio(responses, priced, &trial)?.powi(2))
             };
             let (up, down) = (of(STEP)?, of(-STEP)?);
@@ -402,7 +402,7 @@ impl Constraint {
             Some(Self { limits: limits.unwrap_or(self.limits), ..*self }.room(moments, target)?.sigma())
         };
         let difference = |by: &dyn Fn(f64) -> Option<f64>| match (by(step), by(-step)) {
-            (Some(up), Some(down)) => (up.ln() - down.ln()) / (2.0 * step),
+            (Some(up), Some(down)) => (libm::log(up) - libm::log(down)) / (2.0 * step),
             _ => 0.0,
         };
         Some([difference(&|step| moved(step, 0.0)), difference(&|step| moved(0.0, step))])

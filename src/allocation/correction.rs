@@ -83,14 +83,14 @@ impl Correction {
     pub(super) fn factor(&self, factors: &[f64]) -> f64 {
         let along = |(slope, factor): (&f64, &f64)| match *slope {
             0.0 => 0.0,
-            slope => slope * factor.ln().clamp(-FAR, FAR),
+            slope => slope * libm::log(*factor).clamp(-FAR, FAR),
         };
-        (self.ln + self.slopes.iter().zip(factors).map(along).sum::<f64>()).exp()
+        libm::exp(self.ln + self.slopes.iter().zip(factors).map(along).sum::<f64>())
     }
 
     /// The slope of its logarithm by `ln T` of a dimension.
     pub(super) fn slope(&self, dimension: usize, factors: &[f64]) -> f64 {
-        if factors[dimension].ln().abs() < FAR { self.slopes[dimension] } else { 0.0 }
+        if libm::log(factors[dimension]).abs() < FAR { self.slopes[dimension] } else { 0.0 }
     }
 
     /// At a station; None where the mean lies beyond a limit, or the law answers nothing.
@@ -149,7 +149,7 @@ impl Correction {
             }
             let mut trial = ones.clone();
             let mut at = |step: f64| {
-                trial[d] = step.exp();
+                trial[d] = libm::exp(step);
                 let moments = (about.moments)(&trial)?;
                 let room = room(&moments)?;
                 Some((moments, room, trial.clone()))
@@ -180,19 +180,19 @@ impl Correction {
                 Some(slope(at(&more, up.mean()), at(&less, down.mean())))
             });
             let Some(by_law) = by_law.filter(|_| density < 0.0) else { continue };
-            let by_sigma = slope(up.sigma().ln(), down.sigma().ln());
+            let by_sigma = slope(libm::log(up.sigma()), libm::log(down.sigma()));
             // ln s = ln sigma - ln r, and r answers a change of the share at fixed r.
-            slopes[d] = by_sigma + by_law / density - slope(room_up.ln(), room_down.ln());
+            slopes[d] = by_sigma + by_law / density - slope(libm::log(room_up), libm::log(room_down));
         }
-        let ln = (sigma / r / fitted).ln();
+        let ln = libm::log(sigma / r / fitted);
         (ln.is_finite() && slopes.iter().all(|slope: &f64| slope.is_finite())).then_some(Self { ln, slopes })
     }
 }
 
 /// Where a decreasing share is `rejected`, near `start`.
 fn level(share: &dyn Fn(f64) -> f64, rejected: f64, start: f64) -> Option<f64> {
-    let gap = |ln: f64| (share(ln.exp()).max(f64::MIN_POSITIVE) / rejected).ln();
-    let (mut low, mut high) = (start.ln(), start.ln());
+    let gap = |ln: f64| libm::log(share(libm::exp(ln)).max(f64::MIN_POSITIVE) / rejected);
+    let (mut low, mut high) = (libm::log(start), libm::log(start));
     let (mut at_low, mut at_high) = (gap(low), gap(low));
     for _ in 0..STEPS {
         match (at_low >= 0.0, at_high <= 0.0) {
@@ -204,5 +204,5 @@ fn level(share: &dyn Fn(f64) -> f64, rejected: f64, start: f64) -> Option<f64> {
     if !(at_low >= 0.0 && at_high <= 0.0) {
         return None;
     }
-    Some(root(|ln| -gap(ln), [low, high], NEAR).exp())
+    Some(libm::exp(root(|ln| -gap(ln), [low, high], NEAR)))
 }

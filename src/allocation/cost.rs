@@ -181,18 +181,30 @@ impl Curve {
         match self.kind {
             CurveKind::Fixed => 0.0,
             CurveKind::Reciprocal => self.b / t,
-            CurveKind::ReciprocalPower => self.b * t.powf(-self.shape),
-            CurveKind::Exponential => self.b * (-t / self.shape).exp(),
+            CurveKind::ReciprocalPower => self.b * libm::pow(t, -self.shape),
+            CurveKind::Exponential => self.b * libm::exp(-t / self.shape),
             CurveKind::Written => self.written.as_ref().map_or(f64::NAN, |written| written.cost(t)),
         }
     }
 
     /// First and second derivative of the cost by `ln t`.
     pub(crate) fn log_derivatives(&self, t: f64) -> [f64; 2] {
+        // A written cost does without.
+        let varying = if self.written.is_some() { f64::NAN } else { self.varying(t) };
+        self.derivatives_of(varying, t)
+    }
+
+    /// Cost of one part at the half band `t`, and its derivative by `ln t`.
+    pub(super) fn with_slope(&self, t: f64) -> [f64; 2] {
+        let varying = self.varying(t);
+        [self.a + varying, self.derivatives_of(varying, t)[0]]
+    }
+
+    /// The same from the part of the cost that varies.
+    fn derivatives_of(&self, cost: f64, t: f64) -> [f64; 2] {
         if let Some(written) = &self.written {
             return written.log_derivatives(t);
         }
-        let cost = self.varying(t);
         match self.kind {
             CurveKind::Fixed | CurveKind::Written => [0.0, 0.0],
             CurveKind::Reciprocal | CurveKind::ReciprocalPower => [-self.shape * cost, self.shape * self.shape * cost],

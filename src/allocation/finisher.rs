@@ -24,8 +24,8 @@ impl Setting<'_> {
         let ones = vec![1.0; self.responses.dimensions.len()];
         let widths: Vec<f64> =
             self.constraints.iter().map(|one| one.width(self.responses, &ones)).collect::<Option<_>>()?;
-        let bounds: Vec<[f64; 2]> = self.bounds().iter().map(|bounds| bounds.map(f64::ln)).collect();
-        let tolerances = |x: &[f64]| x.iter().map(|x| x.exp()).collect::<Vec<f64>>();
+        let bounds: Vec<[f64; 2]> = self.bounds().iter().map(|bounds| bounds.map(libm::log)).collect();
+        let tolerances = |x: &[f64]| x.iter().map(|x| libm::exp(*x)).collect::<Vec<f64>>();
         let scale = self.cost(start).abs().max(f64::MIN_POSITIVE);
         let objective = |x: &[f64]| {
             let t = tolerances(x);
@@ -46,7 +46,7 @@ impl Setting<'_> {
             self.constraints.iter().zip(&widths).map(|(one, &width)| self.excess(one, width, &t)).collect()
         };
         let smooth = Smooth { objective: &objective, rows: &rows, bounds: &bounds };
-        let x: Vec<f64> = start.iter().map(|t| t.ln()).collect();
+        let x: Vec<f64> = start.iter().map(|t| libm::log(*t)).collect();
         let near = |x: &[f64], residual: f64| ends.near(&tolerances(x), residual).is_some();
         let Ended { x, multipliers, residual } = smooth.sequential(&x, NEAR, &near)?;
         let at = self.within(&tolerances(&x));

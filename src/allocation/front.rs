@@ -62,7 +62,7 @@ pub(super) fn front(
 
 /// The requirement with this many sigmas more, and the part of the room that rss and worst case may take.
 fn stricter(requirement: Requirement, more: f64) -> (Requirement, f64) {
-    let part = (-FALLS * more).exp();
+    let part = libm::exp(-FALLS * more);
     match requirement {
         Requirement::Yield(least) => {
             let level = standard_normal::upper_quantile(0.5 * (1.0 - least)) + more;

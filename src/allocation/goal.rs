@@ -60,7 +60,7 @@ impl Driver<'_> {
         let dearer = |level: f64| {
             let constraints = of_level(level);
             match choose(&Setting { constraints: &constraints, anywhere: false, ..*setting }, at) {
-                Choice::Found { solved, .. } => (solved.cost / limit).ln(),
+                Choice::Found { solved, .. } => libm::log(solved.cost / limit),
                 _ => f64::INFINITY,
             }
         };

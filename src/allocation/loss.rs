@@ -93,7 +93,7 @@ impl QualityLoss {
         let mut trial = factors.clone();
         for (group, slope) in priced.iter().zip(&mut slopes).filter(|(group, _)| responses.depends(c, group)) {
             let mut at = |step: f64| {
-                group.members.iter().for_each(|&d| trial[d] = factors[d] * step.exp());
+                group.members.iter().for_each(|&d| trial[d] = factors[d] * libm::exp(step));
                 self.at(responses, &trial, None)
             };
             let (up, down) = (at(STEP)?, at(-STEP)?);

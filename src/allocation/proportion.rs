@@ -93,7 +93,7 @@ impl Driver<'_> {
         };
         let known = || wanted.iter().enumerate().filter(|(_, wanted)| wanted.is_finite());
         let count = known().count().max(1) as f64;
-        let scale = (known().map(|(g, wanted)| (present(g) / wanted).ln()).sum::<f64>() / count).exp();
+        let scale = libm::exp(known().map(|(g, wanted)| libm::log(present(g) / wanted)).sum::<f64>() / count);
         // A group without effect stays as it is.
         wanted
             .iter()

@@ -105,10 +105,10 @@ fn shifts(problem: &Problem, responses: &Responses, of: &[usize]) -> Option<Vec<
         for &(c, limits) in &limited {
             let moments = responses.moments_shifted(c, &ones, Some(&all))?;
             let [out, within] = shares(&moments, limits)?;
-            rejected += out.exp();
+            rejected += libm::exp(out);
             kept = within.min(kept);
         }
-        Some(rejected.max(f64::MIN_POSITIVE).ln() - kept)
+        Some(libm::log(rejected.max(f64::MIN_POSITIVE)) - kept)
     };
     let function = |shifts: &[f64]| {
         let here = value(shifts)?;
@@ -137,8 +137,11 @@ fn shares(moments: &Moments, limits: SpecLimits) -> Option<[f64; 2]> {
     let above = limits.upper().map_or(f64::NEG_INFINITY, |upper| law.log_sf(upper));
     let most = below.max(above);
     // Beyond all that doubles tell, and beyond the end of a law with ends: as far as its quantiles reach.
-    let out =
-        if most == f64::NEG_INFINITY { -700.0 } else { most + ((below - most).exp() + (above - most).exp()).ln() };
+    let out = if most == f64::NEG_INFINITY {
+        -700.0
+    } else {
+        most + libm::log(libm::exp(below - most) + libm::exp(above - most))
+    };
     let left = limits.lower().map_or(0.0, |lower| law.log_sf(lower));
     let right = limits.upper().map_or(0.0, |upper| law.log_cdf(upper));
     Some([out.max(-700.0), left.min(right).max(-1e5)])

@@ -67,12 +67,12 @@ impl RejectFit {
         for &d in responses.varying() {
             let mut factors = ones.clone();
             let mut ln = |step: f64| {
-                factors[d] = step.exp();
-                Some(self.share(responses, &factors, None)?.max(LEAST).ln())
+                factors[d] = libm::exp(step);
+                Some(libm::log(self.share(responses, &factors, None)?.max(LEAST)))
             };
             slopes[d] = by[d] / truth - (ln(STEP)? - ln(-STEP)?) / (2.0 * STEP);
         }
-        let ln = (truth / fit).ln();
+        let ln = libm::log(truth / fit);
         (ln.is_finite() && slopes.iter().all(|slope| slope.is_finite())).then(|| Self { ln, slopes, ..self.clone() })
     }
 
@@ -80,7 +80,7 @@ impl RejectFit {
     fn slope_of_twice(&self, responses: &Responses, d: usize, half: f64) -> Option<f64> {
         let twice = |step: f64| {
             let mut factors = vec![1.0; responses.dimensions.len()];
-            factors[d] = f64::exp(step);
+            factors[d] = libm::exp(step);
             let laws: Vec<(SurfaceLaw, SpecLimits)> = self
                 .of
                 .iter()
@@ -99,14 +99,14 @@ impl RejectFit {
         }
         let along = |(slope, factor): (&f64, &f64)| match *slope {
             0.0 => 0.0,
-            slope => slope * factor.ln().clamp(-FAR, FAR),
+            slope => slope * libm::log(*factor).clamp(-FAR, FAR),
         };
         let ln = self.ln + self.slopes.iter().zip(factors).map(along).sum::<f64>();
         let mut all = 0.0;
         for &(c, limits) in &self.of {
             all += fitted(&responses.moments_shifted(c, factors, shifts)?, limits)?;
         }
-        Some((all * ln.exp()).min(1.0))
+        Some((all * libm::exp(ln)).min(1.0))
     }
 }
 
@@ -167,7 +167,7 @@ impl Responses {
                     None => {
                         let mut factors = vec![1.0; slopes.len()];
                         let mut at = |step: f64| {
-                            factors[d] = step.exp();
+                            factors[d] = libm::exp(step);
                             Some(held.tail(&self.law_at(c, &factors)?, limit).value)
                         };
                         (at(STEP)? - at(-STEP)?) / (2.0 * STEP)

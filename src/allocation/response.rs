@@ -296,9 +296,9 @@ impl Responses {
                 continue;
             }
             let mut at = |step: f64| {
-                group.members.iter().for_each(|&d| trial[d] = factors[d] * step.exp());
+                group.members.iter().for_each(|&d| trial[d] = factors[d] * libm::exp(step));
                 let moments = self.moments(characteristic, &trial)?;
-                Some([moments.mean(), moments.sigma().ln(), moments.skewness()?, moments.excess()?])
+                Some([moments.mean(), libm::log(moments.sigma()), moments.skewness()?, moments.excess()?])
             };
             let (up, down) = (at(STEP)?, at(-STEP)?);
             group.members.iter().for_each(|&d| trial[d] = factors[d]);
@@ -359,7 +359,7 @@ impl Responses {
             match self.dimensions[d].zone() {
                 None => add(wide + sign * slope * reach.lean * reach.half),
                 Some(zone) => match zones.iter_mut().find(|(name, ..)| *name == zone) {
-                    Some((_, _, radius)) => *radius = radius.hypot(wide),
+                    Some((_, _, radius)) => *radius = libm::hypot(*radius, wide),
                     None => zones.push((zone, group, wide)),
                 },
             }

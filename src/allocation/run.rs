@@ -232,7 +232,7 @@ impl Driver<'_> {
                     continue;
                 }
                 // Derivatives at other tolerances may be wrong there: the model is asked first.
-                Choice::Infeasible(_, tight) if !at_tightest && farthest(&at, &tight) > REACH.ln() => {
+                Choice::Infeasible(_, tight) if !at_tightest && farthest(&at, &tight) > libm::log(REACH) => {
                     (at, at_tightest, last) = (tight, true, None);
                     match self.station(with_tolerances(next, &self.task.priced, &at)?)? {
                         Some(there) if !self.spent.stopped => station = there,
@@ -311,7 +311,7 @@ impl Driver<'_> {
 
 /// The largest change of a half band, in logarithms.
 fn farthest(from: &[f64], to: &[f64]) -> f64 {
-    from.iter().zip(to).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f64::max)
+    from.iter().zip(to).map(|(a, b)| libm::log(b / a).abs()).fold(0.0, f64::max)
 }
 
 /// A reach for shorter steps.

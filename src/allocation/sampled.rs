@@ -35,7 +35,7 @@ pub(super) struct SampledCorrection {
 
 /// Mean in sigmas of the station, `ln sigma`, skewness and excess.
 fn figures(moments: &Moments, sigma: f64) -> Option<[f64; 4]> {
-    let all = [moments.mean() / sigma, moments.sigma().ln(), moments.skewness()?, moments.excess()?];
+    let all = [moments.mean() / sigma, libm::log(moments.sigma()), moments.skewness()?, moments.excess()?];
     all.iter().all(|figure| figure.is_finite()).then_some(all)
 }
 
@@ -68,7 +68,7 @@ impl SampledCorrection {
             .map(|g| {
                 [-STEP, STEP].map(|step| {
                     // An error comes before the first point.
-                    let found = simulate_with(&at(g, step.exp())?, &options, run, &|_| {}).ok()?;
+                    let found = simulate_with(&at(g, libm::exp(step))?, &options, run, &|_| {}).ok()?;
                     points += found.run.evaluations;
                     let moments = |of: &crate::simulation::SimulatedCharacteristic| {
                         let value = |of: Option<crate::sampling::Estimate>| of.map(|of| of.value);
@@ -85,7 +85,7 @@ impl SampledCorrection {
             let slope = |(g, group): (usize, &Priced)| {
                 let side = |side: usize, step: f64| {
                     let model = sides[g][side].as_ref()?[c]?;
-                    Some(difference(figures(&model, sigma)?, figures(&surface(c, g, step.exp())?, sigma)?))
+                    Some(difference(figures(&model, sigma)?, figures(&surface(c, g, libm::exp(step))?, sigma)?))
                 };
                 let apart = difference(side(1, STEP)?, side(0, -STEP)?);
                 Some((group.members[0], apart.map(|apart| apart / (2.0 * STEP))))
@@ -100,10 +100,10 @@ impl SampledCorrection {
     pub(super) fn corrected(&self, moments: &Moments, factors: &[f64]) -> Option<Moments> {
         let mut by = self.offset;
         for (d, slopes) in &self.slopes {
-            let ln = factors[*d].ln().clamp(-FAR, FAR);
+            let ln = libm::log(factors[*d]).clamp(-FAR, FAR);
             by.iter_mut().zip(slopes).for_each(|(by, slope)| *by += slope * ln);
         }
-        let (mean, sigma) = (moments.mean() + self.sigma * by[0], moments.sigma() * by[1].exp());
+        let (mean, sigma) = (moments.mean() + self.sigma * by[0], moments.sigma() * libm::exp(by[1]));
         let skewness = moments.skewness()? + by[2];
         // No distribution has less.
         let excess = (moments.excess()? + by[3]).max(skewness * skewness - 2.0);

@@ -59,12 +59,12 @@ pub(super) fn loosest_of(responses: &Responses, constraints: &[Constraint], of: 
     // The end of the bracket that keeps everything.
     let loosest = Cell::new(inside);
     let excess = |ln: f64| {
-        let (factor, value) = (ln.exp(), greatest(ln.exp()));
+        let (factor, value) = (libm::exp(ln), greatest(libm::exp(ln)));
         if kept(value) && factor > loosest.get() {
             loosest.set(factor);
         }
         value - 1.0
     };
-    root(excess, [inside.ln(), outside.ln()], NEAR);
+    root(excess, [libm::log(inside), libm::log(outside)], NEAR);
     Some(loosest.get())
 }

@@ -334,13 +334,13 @@ fn least(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64, near: Option<f6
     if slope(max).0 <= 0.0 {
         return (max, 0.0);
     }
-    let (mut low, mut high) = (min.ln(), max.ln());
+    let (mut low, mut high) = (libm::log(min), libm::log(max));
     let mut x = 0.5 * (low + high);
     let mut last = f64::INFINITY;
     for _ in 0..200 {
-        let (first, second) = slope(x.exp());
+        let (first, second) = slope(libm::exp(x));
         if first == 0.0 {
-            return (x.exp(), second.max(f64::MIN_POSITIVE));
+            return (libm::exp(x), second.max(f64::MIN_POSITIVE));
         }
         if first > 0.0 {
             high = x
@@ -356,23 +356,23 @@ fn least(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64, near: Option<f6
             break;
         }
     }
-    let t = x.exp().clamp(min, max);
+    let t = libm::exp(x).clamp(min, max);
     (t, slope(t).1.max(f64::MIN_POSITIVE))
 }
 
 /// The same where Newton's method stays between the bounds and ends soon: a convex function has no other such place.
 fn least_near(slope: &impl Fn(f64) -> (f64, f64), min: f64, max: f64, near: f64) -> Option<(f64, f64)> {
     const STEPS: usize = 8;
-    let (low, high) = (min.ln(), max.ln());
-    let mut x = near.ln();
+    let (low, high) = (libm::log(min), libm::log(max));
+    let mut x = libm::log(near);
     for _ in 0..STEPS {
-        let (first, second) = slope(x.exp());
+        let (first, second) = slope(libm::exp(x));
         let next = x - first / second;
         if !(second > 0.0 && next > low && next < high) {
             return None;
         }
         if (next - x).abs() <= 4.0 * f64::EPSILON * next.abs().max(1.0) {
-            return Some((next.exp().clamp(min, max), second));
+            return Some((libm::exp(next).clamp(min, max), second));
         }
         x = next;
     }

@@ -187,7 +187,7 @@ impl Setting<'_> {
             let ends = tight.iter().zip(loose).enumerate();
             ends.map(|(g, (&low, &high))| {
                 let part = ((index * self.priced.len() + g + 1) as f64 * GOLDEN).fract();
-                low.powf(1.0 - part) * high.powf(part)
+                libm::pow(low, 1.0 - part) * libm::pow(high, part)
             })
             .collect()
         };
@@ -202,14 +202,14 @@ impl Setting<'_> {
         if !self.anywhere || work > MOST_WORK || (self.stopped)() {
             return None;
         }
-        let tolerances = |x: &[f64]| x.iter().map(|x| x.exp()).collect::<Vec<f64>>();
+        let tolerances = |x: &[f64]| x.iter().map(|x| libm::exp(*x)).collect::<Vec<f64>>();
         let dearest = self.cost(&bounds.iter().map(|&[low, _]| low).collect::<Vec<f64>>()).abs();
         let function = |x: &[f64]| {
             let at = tolerances(x);
             let value = self.value(&at);
             if kept(value) { self.cost(&at) } else { dearest.max(1.0) * value }
         };
-        let logarithms: Vec<[f64; 2]> = bounds.iter().map(|bounds| bounds.map(f64::ln)).collect();
+        let logarithms: Vec<[f64; 2]> = bounds.iter().map(|bounds| bounds.map(libm::log)).collect();
         swarmed(&function, &logarithms).map(|x| self.within(&tolerances(&x)))
     }
 
@@ -250,7 +250,7 @@ impl Setting<'_> {
 
     /// Part of the way, in logarithms.
     fn reached(&self, from: &[f64], to: &[f64], part: f64) -> Vec<f64> {
-        from.iter().zip(to).map(|(from, to)| from.powf(1.0 - part) * to.powf(part)).collect()
+        from.iter().zip(to).map(|(from, to)| libm::pow(*from, 1.0 - part) * libm::pow(*to, part)).collect()
     }
 
     /// The start, or the first on the way to the tightest at which all constraints are finite, with their slopes there.
@@ -303,7 +303,7 @@ impl Setting<'_> {
                 });
             }
             let (found, next) = problem.solve(&multipliers.take().unwrap_or_default());
-            let length = at.iter().zip(&next).map(|(a, b)| (b / a).ln().abs()).fold(0.0, f64::max);
+            let length = at.iter().zip(&next).map(|(a, b)| libm::log(b / a).abs()).fold(0.0, f64::max);
             // A surrogate that is not a sum of squares may need shorter steps.
             if !exact && step > 3 && length > 0.7 * last_step {
                 part = (0.5 * part).max(0.1);
@@ -440,7 +440,7 @@ impl Setting<'_> {
                 let [low, high] = bounds[g];
                 for part in 1..=16 {
                     let kept = at[g];
-                    at[g] = low.powf(1.0 - f64::from(part) / 16.0) * high.powf(f64::from(part) / 16.0);
+                    at[g] = libm::pow(low, 1.0 - f64::from(part) / 16.0) * libm::pow(high, f64::from(part) / 16.0);
                     let value = constraint.value(self.responses, self.priced, &at);
                     if value < least * (1.0 - 1e-9) { least = value } else { at[g] = kept }
                 }

@@ -69,7 +69,7 @@ impl Ends {
 
     /// The end that a search is about to reach, if an earlier one ended there.
     pub(super) fn near(&self, at: &[f64], residual: f64) -> Option<&Solved> {
-        let close = |end: &&Solved| end.at.iter().zip(at).all(|(a, b)| (b / a).ln().abs() <= NEAR_END);
+        let close = |end: &&Solved| end.at.iter().zip(at).all(|(a, b)| libm::log(b / a).abs() <= NEAR_END);
         self.places.iter().find(close).filter(|_| residual <= NEAR_END)
     }
 

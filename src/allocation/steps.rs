@@ -16,7 +16,7 @@ pub(super) struct Steps {
 impl Steps {
     /// The half bands to go to from `from` where `to` was chosen; None where that is `to` itself.
     pub(super) fn shortened(&mut self, from: &[f64], to: &[f64]) -> Option<Vec<f64>> {
-        let way: Vec<f64> = from.iter().zip(to).map(|(from, to)| (to / from).ln()).collect();
+        let way: Vec<f64> = from.iter().zip(to).map(|(from, to)| libm::log(to / from)).collect();
         let longest = |way: &[f64]| way.iter().fold(0.0f64, |longest, way| longest.max(way.abs()));
         let part = match &self.last {
             Some((last, part)) if longest(&way) > 0.5 * longest(last) => {
@@ -30,7 +30,7 @@ impl Steps {
             _ => 1.0,
         };
         let shortened =
-            (part < 1.0).then(|| from.iter().zip(&way).map(|(from, way)| from * (part * way).exp()).collect());
+            (part < 1.0).then(|| from.iter().zip(&way).map(|(from, way)| from * libm::exp(part * way)).collect());
         self.last = Some((way, part));
         shortened
     }

@@ -49,7 +49,7 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
     let widths: Vec<f64> =
         setting.constraints.iter().map(|one| one.width(responses, &ones)).collect::<Option<Vec<f64>>>()?;
     let places = |x: &[f64]| {
-        let t: Vec<f64> = x[..groups].iter().map(|x| x.exp()).collect();
+        let t: Vec<f64> = x[..groups].iter().map(|x| libm::exp(*x)).collect();
         let mut shifts = vec![0.0; dimensions];
         of.iter().zip(&x[groups..]).for_each(|(&d, &shift)| shifts[d] = shift);
         (responses.factors(setting.priced, &t), shifts)
@@ -75,7 +75,8 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
         Some(rows)
     };
     let within = |t: &[f64]| -> Vec<f64> {
-        let clamped = setting.priced.iter().zip(t).map(|(group, t)| t.clamp(group.tightest(), group.loosest()).ln());
+        let clamped =
+            setting.priced.iter().zip(t).map(|(group, t)| libm::log(t.clamp(group.tightest(), group.loosest())));
         clamped.chain(bounds.iter().map(|&[low, high]| 0.0f64.clamp(low, high))).collect()
     };
     let scale = setting.cost(at).abs().max(f64::MIN_POSITIVE);
@@ -84,7 +85,7 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
         setting.losses.iter().map(|loss| loss.at(responses, &factors, Some(&shifts)).unwrap_or(f64::NAN)).sum()
     };
     let objective = |x: &[f64]| {
-        let t: Vec<f64> = x[..groups].iter().map(|x| x.exp()).collect();
+        let t: Vec<f64> = x[..groups].iter().map(|x| libm::exp(*x)).collect();
         let (value, mut slopes) = cost(setting.priced, &t);
         slopes.resize(x.len(), 0.0);
         slopes.iter_mut().for_each(|slope| *slope /= scale);
@@ -101,9 +102,10 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
         }
         ((value + lost(x)) / scale, slopes)
     };
-    let all: Vec<[f64; 2]> = (setting.priced.iter().map(|group| [group.tightest().ln(), group.loosest().ln()]))
-        .chain(bounds.iter().copied())
-        .collect();
+    let all: Vec<[f64; 2]> =
+        (setting.priced.iter().map(|group| [libm::log(group.tightest()), libm::log(group.loosest())]))
+            .chain(bounds.iter().copied())
+            .collect();
     let smooth = Smooth { objective: &objective, rows: &rows, bounds: &all };
     let tight: Vec<f64> = setting.priced.iter().map(Priced::tightest).collect();
     let middle: Vec<f64> = at.iter().zip(&tight).map(|(at, tight)| (at * tight).sqrt()).collect();
@@ -120,5 +122,5 @@ pub(super) fn together(setting: &Setting<'_>, of: &[usize], bounds: &[[f64; 2]],
         }
     }
     let Ended { x, residual, .. } = best?.1;
-    Some(Together { shifts: x[groups..].to_vec(), at: x[..groups].iter().map(|x| x.exp()).collect(), residual })
+    Some(Together { shifts: x[groups..].to_vec(), at: x[..groups].iter().map(|x| libm::exp(*x)).collect(), residual })
 }

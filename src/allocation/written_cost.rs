@@ -179,7 +179,7 @@ fn looked(min: f64, max: f64) -> impl Iterator<Item = f64> {
     (0..count).map(move |place| match place {
         0 => min,
         _ if place + 1 == count => max,
-        _ => min * (max / min).powf(place as f64 / (count - 1) as f64),
+        _ => min * libm::pow(max / min, place as f64 / (count - 1) as f64),
     })
 }
 

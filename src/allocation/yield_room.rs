@@ -58,10 +58,10 @@ impl YieldRoom {
         if !most.is_finite() {
             return None;
         }
-        let miss = |ln: f64| (self.share(law, ln.exp()) / rejected).ln();
+        let miss = |ln: f64| libm::log(self.share(law, libm::exp(ln)) / rejected);
         let half = [(below, -law.quantile(0.5 * rejected)), (above, law.upper_quantile(0.5 * rejected))];
         let least = half.iter().filter_map(|&(distance, quantile)| single((*distance)?, quantile)).fold(most, f64::min);
-        Some(root(miss, [least.ln(), most.ln()], 0.0).exp())
+        Some(libm::exp(root(miss, [libm::log(least), libm::log(most)], 0.0)))
     }
 
     /// Derivatives of the logarithm of that sigma by mean, skewness and excess.

@@ -35,5 +35,5 @@ pub(super) fn of_yield(estimate: &ErrorEstimate, moments: &Moments, limits: Spec
         off.reduce(f64::max)
     };
     let parts: Option<Vec<f64>> = up.iter().zip(&down).map(part).collect();
-    Some(parts?.into_iter().fold(0.0, f64::hypot))
+    Some(parts?.into_iter().fold(0.0, libm::hypot))
 }

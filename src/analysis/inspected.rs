@@ -116,7 +116,7 @@ fn told(
     };
     let accepted = found.zip(yield_).map(|((risks, errors), yield_)| {
         let error = yield_error.zip(errors[0]).zip(errors[1]);
-        let error = error.map(|((yield_, accept), reject)| yield_.hypot(accept).hypot(reject));
+        let error = error.map(|((yield_, accept), reject)| libm::hypot(libm::hypot(yield_, accept), reject));
         EstimatedShare { value: (yield_ - risks.false_reject + risks.false_accept).clamp(0.0, 1.0), error }
     });
     let among =

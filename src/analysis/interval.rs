@@ -55,5 +55,5 @@ pub(super) fn acceleration(influences: &[Vec<f64>]) -> f64 {
             cubes += (influence - mean).powi(3);
         }
     }
-    if squares > 0.0 { cubes / (6.0 * squares.powf(1.5)) } else { 0.0 }
+    if squares > 0.0 { cubes / (6.0 * libm::pow(squares, 1.5)) } else { 0.0 }
 }

@@ -88,7 +88,7 @@ fn sums(problem: &Problem, slopes: &[(f64, usize)], weight: impl Fn(usize) -> f6
         let [lower, upper] = dimension.reach();
         let reach = (weight(d) * slope * dimension.half_band()).abs();
         middle += slope * 0.5 * (lower + upper);
-        rss = rss.hypot(reach);
+        rss = libm::hypot(rss, reach);
         match dimension.zone() {
             None => match diamond(problem, d) {
                 None => worst_case += reach,
@@ -98,7 +98,7 @@ fn sums(problem: &Problem, slopes: &[(f64, usize)], weight: impl Fn(usize) -> f6
                 },
             },
             Some(zone) => match zones.iter_mut().find(|(name, _)| *name == zone) {
-                Some((_, radius)) => *radius = radius.hypot(reach),
+                Some((_, radius)) => *radius = libm::hypot(*radius, reach),
                 None => zones.push((zone, reach)),
             },
         }
@@ -136,7 +136,7 @@ fn six_sigma(problem: &Problem, slopes: &[(f64, usize)]) -> Option<f64> {
         let [sigma, off] = problem.dimensions()[d].lot();
         sigma / (1.0 - off)
     };
-    let alone = slopes.iter().fold(0.0f64, |sum, &(slope, d)| sum.hypot(slope * effective(d)));
+    let alone = slopes.iter().fold(0.0f64, |sum, &(slope, d)| libm::hypot(sum, slope * effective(d)));
     Some(alone * together(problem, &slopes, alone, effective))
 }
 

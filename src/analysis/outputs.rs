@@ -75,5 +75,5 @@ fn of_surfaces(outcome: &Outcome, [a, b]: [usize; 2]) -> Option<(f64, f64)> {
     let ((first, by_first), (second, by_second)) = (scaled(a)?, scaled(b)?);
     let variance = |sign: f64| first.sum(by_first, second, sign * by_second)?.variance(inputs);
     let ((sum, of_sum), (difference, of_difference)) = (variance(1.0)?, variance(-1.0)?);
-    Some(((0.25 * (sum - difference)).clamp(-1.0, 1.0), 0.25 * of_sum.hypot(of_difference)))
+    Some(((0.25 * (sum - difference)).clamp(-1.0, 1.0), 0.25 * libm::hypot(of_sum, of_difference)))
 }

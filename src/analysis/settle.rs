@@ -133,7 +133,7 @@ fn proof(problem: &Problem, outcome: &Outcome, c: usize, one: &CharacteristicAna
     let outside = beyond.iter().flatten().all(|figure| figure.proven);
     // A limit outside of the proven range lies there by any rounding: the range has room for that.
     let rounding = if outside { 0.0 } else { one.error_estimate.as_ref()?.yield_? };
-    let error = Some(law.error().hypot(rounding));
+    let error = Some(libm::hypot(law.error(), rounding));
     Some(Rejected { source: YieldSource::Proof, beyond: beyond.map(|of| of.map(|of| of.value)), error })
 }
 
@@ -168,7 +168,7 @@ fn samples(one: &CharacteristicAnalysis) -> Option<Rejected> {
     let (Some([within, differences @ ..]), Some(law)) = (verification.difference, &one.surface_law) else {
         return Some(plain());
     };
-    let error = within.error.hypot(law.error());
+    let error = libm::hypot(within.error, law.error());
     let with = |share: Option<f64>, difference: Verified| share.map(|share| share + difference.value);
     let beyond =
         [with(law.below.map(|of| of.value), differences[0]), with(law.above.map(|of| of.value), differences[1])];
@@ -194,7 +194,11 @@ fn surface(one: &CharacteristicAnalysis, whole: Option<&SurfaceLaw>) -> Option<R
             of_fit.map(|of_fit| of_fit.max(of_tails.unwrap_or(0.0)))
         }
     };
-    Some(Rejected { source: YieldSource::SurfaceLaw, beyond, error: surface.map(|error| error.hypot(law.error())) })
+    Some(Rejected {
+        source: YieldSource::SurfaceLaw,
+        beyond,
+        error: surface.map(|error| libm::hypot(error, law.error())),
+    })
 }
 
 fn pearson(one: &CharacteristicAnalysis) -> Option<Rejected> {

@@ -316,7 +316,7 @@ impl<'p> Strides<'p> {
                     }
                 }
                 if beside.kind.is_logarithm() {
-                    y.iter_mut().for_each(|y| *y = y.abs().ln());
+                    y.iter_mut().for_each(|y| *y = libm::log(y.abs()));
                 }
                 let surface = beside.surface(&u, y.len());
                 beside.chaos.fit(Places { u: &u, surface: &surface }, &y)
@@ -395,7 +395,7 @@ impl<'p> Strides<'p> {
         let units = [scale, scale, 1.0, 1.0];
         for (moment, error) in errors.iter_mut().enumerate().take(MOMENTS) {
             *error *= student(REPLICATES) * carried_by(effective(carried[moment].iter().copied()));
-            *error = error.hypot(floor * INFLUENCE[moment] * units[moment]);
+            *error = libm::hypot(*error, floor * INFLUENCE[moment] * units[moment]);
         }
         // That no point was seen does not mean that there is none: the weight of one, or what limits that are off by the difference
         // change, whichever is less.
@@ -408,13 +408,13 @@ impl<'p> Strides<'p> {
             Some((share(limit + by) - share(limit)).abs().max((share(limit) - share(limit - by)).abs()))
         };
         let one = [0, 1].map(|side| moved(side).map_or(0.0, |moved| moved.min(1.0 / all as f64)));
-        for (error, one) in errors[MOMENTS..].iter_mut().zip([one[0], one[1], one[0].hypot(one[1])]) {
-            *error = (*error * student(REPLICATES)).hypot(one);
+        for (error, one) in errors[MOMENTS..].iter_mut().zip([one[0], one[1], libm::hypot(one[0], one[1])]) {
+            *error = libm::hypot(*error * student(REPLICATES), one);
         }
         if let Some(beside) = beside {
             let far = Climbed::far_out(beside.far / scale);
             let grown = [far * scale, far * scale, 6.0 * far, 20.0 * far];
-            errors.iter_mut().zip(grown).for_each(|(error, far)| *error = error.hypot(far));
+            errors.iter_mut().zip(grown).for_each(|(error, far)| *error = libm::hypot(*error, far));
         }
         let whole = values.iter().chain(&errors).all(|value| value.is_finite());
         whole.then_some(Figures { values, errors })
@@ -494,7 +494,11 @@ impl Strides<'_> {
             if beside.kind.is_logarithm() {
                 let logarithms = beside.chaos.exponentials(sparse, shapes)?;
                 return Some(
-                    logarithms.iter().zip(1..).map(|(value, power)| beside.sign.powi(power) * value.exp()).collect(),
+                    logarithms
+                        .iter()
+                        .zip(1..)
+                        .map(|(value, power)| beside.sign.powi(power) * libm::exp(*value))
+                        .collect(),
                 );
             }
             beside.chaos.squares(sparse, shapes, surface).map(Vec::from)
@@ -530,7 +534,7 @@ impl Beside<'_> {
     fn of(&self, sparse: &Sparse, places: Places<'_>, rows: usize) -> Vec<f64> {
         let mut values = self.chaos.values(sparse, places, rows);
         if self.kind.is_logarithm() {
-            values.iter_mut().for_each(|value| *value = self.sign * value.exp());
+            values.iter_mut().for_each(|value| *value = self.sign * libm::exp(*value));
         }
         values
     }

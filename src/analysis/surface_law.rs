@@ -138,7 +138,7 @@ impl SurfaceShares {
 
     /// The numerical error of the share within the limits.
     pub(crate) fn error(&self) -> f64 {
-        [self.below, self.above].iter().flatten().map(|figure| figure.error).fold(0.0, f64::hypot)
+        [self.below, self.above].iter().flatten().map(|figure| figure.error).fold(0.0, libm::hypot)
     }
 
     /// The share beyond the limits; None without any.

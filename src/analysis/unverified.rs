@@ -24,7 +24,7 @@ pub(super) fn error_of_shares(one: &CharacteristicAnalysis, law: &SurfaceLaw) ->
         let towards = limit + (law.mean() - limit).clamp(-shift, shift);
         Some((law.tail(towards, tail).value - law.tail(limit, tail).value).abs())
     });
-    Some(moved.fold(0.0, f64::hypot))
+    Some(moved.fold(0.0, libm::hypot))
 }
 
 /// How far the errors of mean, sigma, skewness and kurtosis move the quantile that lies at a limit.
@@ -36,7 +36,7 @@ fn shift(limit: f64, [mean, sigma]: [f64; 2], [of_mean, of_sigma, of_skewness, o
         sigma * (z * z - 1.0) / 6.0 * of_skewness,
         sigma * (z.powi(3) - 3.0 * z) / 24.0 * of_kurtosis,
     ];
-    parts.into_iter().fold(0.0, f64::hypot)
+    parts.into_iter().fold(0.0, libm::hypot)
 }
 
 #[cfg(test)]

@@ -290,7 +290,8 @@ fn check(
 fn judge(one: &mut CharacteristicAnalysis, checked: &Checked, found: &CheckedFigures, surface: Option<Moments>) {
     let Some(moments) = one.moments else { return };
     let errors = found.errors;
-    let error = |index: usize, own: Option<f64>, surface: Option<f64>| Some((own? - surface?).hypot(errors?[index]));
+    let error =
+        |index: usize, own: Option<f64>, surface: Option<f64>| Some(libm::hypot(own? - surface?, errors?[index]));
     let of = |part: fn(&Moments) -> Option<f64>| (part(&moments), surface.as_ref().and_then(part));
     let (mean, sigma) = (of(|m| Some(m.mean())), of(|m| Some(m.sigma())));
     let (skewness, kurtosis) = (of(Moments::skewness), of(Moments::kurtosis));

@@ -48,7 +48,7 @@ impl Label {
 /// Points in one place share a label, and the first has the first choice. Nothing is put where another text is
 /// `held`; a name without room lies over others where `all` are wanted, and is left out elsewhere.
 pub(super) fn placed(points: &[([f64; 2], &str)], within: [f64; 4], held: &[[f64; 4]], all: bool) -> Vec<Label> {
-    let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < SAME;
+    let near = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]) < SAME;
     let mut named: Vec<(usize, String)> = Vec::new();
     for (i, (at, name)) in points.iter().enumerate() {
         match named.iter_mut().find(|(of, _)| near(points[*of].0, *at)) {

@@ -11,6 +11,11 @@ const NAME: usize = 30;
 /// Shares of the variance below this are not shown one by one.
 pub(crate) const NEWS: f64 = 1e-4;
 
+/// A power of ten, just so: the last digit of `libm::pow` may be another one, and a label would show it.
+pub(crate) fn power_of_ten(exponent: f64) -> f64 {
+    format!("1e{exponent}").parse().unwrap_or_else(|_| libm::pow(10.0, exponent))
+}
+
 /// A count with what is counted.
 pub(crate) fn plural(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
@@ -22,7 +27,7 @@ pub(crate) fn share(rejected: f64) -> String {
     if percent <= 0.0 {
         return "100 %".to_owned();
     }
-    let decimals = (2.0 - percent.log10().floor()).clamp(2.0, 12.0) as usize;
+    let decimals = (2.0 - libm::log10(percent).floor()).clamp(2.0, 12.0) as usize;
     let text = format!("{:.decimals$}", 100.0 - percent);
     match text.trim_end_matches('0') {
         "100." => "100 %".to_owned(),
@@ -36,7 +41,7 @@ pub(crate) fn decimals(scale: f64, digits: i32) -> Option<usize> {
     if scale == 0.0 || !scale.is_finite() {
         return Some(0);
     }
-    let magnitude = scale.abs().log10().floor() as i32;
+    let magnitude = libm::log10(scale.abs()).floor() as i32;
     usize::try_from((digits - 1 - magnitude).max(0)).ok().filter(|&decimals| decimals <= 9)
 }
 
@@ -69,7 +74,7 @@ pub(crate) fn beside(value: f64, sigma: f64) -> String {
     match decimals(sigma, 5) {
         Some(decimals) if value.abs() < 1e9 => unsigned_zero(format!("{value:.decimals$}")),
         _ => {
-            let ratio = (value / sigma).abs().max(1.0).log10().floor();
+            let ratio = libm::log10((value / sigma).abs().max(1.0)).floor();
             let digits = if ratio.is_finite() { (ratio as usize + 5).min(17) } else { 6 };
             significant(value, digits)
         }
@@ -198,7 +203,7 @@ pub(crate) fn carried(value: f64, sigma: f64, error: Option<f64>) -> String {
 pub(crate) fn estimated(value: f64, error: Option<f64>) -> String {
     match error {
         Some(error) if error > 0.0 && error.is_finite() => {
-            let decimals = (1.0 - error.log10().floor()).clamp(0.0, 15.0) as usize;
+            let decimals = (1.0 - libm::log10(error).floor()).clamp(0.0, 15.0) as usize;
             unsigned_zero(format!("{value:.decimals$}"))
         }
         Some(_) => plain(value),

@@ -1,6 +1,6 @@
 //! Yields and rejects, with the digits that their error carries and no more.
 
-use super::number::{FEWEST, share, significant};
+use super::number::{FEWEST, power_of_ten, share, significant};
 
 /// Significant digits of parts per million, at most.
 const DIGITS: i32 = 4;
@@ -108,14 +108,14 @@ impl Rejects {
         let (ppm, exact) = (1e6 * share, significant(1e6 * share, DIGITS as usize));
         let Some(error) = self.error else { return exact };
         // As many digits of the share as stand before the error's second one.
-        let digits = ppm.log10().floor() - (1e6 * error).log10().floor() + 1.0;
+        let digits = libm::log10(ppm).floor() - libm::log10(1e6 * error).floor() + 1.0;
         if digits >= f64::from(DIGITS) { exact } else { rounded(ppm, digits.max(1.0) as usize) }
     }
 }
 
 /// So many decimals that the first digit of the error is the last one.
 fn decimals(error: f64) -> usize {
-    (-error.log10().floor()).clamp(0.0, 12.0) as usize
+    (-libm::log10(error).floor()).clamp(0.0, 12.0) as usize
 }
 
 /// Digits beyond the significant ones are zeros.
@@ -130,7 +130,7 @@ fn parts(share: f64) -> String {
 }
 
 fn upwards(value: f64, digits: i32) -> f64 {
-    let unit = 10_f64.powf(value.log10().floor() + 1.0 - f64::from(digits));
+    let unit = power_of_ten(libm::log10(value).floor() + 1.0 - f64::from(digits));
     // A value that is a multiple but for rounding stays what it is.
     (value / unit - 1e-9).ceil() * unit
 }

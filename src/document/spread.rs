@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::chart::SpreadChart;
-use super::number::{beside, plain, unsigned_zero};
+use super::number::{beside, plain, power_of_ten, unsigned_zero};
 use super::svg::escaped;
 use crate::simulation::Histogram;
 
@@ -64,11 +64,11 @@ impl Extent {
     /// Round numbers along it.
     fn ticks(&self, most: usize) -> Vec<Tick> {
         let raw = (self.to - self.from) / most as f64;
-        let decade = 10f64.powf(raw.log10().floor());
+        let decade = power_of_ten(libm::log10(raw).floor());
         let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade).into_iter().find(|&step| step >= raw);
         let step = step.unwrap_or(10.0 * decade);
         let first = (self.from / step).ceil();
-        let decimals = (-step.log10().floor()).max(0.0) as usize;
+        let decimals = (-libm::log10(step).floor()).max(0.0) as usize;
         (0..=2 * most)
             .map(|i| (first + i as f64) * step)
             .take_while(|&value| value <= self.to)

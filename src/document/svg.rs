@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::labels::{LETTER, Label, placed};
-use super::number::{plain, significant};
+use super::number::{plain, power_of_ten, significant};
 use super::{Chart, Document, Element, Layer, Plot, PlotAxis, PlotPoint, PlotScale, Stroke};
 use crate::short_sort::ShortSort;
 
@@ -205,7 +205,7 @@ impl Ruler {
                 [from - room, to + room]
             }
             PlotScale::Decades => {
-                let [from, to] = ends(&mut values.into_iter().filter(|value| *value > 0.0).map(f64::log10));
+                let [from, to] = ends(&mut values.into_iter().filter(|value| *value > 0.0).map(libm::log10));
                 [from.floor(), to.ceil().max(from.floor() + 1.0)]
             }
         };
@@ -213,7 +213,7 @@ impl Ruler {
     }
 
     fn at(&self, value: f64) -> f64 {
-        let value = if self.scale == PlotScale::Decades { value.log10() } else { value };
+        let value = if self.scale == PlotScale::Decades { libm::log10(value) } else { value };
         self.pixels[0] + (value - self.from) / (self.to - self.from) * (self.pixels[1] - self.pixels[0])
     }
 
@@ -227,7 +227,7 @@ impl Ruler {
         }
         // Round numbers, so many of them to twice as many.
         let rough = (self.to - self.from) / least;
-        let decade = 10f64.powf(rough.log10().floor());
+        let decade = power_of_ten(libm::log10(rough).floor());
         let step =
             [5.0, 2.0, 1.0].map(|digit| digit * decade).into_iter().find(|step| *step <= rough).unwrap_or(decade);
         let (first, last) = ((self.from / step).ceil() as i64, (self.to / step).floor() as i64);

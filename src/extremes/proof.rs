@@ -50,7 +50,7 @@ impl Zones<'_> {
             let near = if ends[0] <= 0.0 && ends[1] >= 0.0 { 0.0 } else { ends[0].abs().min(ends[1].abs()) };
             [near, ends[0].abs().max(ends[1].abs())]
         };
-        zone.iter().map(of).fold([0.0; 2], |[near, far], [a, b]| [f64::hypot(near, a), f64::hypot(far, b)])
+        zone.iter().map(of).fold([0.0; 2], |[near, far], [a, b]| [libm::hypot(near, a), libm::hypot(far, b)])
     }
 
     fn leave_out(&self, region: &[[f64; 2]]) -> bool {

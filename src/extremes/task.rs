@@ -107,7 +107,7 @@ impl Task {
     /// How far from the middle of a zone, in its radii.
     fn radius(&self, zone: &[usize], x: &[f64]) -> f64 {
         let part = |&j: &usize| (x[j] - self.middle(j)) / (0.5 * (self.region.upper[j] - self.region.lower[j]));
-        zone.iter().map(part).fold(0.0, f64::hypot)
+        zone.iter().map(part).fold(0.0, libm::hypot)
     }
 
     /// Whether no zone is left, but for rounding.

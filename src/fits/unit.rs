@@ -16,7 +16,7 @@ pub(crate) fn tolerance_unit(nominal_mm: f64) -> f64 {
     let micrometres = match STEPS.windows(2).find(|ends| size <= ends[1]) {
         Some(&[low, high]) => {
             let mean = (low.max(1.0) * high).sqrt();
-            0.45 * mean.cbrt() + 0.001 * mean
+            0.45 * libm::cbrt(mean) + 0.001 * mean
         }
         _ => 0.004 * size + 2.1,
     };

@@ -19,10 +19,10 @@ const WORST: f64 = 1e-9;
 
 /// Both of two standard normal variables of this correlation beyond `h` and `k`.
 fn quadrant(h: f64, k: f64, correlation: f64) -> LawFigure {
-    let end = correlation.clamp(-1.0, 1.0).asin();
+    let end = libm::asin(correlation.clamp(-1.0, 1.0));
     let inner = |t: f64| {
-        let (sin, cos) = t.sin_cos();
-        (-(h * h + k * k - 2.0 * h * k * sin) / (2.0 * cos * cos)).exp()
+        let (sin, cos) = libm::sincos(t);
+        libm::exp(-(h * h + k * k - 2.0 * h * k * sin) / (2.0 * cos * cos))
     };
     let sum = |panels: usize| -> f64 {
         let half = 0.5 * end / panels as f64;

@@ -60,7 +60,7 @@ pub(super) fn straightened(
                 (inputs[*j], inputs[*k]) = (Arc::clone(&uniform), uniform);
                 [a + b, a - b].map(|sum| sum * std::f64::consts::FRAC_1_SQRT_2)
             }
-            false => [a.hypot(*b), 0.0],
+            false => [libm::hypot(*a, *b), 0.0],
         };
         for (d, slope) in [j, k].into_iter().zip(slopes) {
             surrogate.parts[*d] = Some(Univariate::of_coefficients(&[slope]));

@@ -151,7 +151,7 @@ impl Contributions {
 
     /// The same beside an independent part with this variance, of which nothing else is known: taken to be normal.
     pub(crate) fn beside(self, variance: f64) -> Self {
-        let sigma = self.moments.sigma().hypot(variance.sqrt());
+        let sigma = libm::hypot(self.moments.sigma(), variance.sqrt());
         if sigma == self.moments.sigma() {
             return self;
         }

@@ -101,8 +101,8 @@ impl Ending {
             Kind::Infinite { r } => -(r + 2.0),
         };
         // 0 * -infinity at an end with a finite density.
-        let power = if factor == 0.0 { 0.0 } else { factor * v.ln() };
-        power + self.sum(self.powers(v)).ln()
+        let power = if factor == 0.0 { 0.0 } else { factor * libm::log(v) };
+        power + libm::log(self.sum(self.powers(v)))
     }
 
     /// The mass that lies beyond, by the density: Mills' ratio in z.
@@ -118,20 +118,20 @@ impl Ending {
 
     /// `log` of the mass beyond, up to the constant of [`log_density`](Self::log_density), and its derivative by `log v`.
     pub(super) fn log_mass(&self, log_v: f64) -> (f64, f64) {
-        let v = log_v.exp();
+        let v = libm::exp(log_v);
         let mills = self.mills(v);
         let slope = self.reach * v / mills;
-        (self.log_density(v) + mills.ln(), if matches!(self.kind, Kind::Finite { .. }) { slope } else { -slope })
+        (self.log_density(v) + libm::log(mills), if matches!(self.kind, Kind::Finite { .. }) { slope } else { -slope })
     }
 
     /// The mass between `v` and `to`, both at a finite end and the latter farther inside: each term without cancellation,
     /// so that next to nothing of the mass beyond is as exact. With the constant of [`log_density`](Self::log_density).
     pub(super) fn inner(&self, v: f64, to: f64) -> f64 {
         let Kind::Finite { alpha } = self.kind else { return f64::NAN };
-        let log = (v / to).ln();
+        let log = libm::log(v / to);
         let term = |(k, d): (usize, &f64)| {
             let exponent = alpha + k as f64;
-            d * to.powf(exponent) * -(exponent * log).exp_m1() / exponent
+            d * libm::pow(to, exponent) * -libm::expm1(exponent * log) / exponent
         };
         self.reach * self.series.iter().enumerate().map(term).sum::<f64>()
     }

@@ -45,7 +45,7 @@ impl Equation {
             Roots::Real { near, far, .. } => factor(near) * factor(far),
             Roots::Double { at } => factor(at) * factor(at),
             Roots::Complex { centre, width } => {
-                let scale = centre.hypot(width);
+                let scale = libm::hypot(centre, width);
                 ((z - centre) / scale).powi(2) + (width / scale).powi(2)
             }
         }
@@ -67,7 +67,7 @@ impl Equation {
             Roots::None => f64::INFINITY,
             Roots::Real { near, far, .. } => (z - near).abs().min((z - far).abs()),
             Roots::Double { at } => (z - at).abs(),
-            Roots::Complex { centre, width } => (z - centre).hypot(width),
+            Roots::Complex { centre, width } => libm::hypot(z - centre, width),
         }
     }
 
@@ -147,7 +147,7 @@ impl Equation {
             integral += half * nodes.sum::<f64>();
             at = next;
         }
-        -(self.c(to) / self.c(from)).ln() - (1.0 + self.c2) * integral
+        -libm::log(self.c(to) / self.c(from)) - (1.0 + self.c2) * integral
     }
 }
 

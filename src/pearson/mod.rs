@@ -159,12 +159,12 @@ impl Pearson {
 
     /// Density, per unit of x.
     pub fn pdf(&self, x: f64) -> f64 {
-        self.log_pdf(x).exp()
+        libm::exp(self.log_pdf(x))
     }
 
     /// Logarithm of the density.
     pub(crate) fn log_pdf(&self, x: f64) -> f64 {
-        if x.is_nan() { f64::NAN } else { self.standard.log_pdf(self.z(x)) - self.sigma.ln() }
+        if x.is_nan() { f64::NAN } else { self.standard.log_pdf(self.z(x)) - libm::log(self.sigma) }
     }
 
     /// Probability below x: the cumulative distribution function.

@@ -62,7 +62,7 @@ impl Place {
     const BEYOND: Self = Self { log_density: f64::NEG_INFINITY, mills: 0.0 };
 
     pub(super) fn log_mass(&self) -> f64 {
-        if self.mills == 0.0 { f64::NEG_INFINITY } else { self.log_density + self.mills.ln() }
+        if self.mills == 0.0 { f64::NEG_INFINITY } else { self.log_density + libm::log(self.mills) }
     }
 }
 
@@ -73,21 +73,21 @@ impl Side {
         let covered = |z: f64| ending.as_ref().is_some_and(|ending| ending.covers(z));
         while !covered(edge) && edge_log > CORE && panels.len() < PANELS {
             let Some(panel) = equation.panel(edge, sign) else { break };
-            let middle_log = edge_log - panel.density(-1.0).ln();
-            edge_log = middle_log + panel.density(1.0).ln();
+            let middle_log = edge_log - libm::log(panel.density(-1.0));
+            edge_log = middle_log + libm::log(panel.density(1.0));
             edge = panel.end();
             panels.push((panel, middle_log));
         }
         let ending_log = (ending.as_ref().filter(|ending| ending.covers(edge)))
             .map(|ending| edge_log - ending.log_density(ending.relative(edge)));
         let mut mills = mills(&equation, ending.as_ref(), sign, edge);
-        let edge_log_mass = edge_log + mills.ln();
+        let edge_log_mass = edge_log + libm::log(mills);
         let mut pieces = Vec::with_capacity(panels.len());
         for (panel, log) in panels.into_iter().rev() {
             let beyond = panel.mass(1.0) + panel.density(1.0) * mills;
             let inner = panel.density(-1.0);
             mills = (beyond - panel.mass(-1.0)) / inner;
-            let log_mass = log + (inner * mills).ln();
+            let log_mass = log + libm::log(inner * mills);
             pieces.push(Piece { from: sign * (panel.position(-1.0) - anchor), panel, log, beyond, log_mass });
         }
         pieces.reverse();
@@ -106,7 +106,7 @@ impl Side {
             let u = piece.panel.coordinate(z).clamp(-1.0, 1.0);
             let density = piece.panel.density(u);
             let mills = (piece.beyond - piece.panel.mass(u)) / density;
-            return Place { log_density: piece.log + density.ln(), mills };
+            return Place { log_density: piece.log + libm::log(density), mills };
         }
         if let Some((ending, log)) = self.tabled_ending() {
             let v = ending.relative(z);
@@ -150,12 +150,12 @@ impl Side {
     pub(super) fn mass_in_panel(&self, index: usize, distance: f64) -> f64 {
         let piece = &self.pieces[index];
         let u = piece.panel.coordinate(self.anchor + self.sign * distance);
-        piece.log.exp() * (piece.beyond - piece.panel.mass(u))
+        libm::exp(piece.log) * (piece.beyond - piece.panel.mass(u))
     }
 
     /// The mass beyond a distance from the anchor.
     pub(super) fn mass_beyond(&self, distance: f64) -> f64 {
-        self.at(self.anchor + self.sign * distance).log_mass().exp()
+        libm::exp(self.at(self.anchor + self.sign * distance).log_mass())
     }
 
     /// The ending, where the tables reach it, with its constant.
@@ -167,8 +167,8 @@ impl Side {
     /// an end of the support with nearly all of the mass.
     pub(super) fn inner(&self, z: f64) -> Option<f64> {
         let (ending, log) = self.tabled_ending().filter(|(ending, _)| ending.is_finite() && ending.covers(z))?;
-        let own = log.exp() * ending.inner(ending.relative(z).max(0.0), ending.relative(self.edge));
-        Some(own + (self.mass - self.edge_log_mass.exp()).max(0.0))
+        let own = libm::exp(log) * ending.inner(ending.relative(z).max(0.0), ending.relative(self.edge));
+        Some(own + (self.mass - libm::exp(self.edge_log_mass)).max(0.0))
     }
 
     /// Where the mass beyond has this logarithm.
@@ -185,7 +185,7 @@ impl Side {
                     let (found, slope) = ending.log_mass(log_v);
                     (found + log - log_mass, slope)
                 };
-                self.in_ending(ending, ending.relative(self.edge).ln(), off)
+                self.in_ending(ending, libm::log(ending.relative(self.edge)), off)
             }
             None => self.beyond_tables(log_mass),
         }
@@ -195,24 +195,24 @@ impl Side {
     /// where this is nowhere there.
     pub(super) fn with_inner_mass(&self, mass: f64) -> Option<f64> {
         let (ending, log) = self.tabled_ending().filter(|(ending, _)| ending.is_finite())?;
-        let own = mass - (self.mass - self.edge_log_mass.exp()).max(0.0);
+        let own = mass - (self.mass - libm::exp(self.edge_log_mass)).max(0.0);
         if own <= 0.0 {
             return None;
         }
         let edge = ending.relative(self.edge);
         let off = |log_v: f64| {
-            let v = log_v.exp();
-            let slope = (log + ending.log_density(v)).exp() * ending.length(v);
-            (own - log.exp() * ending.inner(v, edge), slope)
+            let v = libm::exp(log_v);
+            let slope = libm::exp(log + ending.log_density(v)) * ending.length(v);
+            (own - libm::exp(log) * ending.inner(v, edge), slope)
         };
         // The place by the mass beyond is a good start, if only that.
-        let start = ending.relative(self.with_mass_beyond((self.mass - mass).max(0.0).ln())).ln();
+        let start = libm::log(ending.relative(self.with_mass_beyond(libm::log((self.mass - mass).max(0.0)))));
         Some(self.in_ending(ending, start, off))
     }
 
     /// Newton's method in log v, in which every mass of an ending is nearly a straight line, from `start` on; safeguarded.
     fn in_ending(&self, ending: &Ending, start: f64, off: impl Fn(f64) -> (f64, f64)) -> f64 {
-        let edge = ending.relative(self.edge).ln();
+        let edge = libm::log(ending.relative(self.edge));
         // Below, there is no double left between the end and the place.
         let [mut low, mut high] = if ending.is_finite() { [LEAST, edge] } else { [edge, LARGEST] };
         let mut log_v = start.clamp(low, high);
@@ -231,7 +231,7 @@ impl Side {
                 break;
             }
         }
-        if log_v <= LEAST + 1.0 { self.limit } else { ending.position(log_v.exp()) }
+        if log_v <= LEAST + 1.0 { self.limit } else { ending.position(libm::exp(log_v)) }
     }
 
     /// Newton's method on the logarithm of the mass, within the panel where it lies.
@@ -239,12 +239,12 @@ impl Side {
         let index = self.pieces.partition_point(|piece| piece.log_mass >= log_mass).max(1) - 1;
         let piece = &self.pieces[index];
         let outer = self.pieces.get(index + 1).map_or(self.edge_log_mass, |next| next.log_mass);
-        let target = (log_mass - piece.log).exp();
+        let target = libm::exp(log_mass - piece.log);
         let (mut low, mut high) = (-1.0, 1.0);
         let mut u = (-1.0 + 2.0 * (piece.log_mass - log_mass) / (piece.log_mass - outer)).clamp(low, high);
         for _ in 0..STEPS {
             let beyond = piece.beyond - piece.panel.mass(u);
-            let error = (beyond / target).ln();
+            let error = libm::log(beyond / target);
             if error > 0.0 {
                 low = u;
             } else {

@@ -60,13 +60,13 @@ impl Standard {
     }
 
     pub(super) fn log_pdf(&self, z: f64) -> f64 {
-        self.place(z).log_density - self.total.ln()
+        self.place(z).log_density - libm::log(self.total)
     }
 
     /// Probabilities below and above, each with all its digits.
     pub(super) fn cdf_sf(&self, z: f64) -> [f64; 2] {
         let place = self.place(z);
-        let beyond = place.log_mass().exp();
+        let beyond = libm::exp(place.log_mass());
         let (side, other) = if z < self.anchor { (&self.left, &self.right) } else { (&self.right, &self.left) };
         let inner = side.inner(z).unwrap_or(side.mass - beyond).max(0.0);
         let (outer, rest) = ((beyond / self.total).min(1.0), ((other.mass + inner) / self.total).min(1.0));
@@ -92,18 +92,18 @@ impl Standard {
     /// Logarithms of the same; they go on where the probabilities vanish.
     pub(super) fn log_cdf_sf(&self, z: f64) -> [f64; 2] {
         let [below, above] = self.cdf_sf(z);
-        let outer = self.place(z).log_mass() - self.total.ln();
+        let outer = self.place(z).log_mass() - libm::log(self.total);
         // Of a probability close to 1, by the other.
-        let of = |probability: f64, other: f64| if other < 0.5 { (-other).ln_1p() } else { probability.ln() };
+        let of = |probability: f64, other: f64| if other < 0.5 { libm::log1p(-other) } else { libm::log(probability) };
         if z < self.anchor { [outer.min(0.0), of(above, below)] } else { [of(below, above), outer.min(0.0)] }
     }
 
     /// Where the probabilities below and above are these, whose sum is 1: one is exact, the other its complement.
     pub(super) fn quantile(&self, [below, above]: [f64; 2]) -> f64 {
         if below * self.total > self.left.mass {
-            return self.right.with_mass_beyond((above * self.total).ln());
+            return self.right.with_mass_beyond(libm::log(above * self.total));
         }
         let inner = if below > 0.5 { self.left.with_inner_mass(above * self.total - self.right.mass) } else { None };
-        inner.unwrap_or_else(|| self.left.with_mass_beyond((below * self.total).ln()))
+        inner.unwrap_or_else(|| self.left.with_mass_beyond(libm::log(below * self.total)))
     }
 }

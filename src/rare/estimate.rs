@@ -109,12 +109,12 @@ impl Weighed {
             match beyond {
                 Some(true) => {
                     self.hits += 1;
-                    let weight = (weight - self.scale).exp();
+                    let weight = libm::exp(weight - self.scale);
                     sums[component][1] += weight;
                     sums[component][2] += weight * weight;
                 }
                 Some(false) => self.others.push(weight),
-                None => self.unknown += weight.exp(),
+                None => self.unknown += libm::exp(weight),
             }
         }
         let mut stage = Stage::default();
@@ -142,7 +142,7 @@ impl Weighed {
 
     /// The part of the sum that points of these logarithms of weights bear.
     pub(super) fn part(&self, logarithms: impl Iterator<Item = f64>) -> f64 {
-        logarithms.map(|weight| (weight - self.scale).exp()).sum::<f64>() / self.sum
+        logarithms.map(|weight| libm::exp(weight - self.scale)).sum::<f64>() / self.sum
     }
 
     /// Whether the last stage by itself agrees with those before, and has the standard error that its part of the points allows, half as
@@ -157,7 +157,7 @@ impl Weighed {
             variance: all.variance + stage.variance,
         });
         let apart = (last.sum / last.points - all.sum / all.points).abs();
-        let error = (last.variance.sqrt() / last.points).hypot(all.variance.sqrt() / all.points);
+        let error = libm::hypot(last.variance.sqrt() / last.points, all.variance.sqrt() / all.points);
         let allowed = CONFIRMING * wanted * (self.points as f64 / last.points).sqrt();
         last.variance.sqrt() <= allowed * last.sum && apart <= AGREEING * error
     }
@@ -165,7 +165,7 @@ impl Weighed {
     /// Measures all sums by a greater weight, whose logarithm this is.
     fn rescale(&mut self, scale: f64) {
         if scale > self.scale {
-            let by = (self.scale - scale).exp();
+            let by = libm::exp(self.scale - scale);
             self.sum *= by;
             self.squares *= by * by;
             for stage in &mut self.stages {
@@ -201,7 +201,7 @@ impl Weighed {
         }
         let n = self.points as f64;
         if self.hits == 0 {
-            let heaviest = self.others.iter().copied().fold(f64::NEG_INFINITY, f64::max).exp();
+            let heaviest = libm::exp(self.others.iter().copied().fold(f64::NEG_INFINITY, f64::max));
             let most = (UNSEEN * heaviest.max(self.unknown) / n).min(1.0);
             let interval = [0.0, self.most.map_or(most, |bound| bound.min(most))];
             let bounds = [0.0, (self.unknown / n).min(1.0)];
@@ -216,7 +216,7 @@ impl Weighed {
         let error = self.variance().sqrt() / n;
         let effective = self.sum * self.sum / self.squares;
         let heavy = self.spread() / HEAVY;
-        let ratio = (Z * error / value * (1.0 + UNSURE / effective.sqrt())).exp();
+        let ratio = libm::exp(Z * error / value * (1.0 + UNSURE / effective.sqrt()));
         let [low, high] = match (effective >= MANY, heavy <= 1.0) {
             (true, true) => [value / ratio, value * ratio],
             (many, _) => {
@@ -227,8 +227,8 @@ impl Weighed {
         let alone = Some(1.0 / self.sum).filter(|&part| part > ALONE).unwrap_or(0.0);
         let [low, high] = [low * (1.0 - alone).max(0.0), high * (1.0 + alone)];
         let unseen = UNSEEN * self.next() / n;
-        let high = value + (high - value).hypot(unseen);
-        let probability = |scaled: f64| (scaled.ln() + self.scale).exp().min(1.0);
+        let high = value + libm::hypot(high - value, unseen);
+        let probability = |scaled: f64| libm::exp(libm::log(scaled) + self.scale).min(1.0);
         let found = ProbabilityEstimate {
             probability: Some(Estimate {
                 value: probability(value),
@@ -283,13 +283,14 @@ impl Weighed {
     fn next(&self) -> f64 {
         let times = NEXT * (if self.spread() > HEAVY { self.spread() } else { 1.0 });
         let above = || self.others.iter().map(|weight| weight - self.scale).filter(|&by| by > 0.0);
-        let (sum, count) =
-            above().filter(|by| *by <= times.ln()).fold((0.0, 0.0), |(sum, n), by| (sum + by.exp(), n + 1.0));
+        let (sum, count) = above()
+            .filter(|by| *by <= libm::log(times))
+            .fold((0.0, 0.0), |(sum, n), by| (sum + libm::exp(by), n + 1.0));
         if count > 0.0 {
             return sum / count;
         }
         let nearest = above().fold(f64::INFINITY, f64::min);
-        if nearest.is_finite() { nearest.exp() } else { 0.0 }
+        if nearest.is_finite() { libm::exp(nearest) } else { 0.0 }
     }
 }
 
@@ -316,7 +317,7 @@ pub(super) fn best_parts(hits: &[(f64, Vec<f64>)], start: &[f64]) -> Vec<f64> {
     let scaled: Vec<(f64, Vec<f64>)> = (hits.iter().zip(&sizes))
         .map(|((_, heights), size)| {
             let highest = highest(heights);
-            ((size - greatest).exp(), heights.iter().map(|height| (height - highest).exp()).collect())
+            (libm::exp(size - greatest), heights.iter().map(|height| libm::exp(height - highest)).collect())
         })
         .collect();
     let mut parts = start.to_vec();

@@ -152,16 +152,17 @@ impl Explored {
 
 /// See [`Explored::bound`]: of scales and numbers of points.
 fn half_space(groups: &[(f64, f64)]) -> Option<f64> {
-    let none =
-        |b: f64| groups.iter().map(|&(scale, points)| points * (-standard_normal::sf(b / scale)).ln_1p()).sum::<f64>();
+    let none = |b: f64| {
+        groups.iter().map(|&(scale, points)| points * libm::log1p(-standard_normal::sf(b / scale))).sum::<f64>()
+    };
     let (mut low, mut high) = (0.0, FARTHEST);
-    if groups.is_empty() || none(low) > CHANCE.ln() {
+    if groups.is_empty() || none(low) > libm::log(CHANCE) {
         return None;
     }
     // Halved until a double has no more digits.
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if none(middle) < CHANCE.ln() {
+        if none(middle) < libm::log(CHANCE) {
             low = middle;
         } else {
             high = middle;

@@ -164,8 +164,9 @@ impl<'a> Mixture<'a> {
     pub(super) fn weights(&self, points: &Columns) -> Vec<f64> {
         let weight = |heights: Vec<f64>| {
             let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let sum: f64 = self.parts.iter().zip(&heights).map(|(part, height)| part * (height - highest).exp()).sum();
-            -highest - sum.ln()
+            let sum: f64 =
+                self.parts.iter().zip(&heights).map(|(part, height)| part * libm::exp(height - highest)).sum();
+            -highest - libm::log(sum)
         };
         self.heights(points).into_iter().map(weight).collect()
     }
@@ -236,7 +237,7 @@ impl<'a> Mixture<'a> {
                 };
                 let Crossing { along, crossing, spread } = &crossings[place];
                 let edge = edge(crossing[row], shift);
-                if along[row] > edge { spread[row] - standard_normal::sf(edge).ln() } else { f64::NEG_INFINITY }
+                if along[row] > edge { spread[row] - libm::log(standard_normal::sf(edge)) } else { f64::NEG_INFINITY }
             };
             let row = |row: usize| self.components.iter().map(|component| height(row, component)).collect();
             (0..last - first).map(row).collect::<Vec<Vec<f64>>>()
@@ -247,7 +248,7 @@ impl<'a> Mixture<'a> {
     /// The logarithm of the height of the wide density: `N(0, s^2)` by `N(0, 1)`.
     fn wide(&self, points: &Columns, row: usize) -> f64 {
         let square: f64 = points.iter().map(|column| column[row] * column[row]).sum();
-        0.5 * square * (1.0 - 1.0 / (WIDTH * WIDTH)) - self.dimensions as f64 * WIDTH.ln()
+        0.5 * square * (1.0 - 1.0 / (WIDTH * WIDTH)) - self.dimensions as f64 * libm::log(WIDTH)
     }
 
     /// On the line through every point in the direction of the place: where the surrogate crosses the limit, near where it
@@ -258,7 +259,7 @@ impl<'a> Mixture<'a> {
         let mut spread = vec![0.0; rows];
         for (direction, by) in &place.spreads {
             for (spread, across) in spread.iter_mut().zip(along(points, direction)) {
-                *spread -= 0.5 * across * across * (1.0 / (by * by) - 1.0) + by.ln();
+                *spread -= 0.5 * across * across * (1.0 / (by * by) - 1.0) + libm::log(*by);
             }
         }
         let crossing = match place.kind {

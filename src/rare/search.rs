@@ -122,7 +122,7 @@ impl<'a> Search<'a> {
         for (reject, weight) in rejects.iter().zip(weights) {
             let known =
                 self.weighed[index].found().and_then(|found| found.probability).map_or(0.0, |known| known.value);
-            let dense = weight <= (DENSE * probability.max(known)).ln();
+            let dense = weight <= libm::log(DENSE * probability.max(known));
             if dense || held(&found, reject) {
                 continue;
             }
@@ -173,7 +173,7 @@ impl<'a> Search<'a> {
             let mut middle = vec![0.0; model.space.len()];
             let greatest = guides.iter().map(|guide| guide.0).fold(f64::NEG_INFINITY, f64::max);
             for (weight, normals) in guides {
-                middle.iter_mut().zip(normals).for_each(|(sum, z)| *sum += (weight - greatest).exp() * z);
+                middle.iter_mut().zip(normals).for_each(|(sum, z)| *sum += libm::exp(weight - greatest) * z);
             }
             let Some(direction) = unit(middle) else { continue };
             let near = |place: &&Place| place.target == index && dot(&place.direction, &direction) > ALIKE;
@@ -258,8 +258,8 @@ impl<'a> Search<'a> {
         let weight = |&row: &usize| {
             let heights = &drawn.heights[row];
             let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let sum: f64 = counts.iter().zip(heights).map(|(count, height)| count * (height - highest).exp()).sum();
-            total.ln() - highest - sum.ln()
+            let sum: f64 = counts.iter().zip(heights).map(|(count, height)| count * libm::exp(height - highest)).sum();
+            libm::log(total) - highest - libm::log(sum)
         };
         let weights: Vec<f64> = rows.iter().map(weight).collect();
         self.points += rows.len() as u64;

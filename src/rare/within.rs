@@ -40,7 +40,7 @@ pub(super) fn within(
     let value = |beyond: &Beyond| beyond.probability.map(|probability| probability.value);
     let apart = |end: usize| {
         let distances = sides.iter().map(|beyond| beyond.interval[end] - value(beyond).unwrap_or(0.0));
-        distances.fold(0.0, f64::hypot)
+        distances.fold(0.0, libm::hypot)
     };
     let seen: f64 = sides.iter().filter_map(|beyond| value(beyond)).sum();
     let (known, unseen): (Vec<&Beyond>, Vec<&Beyond>) = sides.iter().partition(|beyond| value(beyond).is_some());
@@ -57,7 +57,7 @@ fn keeping(kept: ProbabilityEstimate, other: Option<&Beyond>) -> Within {
     let (keeps, lost) = (estimate(kept.probability), other.map_or(0.0, |beyond| estimate(beyond.probability)));
     let apart = |end: usize| {
         let of_other = other.map_or(0.0, |beyond| beyond.interval[1 - end] - lost);
-        (kept.interval[end] - keeps).hypot(of_other)
+        libm::hypot(kept.interval[end] - keeps, of_other)
     };
     let known = kept.probability.is_some()
         && other.is_none_or(|beyond| beyond.probability.is_some() || beyond.interval[1] < keeps);

@@ -11,7 +11,9 @@ use crate::allocation::{
     Allocated, Attainable, Bound, CostBasis, FrontRequirement, Goal, JointYield, Kept, Moved, ShadowPrice, Status,
 };
 use crate::analysis::CharacteristicAnalysis;
-use crate::document::number::{beside, index, known, plain, plural, share, short, significant, target_yield, yielded};
+use crate::document::number::{
+    beside, index, known, plain, plural, power_of_ten, share, short, significant, target_yield, yielded,
+};
 use crate::document::{
     Bar, Bars, Blocks, Cell, Chart, Columns, DataTable, Document, Element, Fill, Flow, Layer, Line, Paragraph, Plot,
     PlotAxis, PlotPoint, PlotScale, Section, Stroke, Tone, Value,
@@ -174,7 +176,7 @@ impl AllocationReport {
             Some(residual) if residual.is_finite() => {
                 let closed = if proof.closed_form { ", Lagrange's solution in closed form" } else { "" };
                 // The next power of ten, and no more than doubles tell.
-                let within = 10f64.powi(residual.max(LEAST).log10().ceil() as i32);
+                let within = 10f64.powi(libm::log10(residual.max(LEAST)).ceil() as i32);
                 page.line(format!("KKT residual below {within:.0e}{closed}"));
             }
             Some(_) if self.cost_after.is_none() => {}
@@ -332,7 +334,7 @@ impl AllocationReport {
         let sigma = one.and_then(|one| one.after.as_ref().or(Some(&one.before))).and_then(|after| after.sigma());
         let step = match unit {
             Some("mm") => 0.001,
-            _ => 10f64.powf(sigma.filter(|sigma| *sigma > 0.0).map_or(0.0, f64::log10).floor() - 1.0),
+            _ => power_of_ten(sigma.filter(|sigma| *sigma > 0.0).map_or(0.0, libm::log10).floor() - 1.0),
         };
         let by = format!("{}{}", plain(step), unit.map(|unit| format!(" {unit}")).unwrap_or_default());
         let part =
@@ -592,7 +594,7 @@ fn placed(requirement: Requirement, required: f64) -> (f64, String) {
     match requirement {
         Requirement::Yield(_) => {
             let rejected = (1.0 - required).max(f64::MIN_POSITIVE);
-            (-rejected.log10(), share(rejected))
+            (-libm::log10(rejected), share(rejected))
         }
         _ => (required, significant(required, 3)),
     }
@@ -601,19 +603,19 @@ fn placed(requirement: Requirement, required: f64) -> (f64, String) {
 /// Round yields between two places of the chart: 90 %, 95 %, 98 %, 99 % and so on, or without those between powers of ten.
 fn round_yields(from: f64, to: f64) -> Vec<(f64, String)> {
     let rejected = (1..=12).flat_map(|decade| [1.0, 0.5, 0.2].map(|digit| digit * 10f64.powi(-decade)));
-    let all: Vec<f64> = rejected.filter(|rejected| (from..=to).contains(&-rejected.log10())).collect();
-    let whole = |rejected: &&f64| (rejected.log10() - rejected.log10().round()).abs() < 1e-9;
+    let all: Vec<f64> = rejected.filter(|rejected| (from..=to).contains(&-libm::log10(*rejected))).collect();
+    let whole = |rejected: &&f64| (libm::log10(**rejected) - libm::log10(**rejected).round()).abs() < 1e-9;
     let decades: Vec<f64> = all.iter().filter(whole).copied().collect();
     let label = |rejected: f64| {
         let percent = 100.0 * rejected;
         // As many decimals as the one digit of the rejects has.
-        let decimals = (-(percent * (1.0 + 1e-9)).log10().floor()).max(0.0) as usize;
-        (-rejected.log10(), format!("{:.decimals$} %", 100.0 - percent))
+        let decimals = (-libm::log10(percent * (1.0 + 1e-9)).floor()).max(0.0) as usize;
+        (-libm::log10(rejected), format!("{:.decimals$} %", 100.0 - percent))
     };
     match (all.len() > LABELS && decades.len() > 1, all.is_empty()) {
         (true, _) => decades.into_iter().map(label).collect(),
         // A front within less than a step: its ends.
-        (false, true) => [from, to].map(|place| (place, share(10f64.powf(-place)))).into(),
+        (false, true) => [from, to].map(|place| (place, share(libm::pow(10f64, -place)))).into(),
         (false, false) => all.into_iter().map(label).collect(),
     }
 }

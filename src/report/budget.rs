@@ -86,7 +86,7 @@ impl Budget {
         let mut rows: Vec<BudgetRow> =
             varying.map(|(sensitivity, dimension)| BudgetRow::of(sensitivity.first, dimension)).collect();
         let terms: Option<Vec<f64>> = rows.iter().map(|row| Some(row.coefficient? * row.uncertainty)).collect();
-        let alone = terms.as_ref().map(|terms| terms.iter().fold(0.0f64, |sum, term| sum.hypot(*term)));
+        let alone = terms.as_ref().map(|terms| terms.iter().fold(0.0f64, |sum, term| libm::hypot(sum, *term)));
         for row in &mut rows {
             row.share =
                 row.contribution.zip(alone).filter(|(_, all)| *all > 0.0).map(|(part, all)| (part / all).powi(2));

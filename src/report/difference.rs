@@ -291,7 +291,7 @@ fn compared(old: &Report, new: &Report) -> Vec<Compared> {
                 values,
                 errors,
                 differs: match (values, errors) {
-                    ([Some(was), Some(is)], [Some(a), Some(b)]) => Some((is - was).abs() > 3.0 * a.hypot(b)),
+                    ([Some(was), Some(is)], [Some(a), Some(b)]) => Some((is - was).abs() > 3.0 * libm::hypot(a, b)),
                     _ => None,
                 },
             };

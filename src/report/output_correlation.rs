@@ -41,7 +41,7 @@ pub(super) fn together_table(correlations: &[OutputCorrelation]) -> DataTable {
 /// A coefficient of correlation with the decimals that its error carries, three of them at most.
 fn coefficient(value: f64, error: Option<f64>) -> String {
     let decimals =
-        error.filter(|error| *error > 0.0).map_or(3, |error| (-error.log10().floor()).clamp(1.0, 3.0) as usize);
+        error.filter(|error| *error > 0.0).map_or(3, |error| (-libm::log10(error).floor()).clamp(1.0, 3.0) as usize);
     unsigned_zero(format!("{value:.decimals$}"))
 }
 

@@ -149,7 +149,7 @@ impl Stack {
         // Of the sum of squares, which is the squared RSS unless dimensions are correlated; unknown where one slope is.
         let alone: Option<f64> = one
             .rss
-            .and(rows.iter().map(|row| row.contribution).try_fold(0.0, |sum, part| Some(f64::hypot(sum, part?))));
+            .and(rows.iter().map(|row| row.contribution).try_fold(0.0, |sum, part| Some(libm::hypot(sum, part?))));
         for row in &mut rows {
             row.share =
                 row.contribution.zip(alone).map(|(part, all)| if all == 0.0 { 0.0 } else { (part / all).powi(2) });

@@ -79,7 +79,7 @@ impl CharacteristicAnalysis {
         let estimate = self.error_estimate.as_ref();
         let [mean_error, sigma_error] = [estimate.and_then(|of| of.mean), estimate.and_then(|of| of.sigma)];
         // Of an end k sigmas from the mean.
-        let end_error = |k: f64| mean_error.zip(sigma_error).map(|(mean, sigma)| mean.hypot(k * sigma));
+        let end_error = |k: f64| mean_error.zip(sigma_error).map(|(mean, sigma)| libm::hypot(mean, k * sigma));
         let interval = |ends: Option<[f64; 2]>, error: Option<f64>| {
             let ends = ends.map(|ends| ends.map(|end| carried(end, scale, error)));
             Cell::text(ends.map_or(UNKNOWN.to_owned(), |[low, high]| format!("{low} .. {high}")))

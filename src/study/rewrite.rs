@@ -343,7 +343,7 @@ impl Entry<'_> {
         if self.old.nominal() == value {
             return (write::number(value), value);
         }
-        let decimals = (4 - self.new.sigma().log10().floor() as i32).clamp(0, 15) as usize;
+        let decimals = (4 - libm::log10(self.new.sigma()).floor() as i32).clamp(0, 15) as usize;
         let text = format!("{value:.decimals$}");
         let text = if text.contains('.') { text } else { format!("{text}.0") };
         let rounded = text.parse().unwrap_or(value);
@@ -374,7 +374,7 @@ fn rounded(value: f64, scale: f64, up: bool) -> String {
         return "0.0".to_owned();
     }
     // A value that is a round number but for rounding is that number.
-    let magnitude = (scale.abs() * (1.0 + 8.0 * f64::EPSILON)).log10().floor() as i32;
+    let magnitude = libm::log10(scale.abs() * (1.0 + 8.0 * f64::EPSILON)).floor() as i32;
     let decimals = DIGITS as i32 - 1 - magnitude;
     let unit = 10f64.powi(decimals);
     let (scaled, blur) = (value * unit, 8.0 * f64::EPSILON * (value * unit).abs());

@@ -241,7 +241,7 @@ impl Chaos {
         let inputs: Vec<_> = parts.iter().map(both).collect();
         let logarithm = |p: f64| {
             let own = |values: &[(f64, f64)]| {
-                values.iter().map(|(value, weight)| weight * (p * value).exp()).sum::<f64>().ln()
+                libm::log(values.iter().map(|(value, weight)| weight * libm::exp(p * value)).sum::<f64>())
             };
             let (mut whole, mut apart) = (p * sparse.constant, 0.0);
             for (fine, coarse) in &inputs {

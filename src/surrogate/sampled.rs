@@ -62,7 +62,7 @@ pub(super) fn contributions(parabolas: &Parabolas<'_>, exact: &Contributions, me
         let mean = |i: usize| sums.differences[i] / count;
         let variance = if by_lines { linear + mean(0) } else { of_parabolas[0] + mean(1) };
         let [third, fourth] = [of_parabolas[1] + mean(4), of_parabolas[2] + mean(5)];
-        [variance.sqrt(), third / variance.powf(1.5), fourth / (variance * variance) - 3.0]
+        [variance.sqrt(), third / libm::pow(variance, 1.5), fourth / (variance * variance) - 3.0]
     };
     let found = shape(&all, samples as f64);
     let count = (samples - samples / BLOCKS as usize) as f64;

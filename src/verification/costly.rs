@@ -94,8 +94,8 @@ pub fn unseen(points: usize, seen: usize) -> [f64; 2] {
     let side = 0.5 * (1.0 - CONFIDENCE);
     match seen {
         _ if points == 0 => [0.0, 1.0],
-        0 => [0.0, 1.0 - (1.0 - CONFIDENCE).powf(1.0 / n)],
-        all if all >= points => [(1.0 - CONFIDENCE).powf(1.0 / n), 1.0],
+        0 => [0.0, 1.0 - libm::pow(1.0 - CONFIDENCE, 1.0 / n)],
+        all if all >= points => [libm::pow(1.0 - CONFIDENCE, 1.0 / n), 1.0],
         _ => [quantile(k, n - k + 1.0, side), quantile(k + 1.0, n - k, 1.0 - side)],
     }
 }

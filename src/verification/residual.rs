@@ -159,7 +159,7 @@ pub(super) fn judge(
     let errors = std::array::from_fn(|r| {
         let average = rows.iter().map(|row| row[r]).sum::<f64>() / k;
         let variance = rows.iter().map(|row| (row[r] - average).powi(2)).sum::<f64>() / (k - 1.0);
-        let seen = average.hypot((variance / k).sqrt());
+        let seen = libm::hypot(average, (variance / k).sqrt());
         let bound = (spread[r] * rho / k).sqrt() + SQUARES[r] * rho;
         units[r] * (moved[r] * moved[r] + seen * seen + bound * bound).sqrt()
     });

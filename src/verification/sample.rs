@@ -149,10 +149,10 @@ impl Sample {
         }
         let student = student(REPLICATES);
         errors.iter_mut().for_each(|error| *error *= student);
-        errors[MOMENTS..].iter_mut().for_each(|error| *error = error.hypot(self.one));
+        errors[MOMENTS..].iter_mut().for_each(|error| *error = libm::hypot(*error, self.one));
         let share = |total: &[f64]| vec![total[0] / total[count]];
         let failed = total > 0.0 && values.len() < all().count();
-        let off = if failed { (student * jackknife(share, &sums)[0]).hypot(self.one) } else { self.one };
+        let off = if failed { libm::hypot(student * jackknife(share, &sums)[0], self.one) } else { self.one };
         Figures { values: of(&totals(&sums)), errors, valid: (weights.iter().sum::<f64>() / total, off) }
     }
 
@@ -178,7 +178,7 @@ impl Sample {
         let (values, errors) = (shares(&totals(&sums)), jackknife(shares, &sums));
         let student = student(REPLICATES);
         // As for a share: that no point disagrees does not mean that none does.
-        Some(std::array::from_fn(|i| Verified { value: values[i], error: (student * errors[i]).hypot(self.one) }))
+        Some(std::array::from_fn(|i| Verified { value: values[i], error: libm::hypot(student * errors[i], self.one) }))
     }
 
     /// All of it, for tails and shares that are asked for later.

@@ -52,12 +52,12 @@ pub(super) fn tail(values: &[Weighed], above: bool, (replicates, one): (usize, f
     if ordered.len() < FEWEST || least >= FROM {
         return Vec::new();
     }
-    let step = (FROM / least).ln() / (SHOWN - 1) as f64;
+    let step = libm::log(FROM / least) / (SHOWN - 1) as f64;
     let mut at = Vec::with_capacity(SHOWN);
     let mut sums: Vec<Vec<f64>> = Vec::with_capacity(SHOWN + 1);
     let mut so_far = vec![0.0; replicates];
     let (mut share, mut next) = (0.0, 0);
-    let reached = |share: f64, next: usize| share >= least * (step * next as f64).exp() * (1.0 - 1e-9);
+    let reached = |share: f64, next: usize| share >= least * libm::exp(step * next as f64) * (1.0 - 1e-9);
     for (place, &(value, weight, replicate)) in ordered.iter().enumerate() {
         so_far[replicate] += weight;
         share += weight / total;
@@ -79,7 +79,7 @@ pub(super) fn tail(values: &[Weighed], above: bool, (replicates, one): (usize, f
         parts.iter().map(|part| part / all).collect::<Vec<f64>>()
     };
     let (values, errors, wide) = (shares(&totals(&sums)), jackknife(shares, &sums), student(replicates));
-    let known = |error: f64| error.is_finite().then(|| (wide * error).hypot(one));
+    let known = |error: f64| error.is_finite().then(|| libm::hypot(wide * error, one));
     let point = |((at, share), error): ((f64, f64), f64)| TailPoint { at, share, error: known(error) };
     let mut found: Vec<TailPoint> = at.into_iter().zip(values).zip(errors).map(point).collect();
     found.reverse();

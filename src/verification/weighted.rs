@@ -56,6 +56,6 @@ impl WeightedSample {
         }
         let means = |total: &[f64]| total[..N].iter().map(|sum| sum / total[N]).collect::<Vec<f64>>();
         let (values, errors, wide) = (means(&totals(&sums)), jackknife(means, &sums), student(self.replicates));
-        std::array::from_fn(|i| Verified { value: values[i], error: (wide * errors[i]).hypot(self.one) })
+        std::array::from_fn(|i| Verified { value: values[i], error: libm::hypot(wide * errors[i], self.one) })
     }
 }

@@ -160,7 +160,7 @@ pub(super) fn pole(characteristic: &str, switch: &str, probability: &f64) -> Tex
 
 pub(super) fn figure_off(characteristic: &str, figure: &&'static str, value: &f64, model: &f64, error: &f64) -> Text {
     // Two digits of the difference, at least.
-    let places = (value.abs() / (value - model).abs()).log10().ceil();
+    let places = libm::log10(value.abs() / (value - model).abs()).ceil();
     let digits = if places.is_finite() { (places.max(3.0) as i32 + 2).min(15) } else { 5 };
     let [value, model, error] =
         [(value, digits), (model, digits), (error, 2)].map(|(of, digits)| significant(*of, digits));
@@ -184,7 +184,7 @@ fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
-    let exponent = value.abs().log10().floor() as i32;
+    let exponent = libm::log10(value.abs()).floor() as i32;
     match digits - 1 - exponent {
         places @ 0..=9 => format!("{value:.*}", places as usize),
         places if places < 0 && exponent < 9 => format!("{value:.0}"),

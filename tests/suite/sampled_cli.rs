@@ -206,11 +206,10 @@ fn the_rounds_of_a_program_are_printed() {
     }
 }
 
-/// Every function of formulas, distributions and built-in models, without the instructions by which the system's library has other
-/// last digits on other processors: every figure is the same.
+/// Without the instructions by which the system's library has other last digits on other processors, every figure is the same.
 #[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
 #[test]
-fn samples_are_the_same_on_every_processor() {
+fn figures_are_the_same_on_every_processor() {
     let folder = tempfile::tempdir().unwrap();
     let formulas = folder.path().join("study.toml");
     let text = r#"
@@ -228,17 +227,26 @@ logarithms = { formula = "hypot(a, b)*log10(a + b) + ln(c)*exp(a)", upper = 0 }
 "#;
     std::fs::write(&formulas, text).unwrap();
     let formulas = formulas.to_str().unwrap();
-    let figures = |study: &str, hidden: Option<&str>| {
-        let mut command = sensitol(&["simulate", study, "--samples", "20000", "--json"]);
-        command.envs(hidden.map(|hidden| ("GLIBC_TUNABLES", hidden)));
-        let output = command.output().unwrap();
+    let figures = |command: &[&str], hidden: Option<&str>| {
+        let mut program = sensitol(command);
+        program.arg("--json").envs(hidden.map(|hidden| ("GLIBC_TUNABLES", hidden)));
+        let output = program.output().unwrap();
         let mut report: Value =
             serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"));
         (report["wall_s"], report["in_model_s"]) = (Value::Null, Value::Null);
         report
     };
-    for study in [formulas, ENGINE, "examples/spot-weld/study.toml", "examples/connecting-rod/study.toml"] {
+    let commands: [&[&str]; 7] = [
+        &["simulate", formulas, "--samples", "20000"],
+        &["simulate", ENGINE, "--samples", "20000"],
+        &["simulate", "examples/spot-weld/study.toml", "--samples", "20000"],
+        &["simulate", "examples/connecting-rod/study.toml", "--samples", "2000"],
+        &["analyze", formulas],
+        &["analyze", ENGINE],
+        &["allocate", "examples/door-hinge/study.toml"],
+    ];
+    for command in commands {
         let hidden = "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4,-AVX512F";
-        assert_eq!(figures(study, None), figures(study, Some(hidden)), "{study}");
+        assert_eq!(figures(command, None), figures(command, Some(hidden)), "{command:?}");
     }
 }

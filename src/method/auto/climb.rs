@@ -287,7 +287,7 @@ impl<'p> Climb<'p> {
         for view in views.iter().take(LINES) {
             let steepest: Vec<f64> = (0..self.positions()).map(|j| view.bends.slope(j)).collect();
             let bent: Vec<f64> = (0..self.positions()).map(|j| view.bends.bend(j)).collect();
-            let size = |line: &[f64]| line.iter().fold(0.0, |size: f64, part| size.hypot(*part));
+            let size = |line: &[f64]| line.iter().fold(0.0, |size: f64, part| libm::hypot(size, *part));
             let along = steepest.iter().zip(&bent).map(|(a, b)| a * b).sum::<f64>().abs();
             let apart =
                 size(&bent).powi(4) > BENT * view.variance() && along < PARALLEL * size(&steepest) * size(&bent);

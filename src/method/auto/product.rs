@@ -26,7 +26,7 @@ pub(super) fn is_product(
         let value = known.value(point, view.characteristic)?;
         let place = plan.standardised(point);
         let rise: f64 = place.iter().zip(&factors).map(|(u, [slope, bend])| u * (slope + u * bend)).sum();
-        Some(value - centre * rise.exp())
+        Some(value - centre * libm::exp(rise))
     };
     let Some(off) = bought.checks.iter().flatten().map(off).collect::<Option<Vec<f64>>>() else { return false };
     let remains = view.share(off.iter().map(|d| d * d).sum::<f64>() / off.len().max(1) as f64);
@@ -43,7 +43,7 @@ fn factors(plan: &DifferencePlan, known: &KnownAnswers, c: usize) -> Option<Vec<
         let samples = plan.samples(known, c, d)?;
         let logarithm = |&(u, rise): &(f64, f64)| {
             let ratio = 1.0 + rise / centre;
-            (ratio > 0.0).then(|| (u, ratio.ln() / u))
+            (ratio > 0.0).then(|| (u, libm::log(ratio) / u))
         };
         let below = samples.iter().rev().find(|(u, _)| *u < 0.0).map(logarithm);
         let above = samples.iter().find(|(u, _)| *u > 0.0).map(logarithm);

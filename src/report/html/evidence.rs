@@ -9,7 +9,7 @@ use super::facts::facts;
 use super::pareto::pareto;
 use crate::analysis::{CharacteristicAnalysis, Sensitivity};
 use crate::capability::Law;
-use crate::document::number::{band, beside, estimated, plain};
+use crate::document::number::{band, beside, estimated, plain, power_of_ten};
 use crate::document::svg::escaped;
 use crate::document::{Bar, Bars, Chart, Element, Extent, Fill, Line, Section, html};
 use crate::pearson::Pearson;
@@ -133,14 +133,14 @@ fn panel(one: &CharacteristicAnalysis, tail: &Tail<'_>) -> Option<String> {
     if least < FARTHEST {
         return None;
     }
-    let decades = -least.log10().floor();
-    let least = 10f64.powf(-decades);
+    let decades = -libm::log10(least).floor();
+    let least = power_of_ten(-decades);
     let shown = || tail.seen.iter().filter(|point| point.share >= least);
     let values = [at(FROM), at(least), tail.limit].into_iter().chain(shown().map(|point| point.at));
     let scale = Extent::over(values, 0.04, WIDTH - LEFT)?;
     let x = |value: f64| LEFT + scale.at(value);
     let y = |share: f64| {
-        let part = (FROM.log10() - share.max(least).log10()) / (FROM.log10() - least.log10());
+        let part = (libm::log10(FROM) - libm::log10(share.max(least))) / (libm::log10(FROM) - libm::log10(least));
         (10.0 * TALL * part.clamp(0.0, 1.0)).round() / 10.0 + 8.0
     };
     let mut line = String::new();

@@ -411,13 +411,13 @@ impl Gauge {
 
     fn of(all: &[JudgedCharacteristic<'_>]) -> Self {
         let targets = all.iter().filter_map(|one| one.target);
-        let least = targets.map(|target| (1.0 - target).log10().floor() - 1.0).fold(-5.0, f64::min);
+        let least = targets.map(|target| libm::log10(1.0 - target).floor() - 1.0).fold(-5.0, f64::min);
         Self { least: least.max(-9.0) }
     }
 
     /// Left is bad.
     fn at(&self, rejected: f64) -> f64 {
-        let share = (-1.0 - rejected.max(1e-300).log10()) / (-1.0 - self.least);
+        let share = (-1.0 - libm::log10(rejected.max(1e-300))) / (-1.0 - self.least);
         (10.0 * Self::WIDTH * share.clamp(0.0, 1.0)).round() / 10.0
     }
 
@@ -445,7 +445,7 @@ impl Gauge {
         }
         let names = [(-1.0, "10 %", "start"), (-3.0, "0.1 %", "middle"), (-5.0, "10 ppm", "middle")];
         for (exponent, name, anchor) in names {
-            let x = self.at(10f64.powf(exponent));
+            let x = self.at(libm::pow(10f64, exponent));
             let anchor = if x >= width { "end" } else { anchor };
             let _ = write!(svg, "<text x=\"{x}\" y=\"28\" text-anchor=\"{anchor}\">{name}</text>");
         }
@@ -476,7 +476,7 @@ pub(super) fn interval(ends: [f64; 2]) -> String {
     if width < NARROW {
         return String::new();
     }
-    let decimals = (1.0 - width.log10().floor()).clamp(0.0, 9.0) as usize;
+    let decimals = (1.0 - libm::log10(width).floor()).clamp(0.0, 9.0) as usize;
     let [low, high] = ends.map(|end| format!("{:.decimals$}", 100.0 * end));
     format!("{low} – {high} %")
 }

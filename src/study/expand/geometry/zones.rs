@@ -59,7 +59,7 @@ pub(super) fn orientation(line: &Line<'_>, element: &'static str) -> Result<Plai
         return Err(line.at_key(element, StudyFault::MissingKey { key: "length".into(), instead }));
     };
     below(line, zone, length)?;
-    let reach = (zone / length).asin();
+    let reach = libm::asin(zone / length);
     match line.entry.get("axis").map(|axis| &axis.value) {
         None | Some(Value::Truth(false)) => Ok(banded(line, element, [-reach, reach], Of::Angle)),
         Some(Value::Truth(true)) => Ok(circular(line, element, 2.0 * reach, Of::Angle)),
