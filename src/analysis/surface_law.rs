@@ -240,7 +240,7 @@ fn surface(
 }
 
 fn points(surrogate: &Surrogate) -> usize {
-    let terms = surrogate.parts.len() + surrogate.interactions.pairs().len();
+    let terms = surrogate.parts.len() + surrogate.interactions.each_pair().count();
     (POINTS * TERMS / terms.max(TERMS)).max(FEWEST)
 }
 
@@ -250,14 +250,13 @@ pub(super) fn with(
     mut inputs: Vec<Arc<dyn Distribution>>,
     unexplained: Option<f64>,
 ) -> (Surrogate, Vec<Arc<dyn Distribution>>) {
-    let own = &own.without_rounding();
-    let mut surrogate = own.clone();
-    let least = IDLE * own.parts.iter().flatten().map(|part| part.largest().powi(2)).sum::<f64>();
+    let mut surrogate = own.without_rounding();
+    let least = IDLE * surrogate.parts.iter().flatten().map(|part| part.largest().powi(2)).sum::<f64>();
     let normal = Normal::new(0.0, 1.0).ok();
     if let (Some(variance), Some(normal)) = (unexplained.filter(|&variance| variance > least), normal) {
         inputs.push(Arc::new(normal));
         surrogate.parts.push(Some(Univariate::of_coefficients(&[variance.sqrt()])));
-        surrogate.interactions = Interactions::of_pairs(inputs.len(), own.interactions.pairs());
+        surrogate.interactions = Interactions::of_pairs(inputs.len(), surrogate.interactions.pairs());
     }
     (surrogate, inputs)
 }

@@ -56,14 +56,10 @@ impl Surrogate {
     pub(crate) fn without_rounding(&self) -> Self {
         let sigma = self.parts.iter().flatten().map(|part| part.largest().powi(2)).sum::<f64>().sqrt();
         let least = (8.0 * f64::EPSILON * self.centre.abs()).max(1e-13 * sigma);
-        let pairs = self.interactions.pairs();
-        let kept = pairs.iter().filter(|(_, _, value)| value.abs() > least).count();
-        let interactions = match kept == pairs.len() {
+        let counts = |&(_, _, value): &(usize, usize, f64)| value.abs() > least;
+        let interactions = match self.interactions.each_pair().all(|pair| counts(&pair)) {
             true => self.interactions.clone(),
-            false => {
-                let kept = pairs.into_iter().filter(|(_, _, value)| value.abs() > least);
-                Interactions::of_pairs(self.parts.len(), kept)
-            }
+            false => Interactions::of_pairs(self.parts.len(), self.interactions.each_pair().filter(counts)),
         };
         let parts = self.parts.iter().map(|part| part.map(|part| part.without_bends(least))).collect();
         Self { centre: self.centre, parts, interactions }

@@ -187,7 +187,7 @@ impl CheckedFigures {
 
 /// A surrogate over its distribution; None when a part of it is unknown.
 fn surface(space: &Space<'_>, normals: &Normals, surrogate: &Surrogate) -> Option<Surface> {
-    let work = space.len() + surrogate.interactions.pairs().len();
+    let work = space.len() + surrogate.interactions.each_pair().count();
     let knots = (WORK / work).clamp(FEWEST, KNOTS);
     let q = |z: &Columns| values(surrogate, &space.standardised(z));
     let mut z = normals.columns(1, knots);
