@@ -93,6 +93,8 @@ impl Evaluated {
         let mut points = Points::repeated(&centre, 0);
         for batch in stage.points.chunks(rows) {
             if points.rows() != batch.len() {
+                // Two buffers would stand beside each other at the last batch, which is shorter.
+                drop(std::mem::replace(&mut points, Points::repeated(&centre, 0)));
                 points = Points::repeated(&centre, batch.len());
             }
             for (row, (point, _)) in batch.iter().enumerate() {
