@@ -53,7 +53,7 @@ const both = (path, asked, options) => {
   const task = { text, format: "toml", name: path, files: files(path, text), asked, forms: ["json", "text"] };
   const page = JSON.parse(engine.run(JSON.stringify(task), () => {}));
   assert.ok(page.json, `${path}: ${JSON.stringify(page).slice(0, 500)}`);
-  const line = (...more) => spawnSync(process.env.SENSITOL, [asked.command, path, "-q", "-v", ...options, ...more], { cwd: root, encoding: "utf8", maxBuffer: 1 << 28 });
+  const line = (...more) => spawnSync(process.env.SENSITOL, [asked.command, path, "-q", "-v", ...options, ...more], { cwd: root, encoding: "utf8", env: { ...process.env, LC_ALL: "C.UTF-8" }, maxBuffer: 1 << 28 });
   const json = line("--json");
   assert.notEqual(json.stdout, "", `${path}: ${json.stderr}`);
   const written = join(folder, "report.txt");
