@@ -94,7 +94,7 @@ impl Evaluated {
         for batch in stage.points.chunks(rows) {
             if points.rows() != batch.len() {
                 // Two buffers would stand beside each other at the last batch, which is shorter.
-                drop(std::mem::replace(&mut points, Points::repeated(&centre, 0)));
+                drop(points);
                 points = Points::repeated(&centre, batch.len());
             }
             for (row, (point, _)) in batch.iter().enumerate() {

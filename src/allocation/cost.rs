@@ -200,7 +200,7 @@ impl Curve {
         [self.a + varying, self.derivatives_of(varying, t)[0]]
     }
 
-    /// The same from the part of the cost that varies.
+    /// First and second derivative by `ln t`, from the part of the cost that varies.
     fn derivatives_of(&self, cost: f64, t: f64) -> [f64; 2] {
         if let Some(written) = &self.written {
             return written.log_derivatives(t);

@@ -160,8 +160,7 @@ impl Side<'_> {
 
 /// Of a share times the standard normal density, with a bend in one place.
 fn integral(share: &dyn Fn(f64) -> f64, [from, to]: [f64; 2], turn: f64) -> (f64, f64) {
-    let density = |t: f64| libm::exp(-0.5 * t * t) / (2.0 * std::f64::consts::PI).sqrt();
-    let f = |t: f64| share(t) * density(t);
+    let f = |t: f64| share(t) * standard_normal::density(t);
     let inside = from < turn && turn < to;
     let pieces = if inside { vec![[from, turn], [turn, to]] } else { vec![[from, to]] };
     let mut sum = (0.0, 0.0);

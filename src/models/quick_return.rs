@@ -79,7 +79,7 @@ impl Work for Stroke<'_> {
     }
 }
 
-/// Where the ram stands at one end of its stroke: of the frame, the arm and the link, for a pin on the one or the other side.
+/// Where the ram stands at one end of its stroke; `reach` is negative at the other end.
 #[inline(always)]
 fn ram([d, e, q, c, height]: [f64; 5], reach: f64, [rest, square]: [f64; 2]) -> f64 {
     let sin = (e * rest + d * reach) / square;

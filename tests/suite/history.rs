@@ -130,11 +130,11 @@ fn what_a_replay_costs() {
         out.extra()
     };
     // Without any, sentinels alone: one at the end, and one for every 64 points of a window of four. However answers come.
-    assert_eq!([extra(20, Some(0)), extra(400, Some(0))], [1, 7]);
-    let sentinels = extra(20, Some(0));
-    assert_eq!(extra(20, None) - sentinels, 7 * 4);
-    assert_eq!(extra(20, Some(3)) - sentinels, 3 * 4);
-    assert_eq!(extra(400, None) - extra(400, Some(0)), (20 + 2) * 4);
+    let [of_20, of_400] = [20, 400].map(|points| extra(points, Some(0)));
+    assert_eq!([of_20, of_400], [1, 7]);
+    assert_eq!(extra(20, None) - of_20, 7 * 4);
+    assert_eq!(extra(20, Some(3)) - of_20, 3 * 4);
+    assert_eq!(extra(400, None) - of_400, (20 + 2) * 4);
 }
 
 /// `probe` fails what an analysis would have to mend, and nothing else.

@@ -206,7 +206,7 @@ fn the_rounds_of_a_program_are_printed() {
     }
 }
 
-/// Without the instructions by which the system's library has other last digits on other processors, every figure is the same.
+/// The system's library rounds otherwise where it has no FMA. Hidden from it, every figure stays the same.
 #[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
 #[test]
 fn figures_are_the_same_on_every_processor() {
